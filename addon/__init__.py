@@ -1,0 +1,18 @@
+"""Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
+
+from . import hand, handlers, operators, panels, settings
+from .views import viewport
+
+_MODULES = (settings, operators, panels, hand, viewport, handlers)
+
+
+def register():
+    """Register everything; where the native module is missing, the panel states the reason."""
+    for module in _MODULES:
+        module.register()
+
+
+def unregister():
+    """Unregister everything again, in reverse."""
+    for module in reversed(_MODULES):
+        module.unregister()

@@ -1,0 +1,42 @@
+"""Droppable derived state: prepared skins by content."""
+
+import hashlib
+from collections import OrderedDict
+
+import numpy as np
+
+_SKINS_KEPT = 4
+_skins = OrderedDict()
+
+
+def content_hash(*parts):
+    """Hex digest (32 digits) of arrays, texts and numbers; arrays enter with type, shape and bytes."""
+    digest = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        if isinstance(part, np.ndarray):
+            digest.update(f"{part.dtype.str}{part.shape}".encode())
+            digest.update(np.ascontiguousarray(part).tobytes())
+        else:
+            digest.update(repr(part).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()
+
+
+def skin(key, make):
+    """The prepared skin of `key`, made by `make()` when it is not kept; a few are kept."""
+    if key not in _skins:
+        _skins[key] = make()
+        while len(_skins) > _SKINS_KEPT:
+            _skins.popitem(last=False)
+    _skins.move_to_end(key)
+    return _skins[key]
+
+
+def drop(key):
+    """Forget the skin of `key`: after a failure inside, it may not be whole."""
+    _skins.pop(key, None)
+
+
+def clear():
+    """Drop everything."""
+    _skins.clear()

@@ -1,0 +1,139 @@
+"""Where a fit begins: the product laid into the palm and the fingers closed until they touch.
+
+Knows nothing of Blender. World mm, radians.
+"""
+
+import numpy as np
+
+from . import pads as pads_of_hand
+from .poses import POSES
+from .roles import COLUMNS, FINGERS, WRIST, angle_bounds, flexion_axis, from_anatomical, pose_angles
+from .skinning import pose_matrices, skin, to_world
+
+STEP_DEG = 4.0
+"""A closing joint turns in steps of this many degrees; the fit that follows does the rest."""
+
+CLEAR_MM = 200.0
+"""The product starts this far in front of the palm."""
+
+
+def hand_frame(rig, joints):
+    """World frame of the palm at rest: `(center, radial, distal, palmar)`, the center at the knuckles.
+
+    Needs two fingers; with one, its flexion axis stands for the line of the knuckles.
+    """
+    present = [f for f in FINGERS if f"{f}_proximal" in joints.bones]
+    bones = [joints.bones[f"{f}_proximal"] for f in present]
+    heads = to_world(rig, rig.rest[bones, :3, 3])
+    linear = rig.world_from_rig[:3, :3]
+    along = linear @ rig.rest[bones, :3, 1].mean(axis=0)
+    facing = linear @ np.mean([pads_of_hand.palmar(rig, joints, f"{f}_proximal") for f in present], axis=0)
+    radial = heads[0] - heads[-1] if len(bones) > 1 else joints.side * (linear @ flexion_axis(rig, bones[0]))
+    if WRIST in joints.bones:
+        along = heads.mean(axis=0) - to_world(rig, rig.rest[[joints.bones[WRIST]], :3, 3])[0]
+    facing = facing / np.linalg.norm(facing)
+    radial = radial - facing * (radial @ facing)
+    radial /= np.linalg.norm(radial)
+    distal = np.cross(facing, radial)
+    distal *= np.sign(distal @ along) or 1.0
+    return heads.mean(axis=0), radial, distal, facing
+
+
+def product_axis(vertices):
+    """Center (3) and long axis (3) of a product from the spread of its vertices, world mm."""
+    center = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
+    _, axes = np.linalg.eigh(np.cov((vertices - vertices.mean(axis=0)).T))
+    return center, axes[:, 2]
+
+
+def lay_into_palm(rig, joints, pads, product, placing):
+    """World transform (4, 4) that carries the hand to the product so that the product lies in the open palm.
+
+    `placing`: (center, axis, oblique radians, offset mm along the fingers). The product's axis lies across the palm,
+    turned obliquely, as a handle lies from the index finger's base to the heel of the hand.
+    """
+    center, axis, oblique, offset_mm = placing
+    knuckles, radial, distal, facing = hand_frame(rig, joints)
+    across = np.cos(oblique) * radial + np.sin(oblique) * distal
+    if axis @ across < 0.0:
+        axis = -axis
+    hand = np.stack([across, np.cross(facing, across), facing], axis=1)
+    helper = center - (knuckles + facing * CLEAR_MM)
+    helper = helper - axis * (helper @ axis)
+    if np.linalg.norm(helper) < 1.0:
+        helper = np.cross(axis, [0.3, 0.5, 0.8])
+    toward = facing - axis * (facing @ axis)
+    toward = toward if np.linalg.norm(toward) > 0.3 else helper
+    toward = toward / np.linalg.norm(toward)
+    goal = np.stack([axis, np.cross(toward, axis), toward], axis=1)
+    turn = goal @ hand.T
+    place = np.eye(4)
+    place[:3, :3] = turn
+    place[:3, 3] = center - turn @ (knuckles + distal * offset_mm) - turn @ facing * CLEAR_MM
+    rows = np.concatenate([pad.rows for pad in pads if pad.kind == "palm"] or [pad.rows for pad in pads])
+    palm = skin(rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"])))
+    return approach(palm, product, place, turn @ facing)
+
+
+def approach(points, product, place, direction, depth_mm=2.0):
+    """`place` moved along `direction` until the deepest of `points` is `depth_mm` deep; sphere tracing."""
+    for _ in range(60):
+        gap = pads_of_hand.gaps(product, points @ place[:3, :3].T + place[:3, 3]).min() + depth_mm
+        place = place.copy()
+        place[:3, 3] += direction * gap
+        if abs(gap) < 0.05:
+            break
+    return place
+
+
+NEAR_MM = 6.0
+"""A digit that has a pad this near the product is not closed further before the fit."""
+
+
+def close_fingers(rig, joints, pads, product, start):
+    """Angles (b, 3): from `start`, each digit bends joint by joint until a pad beyond the joint touches.
+
+    A digit that is near the product already stays as it is: a flat hand on a plate shall not make a fist.
+    """
+    angles = start.copy()
+    for digit in (*FINGERS, "thumb"):
+        chain = ["metacarpal", "proximal", "distal"] if digit == "thumb" else ["proximal", "middle", "distal"]
+        roles = [f"{digit}_{segment}" for segment in chain if f"{digit}_{segment}" in joints.bones]
+        own = [pad for pad in pads if pad.role in roles and pad.kind != "palm"]
+        if own:
+            angles = _close_digit(rig, joints, (roles, own), product, angles)
+    return angles
+
+
+def _close_digit(rig, joints, digit, product, angles):
+    roles, own = digit
+    rows = np.concatenate([pad.rows for pad in own])
+    level = np.concatenate([np.full(len(pad.rows), roles.index(pad.role)) for pad in own])
+    part = rig.subset(rows)
+    free = 0
+    gap = pads_of_hand.gaps(product, skin(part, pose_matrices(part, angles)))
+    if gap.min() < NEAR_MM and np.median(gap) < 3.0 * NEAR_MM:
+        return angles
+    for _ in range(60):
+        gap = pads_of_hand.gaps(product, skin(part, pose_matrices(part, angles)))
+        touched = level[gap < -0.5]
+        free = max(free, int(touched.max()) + 1 if len(touched) else 0)
+        moved = False
+        for role in roles[free:]:
+            moved |= _bend(joints, role, angles)
+        if not moved:
+            break
+    return angles
+
+
+def _bend(joints, role, angles):
+    """Bends `role` by a step in place, slower where the joint bends less; whether it had room."""
+    bone, column = joints.bones[role], COLUMNS["flexion"]
+    low, high = angle_bounds(joints, role, "flexion")
+    share = 0.6 if role.endswith("distal") else 1.0
+    stop = min(high, float(from_anatomical(joints, role, "flexion", 85.0)))
+    if role == "thumb_metacarpal":
+        stop, share = min(high, np.radians(25.0)), 0.6
+    before = angles[bone, column]
+    angles[bone, column] = max(before, min(before + share * np.radians(STEP_DEG), stop))
+    return angles[bone, column] > before + 1e-9

@@ -1,0 +1,73 @@
+"""Bounded robust least squares by Levenberg and Marquardt's method, in plain numpy.
+
+Knows nothing of hands. Sources: Marquardt 1963; weights of the soft-L1 loss as in Triggs et al. 2000, section 4.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Problem:
+    """`residuals(x)` -> (m,), `jacobian(x)` -> (m, n) at the last x given to `residuals`; bounds (n,) each.
+
+    `robust(values)` (m,) bool marks the residuals whose loss is soft-L1 (linear beyond about one) instead of squared;
+    it may look at their sign.
+    """
+
+    residuals: object
+    jacobian: object
+    lower: np.ndarray
+    upper: np.ndarray
+    robust: object
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Best `x`, its `cost`, how many residual evaluations it took, and whether a step fell below the tolerance."""
+
+    x: np.ndarray
+    cost: float
+    evaluations: int
+    has_converged: bool
+
+
+def cost_of(values, robust):
+    """Half the squared residuals, soft-L1 where `robust`."""
+    squares = values * values
+    return 0.5 * float(np.where(robust, 2.0 * (np.sqrt(1.0 + squares) - 1.0), squares).sum())
+
+
+def minimize(problem, start, evaluations=60, tolerance=1e-4, cancelled=None):
+    """Minimise from `start`, never leaving the bounds; a variable pushed against a bound is left out of the step.
+
+    Stops at `evaluations`, when the relative gain of a step falls below `tolerance`, or when `cancelled()` is true.
+    """
+    x = np.clip(start, problem.lower, problem.upper)
+    values = problem.residuals(x)
+    cost, damping, used = cost_of(values, problem.robust(values)), 1e-2, 1
+    while used < evaluations and not (cancelled and cancelled()):
+        weights = np.where(problem.robust(values), 1.0 / np.sqrt(1.0 + values * values), 1.0)
+        slope = problem.jacobian(x)
+        gradient = slope.T @ (weights * values)
+        free = ~((x <= problem.lower) & (gradient > 0.0)) & ~((x >= problem.upper) & (gradient < 0.0))
+        hessian = (slope[:, free] * weights[:, None]).T @ slope[:, free]
+        scale = np.maximum(np.diag(hessian), 1e-9 * max(float(np.diag(hessian).max(initial=0.0)), 1e-12))
+        gained = None
+        while used < evaluations and damping < 1e8:
+            step = np.zeros_like(x)
+            step[free] = np.linalg.solve(hessian + damping * np.diag(scale), -gradient[free])
+            trial = np.clip(x + step, problem.lower, problem.upper)
+            trial_values = problem.residuals(trial)
+            trial_cost = cost_of(trial_values, problem.robust(trial_values))
+            used += 1
+            if trial_cost < cost:
+                gained, damping = cost - trial_cost, max(damping / 5.0, 1e-8)
+                x, values, cost = trial, trial_values, trial_cost
+                break
+            damping *= 4.0
+        if gained is None or gained < tolerance * cost:
+            return Solution(x, cost, used, has_converged=True)
+        problem.residuals(x)
+    return Solution(x, cost, used, has_converged=False)

@@ -1,0 +1,315 @@
+"""Operators of the hand: make it, pose it, name its bones, fit a grasp, add a sample."""
+
+import threading
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty
+
+from .. import native, status, workflow
+from ..operators import running
+from ..scene.checks import Refusal
+from . import build, fitting, grasp, pads, posing, samples
+from .poses import LABELS
+
+STRENGTHS = (
+    ("LIGHT", "Light", "Pads sink 2 to 3 mm, as in a loose hold"),
+    ("FIRM", "Firm", "Pads sink 3 to 6 mm, as the contact areas of a power grasp need"),
+    ("CUSTOM", "Own Depths", "Depths entered below"),
+)
+MOVES = (
+    ("HAND", "Hand", "The hand goes to the product"),
+    ("PRODUCT", "Product", "The product comes to the hand"),
+    ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
+)
+PLACES = (
+    ("LAY", "Into the Palm", "The product is laid across the palm before the fingers close"),
+    ("KEEP", "From Here", "The fit starts from where hand and product are now"),
+)
+DIGITS = (
+    ("thumb", "Thumb", "", 1),
+    ("index", "Index", "", 2),
+    ("middle", "Middle", "", 4),
+    ("ring", "Ring", "", 8),
+    ("little", "Little", "", 16),
+    ("palm", "Palm", "", 32),
+)
+
+
+def _depth(kind):
+    return FloatProperty(
+        name=f"{kind.capitalize()} (mm)",
+        description=f"Depth of the {kind} pads in the product, mm; 0 leaves them out of the fit",
+        min=0.0,
+        soft_max=8.0,
+        default=pads.FIRM_MM[kind],
+    )
+
+
+class THENAR_OT_make_hand(bpy.types.Operator):
+    """Add a rigged hand of measured proportions, with its regions and tissue"""
+
+    bl_idname = "thenar.make_hand"
+    bl_label = "Make Hand"
+    bl_options = {"REGISTER", "UNDO"}
+
+    sex: EnumProperty(name="Sex", items=(("male", "Male", ""), ("female", "Female", "")))
+    side: EnumProperty(name="Side", items=(("right", "Right", ""), ("left", "Left", "")))
+    percentile: FloatProperty(
+        name="Percentile", description="Size among adults of that sex", min=1.0, max=99.0, default=50.0
+    )
+    length_mm: FloatProperty(name="Length (mm)", description="Hand length, mm; 0 takes the percentile's", min=0.0)
+    breadth_mm: FloatProperty(name="Breadth (mm)", description="Hand breadth, mm; 0 takes the percentile's", min=0.0)
+    spacing_mm: FloatProperty(name="Spacing (mm)", description="Vertex spacing, mm", min=1.0, max=6.0, default=2.5)
+
+    @classmethod
+    def poll(cls, context):
+        return _poll(cls, context)
+
+    def execute(self, context):
+        hand = running.attempt(self, self._make, context)
+        if hand is None:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"'{hand.name}' has {len(hand.data.vertices):,} vertices")
+        return {"FINISHED"}
+
+    def _make(self, context):
+        shape = {"percentile": self.percentile, "sex": self.sex, "side": self.side, "spacing_mm": self.spacing_mm}
+        for name in ("length_mm", "breadth_mm"):
+            if getattr(self, name) > 0.0:
+                shape[name] = getattr(self, name)
+        hand, _ = build.add_hand(context, build.make(**shape))
+        context.scene.thenar.hand = hand
+        return hand
+
+
+class THENAR_OT_apply_pose(bpy.types.Operator):
+    """Put the hand into a pose of the library; works on every armature whose bones are named"""
+
+    bl_idname = "thenar.apply_pose"
+    bl_label = "Apply Pose"
+    bl_options = {"REGISTER", "UNDO"}
+
+    name: EnumProperty(name="Pose", items=[(name, label, "") for name, label in LABELS.items()], default="relaxed")
+
+    @classmethod
+    def poll(cls, context):
+        return _poll_hand(cls, context)
+
+    def execute(self, context):
+        done = running.attempt(self, posing.apply_pose, context, context.scene.thenar.hand, self.name)
+        return {"FINISHED"} if done else {"CANCELLED"}
+
+
+class THENAR_OT_guess_bones(bpy.types.Operator):
+    """Fill in which bone is which from the bones' names and their order"""
+
+    bl_idname = "thenar.guess_bones"
+    bl_label = "Find Bones"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return _poll_hand(cls, context)
+
+    def execute(self, context):
+        found = running.attempt(self, posing.guess_bones, context, context.scene.thenar.hand)
+        if found is None:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"{found} bones found")
+        return {"FINISHED"}
+
+
+class THENAR_OT_fit_grasp(bpy.types.Operator):
+    """Close the hand on the product until every pad lies as deep in it as asked, within the limits of the joints"""
+
+    bl_idname = "thenar.fit_grasp"
+    bl_label = "Fit Grasp"
+    bl_options = {"REGISTER", "UNDO"}
+
+    strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM")
+    distal_mm: _depth("distal")
+    middle_mm: _depth("middle")
+    proximal_mm: _depth("proximal")
+    palm_mm: _depth("palm")
+    place: EnumProperty(name="Start", items=PLACES, default="LAY")
+    moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
+    digits: EnumProperty(
+        name="Taking Part", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS}
+    )
+    force_n: FloatProperty(
+        name="Force (N)", description="Total force that the pressed skin shall carry, N; 0 for depths alone", min=0.0
+    )
+
+    @classmethod
+    def poll(cls, context):
+        settings = getattr(context.scene, "thenar", None)
+        if settings is not None and settings.product is None and settings.product_collection is None:
+            cls.poll_message_set("Choose the product, or a collection of its parts, first")
+            return False
+        return _poll_hand(cls, context)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        for name in ("strength", "place", "moves"):
+            layout.prop(self, name)
+        if self.strength == "CUSTOM":
+            for name in ("distal_mm", "middle_mm", "proximal_mm", "palm_mm"):
+                layout.prop(self, name)
+        layout.row().prop(self, "digits")
+        layout.prop(self, "force_n")
+
+    def execute(self, context):
+        return self._report(context, running.attempt(self, self._fit, context))
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        fit = running.attempt(self, self._prepare, context)
+        if fit is None:
+            return {"CANCELLED"}
+        self._worker = FitWorker(fit)
+        self._timer = running.begin(context, self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            self.cancel(context)
+            self.report({"WARNING"}, "Fit cancelled; the scene is as before")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"} if running.is_navigation(event) else {"RUNNING_MODAL"}
+        if not self._worker.is_done():
+            running.show(context)
+            return {"RUNNING_MODAL"}
+        running.end(context, self._timer)
+        return self._report(context, running.attempt(self, self._outcome, context))
+
+    def cancel(self, context):
+        self._worker.stop()
+        running.end(context, self._timer)
+
+    def _prepare(self, context):
+        settings = context.scene.thenar
+        return fitting.prepare(
+            context, settings.hand, workflow.product_parts(settings), self._wish(), self.force_n or None
+        )
+
+    def _wish(self):
+        depths = {"LIGHT": pads.LIGHT_MM, "FIRM": pads.FIRM_MM}.get(self.strength)
+        if depths is None:
+            depths = {kind: getattr(self, f"{kind}_mm") for kind in pads.FIRM_MM}
+        depths = {kind: depth for kind, depth in depths.items() if depth > 0.0}
+        if not depths or not self.digits:
+            raise Refusal("no pad takes part in the fit; give one a depth, and tick a digit or the palm")
+        free_mm = 0.0 if self.moves == "FINGERS" else 40.0
+        placed = self.place == "KEEP" or self.moves == "FINGERS"
+        digits = None if len(self.digits) == len(DIGITS) else tuple(sorted(self.digits))
+        return grasp.Wish(depths, digits, placed, free_mm)
+
+    def _fit(self, context):
+        fit = self._prepare(context)
+        found = fitting.compute(fit)
+        fitting.finish(context, fit, found, self.moves)
+        return found
+
+    def _outcome(self, context):
+        if self._worker.error is not None:
+            raise self._worker.error
+        fitting.finish(context, self._worker.fit, self._worker.found, self.moves)
+        return self._worker.found
+
+    def _report(self, context, found):
+        if found is None:
+            return {"CANCELLED"}
+        for text in found.warnings:
+            self.report({"WARNING"}, running.sentence(text))
+        misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
+        force = f", {found.force_n:.0f} N" if found.force_n is not None else ""
+        self.report(
+            {"INFO"},
+            f"{len(misses)} pads within {max(misses):.1f} mm of their depth "
+            f"(mean {sum(misses) / len(misses):.1f} mm){force}, {found.seconds:.1f} s",
+        )
+        return {"FINISHED"}
+
+
+class FitWorker:
+    """One fit in a daemon thread; `found` or `error` is set once `is_done()`."""
+
+    def __init__(self, fit):
+        self.fit, self.found, self.error = fit, None, None
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._work, daemon=True)
+        self._thread.start()
+
+    def is_done(self):
+        """Whether the fit has ended, well or not."""
+        return not self._thread.is_alive()
+
+    def stop(self):
+        """Ask the fit to end; if it does not at once, its outcome is dropped."""
+        self._stop.set()
+        self._thread.join(0.2)
+
+    def _work(self):
+        try:
+            self.found = fitting.compute(self.fit, grasp.Watch(_progress, self._stop.is_set))
+        except BaseException as error:  # handed to the window's thread, which reports it
+            self.error = error
+
+
+def _progress(stage, fraction):
+    status.run.stage, status.run.fraction = stage, fraction
+
+
+class THENAR_OT_add_sample(bpy.types.Operator):
+    """Add a complete scene to try: hand, product, camera, light and materials, ready to solve"""
+
+    bl_idname = "thenar.add_sample"
+    bl_label = "Add Sample"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: EnumProperty(
+        name="Sample",
+        items=[(kind, sample.label, "") for kind, sample in samples.SAMPLES.items()],
+        default="cylinder_48",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return _poll(cls, context)
+
+    def execute(self, context):
+        made = running.attempt(self, samples.add_sample_scene, context, self.kind)
+        return {"FINISHED"} if made else {"CANCELLED"}
+
+
+def _poll(cls, context):
+    problem = native.problem()
+    if problem:
+        cls.poll_message_set(running.sentence(problem))
+    elif context.mode != "OBJECT" and context.mode != "POSE":
+        cls.poll_message_set("Go back to Object Mode first (Tab)")
+    elif status.run.stage:
+        cls.poll_message_set("A computation is under way; press Esc to cancel it")
+    else:
+        return True
+    return False
+
+
+def _poll_hand(cls, context):
+    settings = getattr(context.scene, "thenar", None)
+    if settings is None or settings.hand is None:
+        cls.poll_message_set("Choose the hand's mesh under Hand first")
+        return False
+    return _poll(cls, context)
+
+
+CLASSES = (
+    THENAR_OT_make_hand,
+    THENAR_OT_apply_pose,
+    THENAR_OT_guess_bones,
+    THENAR_OT_fit_grasp,
+    THENAR_OT_add_sample,
+)

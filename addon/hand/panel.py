@@ -1,0 +1,66 @@
+"""Layout of the hand's part of the sidebar tab."""
+
+import bpy
+
+from .. import status
+from ..panels.main import Tab
+from . import roles
+
+
+class THENAR_PT_hand(Tab, bpy.types.Panel):
+    """A hand to press with, its pose, and its grasp."""
+
+    bl_label = "Hand & Grasp"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout = self.layout
+        row = layout.row(align=True)
+        row.operator("thenar.make_hand", icon="VIEW_PAN")
+        row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
+        layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
+        column = layout.column(align=True)
+        column.operator("thenar.fit_grasp", text="Grasp the Product", icon="CON_ARMATURE").place = "LAY"
+        row = column.row(align=True)
+        for text, strength in (("Light, from Here", "LIGHT"), ("Firm, from Here", "FIRM")):
+            button = row.operator("thenar.fit_grasp", text=text)
+            button.place, button.strength = "KEEP", strength
+
+
+class THENAR_PT_bones(Tab, bpy.types.Panel):
+    """Which bone of the hand's armature is which."""
+
+    bl_label = "Bones"
+    bl_parent_id = "THENAR_PT_hand"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return armature_of(context) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        armature = armature_of(context)
+        layout.operator("thenar.guess_bones", icon="VIEWZOOM")
+        layout.prop(armature.thenar_bones, "axis")
+        column = layout.column(align=True)
+        for role in roles.ROLES:
+            column.prop_search(armature.thenar_bones, role, armature.data, "bones")
+
+
+def armature_of(context):
+    """Armature of the scene's hand, or None."""
+    hand = getattr(getattr(context.scene, "thenar", None), "hand", None)
+    if hand is None:
+        return None
+    return next((m.object for m in hand.modifiers if m.type == "ARMATURE" and m.object is not None), None)
+
+
+CLASSES = (THENAR_PT_hand, THENAR_PT_bones)

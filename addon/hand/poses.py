@@ -1,0 +1,98 @@
+"""The pose library: anatomical joint angles in degrees, for any rig whose bones have roles.
+
+Knows nothing of Blender. Flexion as (MCP, PIP, DIP) per finger; abduction towards the thumb; thumb angles by joint.
+"""
+
+from .roles import FINGERS
+
+
+def _fingers(*rows):
+    """Role -> angles from one row (abduction, MCP, PIP, DIP) per finger, index to little."""
+    out = {}
+    for finger, (abduction, mcp, pip, dip) in zip(FINGERS, rows, strict=True):
+        out[f"{finger}_proximal"] = {"flexion": mcp, "abduction": abduction}
+        out[f"{finger}_middle"] = {"flexion": pip}
+        out[f"{finger}_distal"] = {"flexion": dip}
+    return out
+
+
+def _thumb(cmc, mp, ip):
+    """Role -> angles of the thumb: `cmc` is (flexion, abduction, twist) from rest, `mp` and `ip` flexion."""
+    return {
+        "thumb_metacarpal": dict(zip(("flexion", "abduction", "twist"), cmc, strict=True)),
+        "thumb_proximal": {"flexion": mp},
+        "thumb_distal": {"flexion": ip},
+    }
+
+
+def _cup(ring, little):
+    """Role -> angles of the two metacarpals that let the palm cup."""
+    return {"ring_metacarpal": {"flexion": ring}, "little_metacarpal": {"flexion": little}}
+
+
+POSES = {
+    "flat": {
+        **_fingers((0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0)),
+        **_thumb((-10, 0, 0), 0, 0),
+    },
+    "relaxed": {
+        **_fingers((0, 22, 30, 16), (0, 28, 34, 18), (0, 32, 36, 19), (0, 34, 36, 18)),
+        **_thumb((6, 0, 4), 14, 18),
+        **_cup(3, 6),
+    },
+    "power_48": {
+        **_fingers((10, 27, 74, 39), (19, 43, 77, 49), (20, 45, 79, 45), (20, 44, 72, 26)),
+        **_thumb((11, 9, -20), 42, 41),
+        **_cup(2, 1),
+    },
+    "power_60": {
+        **_fingers((9, 16, 61, 30), (17, 33, 64, 43), (20, 32, 66, 42), (20, 32, 59, 24)),
+        **_thumb((7, 8, -16), 15, 6),
+        **_cup(3, 3),
+    },
+    "power_100": {
+        **_fingers((-3, 5, 33, 14), (7, 16, 35, 23), (11, 13, 39, 27), (10, 17, 36, 16)),
+        **_thumb((7, 9, -12), -10, -15),
+        **_cup(3, 1),
+    },
+    "pinch": {
+        **_fingers((2, 46, 48, 20), (0, 34, 38, 20), (0, 36, 40, 22), (0, 38, 40, 22)),
+        **_thumb((14, -12, 14), 14, 16),
+        **_cup(4, 8),
+    },
+    "precision": {
+        **_fingers((3, 44, 38, 16), (0, 48, 42, 18), (0, 44, 46, 22), (0, 42, 46, 24)),
+        **_thumb((12, -14, 16), 12, 14),
+        **_cup(4, 9),
+    },
+    "fingertip_press": {
+        **_fingers((0, 28, 18, 3), (0, 6, 26, 14), (0, 8, 32, 16), (0, 12, 34, 16)),
+        **_thumb((8, 4, 6), 14, 16),
+        **_cup(2, 4),
+    },
+    "palm_press": {
+        **_fingers((8, -8, 6, 3), (0, -8, 6, 3), (-4, -8, 6, 3), (-10, -8, 6, 3)),
+        **_thumb((-16, -16, -6), -4, 0),
+    },
+}
+"""Name -> role -> {angle: anatomical degrees}. The three power grasps are the fitter's own results on the cylinders
+of the paper (48, 60, 100 mm) for a median hand, rounded to a degree: starting points, to be fitted to a product."""
+
+LABELS = {
+    "flat": "Flat",
+    "relaxed": "Relaxed",
+    "power_48": "Power grasp, 48 mm",
+    "power_60": "Power grasp, 60 mm",
+    "power_100": "Power grasp, 100 mm",
+    "pinch": "Pinch",
+    "precision": "Precision grip",
+    "fingertip_press": "Fingertip press",
+    "palm_press": "Palm press",
+}
+
+OPEN = {
+    **_fingers((-5, 10, 8, 5), (0, 10, 8, 5), (5, 10, 8, 5), (11, 10, 8, 5)),
+    **_thumb((0, 18, 12), 8, 10),
+}
+"""The open hand from which a grasp closes: fingers parallel, as they run together when they flex (index 11, ring 9,
+little 19 degrees to the middle finger), the thumb out of the palm and opposite the fingers."""

@@ -1,0 +1,227 @@
+"""A hand and its armature read from Blender as a `Rig`, and angles written back to the bones."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from .. import names
+from ..scene import mesh, units
+from ..scene.checks import Refusal
+from ..scene.regions import group_weights
+from . import bonemap, roles
+from .skinning import FLEXION, Rig, local_rotations
+
+FREE_CONSTRAINTS = {"LIMIT_ROTATION", "LIMIT_LOCATION", "LIMIT_SCALE", "LIMIT_DISTANCE"}
+"""Constraints that may stand on a bone the fitter turns; any other would overrule it."""
+
+
+class RigError(Refusal):
+    """The hand's rig cannot be read; the message says why and what to do."""
+
+
+def armature_of(hand):
+    """The armature object that deforms `hand`.
+
+    Raises `RigError` if the hand has none.
+    """
+    for modifier in hand.modifiers:
+        if modifier.type == "ARMATURE" and modifier.object is not None and modifier.show_viewport:
+            return modifier.object
+    raise RigError(f"{hand.name!r} has no armature; add an Armature modifier that names one")
+
+
+def read_rig(context, hand):
+    """`(rig, role_names)` of a hand mesh; rig space is the armature's, world in mm.
+
+    Bones with a role stand at rest in `rig.basis`; all others keep the pose they have now.
+
+    Raises `RigError` or `roles.RoleError` with a sentence for the user.
+    """
+    armature = armature_of(hand)
+    bones = _ordered(armature)
+    bone_names = tuple(bone.name for bone in bones)
+    parents = np.array([bone_names.index(bone.parent.name) if bone.parent else -1 for bone in bones])
+    weights = _weights(context, hand, bones)
+    stored = bonemap.get_map(armature) or roles.guess(bone_names, parents, weights.any(axis=0))
+    rest = np.array([bone.matrix_local for bone in bones], dtype=np.float64)
+    context.view_layer.update()
+    into_rig = np.linalg.inv(np.array(armature.matrix_world)) @ np.array(hand.matrix_world)
+    scale = units.mm_per_unit(context.scene)
+    vertices = _positions(hand) @ into_rig[:3, :3].T + into_rig[:3, 3]
+    world = np.diag([scale, scale, scale, 1.0]) @ np.array(armature.matrix_world, dtype=np.float64)
+    basis = np.array([armature.pose.bones[name].matrix_basis for name in bone_names], dtype=np.float64)
+    for role, name in stored.items():
+        if name in bone_names:
+            _check_constraints(armature, name)
+            if role != roles.WRIST:
+                basis[bone_names.index(name)] = np.eye(4)
+    axes = np.tile(np.eye(3), (len(bones), 1, 1))
+    rig = Rig(bone_names, parents, rest, axes, basis, vertices, weights, world)
+    return _with_axes(rig, stored, armature.thenar_bones.axis), stored
+
+
+def own_limits(armature, rig):
+    """(bone, column) -> (low, high), radians, from Limit Rotation constraints where bones flex about their own X."""
+    if armature.thenar_bones.axis != "X":
+        return {}
+    out = {}
+    for bone, name in enumerate(rig.names):
+        for limit in armature.pose.bones[name].constraints:
+            if limit.type != "LIMIT_ROTATION" or limit.owner_space != "LOCAL" or limit.mute:
+                continue
+            for column, axis in enumerate("xyz"):
+                if getattr(limit, f"use_limit_{axis}"):
+                    out[bone, column] = (getattr(limit, f"min_{axis}"), getattr(limit, f"max_{axis}"))
+    return out
+
+
+def tails(rig, armature):
+    """Rest ends (b, 3) of the bones in rig space."""
+    return np.array([armature.data.bones[name].tail_local for name in rig.names], dtype=np.float64)
+
+
+def write_angles(armature, rig, joints, angles):
+    """Turn every bone that has a role; its location and scale are reset."""
+    local = local_rotations(rig, angles)
+    for role, bone in joints.bones.items():
+        if role == roles.WRIST:
+            continue
+        matrix = np.eye(4)
+        matrix[:3, :3] = local[bone]
+        armature.pose.bones[rig.names[bone]].matrix_basis = Matrix(matrix.tolist())
+
+
+def read_angles(armature, rig, joints):
+    """Turns (b, 3) of the bones that have a role, radians, as the armature is posed now."""
+    out = np.zeros((len(rig.names), 3))
+    for bone in joints.bones.values():
+        turn = np.array(armature.pose.bones[rig.names[bone]].matrix_basis, dtype=np.float64)[:3, :3]
+        own = rig.axes[bone].T @ (turn / np.linalg.norm(turn, axis=0)) @ rig.axes[bone]
+        twist = np.arcsin(np.clip(own[0, 2], -1.0, 1.0))
+        out[bone] = np.arctan2(-own[1, 2], own[2, 2]), twist, np.arctan2(-own[0, 1], own[0, 0])
+    return out
+
+
+def move_object(obj, motion_mm, scale):
+    """Carry an object through the world by a (4, 4) motion in mm; `scale` is mm per Blender unit."""
+    motion = motion_mm.copy()
+    motion[:3, 3] /= scale
+    top = top_of(obj)
+    top.matrix_world = Matrix(motion.tolist()) @ top.matrix_world
+    bpy.context.view_layer.update()
+
+
+def top_of(obj):
+    """The object at the head of the parents of `obj`."""
+    while obj.parent is not None:
+        obj = obj.parent
+    return obj
+
+
+def _ordered(armature):
+    """Bones with parents before children."""
+    out = []
+    waiting = [bone for bone in armature.data.bones if bone.parent is None]
+    while waiting:
+        bone = waiting.pop(0)
+        out.append(bone)
+        waiting.extend(bone.children)
+    return out
+
+
+def _weights(context, hand, bones):
+    """Normalised weights (n, b); bones that do not deform weigh nothing."""
+    present = [bone.name for bone in bones if bone.use_deform and bone.name in hand.vertex_groups]
+    if not present:
+        raise RigError(f"no vertex group of {hand.name!r} is named after a bone of its armature")
+    read = group_weights(context, hand, present)
+    out = np.zeros((len(hand.data.vertices), len(bones)))
+    columns = {bone.name: column for column, bone in enumerate(bones)}
+    for name, row in zip(present, read, strict=True):
+        out[:, columns[name]] = row
+    total = out.sum(axis=1, keepdims=True)
+    return out / np.where(total > 1e-4, total, 1.0)
+
+
+def _positions(hand):
+    """Local rest positions (n, 3) with the hand's own shape keys, without Thenar's."""
+    count = len(hand.data.vertices)
+    flat = np.empty(3 * count, np.float32)
+    keys = hand.data.shape_keys
+    if keys is None:
+        return mesh.positions(hand.data).astype(np.float64)
+    keys.reference_key.points.foreach_get("co", flat)
+    base = flat.reshape(-1, 3).astype(np.float64)
+    out = base.copy()
+    for key in keys.key_blocks:
+        if key == keys.reference_key or key.mute or key.value == 0.0 or key.name == names.SHAPE_KEY:
+            continue
+        key.points.foreach_get("co", flat)
+        out += key.value * (flat.reshape(-1, 3) - base)
+    return out
+
+
+def _check_constraints(armature, name):
+    for constraint in armature.pose.bones[name].constraints:
+        if constraint.type not in FREE_CONSTRAINTS and not constraint.mute and constraint.influence > 0.0:
+            raise RigError(
+                f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
+            )
+
+
+def _with_axes(rig, role_names, choice):
+    """Flexion axes by choice, or from the line of the knuckles; twist stays along the bone."""
+    axes = rig.axes.copy()
+    chosen = {"X": (0, 1.0), "NEG_X": (0, -1.0), "Z": (2, 1.0), "NEG_Z": (2, -1.0)}.get(choice)
+    guessed = None if chosen else _knuckle_axes(rig, role_names)
+    for role, name in role_names.items():
+        if name not in rig.names:
+            continue
+        bone = rig.names.index(name)
+        if chosen:
+            flexion = np.eye(3)[chosen[0]] * chosen[1]
+        elif role in guessed:
+            flexion = rig.rest[bone, :3, :3].T @ guessed[role]
+        else:
+            continue
+        flexion[1] = 0.0
+        flexion /= np.linalg.norm(flexion)
+        axes[bone, :, FLEXION] = flexion
+        axes[bone, :, 2] = np.cross(flexion, [0.0, 1.0, 0.0])
+    return Rig(rig.names, rig.parents, rig.rest, axes, rig.basis, rig.vertices, rig.weights, rig.world_from_rig)
+
+
+def _knuckle_axes(rig, role_names):
+    """Flexion axis in rig space per role: the knuckle line, signed so that the rest bend of the fingers is flexion.
+
+    The thumb bends about the axis that carries it towards the little finger's base.
+    """
+    index = {role: rig.names.index(name) for role, name in role_names.items() if name in rig.names}
+    present = [f for f in roles.FINGERS if f"{f}_proximal" in index]
+    if len(present) < 2:
+        raise RigError("the flexion axis needs two fingers; choose the axis in the bone settings instead")
+    heads = np.array([rig.rest[index[f"{f}_proximal"], :3, 3] for f in present])
+    across = (heads[0] - heads[-1]) / np.linalg.norm(heads[0] - heads[-1])
+    across = across * _bend_sign(rig, index, present, across)
+    out = {role: across for role in index if not role.startswith("thumb")}
+    if "thumb_metacarpal" in index:
+        start = rig.rest[index["thumb_metacarpal"], :3, 3]
+        for role in ("thumb_metacarpal", "thumb_proximal", "thumb_distal"):
+            if role in index:
+                along = rig.rest[index[role], :3, 1]
+                facing = np.cross(across, rig.rest[index[f"{present[0]}_proximal"], :3, 1])
+                goal = heads[-1] - start + 0.8 * np.linalg.norm(heads[-1] - start) * facing
+                out[role] = np.cross(along, goal) / np.linalg.norm(np.cross(along, goal))
+    return out
+
+
+def _bend_sign(rig, index, present, across):
+    bend = 0.0
+    for finger in present:
+        if f"{finger}_distal" in index:
+            first, last = (rig.rest[index[f"{finger}_{s}"], :3, 1] for s in ("proximal", "distal"))
+            bend += across @ np.cross(first, last)
+    if abs(bend) < 0.05 and "thumb_distal" in index:
+        tip = rig.rest[index["thumb_distal"], :3, 3] - rig.rest[index[f"{present[0]}_proximal"], :3, 3]
+        bend = np.cross(across, rig.rest[index[f"{present[0]}_proximal"], :3, 1]) @ tip
+    return 1.0 if bend >= 0.0 else -1.0

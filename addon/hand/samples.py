@@ -1,0 +1,254 @@
+"""The sample scenes: a hand in contact with a product, lit, framed and ready to solve; and the files that hold them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ..scene.units import mm_per_unit
+from . import build, fitting, grasp, pads, posing, products, reading, studio
+from .skinning import skin
+
+FILE_SUFFIX = ".blend"
+RANGE_KPA = 150.0
+"""Top of the color map in every sample: about the peak pressures of Xie Table 6, so that samples compare."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One sample: `label`, the product's `shape` and `material`, how the hand meets it, and from where it is seen.
+
+    `stand` (3): Euler degrees that stand the finished scene up in the world; `eye`: azimuth and elevation, degrees, and
+    distance, mm, of the camera from the middle of the `aim` bones' heads.
+    """
+
+    label: str
+    product: str
+    shape: object
+    material: object
+    meet: object
+    stand: tuple
+    eye: tuple
+    lens_mm: float = 70.0
+    aim: tuple = ("middle_proximal", "thumb_distal", "little_middle", "index_middle")
+    extras: tuple = ()
+
+
+def add_sample(context, kind):
+    """Build the sample `kind` into the scene. Returns `(hand, product)`.
+
+    Raises `KeyError` for an unknown kind, and `Refusal` if the hand cannot be made.
+    """
+    sample = SAMPLES[kind]
+    scene = context.scene
+    studio.set_units(scene)
+    hand, rig = build.add_hand(context, build.make())
+    _add_sleeve(context, rig)
+    product = studio.add_mesh(context, sample.product, sample.shape(), sample.material())
+    parts = [studio.add_mesh(context, name, shape(), material()) for name, shape, material in sample.extras]
+    for part in parts:
+        part.parent = product
+    sample.meet(context, hand, rig, product)
+    _stand_up(context, (rig, product), sample.stand)
+    _stage(context, hand, product, sample)
+    settings = scene.thenar
+    settings.hand, settings.product = hand, product
+    settings.range_kpa = RANGE_KPA
+    return hand, product
+
+
+def add_sample_scene(context, kind):
+    """`add_sample` into the current scene if it is empty, else into a new one that the window shows. Returns True."""
+    if context.scene.objects:
+        context.window.scene = bpy.data.scenes.new(f"Thenar {SAMPLES[kind].label}")
+        context = bpy.context
+    add_sample(context, kind)
+    return True
+
+
+def _power(targets_mm, height_mm=0.0, force_n=None):
+    """A power grasp of an upright product, its middle `height_mm` up its axis; with `force_n` fitted to that force."""
+
+    def meet(context, hand, rig, product):
+        rig.matrix_world = Matrix.Rotation(-np.pi / 2, 4, "Y")
+        context.view_layer.update()
+        wish = grasp.Wish(targets_mm, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, height_mm))
+        job = fitting.prepare(context, hand, [product], wish, force_n)
+        fitting.finish(context, job, fitting.compute(job), "HAND")
+
+    return meet
+
+
+def _press(pose, digits, targets_mm, tilt_deg):
+    """A hand in a library pose, tilted over the plate's top, let down on it and fitted there."""
+
+    def meet(context, hand, rig, product):
+        posing.apply_pose(context, hand, pose)
+        rig.matrix_world = _euler(tilt_deg) @ Matrix.Rotation(np.pi, 4, "Y")
+        context.view_layer.update()
+        place = _let_down(fitting.read_hand(context, hand), rig, digits, targets_mm)
+        reading.move_object(rig, place, mm_per_unit(context.scene))
+        job = fitting.prepare(context, hand, [product], grasp.Wish(targets_mm, digits, is_placed=True))
+        fitting.finish(context, job, fitting.compute(job), "HAND")
+
+    return meet
+
+
+def _let_down(hand, rig, digits, targets_mm):
+    """Motion (4, 4), mm, that lowers the hand on z = 0 and brings its lowest pads to the middle of the plate."""
+    posed = np.array([rig.pose.bones[name].matrix for name in hand.rig.names], dtype=np.float64)
+    points = skin(hand.rig, posed)
+    used = [pad for pad in hand.pads if pad.kind in targets_mm and _part(pad) in digits]
+    heights = [points[pad.rows, 2][pads.deepest(points[pad.rows, 2])].mean() for pad in used]
+    lowest = min(height + targets_mm[pad.kind] for height, pad in zip(heights, used, strict=True))
+    middle = np.mean([points[pad.rows].mean(axis=0) for pad in used], axis=0)
+    place = np.eye(4)
+    place[:3, 3] = (-middle[0], -middle[1], -lowest)
+    return place
+
+
+def _part(pad):
+    return "palm" if pad.kind == "palm" else pad.role.partition("_")[0]
+
+
+def _euler(degrees):
+    turn = Matrix.Identity(4)
+    for angle, axis in zip(np.radians(degrees), "XYZ", strict=True):
+        turn = Matrix.Rotation(float(angle), 4, axis) @ turn
+    return turn
+
+
+def _add_sleeve(context, rig):
+    sleeve = studio.add_mesh(context, "Sleeve", products.sleeve(), studio.fabric("Sleeve", (0.045, 0.065, 0.11, 1.0)))
+    sleeve.parent = rig
+    return sleeve
+
+
+def _stand_up(context, objects, degrees):
+    turn = _euler(degrees)
+    for obj in objects:
+        obj.matrix_world = turn @ obj.matrix_world
+    context.view_layer.update()
+
+
+def _stage(context, hand, product, sample):
+    target, floor = _contact_point(context, hand, product, sample.aim)
+    azimuth, elevation = np.radians(sample.eye[:2])
+    away = np.array([np.sin(azimuth) * np.cos(elevation), -np.cos(azimuth) * np.cos(elevation), np.sin(elevation)])
+    camera = studio.frame(context, target, target + sample.eye[2] * away, sample.lens_mm)
+    studio.light(context, camera, target)
+    studio.backdrop(context, camera, target, floor)
+    studio.render_settings(context.scene)
+
+
+def _contact_point(context, hand, product, aim):
+    """Middle of the `aim` bones' heads, world mm, and the floor's height below everything."""
+    scale = mm_per_unit(context.scene)
+    lowest = []
+    for obj in (hand, product):
+        corners = np.array([obj.matrix_world @ Vector(obj.bound_box[k]) for k in range(8)]) * scale
+        lowest.append(corners[:, 2].min())
+    rig = hand.parent
+    middle = np.mean([np.array(rig.matrix_world @ rig.pose.bones[name].head) for name in aim], axis=0) * scale
+    return middle, min(lowest) - 40.0
+
+
+def _satin(name, color, roughness=0.38):
+    return lambda: studio.plain(name, color, roughness)
+
+
+_GRASP = {"stand": (0, 6, 0), "eye": (-74.0, 13.0, 430.0)}
+_TEAL = (0.055, 0.155, 0.19, 1.0)
+
+
+def _aside(shape, across_mm):
+    """A shape moved along x: the thumb of a flat hand hangs over the plate's edge instead of passing through it."""
+    vertices, faces = shape
+    return vertices + [across_mm, 0.0, 0.0], faces
+
+
+def _cylinder(diameter_mm, force_n, eye):
+    """A cylinder of the paper, grasped with the total force measured there (Xie Table 6), as its authors did."""
+    return Sample(
+        f"{diameter_mm} mm cylinder",
+        f"Cylinder {diameter_mm} mm",
+        lambda: products.cylinder(diameter_mm),
+        _satin("Cylinder", _TEAL),
+        _power(pads.FIRM_MM, force_n=force_n),
+        (0, 6, 0),
+        eye,
+    )
+
+
+SAMPLES = {
+    "fingertip_on_plate": Sample(
+        "Fingertip on plate",
+        "Plate",
+        lambda: products.plate(90.0, 70.0, 6.0, 1.2),
+        lambda: studio.clear("Clear Plate", (0.93, 0.97, 0.98, 1.0)),
+        _press("fingertip_press", ("index",), {"distal": 2.5}, (12, 0, 0)),
+        (0, 0, 0),
+        (-58.0, 9.0, 215.0),
+        aim=("index_distal", "index_distal", "index_middle"),
+    ),
+    "palm_on_plate": Sample(
+        "Palm on plate",
+        "Plate",
+        lambda: _aside(products.plate(170.0, 330.0, 10.0), 44.0),
+        lambda: studio.clear("Clear Plate", (0.93, 0.97, 0.98, 1.0)),
+        _press(
+            "palm_press",
+            ("palm", "index", "middle", "ring", "little"),
+            {"palm": 3.5, "proximal": 1.5, "middle": 1.2, "distal": 1.5},
+            (0, 0, 0),
+        ),
+        (90, 0, 0),
+        (158.0, 4.0, 520.0),
+    ),
+    "cylinder_48": _cylinder(48, 337.0, (-74.0, 13.0, 430.0)),
+    "cylinder_60": _cylinder(60, 260.0, (-80.0, 13.0, 440.0)),
+    "cylinder_100": _cylinder(100, 122.0, (-94.0, 13.0, 540.0)),
+    "handlebar": Sample(
+        "Handlebar",
+        "Grip",
+        products.grip,
+        _satin("Rubber Grip", (0.025, 0.025, 0.028, 1.0), 0.62),
+        _power(pads.LIGHT_MM),
+        (-62, 0, 0),
+        (-70.0, 12.0, 430.0),
+        extras=(("Bar", products.bar, lambda: studio.plain("Steel", (0.6, 0.6, 0.6, 1.0), 0.25, Metallic=1.0)),),
+    ),
+    "bottle": Sample(
+        "Bottle",
+        "Bottle",
+        products.bottle,
+        _satin("Bottle", (0.78, 0.78, 0.74, 1.0), 0.3),
+        _power(pads.LIGHT_MM, -20.0),
+        **_GRASP,
+    ),
+}
+
+
+def make_samples(out_dir):
+    """Write every sample as a compressed .blend from an empty file; returns the paths."""
+    out = Path(out_dir)
+    out.mkdir(parents=True, exist_ok=True)
+    paths = []
+    for kind in SAMPLES:
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        add_sample(bpy.context, kind)
+        _look_through_camera()
+        path = out / f"{kind}{FILE_SUFFIX}"
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
+        paths.append(path)
+    return paths
+
+
+def _look_through_camera():
+    """Open every 3D view on what the camera frames: from the default view the hand is a speck behind the backdrop."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                area.spaces.active.region_3d.view_perspective = "CAMERA"

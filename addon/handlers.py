@@ -1,0 +1,83 @@
+"""Application handlers: mark results out of date, play bakes, offer the command line."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import cache, headless, native, status, workflow
+from .operators import running
+from .scene import baked
+
+_DELAY_S = 0.3
+_state = {"command": None}
+
+
+@persistent
+def _scene_changed(scene, depsgraph=None):
+    result = scene.thenar.result if scene is not None and hasattr(scene, "thenar") else None
+    if result is None or not result.is_valid or bpy.app.background or status.run.stage:
+        return
+    if bpy.app.timers.is_registered(_check):
+        bpy.app.timers.unregister(_check)
+    bpy.app.timers.register(_check, first_interval=_DELAY_S)
+
+
+@persistent
+def _file_loaded(*_):
+    status.forget()
+    baked.forget()
+    if bpy.context.scene is not None:
+        _scene_changed(bpy.context.scene)
+
+
+def _check():
+    context = bpy.context
+    if context.scene is None or status.run.stage:
+        return
+    screen = context.screen
+    if screen is not None and screen.is_animation_playing:
+        return
+    was = status.is_stale(context.scene.name)
+    if workflow.is_out_of_date(context) != was:
+        running.redraw(context)
+
+
+@persistent
+def _frame_changed(scene, depsgraph=None):
+    if hasattr(scene, "thenar"):
+        baked.play(scene, workflow.product_parts)
+
+
+_HANDLERS = (
+    ("frame_change_post", _frame_changed),
+    ("depsgraph_update_post", _scene_changed),
+    ("load_post", _file_loaded),
+    ("undo_post", _scene_changed),
+    ("redo_post", _scene_changed),
+)
+
+
+def register():
+    """Hang the handlers in, each once, and offer `--command thenar`."""
+    status.set_native_problem(native.problem())
+    for event, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, event)
+        if handler not in handlers:
+            handlers.append(handler)
+    if hasattr(bpy.utils, "register_cli_command"):
+        _state["command"] = bpy.utils.register_cli_command("thenar", headless.main)
+
+
+def unregister():
+    """Take them out, and drop derived state."""
+    if _state["command"] is not None:
+        bpy.utils.unregister_cli_command(_state["command"])
+        _state["command"] = None
+    for event, handler in _HANDLERS:
+        handlers = getattr(bpy.app.handlers, event)
+        if handler in handlers:
+            handlers.remove(handler)
+    if bpy.app.timers.is_registered(_check):
+        bpy.app.timers.unregister(_check)
+    cache.clear()
+    baked.forget()
+    status.forget()

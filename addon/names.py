@@ -1,0 +1,31 @@
+"""Every name that Thenar writes into a file: keys, attributes, columns. Knows nothing of Blender."""
+
+VERSION = "0.1.0"
+SCHEMA = 1
+
+SHAPE_KEY = "Thenar Contact"
+"""Shape key on the hand that holds the contact's displacement."""
+
+PRESSURE_KPA = "pressure_kpa"
+DEPTH_MM = "contact_depth_mm"
+REGION = "contact_region"
+FORCE_N = "contact_force_n"
+DISPLACEMENT_MM = "contact_displacement_mm"
+COLOR = "Thenar Pressure"
+GLTF_PRESSURE = "_PRESSURE_KPA"
+"""glTF keeps only attributes whose names begin with an underscore."""
+
+HAND_ATTRIBUTES = (PRESSURE_KPA, DEPTH_MM, REGION, FORCE_N, DISPLACEMENT_MM, COLOR)
+PRODUCT_ATTRIBUTES = (PRESSURE_KPA, COLOR)
+
+OVERLAY_GROUP = "Thenar Pressure Overlay"
+MATERIAL_SUFFIX = " · pressure"
+RESULTS_COLLECTION = "Thenar Results"
+COPY_SUFFIX = " · pressure"
+BAKE_MODIFIER = "Thenar Bake"
+BAKE_FOLDER = "thenar_cache"
+LEGEND_IMAGE = "Thenar Legend"
+LEGEND_NODES = ("Thenar Legend Image", "Thenar Legend Over")
+
+WHOLE_SKIN = "Whole skin"
+"""Name of the one region of a hand on which no region was assigned."""

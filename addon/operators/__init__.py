@@ -1,0 +1,24 @@
+"""Operators: check, one workflow call, report."""
+
+import bpy
+
+from .. import status
+from . import bake, clear, display, export, regions, solve
+
+_MODULES = (solve, clear, display, regions, export, bake)
+
+
+def register():
+    """Register every operator."""
+    status.look_changed.append(display.refresh)
+    for module in _MODULES:
+        for cls in module.CLASSES:
+            bpy.utils.register_class(cls)
+
+
+def unregister():
+    """Unregister them again."""
+    status.look_changed.remove(display.refresh)
+    for module in reversed(_MODULES):
+        for cls in reversed(module.CLASSES):
+            bpy.utils.unregister_class(cls)

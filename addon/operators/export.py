@@ -1,0 +1,36 @@
+"""The operator that writes the result to a file; the suffix chooses the form."""
+
+import bpy
+from bpy_extras.io_utils import ExportHelper
+
+from .. import export
+from . import running
+
+
+class THENAR_OT_export(bpy.types.Operator, ExportHelper):
+    """Write the result: tables (.csv), arrays (.npz), or hand and product with their pressure (.glb, .gltf, .usd)"""
+
+    bl_idname = "thenar.export"
+    bl_label = "Export Contact"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".csv"
+    check_extension = False
+    filter_glob: bpy.props.StringProperty(default="*.csv;*.npz;*.glb;*.gltf;*.usd;*.usda;*.usdc", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context):
+        if not context.scene.thenar.result.is_valid:
+            cls.poll_message_set("There is no result to export; press Solve first")
+            return False
+        return True
+
+    def execute(self, context):
+        written = running.attempt(self, export.write, context, bpy.path.abspath(self.filepath))
+        if written is None:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Wrote {', '.join(path.name for path in written)}")
+        return {"FINISHED"}
+
+
+CLASSES = (THENAR_OT_export,)

@@ -1,0 +1,186 @@
+"""Operators that fill the lists: hand and product from the selection, regions from vertex groups, presets."""
+
+import bpy
+
+from .. import names, settings
+from ..scene import regions
+from . import running
+
+
+class THENAR_OT_pick(bpy.types.Operator):
+    """Take hand and product from the selection: the active mesh is the hand, the other selected object the product"""
+
+    bl_idname = "thenar.pick"
+    bl_label = "Use Selection"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        if context.object is None or context.object.type != "MESH" or len(context.selected_objects) != 2:
+            cls.poll_message_set("Select the product, then Shift-click the hand's mesh, so that the hand is active")
+            return False
+        return True
+
+    def execute(self, context):
+        scene = context.scene.thenar
+        scene.hand = context.object
+        scene.product = next(obj for obj in context.selected_objects if obj != context.object)
+        return {"FINISHED"}
+
+
+class THENAR_OT_assign_regions(bpy.types.Operator):
+    """List every vertex group of the hand as a region with a material of its own; groups named by bones are left out"""
+
+    bl_idname = "thenar.assign_regions"
+    bl_label = "Regions from Vertex Groups"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        if hand is None or hand.type != "MESH" or not hand.vertex_groups:
+            cls.poll_message_set("The hand has no vertex groups; paint one for each region of the skin first")
+            return False
+        return True
+
+    def execute(self, context):
+        hand = context.scene.thenar.hand
+        bones = _bone_names(hand)
+        found = [group.name for group in hand.vertex_groups if group.name not in bones]
+        if not found:
+            self.report(
+                {"ERROR"}, f"Every vertex group of '{hand.name}' is a bone's; add groups for the skin's regions"
+            )
+            return {"CANCELLED"}
+        listed = {material.name for material in hand.thenar.materials}
+        for name in found:
+            if name not in listed:
+                add_region(hand, name)
+        return {"FINISHED"}
+
+
+class THENAR_OT_region_add(bpy.types.Operator):
+    """Add the active vertex group as a region"""
+
+    bl_idname = "thenar.region_add"
+    bl_label = "Add Region"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return THENAR_OT_assign_regions.poll.__func__(cls, context)
+
+    def execute(self, context):
+        hand = context.scene.thenar.hand
+        name = hand.vertex_groups.active.name
+        if name in hand.thenar.materials:
+            self.report({"ERROR"}, f"'{name}' is listed already; make another vertex group active")
+            return {"CANCELLED"}
+        add_region(hand, name)
+        return {"FINISHED"}
+
+
+class THENAR_OT_region_remove(bpy.types.Operator):
+    """Take the region off the list; its vertices then carry no skin. The vertex group stays"""
+
+    bl_idname = "thenar.region_remove"
+    bl_label = "Remove Region"
+    bl_options = {"REGISTER", "UNDO"}
+
+    all: bpy.props.BoolProperty(name="All", description="Empty the list: the whole mesh is one region again")
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        if hand is None or not hand.thenar.materials:
+            cls.poll_message_set("No region is listed")
+            return False
+        return True
+
+    def execute(self, context):
+        state = context.scene.thenar.hand.thenar
+        if self.all:
+            state.materials.clear()
+        else:
+            state.materials.remove(min(state.material_index, len(state.materials) - 1))
+        state.material_index = max(0, min(state.material_index, len(state.materials) - 1))
+        return {"FINISHED"}
+
+
+class THENAR_OT_region_preset(bpy.types.Operator):
+    """Set published values for all listed regions: the palm's where the name says palm or thenar, else the finger's"""
+
+    bl_idname = "thenar.region_preset"
+    bl_label = "Published Values"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return THENAR_OT_region_remove.poll.__func__(cls, context)
+
+    def execute(self, context):
+        suffix = "_LAYER" if context.scene.thenar.model == "LAYER" else ""
+        for material in context.scene.thenar.hand.thenar.materials:
+            material.preset = kind_of(material.name) + suffix
+        return {"FINISHED"}
+
+
+class THENAR_OT_select_region(bpy.types.Operator):
+    """Select the region's vertices in Edit Mode"""
+
+    bl_idname = "thenar.select_region"
+    bl_label = "Select Region"
+    bl_options = {"REGISTER", "UNDO"}
+
+    index: bpy.props.IntProperty(name="Region", description="Row of the result table", min=0)
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        if hand is None or hand.type != "MESH" or names.REGION not in hand.data.attributes:
+            cls.poll_message_set("There is no result on the hand; press Solve first")
+            return False
+        return True
+
+    def execute(self, context):
+        hand = context.scene.thenar.hand
+        if hand.mode == "EDIT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        regions.select_vertices(hand.data, self.index)
+        context.scene.thenar.result.region_index = self.index
+        if not bpy.app.background:
+            context.view_layer.objects.active = hand
+            context.tool_settings.mesh_select_mode = (True, False, False)
+            bpy.ops.object.mode_set(mode="EDIT")
+        running.redraw(context)
+        return {"FINISHED"}
+
+
+def add_region(hand, name):
+    """Add a material for the vertex group of that name, with the published values of its kind."""
+    material = hand.thenar.materials.add()
+    material.name = name
+    material.preset = kind_of(name) + "_LAYER"
+    settings.fill_from_preset(material, material.preset)
+    hand.thenar.material_index = len(hand.thenar.materials) - 1
+    return material
+
+
+def kind_of(region_name):
+    """FINGER or PALM, by the region's name."""
+    return "PALM" if any(word in region_name.lower() for word in ("palm", "thenar")) else "FINGER"
+
+
+def _bone_names(hand):
+    armatures = [modifier.object for modifier in hand.modifiers if modifier.type == "ARMATURE" and modifier.object]
+    return {bone.name for armature in armatures for bone in armature.data.bones}
+
+
+CLASSES = (
+    THENAR_OT_pick,
+    THENAR_OT_assign_regions,
+    THENAR_OT_region_add,
+    THENAR_OT_region_remove,
+    THENAR_OT_region_preset,
+    THENAR_OT_select_region,
+)

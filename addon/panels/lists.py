@@ -1,0 +1,47 @@
+"""Lists of the panel: materials by region, and the result by region."""
+
+import bpy
+
+
+class THENAR_UL_materials(bpy.types.UIList):
+    """Regions of the skin with their material."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
+        missing = item.name not in item.id_data.vertex_groups
+        split = layout.split(factor=SHARE)
+        split.label(text=title(item.name), icon="ERROR" if missing else "NONE")
+        split.prop(item, "preset", text="", emboss=False)
+
+
+class THENAR_UL_regions(bpy.types.UIList):
+    """Forces and pressures by region; a click on its arrow selects the region's vertices."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_name, index):  # noqa: PLR0913 - Blender's
+        split = layout.split(factor=SHARE)
+        row = split.row(align=True)
+        pick = row.operator("thenar.select_region", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
+        pick.index = index
+        row.label(text=title(item.name))
+        columns(split, item)
+
+
+SHARE = 0.56
+"""Of a row's width, what its name takes."""
+
+
+def title(name):
+    """A region's name for reading."""
+    return name.removesuffix("_pad").replace("_", " ").capitalize()
+
+
+def columns(split, item):
+    """The three numbers of a region or finger: force, area, peak; faint where nothing presses."""
+    row = split.row()
+    row.active = item.force_n > 0.0
+    for text in (f"{item.force_n:.1f}", f"{item.area_mm2 / 100:.1f}", f"{item.peak_kpa:.0f}"):
+        cell = row.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=text)
+
+
+CLASSES = (THENAR_UL_materials, THENAR_UL_regions)

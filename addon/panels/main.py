@@ -1,0 +1,150 @@
+"""The sidebar tab: state, set-up, solve, display, export."""
+
+import bpy
+
+from .. import names, status
+from ..scene.units import mm_per_unit
+from .preferences import draw_state
+
+
+class Tab:
+    """Where the panels stand."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Thenar"
+
+
+class THENAR_PT_main(Tab, bpy.types.Panel):
+    """What is to be pressed, and the button that presses."""
+
+    bl_label = "Thenar"
+
+    def draw(self, context):
+        layout = self.layout
+        if status.native_problem:
+            draw_state(layout, context)
+            return
+        settings = context.scene.thenar
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        _draw_state(layout, context)
+        column = layout.column()
+        column.prop(settings, "hand")
+        column.prop(settings, "product")
+        column.prop(settings, "product_collection")
+        if settings.hand is None:
+            layout.operator("thenar.pick", icon="RESTRICT_SELECT_OFF")
+        layout.prop(settings, "model")
+        _draw_force(layout, settings)
+        _draw_solve(layout)
+        row = layout.row(align=True)
+        row.operator("thenar.clear", text="Clear", icon="TRASH")
+        row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
+
+
+def _draw_state(layout, context):
+    settings, column = context.scene.thenar, layout.column(align=True)
+    hand = settings.hand
+    if hand is None or hand.type != "MESH":
+        column.label(text="Choose a hand and a product", icon="INFO")
+        return
+    count = sum(modifier.show_viewport for modifier in hand.modifiers)
+    column.label(
+        text=f"{len(hand.data.vertices):,} vertices, {count} modifier{'' if count == 1 else 's'}", icon="MESH_DATA"
+    )
+    column.label(text=f"1 unit = {mm_per_unit(context.scene):g} mm", icon="DRIVER_DISTANCE")
+    if not settings.result.is_valid:
+        column.label(text="Not solved yet", icon="DOT")
+    elif status.is_stale(context.scene.name):
+        row = column.row()
+        row.alert = True
+        row.label(text="Out of date: the scene changed", icon="ERROR")
+    else:
+        column.label(text="Result up to date", icon="CHECKMARK")
+
+
+def _draw_force(layout, settings):
+    row = layout.row(heading="Force Target", align=True)
+    row.prop(settings, "use_force", text="")
+    value = row.row(align=True)
+    value.active = settings.use_force
+    value.prop(settings, "force_n", text="")
+    if settings.use_force:
+        column = layout.column()
+        column.prop(settings, "direction_mode")
+        if settings.direction_mode == "OWN":
+            column.prop(settings, "direction", text=" ")
+
+
+def _draw_solve(layout):
+    run = status.run
+    if run.stage:
+        layout.progress(factor=run.fraction, text=f"{run.stage.capitalize()} {run.fraction:.0%} · Esc cancels")
+        return
+    row = layout.row()
+    row.scale_y = 1.6
+    row.operator("thenar.solve", text="Solve", icon="PLAY")
+
+
+class THENAR_PT_display(Tab, bpy.types.Panel):
+    """How the pressure looks."""
+
+    bl_label = "Display"
+    bl_parent_id = "THENAR_PT_main"
+    bl_order = 2
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.thenar
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        shown = settings.hand is not None and settings.hand.thenar.shows_pressure
+        button = layout.operator(
+            "thenar.show_pressure",
+            text="Hide Pressure" if shown else "Show Pressure",
+            icon="HIDE_ON" if shown else "SHADING_RENDERED",
+            depress=shown,
+        )
+        button.show = not shown
+        line = layout.row(align=True)
+        line.prop(settings, "range_kpa")
+        line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
+        layout.prop(settings, "palette")
+        layout.prop(settings, "show_legend")
+        kept = bool(settings.preset_before)
+        button = layout.operator(
+            "thenar.render_preset",
+            text="Give Render Settings Back" if kept else "True Colours and Legend in Render",
+            icon="LOOP_BACK" if kept else "RESTRICT_RENDER_OFF",
+        )
+        button.restore = kept
+
+
+class THENAR_PT_output(Tab, bpy.types.Panel):
+    """Frames and files."""
+
+    bl_label = "Bake & Export"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 5
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, scene = self.layout, context.scene
+        button = layout.operator("thenar.bake", icon="RENDER_ANIMATION")
+        button.frame_start, button.frame_end = scene.frame_start, scene.frame_end
+        layout.operator("thenar.export", icon="EXPORT")
+        column = layout.column(align=True)
+        column.active = False
+        column.label(text=f"Shape key: {names.SHAPE_KEY}")
+        column.label(text=f"Attribute: {names.PRESSURE_KPA}")
+
+
+CLASSES = (THENAR_PT_main, THENAR_PT_display, THENAR_PT_output)

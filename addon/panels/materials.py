@@ -1,0 +1,60 @@
+"""The panel of materials by region."""
+
+import bpy
+
+from .. import status
+from .main import Tab
+from .preferences import wrapped
+
+
+class THENAR_PT_materials(Tab, bpy.types.Panel):
+    """Materials of the skin by region."""
+
+    bl_label = "Materials"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 3
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        return not status.native_problem and hand is not None and hand.type == "MESH"
+
+    def draw(self, context):
+        layout = self.layout
+        state = context.scene.thenar.hand.thenar
+        if state.materials:
+            row = layout.row()
+            row.template_list("THENAR_UL_materials", "", state, "materials", state, "material_index", rows=5)
+            side = row.column(align=True)
+            side.operator("thenar.region_add", text="", icon="ADD")
+            side.operator("thenar.region_remove", text="", icon="REMOVE")
+            layout.operator("thenar.region_preset", icon="PRESET")
+            material = state.materials[min(state.material_index, len(state.materials) - 1)]
+        else:
+            layout.label(text="The whole mesh is one region", icon="MESH_DATA")
+            material = state.default_material
+        layout.operator("thenar.assign_regions", icon="GROUP_VERTEX")
+        _draw_material(layout, material, context)
+
+
+def _draw_material(layout, material, context):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    layout.prop(material, "preset")
+    source = layout.column(align=True)
+    source.active = False
+    for line in wrapped(material.bl_rna.properties["preset"].enum_items[material.preset].description, context):
+        source.label(text=line)
+    column = layout.column(align=True)
+    for name in ("g0_kpa", "g_lim_kpa", "d_lim_mm", "poisson_ratio"):
+        column.prop(material, name)
+    if context.scene.thenar.model == "LAYER":
+        column.prop(material, "thickness_mm")
+    else:
+        column.prop(material, "zone_mm")
+        for name in ("swelling_height_mm_per_n", "swelling_radius_mm", "swelling_width_mm"):
+            column.prop(material, name)
+
+
+CLASSES = (THENAR_PT_materials,)

@@ -1,0 +1,41 @@
+"""The extension's preferences: what is loaded, or why it is not."""
+
+import bpy
+
+from .. import names, status
+
+
+class ThenarPreferences(bpy.types.AddonPreferences):
+    """State of the native module, for support."""
+
+    bl_idname = __package__.rpartition(".")[0]
+
+    def draw(self, context):
+        draw_state(self.layout, context)
+
+
+def draw_state(layout, context):
+    """Version and platform; the reason where the native module cannot be used."""
+    problem = status.native_problem
+    if problem:
+        box = layout.box().column(align=True)
+        box.alert = True
+        for line in wrapped(problem[:1].upper() + problem[1:], context):
+            box.label(text=line)
+    column = layout.column(align=True)
+    column.label(text=f"Thenar {names.VERSION}", icon="ERROR" if problem else "CHECKMARK")
+    column.label(text=status.where(), icon="BLANK1")
+
+
+def wrapped(text, context):
+    """Lines that fit the region: panels do not wrap."""
+    width = max(20, int((context.region.width / context.preferences.system.ui_scale - 50) / 6.6))
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + len(word) + 1 > width:
+            lines.append("")
+        lines[-1] = f"{lines[-1]} {word}".strip()
+    return lines
+
+
+CLASSES = (ThenarPreferences,)

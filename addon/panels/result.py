@@ -1,0 +1,124 @@
+"""The result in the sidebar: totals, fingers, regions, quality, time."""
+
+import bpy
+
+from .. import status
+from .lists import SHARE, columns
+from .main import Tab
+from .preferences import wrapped
+
+
+class THENAR_PT_result(Tab, bpy.types.Panel):
+    """Totals of the last contact."""
+
+    bl_label = "Result"
+    bl_parent_id = "THENAR_PT_main"
+    bl_order = 1
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, result = self.layout, context.scene.thenar.result
+        if not result.is_valid:
+            layout.label(text="Solve to see forces and pressures", icon="INFO")
+            return
+        box = layout.box().column(align=True)
+        _pair(box, "Force", f"{result.force_n:.1f} N")
+        _pair(box, "Contact area", f"{result.area_mm2 / 100:.2f} cm²")
+        _pair(box, "Peak pressure", f"{result.peak_kpa:.0f} kPa")
+        _pair(box, "Peak over 24 mm²", f"{result.patch_peak_kpa:.0f} kPa")
+        _pair(box, "Mean pressure", f"{result.mean_kpa:.1f} kPa")
+        _pair(box, "Deepest before", f"{result.depth_mm:.2f} mm")
+        if result.offset_mm:
+            _pair(box, "Product moved", f"{result.offset_mm:+.2f} mm")
+
+
+def _pair(column, name, value):
+    split = column.split(factor=0.55)
+    split.label(text=name)
+    right = split.row()
+    right.alignment = "RIGHT"
+    right.label(text=value)
+
+
+def _warning(layout, text, context):
+    column = layout.column(align=True)
+    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
+        column.label(text=line, icon="ERROR" if number == 0 else "BLANK1")
+
+
+class THENAR_PT_regions(Tab, bpy.types.Panel):
+    """The result by region and finger."""
+
+    bl_label = "Regions"
+    bl_parent_id = "THENAR_PT_result"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.thenar.result.is_valid
+
+    def draw(self, context):
+        layout, result = self.layout, context.scene.thenar.result
+        split = layout.split(factor=SHARE)
+        split.label(text="Region")
+        row = split.row()
+        for text in ("N", "cm²", "kPa"):
+            cell = row.row()
+            cell.alignment = "RIGHT"
+            cell.label(text=text)
+        layout.template_list("THENAR_UL_regions", "", result, "regions", result, "region_index", rows=6)
+        if not result.fingers:
+            return
+        column = layout.box().column(align=True)
+        for finger in result.fingers:
+            split = column.split(factor=SHARE)
+            split.label(text=finger.name.capitalize())
+            columns(split, finger)
+
+
+class THENAR_PT_notes(Tab, bpy.types.Panel):
+    """What to know about the result before it is used."""
+
+    bl_label = "Notes"
+    bl_parent_id = "THENAR_PT_result"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        result = context.scene.thenar.result
+        return result.is_valid and len(result.warnings) > 0
+
+    def draw_header(self, context):
+        self.layout.label(text=f"({len(context.scene.thenar.result.warnings)})")
+
+    def draw(self, context):
+        for text in context.scene.thenar.result.warnings:
+            _warning(self.layout, text.name, context)
+
+
+class THENAR_PT_quality(Tab, bpy.types.Panel):
+    """How well the contact is solved and written, and where the time went."""
+
+    bl_label = "Quality and Time"
+    bl_parent_id = "THENAR_PT_result"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.thenar.result.is_valid
+
+    def draw(self, context):
+        layout, result = self.layout, context.scene.thenar.result
+        box = layout.box().column(align=True)
+        _pair(box, "Still penetrating", f"{result.penetration_mm * 1000:.1f} µm")
+        _pair(box, "Write-back error", f"{result.write_error_mm * 1000:.1f} µm")
+        _pair(box, "Complementarity", f"{result.complementarity:.0e}")
+        _pair(box, "Model", result.model.capitalize())
+        box = layout.box().column(align=True)
+        for stage in result.stages:
+            _pair(box, stage.name.capitalize(), f"{stage.seconds * 1000:.0f} ms")
+
+
+CLASSES = (THENAR_PT_result, THENAR_PT_regions, THENAR_PT_notes, THENAR_PT_quality)

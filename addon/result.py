@@ -1,0 +1,140 @@
+"""A contact's numbers: from the native record into the file's properties, and out again as JSON."""
+
+import numpy as np
+
+from . import names
+from .scene.units import KPA_PER_MPA
+
+FINGERS = ("thumb", "index", "middle", "ring", "little")
+
+
+def fill(result, job, contact, written, notes):
+    """Fill `scene.thenar.result` from a native contact, the write report and the contact's notes. Returns it."""
+    _clear_rows(result)
+    result.schema, result.is_valid = names.SCHEMA, True
+    result.hand_name, result.product_name = job.hand_name, ", ".join(job.part_names)
+    result.model, result.vertices = job.model, len(job.reading.hand.rest_mm)
+    total = np.asarray(contact.total_force_n, dtype=np.float64)
+    result.force_n = float(np.asarray(contact.force_n).sum())
+    result.force_vector_n = total
+    result.moment_nmm = np.asarray(contact.total_moment_nmm) + np.cross(job.reading.hand.origin_mm, total)
+    result.center_mm = _finite(np.asarray(contact.center_of_pressure_mm) + job.reading.hand.origin_mm)
+    result.area_mm2 = contact.contact_area_mm2
+    result.peak_kpa = contact.peak_pressure_mpa * KPA_PER_MPA
+    result.patch_peak_kpa = contact.patch_peak_mpa * KPA_PER_MPA
+    result.mean_kpa = contact.mean_pressure_mpa * KPA_PER_MPA
+    gap = np.asarray(contact.gap_mm)
+    result.depth_mm = float(np.maximum(-gap[np.isfinite(gap)], 0.0).max(initial=0.0))
+    result.penetration_mm = contact.residual.penetration_mm
+    result.complementarity = contact.residual.complementarity
+    result.load_balance = contact.residual.load_balance
+    result.write_error_mm = written.error_mm
+    result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
+    result.direction = _finite(np.asarray(contact.direction, dtype=np.float64))
+    result.input_hash = job.input_hash
+    result.made_with = f"Thenar {names.VERSION}"
+    _add_regions(result, job, contact)
+    _add_stages(result, job, contact)
+    for text in (*job.reading.hand.warnings, *written.notes, *notes):
+        result.warnings.add().name = text
+    return result
+
+
+def clear(result):
+    """Forget the result."""
+    _clear_rows(result)
+    result.is_valid = False
+    result.input_hash = result.state_hash = ""
+
+
+def as_dict(result):
+    """The result as plain values for JSON; units stand in the keys."""
+    rows = [_row_dict(row) for row in result.regions]
+    return {
+        "schema": result.schema,
+        "hand": result.hand_name,
+        "product": result.product_name,
+        "model": result.model,
+        "vertices": result.vertices,
+        "force_n": result.force_n,
+        "force_vector_n": list(result.force_vector_n),
+        "moment_nmm": list(result.moment_nmm),
+        "center_of_pressure_mm": list(result.center_mm),
+        "contact_area_mm2": result.area_mm2,
+        "peak_pressure_kpa": result.peak_kpa,
+        "patch_peak_kpa": result.patch_peak_kpa,
+        "mean_pressure_kpa": result.mean_kpa,
+        "max_penetration_before_mm": result.depth_mm,
+        "penetration_after_mm": result.penetration_mm,
+        "write_back_error_mm": result.write_error_mm,
+        "complementarity": result.complementarity,
+        "load_balance": result.load_balance,
+        "offset_mm": result.offset_mm,
+        "direction": list(result.direction),
+        "regions": rows,
+        "fingers": [_row_dict(row) for row in result.fingers],
+        "seconds": {stage.name: stage.seconds for stage in result.stages},
+        "warnings": [text.name for text in result.warnings],
+        "input_hash": result.input_hash,
+        "made_with": result.made_with,
+    }
+
+
+def finger_of(region_name):
+    """The finger or part of the hand that a region belongs to: palm for all of the palm, else its name's first word."""
+    words = region_name.lower().replace(".", "_").replace("-", "_").replace(" ", "_").split("_")
+    if words[0] in FINGERS:
+        return words[0]
+    return "palm" if any("palm" in word or "thenar" in word for word in words) else words[0] or region_name
+
+
+def _clear_rows(result):
+    for rows in (result.regions, result.fingers, result.stages, result.warnings):
+        rows.clear()
+    result.region_index = 0
+
+
+def _add_regions(result, job, contact):
+    fingers = {}
+    for index, record in enumerate(contact.regions):
+        row = result.regions.add()
+        row.name = job.region_names[index]
+        row.force_n, row.area_mm2 = record.force_n, record.area_mm2
+        row.peak_kpa = record.peak_mpa * KPA_PER_MPA
+        row.mean_kpa = record.mean_mpa * KPA_PER_MPA
+        row.depth_mm = max(record.dmax_mm, 0.0)
+        row.shear_modulus_kpa = record.g_mpa * KPA_PER_MPA
+        fingers.setdefault(finger_of(row.name), []).append(index)
+    if len(fingers) < 2:
+        return
+    for name, members in fingers.items():
+        rows = [result.regions[index] for index in members]
+        total = result.fingers.add()
+        total.name = name
+        total.force_n = sum(row.force_n for row in rows)
+        total.area_mm2 = sum(row.area_mm2 for row in rows)
+        total.peak_kpa = max(row.peak_kpa for row in rows)
+        total.mean_kpa = total.force_n / total.area_mm2 * KPA_PER_MPA if total.area_mm2 > 0.0 else 0.0
+        total.depth_mm = max(row.depth_mm for row in rows)
+
+
+def _add_stages(result, job, contact):
+    stages = dict(job.seconds)
+    for name, seconds in _items(contact.seconds):
+        stages[f"press: {name}"] = seconds
+    for name, seconds in stages.items():
+        row = result.stages.add()
+        row.name, row.seconds = name, seconds
+
+
+def _items(record):
+    return record.items() if hasattr(record, "items") else vars(record).items()
+
+
+def _row_dict(row):
+    keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa")
+    return {key: getattr(row, key) for key in keys}
+
+
+def _finite(values):
+    return np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,0 +1,55 @@
+"""Point attributes on meshes: get or create, typed writes, and copies to restore them from."""
+
+import numpy as np
+
+_FIELD = {"FLOAT": "value", "INT": "value", "FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color"}
+_WIDTH = {"FLOAT": 1, "INT": 1, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
+
+
+def write(mesh, name, kind, values):
+    """Write point attribute `name` of `kind`; one of that name but another kind is replaced."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != kind):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        mesh.attributes.new(name, kind, "POINT")
+    dtype = np.int32 if kind == "INT" else np.float32
+    flat = np.ascontiguousarray(values, dtype).ravel()
+    mesh.attributes[name].data.foreach_set(_FIELD[kind], flat)
+
+
+def read(mesh, name):
+    """Values (n,) or (n, k) of a point attribute, or None where the mesh has none of that name."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.data_type not in _FIELD or attribute.domain != "POINT":
+        return None
+    width = _WIDTH[attribute.data_type]
+    dtype = np.int32 if attribute.data_type == "INT" else np.float32
+    out = np.empty(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get(_FIELD[attribute.data_type], out)
+    return out if width == 1 else out.reshape(-1, width)
+
+
+def remove(mesh, attribute_names):
+    """Remove the attributes of these names where they exist."""
+    for name in attribute_names:
+        attribute = mesh.attributes.get(name)
+        if attribute is not None:
+            mesh.attributes.remove(attribute)
+
+
+def snapshot(mesh, attribute_names):
+    """A function that puts these attributes back as they are now."""
+    kept = {
+        name: (mesh.attributes[name].data_type, read(mesh, name))
+        for name in attribute_names
+        if read(mesh, name) is not None
+    }
+
+    def restore():
+        remove(mesh, [name for name in attribute_names if name not in kept])
+        for name, (kind, values) in kept.items():
+            write(mesh, name, kind, values)
+
+    return restore

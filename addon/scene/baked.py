@@ -1,0 +1,132 @@
+"""A baked contact: positions as PC2 played by a Mesh Cache modifier, pressures as NPZ played on frame changes."""
+
+import os
+import struct
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from .. import names
+from . import attributes, colors, own
+from .checks import Refusal
+
+DEFORMERS = {
+    "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
+    "LATTICE", "MESH_CACHE", "MESH_DEFORM", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "SURFACE_DEFORM", "WARP", "WAVE",
+}  # fmt: skip
+"""Modifiers that keep every vertex; the bake stands behind the last of the leading ones."""
+
+_loaded = {}
+
+
+def place_in_stack(hand):
+    """Index of the bake's modifier: behind the leading deformers, before the first that may add vertices."""
+    others = [modifier for modifier in hand.modifiers if not modifier.name.startswith(names.BAKE_MODIFIER)]
+    return next((index for index, modifier in enumerate(others) if modifier.type not in DEFORMERS), len(others))
+
+
+def folder_of(hand):
+    """The bake's folder beside the saved file, made where missing. Raises `Refusal` for an unsaved file."""
+    if not bpy.data.filepath:
+        raise Refusal("a bake is kept beside the file; save the file first")
+    folder = Path(bpy.data.filepath).parent / names.BAKE_FOLDER
+    folder.mkdir(exist_ok=True)
+    return folder / bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{hand.name}")
+
+
+def publish(hand, stem, first_frame, frames):
+    """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
+
+    `frames`: dicts with `local` (n, 3) positions in object space, `pressure_kpa` (n), `parts` {name: kPa (k)},
+    and numbers `force_n`, `area_mm2`, `peak_kpa`.
+    """
+    pc2, npz = stem.with_name(stem.name + ".pc2"), stem.with_name(stem.name + ".npz")
+    _replace(pc2, lambda file: _write_pc2(file, first_frame, frames))
+    _replace(npz, lambda file: np.savez_compressed(file, **_tables(first_frame, frames)))
+    for modifier in own.bake_modifiers(hand):
+        hand.modifiers.remove(modifier)
+    index = place_in_stack(hand)
+    cache = hand.modifiers.new(names.BAKE_MODIFIER, "MESH_CACHE")
+    cache.cache_format, cache.filepath = "PC2", bpy.path.relpath(str(pc2))
+    cache.frame_start, cache.deform_mode, cache.interpolation = first_frame, "OVERWRITE", "LINEAR"
+    cache.forward_axis, cache.up_axis = "POS_Y", "POS_Z"
+    hand.modifiers.move(len(hand.modifiers) - 1, index)
+    hand.thenar.bake_path = bpy.path.relpath(str(npz))
+    _loaded.clear()
+
+
+def play(scene, find_parts):
+    """Write the pressures of the scene's frame onto hand and product; nothing where there is no bake.
+
+    `find_parts(settings)` gives the product's objects. A missing file is left for the panel to tell.
+    """
+    hand = scene.thenar.hand
+    if hand is None or not hand.thenar.bake_path or hand.type != "MESH" or hand.mode == "EDIT":
+        return
+    tables = _load(hand)
+    if tables is None:
+        return
+    row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["hand"]) - 1))
+    _show(hand.data, tables["hand"][row], scene.thenar, colors.SKIN)
+    for part in find_parts(scene.thenar):
+        values = tables.get(f"part/{part.name}")
+        if values is not None and part.type == "MESH" and part.mode != "EDIT":
+            _show(part.data, values[row], scene.thenar, colors.BARE)
+
+
+def is_missing(hand):
+    """Whether the hand's bake names a file that is not there."""
+    return bool(hand.thenar.bake_path) and not os.path.exists(bpy.path.abspath(hand.thenar.bake_path))
+
+
+def forget():
+    """Drop loaded bakes."""
+    _loaded.clear()
+
+
+def _show(mesh, pressure, look, bare):
+    if len(pressure) != len(mesh.vertices):
+        return
+    attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, bare))
+    mesh.update()
+
+
+def _load(hand):
+    path = bpy.path.abspath(hand.thenar.bake_path)
+    if path not in _loaded:
+        _loaded.clear()
+        if not os.path.exists(path):
+            return None
+        with np.load(path, allow_pickle=False) as file:
+            _loaded[path] = {name: file[name] for name in file.files}
+    return _loaded[path]
+
+
+def _tables(first_frame, frames):
+    tables = {"first_frame": np.int32(first_frame), "hand": np.stack([frame["pressure_kpa"] for frame in frames])}
+    for name in frames[0]["parts"]:
+        tables[f"part/{name}"] = np.stack([frame["parts"][name] for frame in frames])
+    for name in ("force_n", "area_mm2", "peak_kpa"):
+        tables[name] = np.array([frame[name] for frame in frames])
+    return tables
+
+
+def _write_pc2(file, first_frame, frames):
+    count = len(frames[0]["local"])
+    file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, count, float(first_frame), 1.0, len(frames)))
+    for frame in frames:
+        file.write(np.ascontiguousarray(frame["local"], "<f4").tobytes())
+
+
+def _replace(path, write):
+    partial = path.with_name(f".{path.name}.partial")
+    try:
+        with partial.open("wb") as file:
+            write(file)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)

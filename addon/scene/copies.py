@@ -1,0 +1,71 @@
+"""Copies of product surfaces that cannot carry pressure: curves, nodes, instances, shared or linked meshes."""
+
+import bpy
+import numpy as np
+
+from .. import names
+from . import attributes, colors, units
+
+
+def copy_name(part_name):
+    """Name of the copy of the product part of that name."""
+    return part_name[: 60 - len(names.COPY_SUFFIX)] + names.COPY_SUFFIX
+
+
+def find_copy(part_name):
+    """The copy of that product part, or None."""
+    copy = bpy.data.objects.get(copy_name(part_name))
+    return copy if copy is not None and copy.thenar.copy_of == part_name else None
+
+
+def write_copy(context, record, reading, offset_mm, pressure_mpa):
+    """Make anew the mesh object that shows the part's pressure; hidden until the pressure is shown."""
+    skin, product, look = reading.hand, reading.product, context.scene.thenar
+    remove_copy(record.name)
+    last = record.first + record.count
+    world = (product.vertices_mm[record.first : last] + skin.origin_mm + offset_mm) / skin.scale
+    inside = (product.triangles >= record.first).all(axis=1) & (product.triangles < last).all(axis=1)
+    mesh = _mesh(copy_name(record.name), world, product.triangles[inside] - record.first)
+    attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", units.kpa(pressure_mpa))
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(units.kpa(pressure_mpa), look, colors.BARE))
+    copy = bpy.data.objects.new(copy_name(record.name), mesh)
+    copy.thenar.copy_of = record.name
+    copy.hide_viewport = copy.hide_render = True
+    collection(context).objects.link(copy)
+    return copy
+
+
+def remove_copy(part_name):
+    """Remove the copy of that part, if there is one, and the collection once it is empty."""
+    copy = find_copy(part_name)
+    if copy is None:
+        return
+    mesh = copy.data
+    bpy.data.objects.remove(copy)
+    bpy.data.meshes.remove(mesh)
+    home = bpy.data.collections.get(names.RESULTS_COLLECTION)
+    if home is not None and not home.objects:
+        bpy.data.collections.remove(home)
+
+
+def collection(context):
+    """The collection of results in the scene, made where missing."""
+    home = bpy.data.collections.get(names.RESULTS_COLLECTION)
+    if home is None:
+        home = bpy.data.collections.new(names.RESULTS_COLLECTION)
+    if home.name not in context.scene.collection.children:
+        context.scene.collection.children.link(home)
+    return home
+
+
+def _mesh(name, positions, triangles):
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(len(positions))
+    mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
+    mesh.loops.add(triangles.size)
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
+    mesh.polygons.add(len(triangles))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, triangles.size, 3, dtype=np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(triangles), bool))
+    mesh.update(calc_edges=True)
+    return mesh

@@ -1,0 +1,105 @@
+"""Arrays out of evaluated meshes: positions, triangles, and whether vertices are still the ones of the base mesh."""
+
+from contextlib import contextmanager
+
+import numpy as np
+
+from .checks import Refusal
+
+_ID = ".thenar_vertex"
+
+
+def positions(mesh):
+    """Vertex positions (n, 3) float32, local, Blender units."""
+    out = np.empty(len(mesh.vertices) * 3, np.float32)
+    attribute = mesh.attributes.get("position")
+    if attribute is not None:
+        attribute.data.foreach_get("vector", out)
+    return out.reshape(-1, 3)
+
+
+def triangles(mesh):
+    """Triangles (m, 3) int32 of the mesh's faces."""
+    mesh.calc_loop_triangles()
+    out = np.empty(len(mesh.loop_triangles) * 3, np.int32)
+    mesh.loop_triangles.foreach_get("vertices", out)
+    return out.reshape(-1, 3)
+
+
+@contextmanager
+def evaluated_mesh(obj, depsgraph):
+    """The mesh of `obj` with its modifiers, for as long as the block lasts.
+
+    `to_mesh` is taken where Blender may keep the subdivision on the graphics card, and for what is not a mesh.
+    """
+    evaluated = obj.evaluated_get(depsgraph)
+    if obj.type == "MESH" and not any(modifier.type == "SUBSURF" for modifier in obj.modifiers):
+        yield evaluated.data
+        return
+    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    try:
+        yield mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def evaluated_positions(obj, depsgraph, count):
+    """Evaluated positions (count, 3) float64 of the base mesh's vertices, which come first (see `keeps_vertices`)."""
+    with evaluated_mesh(obj, depsgraph) as mesh:
+        return positions(mesh)[:count].astype(np.float64)
+
+
+def keeps_vertices(context, obj):
+    """Whether the first vertices of the evaluated mesh are those of the base mesh, in order."""
+    base = obj.data
+    with evaluated_mesh(obj, context.evaluated_depsgraph_get()) as mesh:
+        if _same_topology(base, mesh):
+            return True
+        if len(mesh.vertices) < len(base.vertices):
+            return False
+    if not base.is_editable:
+        return False
+    return _ids_come_first(context, obj)
+
+
+def require_vertices(context, obj):
+    """Refuse a hand whose modifiers reorder or remove vertices. Raises `Refusal`."""
+    if keeps_vertices(context, obj):
+        return
+    suspects = [modifier.name for modifier in obj.modifiers if modifier.show_viewport and modifier.type != "ARMATURE"]
+    listed = ", ".join(f"'{name}'" for name in suspects) or "a modifier"
+    raise Refusal(
+        f"{listed} on '{obj.name}' changes which vertices there are, so results cannot be written back; "
+        "apply it or switch it off in the viewport"
+    )
+
+
+def _same_topology(base, mesh):
+    if len(base.vertices) != len(mesh.vertices) or len(base.loops) != len(mesh.loops):
+        return False
+    return np.array_equal(_corners(base), _corners(mesh))
+
+
+def _corners(mesh):
+    out = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", out)
+    return out
+
+
+def _ids_come_first(context, obj):
+    count = len(obj.data.vertices)
+    wanted = np.arange(1, count + 1, dtype=np.int32)
+    obj.data.attributes.new(_ID, "INT", "POINT").data.foreach_set("value", wanted)
+    try:
+        obj.data.update()
+        context.view_layer.update()
+        with evaluated_mesh(obj, context.evaluated_depsgraph_get()) as mesh:
+            attribute = mesh.attributes.get(_ID)
+            if attribute is None or attribute.domain != "POINT" or len(attribute.data) < count:
+                return False
+            found = np.empty(len(attribute.data), np.int32)
+            attribute.data.foreach_get("value", found)
+            return np.array_equal(found[:count], wanted)
+    finally:
+        obj.data.attributes.remove(obj.data.attributes[_ID])
+        context.view_layer.update()

@@ -1,0 +1,63 @@
+"""Takes Thenar's own earlier output out of a scene while it is read, and puts it back."""
+
+from contextlib import ExitStack, contextmanager
+
+from .. import names
+
+
+def contact_key(obj):
+    """The contact's shape key of a hand, or None."""
+    keys = obj.data.shape_keys if obj.type == "MESH" else None
+    return keys.key_blocks.get(names.SHAPE_KEY) if keys is not None else None
+
+
+def bake_modifiers(obj):
+    """The modifiers that play a bake on this hand."""
+    return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.BAKE_MODIFIER)]
+
+
+def roots(parts):
+    """Those of `parts` that no other part carries along as a parent."""
+    chosen = set(parts)
+    return [part for part in parts if not any(parent in chosen for parent in _parents(part))]
+
+
+@contextmanager
+def without_own_output(context, hand, parts):
+    """The scene as if Thenar had never run; yields the evaluated depsgraph, and restores on leaving."""
+    with ExitStack() as restore:
+        restore.callback(context.view_layer.update)
+        key = contact_key(hand)
+        if key is not None and not key.mute:
+            restore.callback(setattr, key, "mute", False)
+            key.mute = True
+        for modifier in bake_modifiers(hand):
+            restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
+            modifier.show_viewport = False
+        for part in parts:
+            if part.thenar.is_moved:
+                restore.callback(setattr, part, "delta_location", part.delta_location.copy())
+                part.delta_location = part.thenar.home
+        context.view_layer.update()
+        yield context.evaluated_depsgraph_get()
+
+
+@contextmanager
+def without_generators(hand, first):
+    """The hand without its modifiers from index `first` on, Thenar's own not counted."""
+    others = [modifier for modifier in hand.modifiers if not modifier.name.startswith(names.BAKE_MODIFIER)]
+    shown = [modifier for modifier in others[first:] if modifier.show_viewport]
+    for modifier in shown:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in shown:
+            modifier.show_viewport = True
+
+
+def _parents(obj):
+    parent = obj.parent
+    while parent is not None:
+        yield parent
+        parent = parent.parent

@@ -1,0 +1,78 @@
+"""Regions of the skin from vertex groups, without a loop over vertices."""
+
+import bpy
+import numpy as np
+
+from .. import names
+from . import attributes
+
+_WEIGHT = ".thenar_weight_"
+LEAST_WEIGHT = 1e-4
+"""A vertex belongs to a region from this weight on; Blender's brushes leave smaller remains."""
+
+
+def vertex_regions(context, hand, group_names):
+    """Region per vertex (n,) int32: the listed group with the largest weight there, -1 for none.
+
+    With no names the whole mesh is one region, 0.
+    """
+    count = len(hand.data.vertices)
+    if not group_names:
+        return np.zeros(count, np.int32)
+    weights = group_weights(context, hand, group_names)
+    regions = weights.argmax(axis=0).astype(np.int32)
+    regions[weights.max(axis=0) < LEAST_WEIGHT] = -1
+    return regions
+
+
+def select_vertices(mesh, region):
+    """Select the vertices that the last result counted to `region`, and nothing else."""
+    mesh.vertices.foreach_set("select", attributes.read(mesh, names.REGION) == region)
+    mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
+    mesh.polygons.foreach_set("select", np.zeros(len(mesh.polygons), bool))
+
+
+def group_weights(context, hand, group_names):
+    """Weights (k, n) float32 of vertex groups; a group that does not exist weighs nothing.
+
+    Vertex groups have no array access in Python, but Geometry Nodes read them as attributes: a passing object
+    that shares the mesh carries the nodes, so that the hand itself is not touched.
+    """
+    tree = _reader(group_names)
+    carrier = bpy.data.objects.new(_WEIGHT, hand.data)
+    try:
+        context.scene.collection.objects.link(carrier)
+        carrier.modifiers.new(_WEIGHT, "NODES").node_group = tree
+        context.view_layer.update()
+        mesh = carrier.evaluated_get(context.evaluated_depsgraph_get()).data
+        out = np.zeros((len(group_names), len(hand.data.vertices)), np.float32)
+        for row, _ in enumerate(group_names):
+            mesh.attributes[f"{_WEIGHT}{row}"].data.foreach_get("value", out[row])
+        return out
+    finally:
+        bpy.data.objects.remove(carrier)
+        bpy.data.node_groups.remove(tree)
+
+
+def _reader(group_names):
+    tree = bpy.data.node_groups.new(_WEIGHT, "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    last = tree.nodes.new("NodeGroupInput").outputs[0]
+    for row, name in enumerate(group_names):
+        read = tree.nodes.new("GeometryNodeInputNamedAttribute")
+        read.data_type = "FLOAT"
+        read.inputs["Name"].default_value = name
+        store = tree.nodes.new("GeometryNodeStoreNamedAttribute")
+        store.data_type = "FLOAT"
+        store.domain = "POINT"
+        store.inputs["Name"].default_value = f"{_WEIGHT}{row}"
+        tree.links.new(last, store.inputs["Geometry"])
+        tree.links.new(_enabled(read.outputs, "Attribute"), _enabled(store.inputs, "Value"))
+        last = store.outputs[0]
+    tree.links.new(last, tree.nodes.new("NodeGroupOutput").inputs[0])
+    return tree
+
+
+def _enabled(sockets, name):
+    return next(socket for socket in sockets if socket.name == name and socket.enabled)

@@ -1,0 +1,135 @@
+"""Materials that show pressure over the user's own, and the way back to them."""
+
+import bpy
+
+from .. import colormap, names
+
+_SKIN = (0.80, 0.52, 0.40, 1.0)
+_BARE = (0.62, 0.62, 0.60, 1.0)
+
+
+def show(obj, look, is_skin):
+    """Overlay the pressure on every material slot of `obj`; the slots' own materials stay in the mesh, untouched."""
+    hide(obj)
+    state = obj.thenar
+    if not len(obj.data.materials):
+        obj.data.materials.append(None)
+        state.added_slot = True
+    for slot in obj.material_slots:
+        kept = state.slots.add()
+        kept.link = slot.link
+        own = slot.material
+        if slot.link == "OBJECT":
+            kept.material = own
+        slot.link = "OBJECT"
+        if slot.link == "OBJECT" and kept.link == "DATA":
+            kept.material = slot.material if slot.material != own else None
+        slot.material = _overlaid(own, look, is_skin)
+    state.shows_pressure = True
+
+
+def hide(obj):
+    """Give every slot its own material back and drop the overlaid copies."""
+    state = obj.thenar
+    if not state.shows_pressure:
+        return
+    for slot, kept in zip(obj.material_slots, state.slots, strict=False):
+        copy = slot.material
+        slot.link = "OBJECT"
+        slot.material = kept.material
+        slot.link = kept.link
+        if copy is not None and copy.name.endswith(names.MATERIAL_SUFFIX) and copy.users == 0:
+            bpy.data.materials.remove(copy)
+    if state.added_slot and len(obj.material_slots):
+        obj.data.materials.pop()
+    state.added_slot = state.shows_pressure = False
+    state.slots.clear()
+
+
+def update_group(look):
+    """Set range and colour map of the overlay that all pressure materials share."""
+    tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
+    if tree is not None:
+        tree.nodes["Range"].inputs["From Max"].default_value = max(look.range_kpa, 1e-3)
+        _fill_ramp(tree.nodes["Ramp"].color_ramp, look.palette)
+
+
+def _overlaid(own, look, is_skin):
+    base = own.copy() if own is not None else _plain(is_skin)
+    stem = own.name if own is not None else ("Skin" if is_skin else "Product")
+    base.name = stem[: 60 - len(names.MATERIAL_SUFFIX)] + names.MATERIAL_SUFFIX
+    if base.node_tree is None or (bpy.app.version < (5, 0) and not base.use_nodes):
+        base.use_nodes = True
+    tree = base.node_tree
+    output = tree.get_output_node("ALL") or tree.get_output_node("CYCLES") or tree.nodes.new("ShaderNodeOutputMaterial")
+    overlay = tree.nodes.new("ShaderNodeGroup")
+    overlay.node_tree = _group(look)
+    overlay.location = (output.location.x, output.location.y + 180)
+    surface = output.inputs["Surface"]
+    if surface.is_linked:
+        tree.links.new(surface.links[0].from_socket, overlay.inputs["Surface"])
+    tree.links.new(overlay.outputs["Surface"], surface)
+    return base
+
+
+def _plain(is_skin):
+    material = bpy.data.materials.new("plain")
+    if material.node_tree is None:
+        material.use_nodes = True
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    shader.inputs["Base Color"].default_value = _SKIN if is_skin else _BARE
+    shader.inputs["Roughness"].default_value = 0.5 if is_skin else 0.35
+    if is_skin:
+        shader.inputs["Subsurface Weight"].default_value = 0.12
+        shader.inputs["Subsurface Radius"].default_value = (1.0, 0.35, 0.2)
+        shader.inputs["Subsurface Scale"].default_value = 0.004
+    return material
+
+
+def _group(look):
+    tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
+    if tree is None:
+        tree = _new_group()
+    update_group(look)
+    return tree
+
+
+def _new_group():
+    tree = bpy.data.node_groups.new(names.OVERLAY_GROUP, "ShaderNodeTree")
+    tree.interface.new_socket("Surface", in_out="INPUT", socket_type="NodeSocketShader")
+    tree.interface.new_socket("Surface", in_out="OUTPUT", socket_type="NodeSocketShader")
+    nodes, links = tree.nodes, tree.links
+    entry, leave = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
+    pressure = nodes.new("ShaderNodeAttribute")
+    pressure.attribute_type, pressure.attribute_name = "GEOMETRY", names.PRESSURE_KPA
+    fraction = nodes.new("ShaderNodeMapRange")
+    fraction.name, fraction.clamp = "Range", True
+    edge = nodes.new("ShaderNodeMapRange")
+    edge.interpolation_type = "SMOOTHSTEP"
+    edge.inputs["From Max"].default_value = colormap.EDGE
+    ramp = nodes.new("ShaderNodeValToRGB")
+    ramp.name = "Ramp"
+    light, mix = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
+    for place, node in enumerate((entry, pressure, fraction, edge, ramp, light, mix, leave)):
+        node.location = (place * 220 - 900, 0)
+    links.new(pressure.outputs["Fac"], fraction.inputs["Value"])
+    links.new(fraction.outputs["Result"], edge.inputs["Value"])
+    links.new(fraction.outputs["Result"], ramp.inputs["Fac"])
+    links.new(ramp.outputs["Color"], light.inputs["Color"])
+    links.new(edge.outputs["Result"], mix.inputs[0])
+    links.new(entry.outputs["Surface"], mix.inputs[1])
+    links.new(light.outputs["Emission"], mix.inputs[2])
+    links.new(mix.outputs["Shader"], leave.inputs["Surface"])
+    return tree
+
+
+def _fill_ramp(ramp, palette):
+    colors = colormap.to_linear(colormap.stops(palette))
+    elements = ramp.elements
+    while len(elements) > len(colors):
+        elements.remove(elements[-1])
+    while len(elements) < len(colors):
+        elements.new(1.0)
+    for index, color in enumerate(colors):
+        elements[index].position = index / (len(colors) - 1)
+        elements[index].color = (*color, 1.0)

@@ -1,0 +1,20 @@
+"""What the scene shows now, in short: the shapes that a result depends on."""
+
+import numpy as np
+
+from . import checks, mesh
+
+
+def shapes(context, objects):
+    """Hashable parts (matrix, positions, vertex groups) of each object as evaluated, Thenar's own output included."""
+    depsgraph = context.evaluated_depsgraph_get()
+    parts = []
+    for obj in objects:
+        parts.append(obj.name)
+        parts.append(np.array(obj.matrix_world, dtype=np.float64))
+        if obj.type in checks.PRODUCT_TYPES:
+            with mesh.evaluated_mesh(obj, depsgraph) as surface:
+                if surface is not None:
+                    parts.append(mesh.positions(surface))
+        parts.append(tuple(group.name for group in obj.vertex_groups))
+    return parts

@@ -1,0 +1,185 @@
+"""Writes a contact onto hand and product, all of it or nothing."""
+
+from contextlib import ExitStack
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from .. import names
+from . import attributes, colors, copies, key, own, units
+from .checks import Refusal
+
+
+@dataclass(frozen=True)
+class Fields:
+    """What a contact writes; arrays per hand vertex (n) or product vertex (k), world axes, library units."""
+
+    displacement_mm: np.ndarray
+    pressure_mpa: np.ndarray
+    force_n: np.ndarray
+    depth_mm: np.ndarray
+    regions: np.ndarray
+    product_pressure_mpa: np.ndarray
+    offset_mm: np.ndarray
+    """(3) how far the product moved to reach its force."""
+
+
+@dataclass(frozen=True)
+class WriteReport:
+    """Largest error of the written displacement, mm, measured; corrections it took; notes for the user."""
+
+    error_mm: float
+    corrections: int
+    notes: tuple
+
+
+def write_contact(context, hand, parts, reading, fields):
+    """Shape key, attributes and the product's place. Returns a `WriteReport`; on any failure the scene is as before."""
+    skin, look = reading.hand, context.scene.thenar
+    with ExitStack() as undo:
+        undo.callback(context.view_layer.update)
+        _keep_key(undo, hand)
+        undo.callback(attributes.snapshot(hand.data, names.HAND_ATTRIBUTES))
+        move_parts(context, undo, parts, fields.offset_mm / skin.scale)
+        contact = key.ensure_key(hand)
+        wanted = units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale)
+        report = key.fit_key(context, hand, contact, wanted)
+        write_hand(hand, fields, look)
+        for record in reading.product.parts:
+            _write_part(context, undo, record, reading, fields)
+        context.view_layer.update()
+        undo.pop_all()
+    return WriteReport(_error_mm(report.error, skin), report.corrections, tuple(_notes(hand, reading.product, report)))
+
+
+def write_hand(hand, fields, look):
+    """The hand's attributes and its colours for Solid view."""
+    mesh, pressure = hand.data, units.kpa(fields.pressure_mpa)
+    attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
+    attributes.write(mesh, names.DEPTH_MM, "FLOAT", fields.depth_mm)
+    attributes.write(mesh, names.REGION, "INT", fields.regions)
+    attributes.write(mesh, names.FORCE_N, "FLOAT", fields.force_n)
+    attributes.write(mesh, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
+    mesh.update()
+
+
+def move_parts(context, undo, parts, offset):
+    """Move the product by `offset` (3), world, Blender units, keeping its own location, and remember its home."""
+    for part in own.roots(parts):
+        state = part.thenar
+        before, home, was_moved = part.delta_location.copy(), state.home[:], state.is_moved
+        undo.callback(_place, part, before, home, was_moved)
+        if was_moved:
+            part.delta_location = state.home
+    if not np.any(offset):
+        for part in own.roots(parts):
+            part.thenar.is_moved = False
+        context.view_layer.update()
+        return
+    context.view_layer.update()
+    for part in own.roots(parts):
+        _move(context, part, offset)
+
+
+def _move(context, part, offset):
+    if not part.is_editable:
+        raise Refusal(f"the product '{part.name}' is linked and cannot be moved to reach the force; make it local")
+    world, basis = units.world_from_local(part), np.array(part.matrix_basis, dtype=np.float64)
+    parent = (world @ np.linalg.inv(basis))[:3, :3]
+    part.thenar.home = part.delta_location
+    part.thenar.is_moved = True
+    part.delta_location = np.array(part.delta_location) + np.linalg.solve(parent, offset)
+    context.view_layer.update()
+    achieved = units.world_from_local(part)[:3, 3] - world[:3, 3]
+    if np.abs(achieved - offset).max() > 1e-3 * np.abs(offset).max() + 1e-6 * np.abs(world[:3, 3]).max():
+        raise Refusal(
+            f"the product '{part.name}' is held by a constraint or driver and cannot move to reach the force; "
+            "mute it, or solve without a force target"
+        )
+
+
+def _place(part, delta, home, is_moved):
+    part.delta_location = delta
+    part.thenar.home = home
+    part.thenar.is_moved = is_moved
+
+
+def _keep_key(undo, hand):
+    contact = own.contact_key(hand)
+    if contact is None:
+        hand.thenar.made_basis = hand.data.shape_keys is None
+        undo.callback(key.remove_key, hand)
+        return
+    points, value, mute = key.key_points(contact), contact.value, contact.mute
+
+    def restore():
+        contact.value, contact.mute = value, mute
+        key.put_points(hand, contact, points)
+
+    undo.callback(restore)
+
+
+def _write_part(context, undo, record, reading, fields):
+    part, look = bpy.data.objects[record.name], context.scene.thenar
+    pressure = fields.product_pressure_mpa[record.first : record.first + record.count]
+    if record.reason:
+        copies.write_copy(context, record, reading, fields.offset_mm, pressure)
+        undo.callback(copies.remove_copy, record.name)
+        return
+    undo.callback(attributes.snapshot(part.data, names.PRODUCT_ATTRIBUTES))
+    carried = units.kpa(pressure[: len(part.data.vertices)])
+    attributes.write(part.data, names.PRESSURE_KPA, "FLOAT", carried)
+    attributes.write(part.data, names.COLOR, "FLOAT_COLOR", colors.linear(carried, look, colors.BARE))
+    part.data.update()
+
+
+def _error_mm(error, reading):
+    return error * float(np.linalg.norm(reading.matrix[:3, :3], axis=0).max()) * reading.scale
+
+
+def _notes(hand, product, report):
+    if report.unsolvable:
+        yield f"{report.unsolvable} vertices of '{hand.name}' cannot follow the contact (a bone scaled to zero?)"
+    for record in product.parts:
+        if record.reason:
+            yield f"a copy of '{record.name}' in '{names.RESULTS_COLLECTION}' carries the pressure: {record.reason}"
+
+
+def clear(context, hand, parts):
+    """Remove Thenar's key, attributes, copies and bake, and put the product back."""
+    for modifier in own.bake_modifiers(hand):
+        hand.modifiers.remove(modifier)
+    hand.thenar.bake_path = ""
+    key.remove_key(hand)
+    attributes.remove(hand.data, names.HAND_ATTRIBUTES)
+    hand.data.update()
+    for part in parts:
+        copies.remove_copy(part.name)
+        if part.thenar.is_moved:
+            part.delta_location = part.thenar.home
+            part.thenar.is_moved = False
+        if part.type == "MESH" and part.data.is_editable and part.mode != "EDIT":
+            attributes.remove(part.data, names.PRODUCT_ATTRIBUTES)
+            part.data.update()
+    context.view_layer.update()
+
+
+def apply(context, hand, parts):
+    """Add the contact's offsets (as far as its value counts) to every other shape key, then remove its key.
+
+    A moved product stays where it is: that place is now its own.
+    """
+    contact, blocks = own.contact_key(hand), hand.data.shape_keys.key_blocks
+    base = key.key_points(hand.data.shape_keys.reference_key)
+    offsets = (key.key_points(contact) - base) * (0.0 if contact.mute else contact.value)
+    for block in blocks:
+        if block != contact:
+            key.put_points(hand, block, key.key_points(block) + offsets)
+    key.remove_key(hand)
+    hand.data.attributes["position"].data.foreach_set("vector", (base + offsets).astype(np.float32).ravel())
+    for part in parts:
+        part.thenar.is_moved = False
+    hand.data.update()
+    context.view_layer.update()

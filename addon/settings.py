@@ -1,0 +1,307 @@
+"""Blender properties of Thenar: what to solve, materials by region, and the result kept in the file.
+
+Numbers of the tissue are not written here: presets come from the native module's published materials.
+"""
+
+from math import isfinite
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import names, native, status
+from .scene.units import KPA_PER_MPA
+
+PRESETS = (
+    ("FINGER_LAYER", "Finger, layer on bone", "Finger pad as a soft layer on bone; for the layer model", 0),
+    ("PALM_LAYER", "Palm, layer on bone", "Palm as a soft layer on bone; for the layer model", 1),
+    ("FINGER", "Finger, published", "Fingertip of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 2),
+    ("PALM", "Palm, published", "Palm of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 3),
+    ("CUSTOM", "Own values", "Values entered by hand", 4),
+)
+
+
+def fill_from_preset(material, preset):
+    """Set a region's numbers to a preset; the sets of values stand in the native module."""
+    numbers = native.published(preset.lower())
+    if numbers is None:
+        return
+    _filling.append(preset)
+    for name, (prop, factor) in MATERIAL_NUMBERS.items():
+        setattr(material, prop, _shown(numbers[name], factor))
+    _filling.clear()
+
+
+MATERIAL_NUMBERS = {
+    "g0_mpa": ("g0_kpa", KPA_PER_MPA),
+    "g_lim_mpa": ("g_lim_kpa", KPA_PER_MPA),
+    "d_lim_mm": ("d_lim_mm", 1),
+    "thickness_mm": ("thickness_mm", 1),
+    "poisson_ratio": ("poisson_ratio", 1),
+    "zone_mm": ("zone_mm", 1),
+    "swelling_height_mm_per_n": ("swelling_height_mm_per_n", 1),
+    "swelling_radius_mm": ("swelling_radius_mm", 1),
+    "swelling_width_mm": ("swelling_width_mm", 1),
+}
+"""Parameter of the library -> property here, and what its value is multiplied with. Infinite thickness shows as 0."""
+
+_LABELS = {
+    "g0_kpa": "G0 (kPa)",
+    "g_lim_kpa": "G Limit (kPa)",
+    "d_lim_mm": "d Limit (mm)",
+    "thickness_mm": "Thickness (mm)",
+    "poisson_ratio": "Poisson Ratio",
+    "zone_mm": "Zone (mm)",
+    "swelling_height_mm_per_n": "Swell (mm/N)",
+    "swelling_radius_mm": "Radius (mm)",
+    "swelling_width_mm": "Width (mm)",
+}
+_DEFAULT_PRESET = "FINGER_LAYER"
+_filling = []
+"""Not empty while a preset writes its numbers, which are then not the user's own."""
+
+
+def _shown(value, factor):
+    return value * factor if isfinite(value) else 0.0
+
+
+def _preset_changed(self, _context):
+    if self.preset != "CUSTOM":
+        fill_from_preset(self, self.preset)
+
+
+def _value_changed(self, _context):
+    if not _filling and self.preset != "CUSTOM":
+        self.preset = "CUSTOM"
+
+
+def _number_properties():
+    """A float property for every parameter of the library's table; plain ones where that table is missing."""
+    table, defaults = native.parameters(), native.published(_DEFAULT_PRESET.lower()) or {}
+    properties = {}  # a thickness is anatomy: it does not make the preset one's own
+    for name, (prop, factor) in MATERIAL_NUMBERS.items():
+        row = table.get(name, {})
+        properties[prop] = FloatProperty(
+            name=_LABELS[prop],
+            description=_sentence(row, prop),
+            default=_shown(defaults.get(name, 1.0), factor),
+            min=0.0 if prop == "thickness_mm" else row.get("low", 0.0) * factor,
+            max=min(row.get("high", 1e6) * factor, 1e6),
+            precision=3,
+            update=None if prop == "thickness_mm" else _value_changed,
+        )
+    return properties
+
+
+def _sentence(row, prop):
+    if not row:
+        return _LABELS[prop]
+    zero = "; 0 stands for no bone below" if prop == "thickness_mm" else ""
+    return f"{row['meaning'].capitalize()}{zero}. {row['source']}"
+
+
+def _look_changed(_self, context):
+    for refresh in status.look_changed:
+        refresh(context)
+
+
+class ThenarMaterial(bpy.types.PropertyGroup):
+    """Material of one region; `name` is the vertex group. Its numbers come from the library's table."""
+
+    __annotations__ = {
+        "preset": EnumProperty(
+            name="Preset",
+            description="Published values for this kind of skin",
+            items=PRESETS,
+            default=_DEFAULT_PRESET,
+            update=_preset_changed,
+        ),
+        **_number_properties(),
+    }
+
+
+class ThenarRegionResult(bpy.types.PropertyGroup):
+    """What one region, or one finger, carries; `name` is the region's."""
+
+    force_n: FloatProperty(name="Force (N)")
+    area_mm2: FloatProperty(name="Area (mm²)")
+    peak_kpa: FloatProperty(name="Peak (kPa)")
+    mean_kpa: FloatProperty(name="Mean (kPa)")
+    depth_mm: FloatProperty(name="Depth (mm)")
+    shear_modulus_kpa: FloatProperty(name="G (kPa)")
+
+
+class ThenarStage(bpy.types.PropertyGroup):
+    """Seconds of one stage of the solve; `name` is the stage."""
+
+    seconds: FloatProperty(name="Seconds")
+
+
+class ThenarText(bpy.types.PropertyGroup):
+    """One line of text, in `name`."""
+
+
+class ThenarResult(bpy.types.PropertyGroup):
+    """The last contact of the scene, as numbers with units; fields per vertex are attributes on the meshes."""
+
+    schema: IntProperty(default=names.SCHEMA)
+    is_valid: BoolProperty(default=False)
+    hand_name: StringProperty()
+    product_name: StringProperty()
+    model: StringProperty()
+    vertices: IntProperty()
+    force_n: FloatProperty()
+    force_vector_n: FloatVectorProperty(size=3)
+    moment_nmm: FloatVectorProperty(size=3)
+    center_mm: FloatVectorProperty(size=3)
+    area_mm2: FloatProperty()
+    peak_kpa: FloatProperty()
+    patch_peak_kpa: FloatProperty()
+    mean_kpa: FloatProperty()
+    depth_mm: FloatProperty()
+    penetration_mm: FloatProperty()
+    complementarity: FloatProperty()
+    load_balance: FloatProperty()
+    write_error_mm: FloatProperty()
+    offset_mm: FloatProperty()
+    direction: FloatVectorProperty(size=3)
+    input_hash: StringProperty()
+    state_hash: StringProperty()
+    made_with: StringProperty()
+    regions: CollectionProperty(type=ThenarRegionResult)
+    region_index: IntProperty()
+    fingers: CollectionProperty(type=ThenarRegionResult)
+    stages: CollectionProperty(type=ThenarStage)
+    warnings: CollectionProperty(type=ThenarText)
+
+
+class ThenarSlot(bpy.types.PropertyGroup):
+    """A material slot as it was before the pressure was shown."""
+
+    link: StringProperty()
+    material: PointerProperty(type=bpy.types.Material)
+
+
+class ThenarObject(bpy.types.PropertyGroup):
+    """`object.thenar`: materials of a hand by region, and what Thenar changed on an object, so as to undo it."""
+
+    materials: CollectionProperty(type=ThenarMaterial)
+    material_index: IntProperty()
+    default_material: PointerProperty(type=ThenarMaterial)
+    made_basis: BoolProperty()
+    home: FloatVectorProperty(size=3, subtype="XYZ")
+    is_moved: BoolProperty()
+    copy_of: StringProperty()
+    shows_pressure: BoolProperty()
+    was_hidden: BoolProperty()
+    hid_render: BoolProperty()
+    added_slot: BoolProperty()
+    slots: CollectionProperty(type=ThenarSlot)
+    bake_path: StringProperty()
+
+
+def _is_mesh(_self, obj):
+    return obj.type == "MESH"
+
+
+def _is_surface(_self, obj):
+    return obj.type in {"MESH", "CURVE", "SURFACE", "FONT", "META"} or obj.instance_type != "NONE"
+
+
+class ThenarScene(bpy.types.PropertyGroup):
+    """`scene.thenar`: what to solve, how to show it, and the result."""
+
+    hand: PointerProperty(type=bpy.types.Object, name="Hand", description="The posed hand's mesh", poll=_is_mesh)
+    product: PointerProperty(
+        type=bpy.types.Object, name="Product", description="What the hand presses against", poll=_is_surface
+    )
+    product_collection: PointerProperty(
+        type=bpy.types.Collection,
+        name="Parts",
+        description="A collection whose objects together are the product; used besides Product",
+    )
+    model: EnumProperty(
+        name="Model",
+        description="Law of the skin",
+        items=(
+            ("LAYER", "Layer on bone", "Coupled skin of finite thickness over bone; keeps its volume"),
+            ("PAPER", "Paper", "Xie, Kanai & Date as published: independent regions, half space, swelling"),
+        ),
+    )
+    use_force: BoolProperty(
+        name="Force target", description="Move the product until the contact carries a wanted force"
+    )
+    force_n: FloatProperty(name="Force (N)", description="Wanted normal force, N", min=0.0, soft_max=500, default=10)
+    direction_mode: EnumProperty(
+        name="Direction",
+        description="Along which direction the product moves to reach the force",
+        items=(
+            ("AUTO", "Found", "The mean normal of the contact as posed"),
+            ("OWN", "Own", "A direction in world axes"),
+        ),
+    )
+    direction: FloatVectorProperty(
+        name="Direction",
+        description="World direction in which the product moves",
+        size=3,
+        default=(0, 0, 1),
+        subtype="XYZ",
+    )
+    range_kpa: FloatProperty(
+        name="Range (kPa)",
+        description="Pressure at the top of the colour map, kPa; shared by hand and product and kept between solves",
+        min=0.0,
+        soft_max=500,
+        default=150,
+        update=_look_changed,
+    )
+    palette: EnumProperty(
+        name="Colours",
+        description="Colour map of the pressure",
+        items=(
+            ("VIRIDIS", "Viridis", "Even steps of lightness and hue"),
+            ("CIVIDIS", "Cividis", "Even steps, the same for colour-blind eyes"),
+        ),
+        update=_look_changed,
+    )
+    show_legend: BoolProperty(
+        name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
+    )
+    preset_before: StringProperty()
+    result: PointerProperty(type=ThenarResult)
+
+
+CLASSES = (
+    ThenarMaterial,
+    ThenarRegionResult,
+    ThenarStage,
+    ThenarText,
+    ThenarResult,
+    ThenarSlot,
+    ThenarObject,
+    ThenarScene,
+)
+
+
+def register():
+    """Register the property groups and hang them on objects and scenes."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Object.thenar = PointerProperty(type=ThenarObject)
+    bpy.types.Scene.thenar = PointerProperty(type=ThenarScene)
+
+
+def unregister():
+    """Take the properties off again."""
+    del bpy.types.Scene.thenar
+    del bpy.types.Object.thenar
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,45 @@
+"""What panels and handlers say about the moment: native module, run under way, results out of date. Nothing lasts."""
+
+import platform
+import sys
+
+
+class Run:
+    """The solve under way: `stage` (empty when none runs) and `fraction` done."""
+
+    stage = ""
+    fraction = 0.0
+
+
+run = Run()
+native_problem = ""
+"""Why the native module cannot be used, as one sentence; empty if it can."""
+look_changed = []
+"""Called with the context after range, colours or legend were changed."""
+_stale = {}
+
+
+def where():
+    """Platform and Python, for a report."""
+    return f"{platform.system()} {platform.machine()}, Python {sys.version.split()[0]}"
+
+
+def set_native_problem(text):
+    """Remember why the native module cannot be used."""
+    global native_problem
+    native_problem = text
+
+
+def set_stale(scene_name, stale):
+    """Remember whether the result of the scene of that name is out of date."""
+    _stale[scene_name] = bool(stale)
+
+
+def is_stale(scene_name):
+    """Whether the result of that scene was last seen out of date."""
+    return _stale.get(scene_name, False)
+
+
+def forget():
+    """Drop what is known of results."""
+    _stale.clear()

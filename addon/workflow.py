@@ -1,0 +1,304 @@
+"""The order of a press: read, call the library, write back. Knows nothing of buttons and layout."""
+
+import re
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import cache, names, native, status
+from . import result as results
+from .scene import checks, own, read, state, units, write
+from .settings import MATERIAL_NUMBERS
+
+
+@dataclass
+class Job:
+    """A press that was read from the scene and may be computed in any thread; nothing in it is a Blender object."""
+
+    hand_name: str
+    part_names: tuple
+    reading: read.Reading
+    region_names: tuple
+    materials: tuple
+    model: str
+    force_n: float | None
+    direction: tuple | None
+    input_hash: str
+    state_hash: str = ""
+    seconds: dict = field(default_factory=dict)
+
+
+def prepare(context):
+    """Read the scene's hand and product into a `Job`. Raises `Refusal`; the scene stays as it is."""
+    started = time.perf_counter()
+    hand, parts = check(context)
+    if own.bake_modifiers(hand):
+        raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then solve")
+    job = read_job(context, hand, parts)
+    job.state_hash = state_hash(context)
+    job.seconds["read"] = time.perf_counter() - started
+    return job
+
+
+def check(context):
+    """Refuse a scene that cannot be pressed. Returns hand and product parts. Raises `Refusal`."""
+    problem = native.problem()
+    if problem:
+        raise checks.Refusal(problem)
+    settings = context.scene.thenar
+    hand, parts = settings.hand, product_parts(settings)
+    checks.check_hand(context, hand)
+    checks.check_product(context, parts, hand)
+    return hand, parts
+
+
+def read_job(context, hand, parts):
+    """The job of this hand and these parts at the current frame, read without Thenar's own output."""
+    settings = context.scene.thenar
+    listed = tuple(hand.thenar.materials)
+    group_names = tuple(material.name for material in listed)
+    _check_groups(hand, group_names)
+    with own.without_own_output(context, hand, parts):
+        skin = read.read_hand(context, hand, group_names)
+        product = read.read_product(context, parts, skin.scale, skin.origin_mm)
+    materials = tuple(_numbers(material) for material in (listed or (hand.thenar.default_material,)))
+    force = settings.force_n if settings.use_force else None
+    direction = tuple(settings.direction) if settings.use_force and settings.direction_mode == "OWN" else None
+    if direction is not None and not np.any(direction):
+        raise checks.Refusal("the direction of the force is zero; enter a direction or choose Found")
+    model = settings.model.lower()
+    return Job(
+        hand_name=hand.name,
+        part_names=tuple(part.name for part in parts),
+        reading=read.Reading(skin, product),
+        region_names=group_names or (names.WHOLE_SKIN,),
+        materials=materials,
+        model=model,
+        force_n=force,
+        direction=direction,
+        input_hash=cache.content_hash(
+            skin.rest_mm,
+            skin.posed_mm,
+            skin.triangles,
+            skin.regions,
+            product.vertices_mm,
+            product.triangles,
+            materials,
+            model,
+            force,
+            direction,
+            names.VERSION,
+        ),
+    )
+
+
+def product_parts(settings):
+    """The objects that together are the product, in a fixed order, hand and Thenar's own copies left out."""
+    parts = [settings.product] if settings.product is not None else []
+    if settings.product_collection is not None:
+        found = sorted(settings.product_collection.all_objects, key=lambda part: part.name)
+        parts += [part for part in found if _is_part(part, settings) and part not in parts]
+    return parts
+
+
+def compute(job, cancel=None, progress=None):
+    """The contact of a job, by the native module; no Blender in it, so that a thread may run it.
+
+    `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
+    """
+    hand = job.reading.hand
+    key = cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
+    try:
+        return _compute(job, key, cancel, progress)
+    except native.error_types() as error:
+        if cancel is None or not cancel.is_set():
+            cache.drop(key)
+        raise type(error)(named(str(error), job)) from None
+
+
+def _compute(job, key, cancel, progress):
+    thenar, hand, product = native.module, job.reading.hand, job.reading.product
+    started = time.perf_counter()
+    if progress is not None:
+        progress("prepare", 0.0)
+    skin = cache.skin(key, lambda: _skin(thenar, job, cancel, progress))
+    job.seconds["prepare"] = time.perf_counter() - started
+    started = time.perf_counter()
+    contact = skin.press(
+        product.vertices_mm,
+        product.triangles,
+        posed_vertices_mm=hand.posed_mm,
+        force_n=job.force_n,
+        direction=None if job.direction is None else np.array(job.direction, dtype=np.float64),
+        cancel=cancel,
+        progress=progress,
+    )
+    job.seconds["press"] = time.perf_counter() - started
+    return contact
+
+
+def named(text, job):
+    """A sentence of the native module with the objects' names: it knows them as "the hand" and "the product" only."""
+    for role, name in (("hand", job.hand_name), ("product", ", ".join(job.part_names))):
+        text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
+    regions = dict(enumerate(job.region_names))
+    return re.sub(r"\bregion (\d+)\b", lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
+
+
+def joined(notes):
+    """Notes that differ by names and numbers only become one, which counts the others."""
+    alike = {}
+    for note in notes:
+        alike.setdefault(re.sub(r"'[^']*'|[\d.]+", "#", note), []).append(note)
+    for first, *others in alike.values():
+        yield first + (f" ({len(others)} more such)" if others else "")
+
+
+def finish(context, job, contact):
+    """Write the contact back and keep its numbers in the scene. Returns the scene's result.
+
+    Raises `Refusal` if the scene changed meanwhile; on any failure the scene is as before.
+    """
+    settings = context.scene.thenar
+    hand, parts = settings.hand, product_parts(settings)
+    if hand is None or hand.name != job.hand_name or tuple(part.name for part in parts) != job.part_names:
+        raise checks.Refusal("hand or product were changed while solving; solve again")
+    if job.state_hash != state_hash(context):
+        raise checks.Refusal(f"'{hand.name}', its product or a setting was changed while solving; solve again")
+    started = time.perf_counter()
+    fields = fields_of(contact, job)
+    written = write.write_contact(context, hand, parts, job.reading, fields)
+    job.seconds["write"] = time.perf_counter() - started
+    notes = joined([named(text, job) for text in contact.warnings])
+    result = results.fill(settings.result, job, contact, written, notes)
+    result.state_hash = state_hash(context)
+    status.set_stale(context.scene.name, False)
+    return result
+
+
+def solve(context, cancel=None, progress=None):
+    """One press from start to end, in this thread. Returns the scene's result."""
+    job = prepare(context)
+    return finish(context, job, compute(job, cancel, progress))
+
+
+def fields_of(contact, job):
+    """The native contact's arrays as the writer wants them."""
+    gap = np.asarray(contact.gap_mm)
+    offset = np.zeros(3)
+    if job.force_n is not None:
+        offset = float(contact.offset_mm) * np.asarray(contact.direction, dtype=np.float64)
+    return write.Fields(
+        displacement_mm=np.asarray(contact.displacement_mm),
+        pressure_mpa=np.asarray(contact.pressure_mpa),
+        force_n=np.asarray(contact.force_n),
+        depth_mm=np.where(np.isfinite(gap), np.maximum(-gap, 0.0), 0.0),
+        regions=job.reading.hand.regions,
+        product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
+        offset_mm=offset,
+    )
+
+
+def state_hash(context):
+    """Digest of what the result depends on, as the scene shows it now; cheap enough for every change."""
+    settings = context.scene.thenar
+    hand, parts = settings.hand, product_parts(settings)
+    if hand is None or not parts:
+        return ""
+    listed = tuple(hand.thenar.materials) or (hand.thenar.default_material,)
+    materials = tuple((material.name, _numbers(material)) for material in listed)
+    choices = (settings.model, settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction))
+    shapes = state.shapes(context, [hand, *parts])
+    return cache.content_hash(names.VERSION, materials, choices, units.mm_per_unit(context.scene), *shapes)
+
+
+def is_out_of_date(context):
+    """Whether the scene differs from the one that was solved; remembered for the panel.
+
+    In Edit Mode Blender shows the cage in place of the shape: there the last answer stands.
+    """
+    settings = context.scene.thenar
+    result = settings.result
+    if any(obj.mode == "EDIT" for obj in (settings.hand, *product_parts(settings)) if obj is not None):
+        return status.is_stale(context.scene.name)
+    stale = result.is_valid and result.state_hash != state_hash(context)
+    status.set_stale(context.scene.name, stale)
+    return stale
+
+
+def _is_part(part, settings):
+    drawn = part.type in checks.PRODUCT_TYPES or part.instance_type != "NONE"
+    return drawn and part != settings.hand and not part.thenar.copy_of
+
+
+def _check_groups(hand, group_names):
+    missing = [name for name in group_names if name not in hand.vertex_groups]
+    if missing:
+        raise checks.Refusal(
+            f"'{hand.name}' has no vertex group '{missing[0]}' that its materials name; "
+            "rename the group or remove it from the list under Materials"
+        )
+
+
+def _numbers(material):
+    """The library's numbers of a region's material, in the table's order; six digits of Blender's single precision."""
+    numbers = {}
+    for name, (prop, factor) in MATERIAL_NUMBERS.items():
+        numbers[name] = float(f"{getattr(material, prop) / factor:.6g}")
+    if numbers["thickness_mm"] == 0.0:
+        numbers["thickness_mm"] = np.inf
+    return tuple(numbers.items())
+
+
+def _skin(thenar, job, cancel, progress):
+    hand = job.reading.hand
+    materials = [_material(thenar, numbers) for numbers in job.materials]
+    return thenar.Skin(
+        hand.rest_mm,
+        hand.triangles,
+        regions=hand.regions,
+        materials=materials,
+        model=job.model,
+        region_names=list(job.region_names),
+        cancel=cancel,
+        progress=progress,
+    )
+
+
+def _material(thenar, numbers):
+    numbers = dict(numbers)
+    swelling = tuple(numbers.pop(name) for name in list(numbers) if name.startswith("swelling_"))
+    return thenar.Material(swelling=swelling, **numbers)
+
+
+def has_output(context):
+    """Whether the scene's hand carries anything that Thenar wrote."""
+    settings = context.scene.thenar
+    hand = settings.hand
+    if hand is None or hand.type != "MESH":
+        return False
+    carried = own.contact_key(hand) is not None or names.PRESSURE_KPA in hand.data.attributes
+    return carried or settings.result.is_valid or bool(own.bake_modifiers(hand))
+
+
+def clear(context):
+    """Take everything away that Thenar wrote on hand and product. Raises `Refusal` for linked data. Returns True."""
+    settings = context.scene.thenar
+    hand, parts = settings.hand, product_parts(settings)
+    checks.check_writable(hand)
+    write.clear(context, hand, parts)
+    results.clear(settings.result)
+    status.set_stale(context.scene.name, False)
+    return True
+
+
+def apply(context):
+    """Add the contact's offsets to every other shape, and remove its key. Raises `Refusal`. Returns True."""
+    settings = context.scene.thenar
+    checks.check_writable(settings.hand)
+    if own.contact_key(settings.hand) is None:
+        raise checks.Refusal(f"'{settings.hand.name}' has no shape key '{names.SHAPE_KEY}'; press Solve first")
+    write.apply(context, settings.hand, product_parts(settings))
+    settings.result.state_hash = state_hash(context)
+    return True

@@ -1,0 +1,98 @@
+//! What the binary can be told.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Contact of soft skin with products.
+#[derive(Debug, Parser)]
+#[command(name = "thenar", version, about, arg_required_else_help = false)]
+pub struct Thenar {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Presses a hand against a product and writes vertices.csv, product.csv and summary.json.
+    Press(Box<PressArguments>),
+}
+
+#[derive(Debug, Args)]
+pub struct PressArguments {
+    /// Undeformed hand: OBJ, PLY or STL.
+    pub hand: PathBuf,
+    /// Product, in the frame of the (posed) hand: OBJ, PLY or STL.
+    pub product: PathBuf,
+    /// Contact model.
+    #[arg(long, value_enum, default_value_t = ModelName::Layer)]
+    pub model: ModelName,
+    /// CSV of vertex,region: numbers from 0, or names; -1, none or empty for no skin.
+    #[arg(long, value_name = "R.csv")]
+    pub regions: Option<PathBuf>,
+    /// TOML with a table of material numbers by region number, name, or `default`.
+    #[arg(long, value_name = "M.toml")]
+    pub materials: Option<PathBuf>,
+    /// Moves the product until the normal force is this, N.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub force: Option<f64>,
+    /// Where the product moves for --force; the mean normal of the contact if not given.
+    #[arg(long, value_name = "x,y,z", value_parser = direction, requires = "force", allow_hyphen_values = true)]
+    pub direction: Option<[f64; 3]>,
+    /// Unit of all meshes.
+    #[arg(long, value_enum, default_value_t = Unit::Mm)]
+    pub unit: Unit,
+    /// The hand in another posture: the same vertices in the same order.
+    #[arg(long, value_name = "POSED")]
+    pub posed: Option<PathBuf>,
+    /// Threads to work with; all if not given. The result does not depend on it.
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModelName {
+    Layer,
+    Paper,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Unit {
+    Mm,
+    M,
+}
+
+impl Unit {
+    /// Length of the unit, mm.
+    pub fn millimeters(self) -> f64 {
+        match self {
+            Unit::Mm => 1.0,
+            Unit::M => 1000.0,
+        }
+    }
+}
+
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let parts: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>())
+        .collect();
+    match parts.as_deref() {
+        Ok([x, y, z]) => Ok([*x, *y, *z]),
+        _ => Err("expected three numbers such as 0,0,-1".into()),
+    }
+}
+
+/// One sentence from clap's error, which has several lines.
+pub fn sentence(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    let words: Vec<&str> = first.split_whitespace().collect();
+    let sentence = words.join(" ");
+    format!(
+        "{}; see thenar --help",
+        sentence.trim_start_matches("error: ")
+    )
+}

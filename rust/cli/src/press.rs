@@ -1,0 +1,145 @@
+//! `thenar press`: reads the meshes, presses, writes the results.
+
+use crate::arguments::{ModelName, PressArguments};
+use crate::fault::Fault;
+use crate::regions::RegionTable;
+use crate::{interrupt, materials, regions, results};
+use serde_json::{Value, json};
+use std::path::Path;
+use thenar_contact::{Contact, Control, ForceTarget, Model, Press, Skin, SkinInput, Start};
+use thenar_recordings::meshes::{self, MeshFile};
+use thenar_surface::{Mesh, Product, Vec3};
+
+/// Reads, presses, writes, and tells what came out on the terminal.
+///
+/// # Errors
+/// One sentence; then nothing was written.
+pub fn run(arguments: &PressArguments) -> Result<(), Fault> {
+    interrupt::watch()?;
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global();
+        pool.map_err(|error| {
+            Fault::Other(format!(
+                "{threads} threads cannot be started ({error}); give fewer"
+            ))
+        })?;
+    }
+    let control = Control {
+        cancelled: &interrupt::is_cancelled,
+        progress: &|_, _| {},
+    };
+    let (contact, regions) = press(arguments, &control)?;
+    let [vertices, product] = results::tables(&contact);
+    let summary = results::summary(&contact, &regions, said(arguments));
+    interrupt::writing(|| results::write(&arguments.out, &[vertices, product, summary]))?;
+    crate::tell(&report(&contact, &regions, &arguments.out));
+    Ok(())
+}
+
+fn press(arguments: &PressArguments, control: &Control) -> Result<(Contact, RegionTable), Fault> {
+    let model = match arguments.model {
+        ModelName::Layer => Model::Layer,
+        ModelName::Paper => Model::Paper,
+    };
+    let hand = scaled(&arguments.hand, arguments)?;
+    let regions = match &arguments.regions {
+        Some(file) => regions::read(file, hand.positions.len())?,
+        None => RegionTable::single(hand.positions.len()),
+    };
+    let materials = match &arguments.materials {
+        Some(file) => materials::read(file, model, &regions)?,
+        None => materials::presets(model, &regions),
+    };
+    let product = scaled(&arguments.product, arguments)?;
+    let posed = arguments
+        .posed
+        .as_ref()
+        .map(|file| scaled(file, arguments))
+        .transpose()?;
+    control.check()?;
+    let product = mesh(product, &arguments.product)?;
+    let product = Product::new(product).map_err(|error| named(&arguments.product, &error))?;
+    let input = SkinInput {
+        mesh: mesh(hand, &arguments.hand)?,
+        regions: regions.regions.clone(),
+        materials,
+        model,
+    };
+    let mut skin = Skin::prepare(input, control)?;
+    let force = arguments.force.map(|newton| ForceTarget {
+        newton,
+        direction: arguments.direction.map(Vec3::from),
+    });
+    let posed = posed.as_ref().map(|posed| posed.positions.as_slice());
+    let contact = skin.press(
+        &Press {
+            product: &product,
+            posed,
+            force,
+            start: Start::Fresh,
+        },
+        control,
+    )?;
+    Ok((contact, regions))
+}
+
+fn scaled(file: &Path, arguments: &PressArguments) -> Result<MeshFile, Fault> {
+    let mut mesh = meshes::read(file)?;
+    let millimeters = arguments.unit.millimeters();
+    mesh.positions
+        .iter_mut()
+        .for_each(|position| *position *= millimeters);
+    Ok(mesh)
+}
+
+fn mesh(read: MeshFile, file: &Path) -> Result<Mesh, Fault> {
+    Mesh::new(read.positions, read.triangles).map_err(|error| named(file, &error))
+}
+
+fn named(file: &Path, error: &thenar_surface::MeshError) -> Fault {
+    Fault::Input(format!("{}: {error}", file.display()))
+}
+
+/// What was asked, for the summary.
+fn said(arguments: &PressArguments) -> Value {
+    let name = |path: &Path| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    json!({
+        "hand": name(&arguments.hand),
+        "product": name(&arguments.product),
+        "posed": arguments.posed.as_deref().map(name),
+        "regions": arguments.regions.as_deref().map(name),
+        "materials": arguments.materials.as_deref().map(name),
+        "model": match arguments.model { ModelName::Layer => "layer", ModelName::Paper => "paper" },
+        "force_n": arguments.force,
+        "direction": arguments.direction,
+    })
+}
+
+fn report(contact: &Contact, regions: &RegionTable, out: &Path) -> String {
+    let mut text = format!(
+        "{:>20} {:>10} {:>10} {:>10} {:>8}\n",
+        "region", "force N", "area mm2", "peak kPa", "dmax mm"
+    );
+    for row in contact.regions.iter().filter(|row| row.force > 0.0) {
+        let (name, peak) = (regions.name(row.index), 1e3 * row.peak);
+        text += &format!(
+            "{name:>20} {:>10.3} {:>10.1} {peak:>10.2} {:>8.2}\n",
+            row.force, row.area, row.max_penetration
+        );
+    }
+    let force: f64 = contact.nodal_force.iter().sum();
+    let peak = 1e3 * contact.peak_pressure;
+    text += &format!(
+        "{:>20} {force:>10.3} {:>10.1} {peak:>10.2}\n",
+        "all", contact.contact_area
+    );
+    for warning in &contact.warnings {
+        text += &format!("note: {warning}\n");
+    }
+    text + &format!("written to {}\n", out.display())
+}

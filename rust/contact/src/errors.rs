@@ -1,0 +1,107 @@
+//! What can be wrong with the input of a press, one variant a cause, each naming place and remedy.
+
+use thenar_surface::MeshError;
+
+/// Bad input or a stopped run. How a solve ended is data ([`crate::Convergence`]), not an error.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// The hand mesh, or its posed positions, cannot be used.
+    #[error("hand mesh: {0}")]
+    Hand(MeshError),
+    /// The product mesh cannot be used.
+    #[error("product mesh: {0}")]
+    Product(MeshError),
+    /// A material number is outside what is admissible.
+    #[error("material {material}: {name} is {found}, but must be {expected}")]
+    Material {
+        material: String,
+        name: &'static str,
+        found: f64,
+        expected: &'static str,
+    },
+    /// There are regions without a material.
+    #[error(
+        "region {region} has no material: {materials} materials were given; give one per region, numbered from 0"
+    )]
+    MissingMaterial { region: i32, materials: usize },
+    /// One region number per vertex is needed.
+    #[error(
+        "regions has {found} entries for {expected} vertices; give one per vertex, -1 for no skin"
+    )]
+    RegionCount { found: usize, expected: usize },
+    /// Vertices are too far apart for the tissue to be resolved.
+    #[error(
+        "region {region}: around vertex {vertex} the vertices are {spacing_mm:.1} mm apart, but the soft tissue is only \
+         {thickness_mm:.2} mm thick; subdivide the hand there or give it thicker tissue"
+    )]
+    TooCoarse {
+        region: i32,
+        vertex: usize,
+        spacing_mm: f64,
+        thickness_mm: f64,
+    },
+    /// No vertex may carry contact.
+    #[error(
+        "no vertex belongs to a region: every region number is negative; number skin regions from 0"
+    )]
+    NoSkin,
+    /// Posed positions do not match the prepared mesh.
+    #[error(
+        "the posed hand has {found} vertices but was prepared with {expected}; prepare the skin again"
+    )]
+    PosedCount { found: usize, expected: usize },
+    /// A posed position is NaN or infinite.
+    #[error(
+        "the posed hand has a coordinate at vertex {vertex} that is not finite; check its modifiers"
+    )]
+    PosedNotFinite { vertex: usize },
+    /// The skin lies so deep in the product that no contact model applies.
+    #[error(
+        "the skin lies up to {depth_mm:.1} mm inside the product (vertex {vertex}), more than the {limit_mm:.1} mm \
+         that soft tissue can yield; move the product out of the hand, or check that both have the same units"
+    )]
+    Swallowed {
+        vertex: usize,
+        depth_mm: f64,
+        limit_mm: f64,
+    },
+    /// A force target is negative, zero or not finite.
+    #[error("the force target is {newton} N, but must be positive and finite")]
+    ForceTarget { newton: f64 },
+    /// A direction has no length.
+    #[error("the direction of the force is zero or not finite; give a vector such as (0, 0, -1)")]
+    Direction,
+    /// The product cannot be brought to the hand.
+    #[error(
+        "no skin comes within {cut_off_mm:.0} mm of the product, so there is no direction to press in; \
+         move the product closer or give a direction"
+    )]
+    OutOfReach { cut_off_mm: f64 },
+    /// The force target needs more travel than is credible.
+    #[error(
+        "{target_n:.3} N is not reached within {travel_mm:.1} mm of travel (largest force {reached_n:.3} N); \
+         lower the force, or change the direction or the posture"
+    )]
+    ForceOutOfReach {
+        target_n: f64,
+        reached_n: f64,
+        travel_mm: f64,
+    },
+    /// A dense problem's arrays do not fit together.
+    #[error(
+        "the matrix has {found} entries but the gap has {gaps}; it must have {gaps} times {gaps}"
+    )]
+    DenseShape { found: usize, gaps: usize },
+    /// A dense problem is not one that a compliance can pose.
+    #[error(
+        "the matrix entry ({row}, {column}) is {found}; a compliance is finite, symmetric and positive on its diagonal"
+    )]
+    DenseEntry {
+        row: usize,
+        column: usize,
+        found: f64,
+    },
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}

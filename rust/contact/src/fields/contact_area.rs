@@ -1,0 +1,124 @@
+//! The area of the contact, with its edge found between vertices.
+//!
+//! Near the edge of a smooth contact pressure falls as the square root of the distance inside, and the gap opens as
+//! its 3/2 power outside, with one common factor: `p = k sqrt(x)`, `s = 4 k / (3 E*) y^(3/2)` (Johnson, Contact Mechanics 4.2,
+//! 5.1). A vertex inside and its neighbor outside therefore tell where between them the edge lies.
+
+use thenar_surface::Vec3;
+
+/// What is known of the contact at the vertices of a mesh.
+#[derive(Clone, Copy)]
+pub struct EdgeData<'a> {
+    /// Deformed positions, mm.
+    pub positions: &'a [Vec3],
+    /// Pressure, MPa; positive in the contact.
+    pub pressure: &'a [f64],
+    /// Slack outside the contact, mm, >= 0; NaN where it is not known.
+    pub slack: &'a [f64],
+    /// Contact modulus E* = 2 G / (1 - nu), MPa.
+    pub contact_modulus: &'a [f64],
+}
+
+/// Contact area of every triangle's share, given to the three corners in equal parts: area by vertex, mm2.
+pub fn contact_areas(triangles: &[[u32; 3]], data: EdgeData<'_>) -> Vec<f64> {
+    let mut areas = vec![0.0; data.positions.len()];
+    for triangle in triangles {
+        let inside = triangle.map(|v| data.pressure[v as usize] > 0.0);
+        let count = inside.iter().filter(|i| **i).count();
+        if count == 0 {
+            continue;
+        }
+        let [a, b, c] = triangle.map(|v| data.positions[v as usize]);
+        let whole = 0.5 * (b - a).cross(&(c - a)).norm();
+        let covered = whole * share(*triangle, inside, data);
+        for (corner, is_inside) in triangle.iter().zip(inside) {
+            if is_inside {
+                areas[*corner as usize] += covered / count as f64;
+            }
+        }
+    }
+    areas
+}
+
+fn share(triangle: [u32; 3], inside: [bool; 3], data: EdgeData<'_>) -> f64 {
+    let reach = |i: usize, o: usize| edge_share(triangle[i] as usize, triangle[o] as usize, data);
+    match inside {
+        [true, true, true] => 1.0,
+        [true, false, false] => reach(0, 1) * reach(0, 2),
+        [false, true, false] => reach(1, 0) * reach(1, 2),
+        [false, false, true] => reach(2, 0) * reach(2, 1),
+        [true, true, false] => 1.0 - (1.0 - reach(0, 2)) * (1.0 - reach(1, 2)),
+        [true, false, true] => 1.0 - (1.0 - reach(0, 1)) * (1.0 - reach(2, 1)),
+        [false, true, true] => 1.0 - (1.0 - reach(1, 0)) * (1.0 - reach(2, 0)),
+        [false, false, false] => 0.0,
+    }
+}
+
+/// Share of the edge from vertex `i` (pressed) to `o` (free) that is in contact.
+fn edge_share(i: usize, o: usize, data: EdgeData<'_>) -> f64 {
+    let length = (data.positions[o] - data.positions[i]).norm();
+    let slack = data.slack[o];
+    if !slack.is_finite() || slack < 0.0 {
+        return 0.5; // bare parts may lie inside the product: there the edge is not known either
+    }
+    // x = p^2 / k^2 and y = (3 E* s / 4 k)^(2/3) with x + y = length; solved for z = k^(-2/3).
+    let x = data.pressure[i] * data.pressure[i];
+    let y = (0.75 * data.contact_modulus[i] * slack).powf(2.0 / 3.0);
+    let mut z = if x > 0.0 {
+        (length / x).cbrt()
+    } else {
+        return 0.0;
+    };
+    for _ in 0..30 {
+        let step = (x * z * z * z + y * z - length) / (3.0 * x * z * z + y);
+        z -= step;
+        if step.abs() <= 1e-12 * z {
+            break;
+        }
+    }
+    (x * z * z * z / length).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bare_neighbor_inside_the_product_leaves_the_area_a_number() {
+        let positions = [Vec3::zeros(), Vec3::x(), Vec3::y()];
+        let data = EdgeData {
+            positions: &positions,
+            pressure: &[1.0, 0.0, 0.0],
+            slack: &[0.0, -3.0, f64::NAN],
+            contact_modulus: &[1.0, 1.0, 1.0],
+        };
+        assert_eq!(contact_areas(&[[0, 1, 2]], data), [0.125, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_edge_of_a_hertz_contact_is_found_between_vertices() {
+        // Sphere of radius 10 on a half space of E* = 1, a = 3: Johnson 4.2, Eqs. 4.22 to 4.24.
+        let (radius, a): (f64, f64) = (10.0, 3.0);
+        let p = |r: f64| {
+            2.0 * a / (std::f64::consts::PI * radius) * (1.0 - (r / a).powi(2)).max(0.0).sqrt()
+        };
+        let s = |r: f64| {
+            if r <= a {
+                return 0.0;
+            }
+            let sag = (2.0 * a * a - r * r) * (a / r).asin() + a * (r * r - a * a).sqrt();
+            sag / (std::f64::consts::PI * radius) + r * r / (2.0 * radius) - a * a / radius
+        };
+        for inner in [2.5, 2.7, 2.9, 2.99] {
+            let outer = inner + 0.5;
+            let data = EdgeData {
+                positions: &[Vec3::new(inner, 0.0, 0.0), Vec3::new(outer, 0.0, 0.0)],
+                pressure: &[p(inner), 0.0],
+                slack: &[0.0, s(outer)],
+                contact_modulus: &[1.0, 1.0],
+            };
+            let edge = inner + 0.5 * edge_share(0, 1, data);
+            assert!((edge - a).abs() < 0.03, "{inner}: {edge}");
+        }
+    }
+}

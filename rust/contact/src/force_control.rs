@@ -1,0 +1,212 @@
+//! Moves the product until the normal force along a direction is what was asked for.
+
+use thenar_surface::{GapLimits, Mesh, Product, Vec3};
+
+use crate::press::ForceTarget;
+use crate::simulate::{Pressed, Seconds};
+use crate::skin::Skin;
+use crate::zone::limits;
+use crate::{ContactError, Control};
+
+/// Force within this share of the target ends the search.
+const FORCE_TOLERANCE: f64 = 1e-5;
+/// Farthest travel from where the product stands, mm.
+const MOST_TRAVEL: f64 = 120.0;
+/// First step of the search, mm.
+const FIRST_STEP: f64 = 0.4;
+/// Most presses of one search.
+const MOST_PRESSES: usize = 60;
+
+/// The travel (mm) along a unit direction at which the force is reached, with the press there.
+///
+/// # Errors
+/// [`ContactError::ForceTarget`], `Direction`, `OutOfReach`, `ForceOutOfReach`, or those of a press.
+pub(crate) fn find_offset(
+    skin: &mut Skin,
+    (posed, product): (&Mesh, &Product),
+    target: ForceTarget,
+    (control, seconds): (&Control, &mut Seconds),
+) -> Result<(f64, Vec3, Pressed), ContactError> {
+    if !(target.newton > 0.0 && target.newton.is_finite()) {
+        return Err(ContactError::ForceTarget {
+            newton: target.newton,
+        });
+    }
+    let direction = match target.direction {
+        Some(given) => given
+            .try_normalize(0.0)
+            .filter(|d| d.iter().all(|c| c.is_finite())),
+        None => Some(mean_normal(skin, posed, product)?),
+    };
+    let direction = direction.ok_or(ContactError::Direction)?;
+    let start = skin.memory.offset;
+    let mut search = Search {
+        skin,
+        posed,
+        product,
+        direction,
+        control,
+        seconds,
+        target: target.newton,
+        last: None,
+    };
+    let offset = search.run(start)?;
+    match search.last {
+        Some((at, pressed)) if at == offset => Ok((offset, direction, pressed)),
+        _ => {
+            let pressed = search.press(offset)?.1;
+            Ok((offset, direction, pressed))
+        }
+    }
+}
+
+/// Mean product normal of the penetrating skin by depth and area, or at the nearest skin where none penetrates.
+fn mean_normal(skin: &Skin, posed: &Mesh, product: &Product) -> Result<Vec3, ContactError> {
+    let normals = thenar_surface::vertex_normals(posed);
+    let reach = GapLimits {
+        cut_off_mm: MOST_TRAVEL,
+        ..limits()
+    };
+    let (mut sum, mut nearest) = (Vec3::zeros(), (f64::INFINITY, Vec3::zeros()));
+    for site in (0..skin.sites.len()).filter(|&s| skin.sites.is_skin(s)) {
+        let vertex = skin.sites.vertex[site] as usize;
+        let Some(gap) = product.gap(posed.positions()[vertex], Some(normals[vertex]), reach) else {
+            continue;
+        };
+        sum += gap.normal * ((-gap.distance).max(0.0) * skin.sites.area[site]);
+        if gap.distance < nearest.0 {
+            nearest = (gap.distance, gap.normal);
+        }
+    }
+    let out_of_reach = ContactError::OutOfReach {
+        cut_off_mm: MOST_TRAVEL,
+    };
+    sum.try_normalize(1e-12)
+        .or_else(|| nearest.1.try_normalize(0.0))
+        .ok_or(out_of_reach)
+}
+
+/// A travel (mm) and the excess there.
+type Probe = (f64, f64);
+
+struct Search<'a, 'c> {
+    skin: &'a mut Skin,
+    posed: &'a Mesh,
+    product: &'a Product,
+    direction: Vec3,
+    control: &'a Control<'c>,
+    seconds: &'a mut Seconds,
+    target: f64,
+    last: Option<(f64, Pressed)>,
+}
+
+impl Search<'_, '_> {
+    fn press(&mut self, offset: f64) -> Result<(f64, Pressed), ContactError> {
+        let shift = self.direction * offset;
+        let pressed = self.skin.press_at(
+            self.posed,
+            (self.product, shift),
+            (self.control, self.seconds),
+        )?;
+        self.skin.memory.force = vec![0.0; self.skin.sites.len()];
+        for (&site, force) in pressed.solved.zone.iter().zip(&pressed.solved.force) {
+            self.skin.memory.force[site as usize] = *force;
+        }
+        Ok((pressed.force_along(&self.direction), pressed))
+    }
+
+    /// Excess of the force's 2/3 power: force grows about as travel^1.5, so this is nearly a straight line.
+    fn excess(&mut self, offset: f64) -> Result<(f64, f64), ContactError> {
+        let (force, pressed) = self.press(offset)?;
+        self.last = Some((offset, pressed));
+        let power = |f: f64| f.abs().powf(2.0 / 3.0).copysign(f);
+        Ok((power(force) - power(self.target), force))
+    }
+
+    fn run(&mut self, start: f64) -> Result<f64, ContactError> {
+        let [mut low, mut high] = self.bracket(start)?;
+        for _ in 0..MOST_PRESSES {
+            let mut middle = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+            let width = high.0 - low.0;
+            if !(middle > low.0 && middle < high.0) {
+                middle = 0.5 * (low.0 + high.0);
+            }
+            if width < 1e-9 {
+                return Ok(middle);
+            }
+            let (value, force) = self.excess(middle)?;
+            if (force - self.target).abs() <= FORCE_TOLERANCE * self.target {
+                return Ok(middle);
+            }
+            // Illinois: an end that stays put counts for half, so that it cannot stall the secant.
+            if value < 0.0 {
+                low = (middle, value);
+                high.1 *= 0.5;
+            } else {
+                high = (middle, value);
+                low.1 *= 0.5;
+            }
+        }
+        Ok(self.last.as_ref().map_or(high.0, |last| last.0))
+    }
+
+    /// Travels with too little and too much force, each with its excess.
+    fn bracket(&mut self, start: f64) -> Result<[Probe; 2], ContactError> {
+        let (value, mut force) = self.excess(start)?;
+        let (mut here, mut step) = ((start, value), FIRST_STEP);
+        if force <= 0.0 {
+            step = step.max(self.approach());
+        }
+        let mut reached = force;
+        let sign = if value < 0.0 { 1.0 } else { -1.0 };
+        while (here.0 - start).abs() < MOST_TRAVEL {
+            let next = here.0 + sign * step;
+            let value = match self.excess(next) {
+                // Too deep counts as too much: the target lies before.
+                Err(ContactError::Swallowed { .. }) if sign > 0.0 => {
+                    if step < 1e-3 {
+                        break;
+                    }
+                    step *= 0.4;
+                    continue;
+                }
+                other => {
+                    let (value, f) = other?;
+                    force = f;
+                    value
+                }
+            };
+            reached = reached.max(force);
+            if (value < 0.0) != (sign > 0.0) {
+                let there = (next, value);
+                return Ok(if sign > 0.0 {
+                    [here, there]
+                } else {
+                    [there, here]
+                });
+            }
+            here = (next, value);
+            step *= 1.7;
+        }
+        let travel_mm = (here.0 - start).abs();
+        Err(ContactError::ForceOutOfReach {
+            target_n: self.target,
+            reached_n: reached,
+            travel_mm,
+        })
+    }
+
+    /// Distance to the first skin, mm: where no force is, a search may step this far at once.
+    fn approach(&self) -> f64 {
+        let Some((_, pressed)) = &self.last else {
+            return 0.0;
+        };
+        let distances = pressed.detection.gaps.iter().flatten().map(|g| g.distance);
+        let nearest = distances.fold(f64::INFINITY, f64::min);
+        if nearest.is_finite() {
+            nearest
+        } else {
+            limits().cut_off_mm
+        }
+    }
+}

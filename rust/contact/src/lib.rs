@@ -1,0 +1,34 @@
+//! Gaps, response, contact solve and the fields of a press; knows nothing of files or Blender.
+//!
+//! A [`Skin`] is prepared once from a rest mesh, its regions and materials, and pressed in any posture against any
+//! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
+
+pub mod parameters;
+
+mod control;
+mod direction;
+mod errors;
+mod fields;
+mod force_control;
+mod linearize;
+mod material;
+mod paper;
+mod press;
+mod remarks;
+mod response;
+mod simulate;
+mod sites;
+mod skin;
+mod solve;
+mod summary;
+mod weld;
+mod zone;
+
+pub use control::Control;
+pub use errors::ContactError;
+pub use material::{Material, Swelling};
+pub use press::{
+    Contact, Convergence, ForceTarget, Model, Press, RegionResult, Residual, SkinInput, Start,
+};
+pub use skin::Skin;
+pub use solve::{Solution, solve_dense};

@@ -1,0 +1,390 @@
+//! Stage 4's outer loop: the contact problem is linear in the gap, the product is not; repeat until the written surface fits.
+
+use thenar_surface::{Gap, Product, Vec3};
+
+use crate::direction::{LEAST_COSINE, yielding_directions};
+use crate::paper;
+use crate::press::Convergence;
+use crate::response::assembly::{Load, compliance, coupling, displacements};
+use crate::skin::Skin;
+use crate::solve::operator::Rows;
+use crate::solve::{Accuracy, solve_contact};
+use crate::zone::{Detection, limits};
+use crate::{ContactError, Control, Model};
+
+/// Largest distance between written contact and product that ends the loop, mm.
+const OUTER_TOLERANCE: f64 = 0.008;
+/// The same relative to the largest penetration: shallow presses are resolved as finely as deep ones.
+const OUTER_SHARE: f64 = 5e-4;
+/// Most re-linearizations.
+const MOST_PASSES: usize = 14;
+/// Most rounds in which sites lifted into the product join the zone.
+const MOST_ROUNDS: usize = 4;
+
+/// The solved contact, in the product's frame.
+pub struct Solved {
+    /// Sites that could touch, ascending.
+    pub zone: Vec<u32>,
+    /// Normal force on each, N.
+    pub force: Vec<f64>,
+    /// Where each touches, or would: closest point and normal after deformation.
+    pub touch: Vec<Gap>,
+    /// Slack of the last linear problem, mm.
+    pub slack: Vec<f64>,
+    /// Displacement of every site, mm.
+    pub displacement: Vec<Vec3>,
+    /// Signed distance of the written zone, and of every other site that was lifted towards the product, at worst, mm.
+    pub penetration: f64,
+    /// Complementarity of the last linear problem.
+    pub complementarity: f64,
+    /// How it ended.
+    pub convergence: Convergence,
+}
+
+/// What does not change within a solve.
+pub struct Setting<'a> {
+    /// The product.
+    pub product: &'a Product,
+    /// Detection of this posture.
+    pub detection: &'a Detection,
+    /// Response weight s = sqrt((1 - nu) / (2 pi G)) of every site.
+    pub weight: &'a [f64],
+    /// Forces to start from, by site.
+    pub start: Option<&'a [f64]>,
+    /// Median edge, mm.
+    pub spacing: f64,
+}
+
+/// Solves the contact of the sites in `zone`.
+///
+/// # Errors
+/// [`ContactError::Cancelled`].
+pub fn solve(
+    skin: &mut Skin,
+    zone: Vec<u32>,
+    setting: &Setting<'_>,
+    control: &Control,
+) -> Result<Solved, ContactError> {
+    let mut state = State::new(zone);
+    let tolerance = OUTER_TOLERANCE.min(OUTER_SHARE * setting.detection.deepest());
+    for round in 1.. {
+        remember_coupling(skin, &state.zone, control)?;
+        state.open(skin, setting);
+        state.passes(skin, setting, (tolerance, control))?;
+        let field = write(skin, setting, &state);
+        let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
+        if lifted.is_empty() || round == MOST_ROUNDS {
+            return Ok(state.finish(field, worst, tolerance));
+        }
+        state.extend(lifted);
+    }
+    Err(ContactError::Cancelled)
+}
+
+struct State {
+    zone: Vec<u32>,
+    force: Vec<f64>,
+    touch: Vec<Gap>,
+    slack: Vec<f64>,
+    direction: Vec<Vec3>,
+    /// Cosine between each direction and the product's normal.
+    cosine: Vec<f64>,
+    /// Travel of each zone site along its direction, mm.
+    travel: Vec<f64>,
+    misfit: f64,
+    complementarity: f64,
+    convergence: Convergence,
+}
+
+impl State {
+    fn new(zone: Vec<u32>) -> Self {
+        let convergence = Convergence {
+            has_converged: false,
+            passes: 0,
+            pivots: 0,
+            cg_steps: 0,
+        };
+        State {
+            zone,
+            force: Vec::new(),
+            touch: Vec::new(),
+            slack: Vec::new(),
+            direction: Vec::new(),
+            cosine: Vec::new(),
+            travel: Vec::new(),
+            misfit: 0.0,
+            complementarity: 0.0,
+            convergence,
+        }
+    }
+
+    /// Takes gaps, normals and directions of the undeformed posture.
+    fn open(&mut self, skin: &Skin, setting: &Setting<'_>) {
+        let gap_of =
+            |&site: &u32| setting.detection.gaps[skin.sites.vertex[site as usize] as usize];
+        self.touch = self.zone.iter().filter_map(gap_of).collect();
+        debug_assert_eq!(self.touch.len(), self.zone.len());
+        let normal: Vec<Vec3> = self.touch.iter().map(|g| g.normal).collect();
+        self.direction = match skin.model {
+            Model::Paper => normal,
+            Model::Layer => self.averaged_directions(skin, setting, &normal),
+        };
+        self.cosine = (0..self.zone.len())
+            .map(|k| self.touch[k].normal.dot(&self.direction[k]))
+            .collect();
+        self.travel = vec![0.0; self.zone.len()];
+        let carried = std::mem::take(&mut self.force);
+        self.force = if carried.len() == self.zone.len() {
+            carried
+        } else {
+            self.zone
+                .iter()
+                .map(|&s| setting.start.map_or(0.0, |start| start[s as usize]))
+                .collect()
+        };
+    }
+
+    /// Averages over the penetrating sites, whatever else the zone holds: the result must not depend on its history.
+    fn averaged_directions(
+        &self,
+        skin: &Skin,
+        setting: &Setting<'_>,
+        normal: &[Vec3],
+    ) -> Vec<Vec3> {
+        let inside: Vec<usize> = (0..self.zone.len())
+            .filter(|&k| self.touch[k].distance < 0.0)
+            .collect();
+        let sites: Vec<u32> = inside.iter().map(|&k| self.zone[k]).collect();
+        let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
+        let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
+        let around = (&skin.sites, &skin.adjacency, setting.spacing);
+        let averaged = yielding_directions(&sites, &normals, &gaps, around);
+        let mut direction = normal.to_vec();
+        for (k, average) in inside.into_iter().zip(averaged) {
+            direction[k] = average;
+        }
+        direction
+    }
+
+    /// Re-linearizes until the zone fits the product.
+    fn passes(
+        &mut self,
+        skin: &Skin,
+        setting: &Setting<'_>,
+        (tolerance, control): (f64, &Control),
+    ) -> Result<(), ContactError> {
+        let mut matrix = self.matrix(skin, setting);
+        // Rough steps end where rounding lets them: a fresh start takes none, so that the same scene, turned or renumbered,
+        // gives the same result.
+        let accuracy = if setting.start.is_some() {
+            Accuracy::Rough
+        } else {
+            Accuracy::Full
+        };
+        for pass in 0..MOST_PASSES {
+            control.step("solving", pass as f64 / MOST_PASSES as f64)?;
+            self.solve_linear(&matrix, (accuracy, control))?;
+            self.convergence.passes = pass + 1;
+            self.place(skin, setting);
+            if self.misfit <= tolerance {
+                break;
+            }
+            if pass == 0 && skin.model == Model::Layer {
+                // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
+                for k in 0..self.zone.len() {
+                    let cosine = self.touch[k].normal.dot(&self.direction[k]);
+                    self.cosine[k] = cosine.max(LEAST_COSINE);
+                }
+                matrix = self.matrix(skin, setting);
+            }
+        }
+        if accuracy == Accuracy::Rough {
+            self.solve_linear(&matrix, (Accuracy::Full, control))?;
+            self.place(skin, setting);
+        }
+        Ok(())
+    }
+
+    /// Measures the displaced zone against the product.
+    fn place(&mut self, skin: &Skin, setting: &Setting<'_>) {
+        let positions = &setting.detection.positions;
+        let written = |(k, &site): (usize, &u32)| {
+            positions[vertex(skin, site)] + self.direction[k] * self.travel[k]
+        };
+        let written: Vec<Vec3> = self.zone.iter().enumerate().map(written).collect();
+        // The side first touched stays the side: skin in a fold may face another wall once it has moved.
+        let normals: Vec<Vec3> = self.touch.iter().map(|g| -g.normal).collect();
+        let hints: Vec<u32> = self.touch.iter().map(|g| g.triangle).collect();
+        let fresh = setting
+            .product
+            .gaps_near(&written, Some(&normals), limits(), &hints);
+        for (touch, gap) in self.touch.iter_mut().zip(fresh) {
+            if let Some(gap) = gap {
+                *touch = gap;
+            }
+        }
+        self.misfit = self.measure();
+    }
+
+    /// Compliance along the directions, seen along the normals.
+    fn matrix(&self, skin: &Skin, setting: &Setting<'_>) -> Rows<f32> {
+        let weight = |(&site, cosine): (&u32, &f64)| setting.weight[site as usize] * cosine;
+        let weights: Vec<f64> = self.zone.iter().zip(&self.cosine).map(weight).collect();
+        match skin.model {
+            Model::Layer => compliance(&skin.memory.coupling, &weights, &self.direction),
+            Model::Paper => compliance(
+                &skin.memory.coupling,
+                &weights,
+                &vec![Vec3::x(); weights.len()],
+            ),
+        }
+    }
+
+    fn solve_linear(
+        &mut self,
+        matrix: &Rows<f32>,
+        (accuracy, control): (Accuracy, &Control),
+    ) -> Result<(), ContactError> {
+        let gap: Vec<f64> = (0..self.zone.len())
+            .map(|k| self.touch[k].distance - self.cosine[k] * self.travel[k])
+            .collect();
+        let solution = solve_contact(matrix, &gap, Some(&self.force), (accuracy, control));
+        control.check()?;
+        for (k, travel) in self.travel.iter_mut().enumerate() {
+            *travel = (solution.slack[k] - gap[k]) / self.cosine[k];
+        }
+        self.convergence.pivots += solution.pivots;
+        self.convergence.cg_steps += solution.steps;
+        self.complementarity = solution.complementarity;
+        (self.force, self.slack) = (solution.force, solution.slack);
+        Ok(())
+    }
+
+    /// Largest penetration of the zone, or opening under a force, mm.
+    fn measure(&self) -> f64 {
+        let misfit = |(g, f): (&Gap, &f64)| {
+            if *f > 0.0 {
+                g.distance.abs()
+            } else {
+                (-g.distance).max(0.0)
+            }
+        };
+        self.touch
+            .iter()
+            .zip(&self.force)
+            .map(misfit)
+            .fold(0.0, f64::max)
+    }
+
+    fn extend(&mut self, lifted: Vec<u32>) {
+        let carried: Vec<(u32, f64)> = self
+            .zone
+            .iter()
+            .copied()
+            .zip(self.force.iter().copied())
+            .collect();
+        self.zone.extend(lifted);
+        self.zone.sort_unstable();
+        let find = |site: &u32| {
+            carried
+                .binary_search_by_key(site, |c| c.0)
+                .map_or(0.0, |k| carried[k].1)
+        };
+        self.force = self.zone.iter().map(find).collect();
+    }
+
+    fn finish(mut self, displacement: Vec<Vec3>, worst: f64, tolerance: f64) -> Solved {
+        self.convergence.has_converged = self.misfit <= tolerance && self.complementarity <= 1e-10;
+        let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
+        Solved {
+            zone: self.zone,
+            force: self.force,
+            touch: self.touch,
+            slack: self.slack,
+            displacement,
+            penetration: deepest.max(0.0),
+            complementarity: self.complementarity,
+            convergence: self.convergence,
+        }
+    }
+}
+
+fn vertex(skin: &Skin, site: u32) -> usize {
+    skin.sites.vertex[site as usize] as usize
+}
+
+/// Makes the coupling of `zone`, or keeps the last one if it is the same.
+fn remember_coupling(skin: &mut Skin, zone: &[u32], control: &Control) -> Result<(), ContactError> {
+    if skin.memory.zone == zone && !zone.is_empty() {
+        return Ok(());
+    }
+    control.step("response", 0.0)?;
+    for part in zone.chunks(512) {
+        skin.response.make_rows(part, &skin.sites);
+        control.check()?;
+    }
+    skin.memory.coupling = coupling(&skin.response, zone, &skin.sites);
+    skin.memory.zone = zone.to_vec();
+    Ok(())
+}
+
+/// Displacement of every site.
+fn write(skin: &Skin, setting: &Setting<'_>, state: &State) -> Vec<Vec3> {
+    if skin.model == Model::Paper {
+        return paper::displacement(skin, setting, (&state.zone, &state.force, &state.travel));
+    }
+    let mut loads = Vec::new();
+    for (k, &site) in state.zone.iter().enumerate() {
+        if state.force[k] > 0.0 {
+            let load = setting.weight[site as usize] * state.cosine[k] * state.force[k];
+            loads.push(Load {
+                site,
+                load: state.direction[k] * load,
+            });
+        }
+    }
+    let mut field = displacements(&skin.response, &loads, &skin.sites);
+    for (site, u) in field.iter_mut().enumerate() {
+        *u *= setting.weight[site] * skin.sites.follow[site];
+    }
+    for (k, &site) in state.zone.iter().enumerate() {
+        field[site as usize] = state.direction[k] * state.travel[k];
+    }
+    field
+}
+
+/// Skin outside the zone that the displacement carries into the product, and how deep, mm.
+fn lifted_sites(
+    skin: &Skin,
+    setting: &Setting<'_>,
+    (field, zone): (&[Vec3], &[u32]),
+    tolerance: f64,
+) -> (f64, Vec<u32>) {
+    let mut near = Vec::new();
+    for (site, u) in field.iter().enumerate() {
+        let gap = &setting.detection.gaps[vertex(skin, site as u32)];
+        let can_reach = gap.as_ref().is_some_and(|g| g.distance < u.norm());
+        if can_reach && skin.sites.is_skin(site) && zone.binary_search(&(site as u32)).is_err() {
+            near.push(site as u32);
+        }
+    }
+    let points: Vec<Vec3> = near
+        .iter()
+        .map(|&s| setting.detection.positions[vertex(skin, s)] + field[s as usize])
+        .collect();
+    let facing = |&s: &u32| {
+        setting.detection.gaps[vertex(skin, s)]
+            .as_ref()
+            .map_or_else(Vec3::zeros, |g| -g.normal)
+    };
+    let normals: Vec<Vec3> = near.iter().map(facing).collect();
+    let gaps = setting.product.gaps(&points, Some(&normals), limits());
+    let depth = |g: &Option<Gap>| g.as_ref().map_or(0.0, |g| -g.distance);
+    let worst = gaps.iter().map(depth).fold(0.0, f64::max);
+    let lifted = near
+        .into_iter()
+        .zip(&gaps)
+        .filter(|(_, g)| depth(g) > tolerance)
+        .map(|(s, _)| s);
+    (worst, lifted.collect())
+}

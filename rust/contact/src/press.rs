@@ -1,0 +1,146 @@
+//! What goes into a press and what comes out of it.
+
+use thenar_surface::{Mesh, Product, Vec3};
+
+use crate::Material;
+
+/// The contact model, chosen by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// Coupled skin bonded to bone: the default.
+    Layer,
+    /// The paper's independent half-space regions with swelling added after the solve.
+    Paper,
+}
+
+/// A hand to prepare.
+#[derive(Debug, Clone)]
+pub struct SkinInput {
+    /// Rest surface, mm.
+    pub mesh: Mesh,
+    /// Region of every vertex, from 0; negative for "no skin" (nails, back of the hand). Empty: all in region 0.
+    pub regions: Vec<i32>,
+    /// One material a region.
+    pub materials: Vec<Material>,
+    /// The contact model.
+    pub model: Model,
+}
+
+/// A force to reach by moving the product.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceTarget {
+    /// Normal force along the direction, N, positive.
+    pub newton: f64,
+    /// Where the product moves, towards the skin; unit length not needed. None: mean normal of the contact.
+    pub direction: Option<Vec3>,
+}
+
+/// One press of a prepared skin.
+#[derive(Clone, Copy)]
+pub struct Press<'a> {
+    /// The product, in the frame of the posed positions.
+    pub product: &'a Product,
+    /// Posed positions, mm, one per prepared vertex; None presses the rest pose.
+    pub posed: Option<&'a [Vec3]>,
+    /// None leaves the product where it is.
+    pub force: Option<ForceTarget>,
+    /// Where the solver starts.
+    pub start: Start,
+}
+
+/// Where the solver starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// From nothing: the result depends on the input alone, bit for bit.
+    Fresh,
+    /// From this skin's last result: faster when little has moved, equal within the tolerances.
+    Warm,
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Convergence {
+    /// True if complementarity and penetration are within their tolerances.
+    pub has_converged: bool,
+    /// Re-linearisations of the gap in the last press.
+    pub passes: usize,
+    /// Changes of the contact set in all.
+    pub pivots: usize,
+    /// Conjugate-gradient steps in all.
+    pub cg_steps: usize,
+}
+
+/// What is left of the equations in the written result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// Largest of |min(force, slack)|, force in compliance units, relative to the largest penetration (Xie Eq. 14).
+    pub complementarity: f64,
+    /// Deepest skin vertex inside the product after deformation, measured anew, mm.
+    pub penetration_mm: f64,
+    /// Difference of the force on hand and product, relative to their sum.
+    pub load_balance: f64,
+}
+
+/// One region of the result table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegionResult {
+    /// Region number.
+    pub index: usize,
+    /// Sum of normal forces, N.
+    pub force: f64,
+    /// Contact area, mm2.
+    pub area: f64,
+    /// Largest vertex pressure, MPa.
+    pub peak: f64,
+    /// Force over contact area, MPa.
+    pub mean: f64,
+    /// Largest penetration before deformation, mm.
+    pub max_penetration: f64,
+    /// Shear modulus used, MPa.
+    pub shear_modulus: f64,
+}
+
+/// The result of a press. Arrays have one entry per vertex of the hand unless said otherwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contact {
+    /// Displacement to add to the posed positions, mm.
+    pub displacement: Vec<Vec3>,
+    /// Normal force, N, compressive >= 0.
+    pub nodal_force: Vec<f64>,
+    /// Pressure, MPa.
+    pub pressure: Vec<f64>,
+    /// Signed distance to the product before deformation, mm; infinite beyond the reach of the query.
+    pub gap: Vec<f64>,
+    /// Product's outward normal where the vertex touches; zero where it does not.
+    pub normal: Vec<Vec3>,
+    /// Force on the product, N. The skin bears the opposite.
+    pub total_force: Vec3,
+    /// Moment of that force about the origin, N mm.
+    pub total_moment: Vec3,
+    /// Force-weighted mean position of the contact, mm; zero without contact.
+    pub center_of_pressure: Vec3,
+    /// mm2.
+    pub contact_area: f64,
+    /// Largest vertex pressure, MPa.
+    pub peak_pressure: f64,
+    /// Sum of normal forces over contact area, MPa.
+    pub mean_pressure: f64,
+    /// Largest mean pressure over 24 mm2 of skin (a sensel of the paper's mat), MPa.
+    pub patch_peak: f64,
+    /// One row a region, by index.
+    pub regions: Vec<RegionResult>,
+    /// Pressure at every product vertex, MPa; its sum over vertex areas is the force.
+    pub product_pressure: Vec<f64>,
+    /// Travel of the product along `direction` found by force control, mm; 0 without.
+    pub offset: f64,
+    /// Direction of travel, or of the mean normal force without force control; zero without contact.
+    pub direction: Vec3,
+    /// What is left of the equations.
+    pub residual: Residual,
+    /// How the solve ended.
+    pub convergence: Convergence,
+    /// Sentences for the user.
+    pub warnings: Vec<String>,
+    /// Wall time by stage, s, in order.
+    pub seconds: Vec<(&'static str, f64)>,
+}

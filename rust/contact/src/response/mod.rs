@@ -1,0 +1,7 @@
+//! Stage 3: the response of the skin to forces.
+
+pub mod assembly;
+pub mod bonded_layer;
+pub mod kernel;
+pub mod rows;
+pub mod skin_metric;

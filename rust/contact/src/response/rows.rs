@@ -1,0 +1,296 @@
+//! The response of the skin between its sites, row by row, made when first needed and kept for every later posture.
+//!
+//! A row holds `K(r_ij)` (1/mm), so that `u_i = s_i s_j K_ij P_j` with `s = sqrt((1 - nu) / (2 pi G))`. It depends on the rest
+//! mesh and on thicknesses alone. The operator is symmetric: both members of a pair are computed by the same operations.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use thenar_surface::SkinDistance;
+
+use super::bonded_layer::Layer;
+use super::kernel::{KernelTables, RANGE_IN_THICKNESSES};
+use super::skin_metric::arc_lengths;
+use crate::Model;
+use crate::sites::Sites;
+
+/// Lattice self term: a point's own area A acts like a source at distance sqrt(A) / 3.9003, where 3.9003 is
+/// -4 zeta(1/2) beta(1/2): the quadrature-corrected point rule on a square lattice.
+const LATTICE: f64 = 3.900_264_920_001_956;
+/// The paper's r0, mm: nearer pairs answer as at this distance (Xie 3.1).
+pub const PAPER_R0: f64 = 0.5;
+/// Most distinct layers before thicknesses are interpolated.
+const EXACT_LAYERS: usize = 4;
+/// Ratio of neighboring thicknesses where they are interpolated.
+const LADDER_RATIO: f64 = 1.3;
+
+/// Two layers and the weight of the first.
+type Mix = (u16, u16, f64);
+
+/// Rows of the response that were needed so far.
+#[derive(Debug, Clone)]
+pub struct Response {
+    model: Model,
+    tables: KernelTables,
+    /// Range of the response around each site, mm.
+    reach: Vec<f64>,
+    /// Two layers and the first one's weight, by site.
+    mix: Vec<Mix>,
+    /// Patches within range of each patch, ascending, with the offset of their sites in a row.
+    near: Vec<Vec<(u32, u32)>>,
+    /// Lower bounds of skin distance to those patches, mm.
+    at_least: Vec<Vec<f64>>,
+    rows: Vec<Option<Box<[f32]>>>,
+}
+
+impl Response {
+    /// Prepares tables and patch neighborhoods for the layers of the regions; no row yet.
+    pub fn new(model: Model, of_region: &[Layer], sites: &Sites, metric: &SkinDistance) -> Self {
+        let half_space = Layer {
+            thickness: f64::INFINITY,
+            poisson_ratio: 0.5,
+        };
+        let (layers, mix) = match model {
+            Model::Paper => (vec![half_space], vec![(0, 0, 1.0); sites.len()]),
+            Model::Layer => mix_layers(of_region, sites),
+        };
+        let reach_of = |&(a, b, w): &Mix| {
+            let thickness = |layer: u16| layers[layer as usize].thickness;
+            RANGE_IN_THICKNESSES
+                * if a == b {
+                    thickness(a)
+                } else {
+                    w * thickness(a) + (1.0 - w) * thickness(b)
+                }
+        };
+        let reach: Vec<f64> = mix.iter().map(reach_of).collect();
+        let most = |&(first, last): &(u32, u32)| {
+            reach[first as usize..last as usize]
+                .iter()
+                .fold(0.0, |most, r| f64::max(most, *r))
+        };
+        let patch_reach: Vec<f64> = sites.patch_range.iter().map(most).collect();
+        let (near, at_least) = neighborhoods(sites, metric, &patch_reach);
+        let tables = KernelTables::new(&layers, extent(sites));
+        Response {
+            model,
+            tables,
+            reach,
+            mix,
+            near,
+            at_least,
+            rows: vec![None; sites.len()],
+        }
+    }
+
+    /// Patches within range of `patch`, with the offset of their first site in its rows.
+    pub fn near(&self, patch: u32) -> &[(u32, u32)] {
+        &self.near[patch as usize]
+    }
+
+    /// Length of a row of `patch`.
+    fn row_length(&self, patch: u32, sites: &Sites) -> usize {
+        let end = |&(p, offset): &(u32, u32)| {
+            let (first, last) = sites.patch_range[p as usize];
+            (offset + last - first) as usize
+        };
+        self.near[patch as usize].last().map_or(0, end)
+    }
+
+    /// Makes the rows of `wanted` that are missing.
+    pub fn make_rows(&mut self, wanted: &[u32], sites: &Sites) {
+        let missing: Vec<u32> = wanted
+            .iter()
+            .copied()
+            .filter(|&j| self.rows[j as usize].is_none())
+            .collect();
+        let made: Vec<Box<[f32]>> = missing
+            .par_iter()
+            .with_min_len(8)
+            .map(|&j| self.row_of(j as usize, sites))
+            .collect();
+        for (j, row) in missing.into_iter().zip(made) {
+            self.rows[j as usize] = Some(row);
+        }
+    }
+
+    /// Row `j`, laid out as [`Response::near`] says; empty if it was not made.
+    pub fn row(&self, j: u32) -> &[f32] {
+        self.rows[j as usize].as_deref().unwrap_or(&[])
+    }
+
+    fn row_of(&self, j: usize, sites: &Sites) -> Box<[f32]> {
+        let patch = sites.patch[j] as usize;
+        let mut row = Vec::with_capacity(self.row_length(sites.patch[j], sites));
+        let (mut distances, mut psi) = (Vec::new(), Vec::new());
+        for (&(p, _), &bound) in self.near[patch].iter().zip(&self.at_least[patch]) {
+            let (first, last) = sites.patch_range[p as usize];
+            let there = first as usize..last as usize;
+            distances.resize(there.len(), 0.0);
+            psi.resize(there.len(), 0.0);
+            arc_lengths(
+                &sites.rest[there.clone()],
+                &sites.rest[j],
+                bound,
+                &mut distances,
+            );
+            match self.model {
+                Model::Paper => {
+                    let same = |i: usize| sites.region[i] == sites.region[j];
+                    let entry =
+                        |(i, r): (usize, &f64)| if same(i) { 1.0 / r.max(PAPER_R0) } else { 0.0 };
+                    row.extend(there.zip(&distances).map(entry).map(|k| k as f32));
+                }
+                Model::Layer => {
+                    self.find_psi(there.clone(), j, &distances, &mut psi);
+                    for (i, (r, psi)) in there.zip(distances.iter().zip(&psi)) {
+                        row.push(self.layer_entry((i, j), *r, *psi, sites) as f32);
+                    }
+                }
+            }
+        }
+        row.into_boxed_slice()
+    }
+
+    /// `K_ij` of the layer, 1/mm.
+    #[inline]
+    fn layer_entry(&self, (i, j): (usize, usize), r: f64, psi: f64, sites: &Sites) -> f64 {
+        if i == j {
+            LATTICE / sites.area[i].sqrt() - psi
+        } else if r < 0.5 * (self.reach[i] + self.reach[j]) {
+            1.0 / r - psi
+        } else {
+            0.0
+        }
+    }
+
+    /// Psi between the sites `there` and `j`, 1/mm; one table where all are of one layer.
+    fn find_psi(&self, there: Range<usize>, j: usize, distances: &[f64], out: &mut [f64]) {
+        let (a, b, _) = self.mix[j];
+        let (c, d, _) = self.mix[there.start];
+        let is_one = a == b && self.mix[there.clone()].iter().all(|m| m.0 == c && m.1 == c);
+        if is_one && c == d {
+            self.tables
+                .psi_of_pair(a as usize, c as usize, distances, out);
+            return;
+        }
+        for (i, (r, out)) in there.zip(distances.iter().zip(out)) {
+            *out = self.psi(i, j, *r);
+        }
+    }
+
+    fn psi(&self, i: usize, j: usize, r: f64) -> f64 {
+        let ((a0, a1, wa), (b0, b1, wb)) = (self.mix[i], self.mix[j]);
+        let psi = |a: u16, b: u16| self.tables.psi(a as usize, b as usize, r);
+        if a0 == a1 && b0 == b1 {
+            return psi(a0, b0);
+        }
+        // Summed in an order that does not change when i and j trade places.
+        let (va, vb) = (1.0 - wa, 1.0 - wb);
+        (wa * wb * psi(a0, b0) + va * vb * psi(a1, b1))
+            + (wa * vb * psi(a0, b1) + va * wb * psi(a1, b0))
+    }
+}
+
+/// Patches near each patch with row offsets, and lower bounds of skin distance to them, mm.
+type Neighborhoods = (Vec<Vec<(u32, u32)>>, Vec<Vec<f64>>);
+
+fn neighborhoods(sites: &Sites, metric: &SkinDistance, reach: &[f64]) -> Neighborhoods {
+    let patches = sites.patch_range.len() as u32;
+    let one = |a: u32| {
+        let (mut list, mut bounds, mut offset) = (Vec::new(), Vec::new(), 0);
+        for b in 0..patches {
+            let (first, last) = sites.patch_range[b as usize];
+            let bound = metric.lower_bound(a, b).max(metric.lower_bound(b, a));
+            let range = 0.5 * (reach[a as usize] + reach[b as usize]);
+            if first < last && bound < range && bound.is_finite() {
+                list.push((b, offset));
+                bounds.push(bound);
+                offset += last - first;
+            }
+        }
+        (list, bounds)
+    };
+    (0..patches).map(one).unzip()
+}
+
+fn extent(sites: &Sites) -> f64 {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for site in &sites.rest {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(site.position[axis]);
+            high[axis] = high[axis].max(site.position[axis]);
+        }
+    }
+    let diagonal = (0..3)
+        .map(|a| (high[a] - low[a]).powi(2))
+        .sum::<f64>()
+        .sqrt();
+    // Along the skin it is farther than across: up to half the circumference of the enclosing ball.
+    (diagonal * std::f64::consts::FRAC_PI_2).max(f64::MIN_POSITIVE)
+}
+
+/// The layers to tabulate and each site's mix of two of them, by the curvature 1/h of its thickness.
+fn mix_layers(of_region: &[Layer], sites: &Sites) -> (Vec<Layer>, Vec<Mix>) {
+    let curvature: Vec<f64> = of_region.iter().map(|l| 1.0 / l.thickness).collect();
+    let of_site = sites.blended(&curvature);
+    let poisson: Vec<f64> = of_region.iter().map(|l| l.poisson_ratio).collect();
+    let has_one_poisson = poisson.iter().all(|nu| *nu == poisson[0]);
+    let mut levels = curvature.clone();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup();
+    if levels.len() > EXACT_LAYERS {
+        levels = ladder(&levels);
+    }
+    if !has_one_poisson {
+        return per_region(of_region, sites);
+    }
+    let layers = levels
+        .iter()
+        .map(|z| Layer {
+            thickness: 1.0 / z,
+            poisson_ratio: poisson[0],
+        })
+        .collect();
+    let mix = of_site.iter().map(|&z| {
+        let upper = levels
+            .partition_point(|level| *level < z)
+            .min(levels.len() - 1);
+        if levels[upper] <= z || upper == 0 {
+            return (upper as u16, upper as u16, 1.0);
+        }
+        let weight = (levels[upper] - z) / (levels[upper] - levels[upper - 1]);
+        ((upper - 1) as u16, upper as u16, weight)
+    });
+    (layers, mix.collect())
+}
+
+/// Where Poisson's ratio differs too, each region is a layer of its own and a crease mixes its two largest shares.
+fn per_region(of_region: &[Layer], sites: &Sites) -> (Vec<Layer>, Vec<Mix>) {
+    let mix = sites.blend.iter().map(|share| {
+        let mut share = share.clone();
+        share.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        match share[..] {
+            [] => (0, 0, 1.0),
+            [(a, _)] => (a as u16, a as u16, 1.0),
+            [(a, wa), (b, wb), ..] => (a as u16, b as u16, wa / (wa + wb)),
+        }
+    });
+    (of_region.to_vec(), mix.collect())
+}
+
+/// Levels from the lowest to the highest positive one in equal ratios; zero (a half space) stays.
+fn ladder(levels: &[f64]) -> Vec<f64> {
+    let positive: Vec<f64> = levels.iter().copied().filter(|z| *z > 0.0).collect();
+    let (low, high) = (positive[0], positive[positive.len() - 1]);
+    let steps = ((high / low).ln() / LADDER_RATIO.ln()).ceil().max(1.0) as usize;
+    let mut rungs: Vec<f64> = (0..=steps)
+        .map(|i| low * (high / low).powf(i as f64 / steps as f64))
+        .collect();
+    rungs[steps] = high;
+    if levels[0] == 0.0 {
+        rungs.insert(0, 0.0);
+    }
+    rungs
+}

@@ -1,0 +1,218 @@
+//! Conducts a press: detection, active zone, response, solve, fields.
+
+use std::time::Instant;
+
+use thenar_surface::{Mesh, Product, Vec3};
+
+use crate::force_control::find_offset;
+use crate::linearize::{Setting, Solved, solve};
+use crate::press::{Contact, Press, Start};
+use crate::skin::Skin;
+use crate::summary::summarize;
+use crate::zone::{Detection, candidates, check_resolution, detect, kept_stiffness};
+use crate::{ContactError, Control, Material, Model};
+
+/// Share of a force target that may be missed without a word.
+const FORCE_MISS: f64 = 1e-3;
+
+/// Wall time by stage, s.
+pub(crate) type Seconds = Vec<(&'static str, f64)>;
+
+/// One solved position of the product.
+pub(crate) struct Pressed {
+    pub detection: Detection,
+    pub solved: Solved,
+    /// Shear modulus by region, MPa.
+    pub shear_modulus: Vec<f64>,
+    /// Effective shear modulus by site, blended, MPa.
+    pub modulus_at: Vec<f64>,
+}
+
+impl Pressed {
+    /// Force on the skin along `direction`, N.
+    pub fn force_along(&self, direction: &Vec3) -> f64 {
+        self.force_on_skin().dot(direction)
+    }
+
+    /// Sum of the forces on the skin, N.
+    pub fn force_on_skin(&self) -> Vec3 {
+        self.solved
+            .force
+            .iter()
+            .zip(&self.solved.touch)
+            .map(|(f, g)| g.normal * *f)
+            .sum()
+    }
+}
+
+impl Skin {
+    /// Presses the prepared skin, in rest or posed, against a product.
+    ///
+    /// # Errors
+    /// [`ContactError`]: a posture that does not fit the skin, skin swallowed by the product, a force that is out of reach,
+    /// or `Cancelled`. The prepared skin stays usable after any of them.
+    pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
+        if press.start == Start::Fresh {
+            self.memory.force.clear();
+            self.memory.triangle.clear();
+            self.memory.offset = 0.0;
+        }
+        let mut seconds = Seconds::new();
+        let posed = self.posed(press.posed)?;
+        let (offset, direction, pressed) = match press.force {
+            None => {
+                let pressed = self.press_at(
+                    &posed,
+                    (press.product, Vec3::zeros()),
+                    (control, &mut seconds),
+                )?;
+                let direction = pressed
+                    .force_on_skin()
+                    .try_normalize(0.0)
+                    .unwrap_or_else(Vec3::zeros);
+                (0.0, direction, pressed)
+            }
+            Some(target) => find_offset(
+                self,
+                (&posed, press.product),
+                target,
+                (control, &mut seconds),
+            )?,
+        };
+        control.step("fields", 0.0)?;
+        let started = Instant::now();
+        let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
+        add_time(&mut seconds, "fields", started);
+        if let Some(target) = press.force {
+            let reached = pressed.force_along(&contact.direction);
+            if (reached - target.newton).abs() > FORCE_MISS * target.newton {
+                contact.warnings.push(format!(
+                    "{:.3} N were asked for, but the force leaps there: {reached:.3} N is the nearest; a finer hand mesh, or \
+                     a product with thickness, leaps less",
+                    target.newton
+                ));
+            }
+        }
+        contact.seconds = seconds;
+        self.remember(&pressed, offset);
+        control.step("fields", 1.0)?;
+        Ok(contact)
+    }
+
+    /// Solves with the product moved by `shift` (mm).
+    pub(crate) fn press_at(
+        &mut self,
+        posed: &Mesh,
+        (product, shift): (&Product, Vec3),
+        (control, seconds): (&Control, &mut Seconds),
+    ) -> Result<Pressed, ContactError> {
+        control.step("distances", 0.0)?;
+        let started = Instant::now();
+        let detection = detect(self, posed, product, shift)?;
+        add_time(seconds, "distances", started);
+        let started = Instant::now();
+        let zone = self.zone(&detection);
+        check_resolution(self, &zone)?;
+        let shear_modulus: Vec<f64> = self
+            .materials
+            .iter()
+            .zip(&detection.max_penetration)
+            .map(|(m, depth)| m.shear_modulus(*depth))
+            .collect();
+        let effective = self.effective_moduli(&shear_modulus, &detection);
+        let (weight, modulus_at) = self.weights(&effective);
+        add_time(seconds, "response", started);
+        let started = Instant::now();
+        let force = std::mem::take(&mut self.memory.force);
+        let start = (force.len() == self.sites.len()).then_some(&force[..]);
+        let setting = Setting {
+            product,
+            detection: &detection,
+            weight: &weight,
+            start,
+            spacing: self.spacing,
+        };
+        let solved = solve(self, zone, &setting, control);
+        self.memory.force = force;
+        let solved = solved?;
+        add_time(seconds, "solve", started);
+        Ok(Pressed {
+            detection,
+            solved,
+            shear_modulus,
+            modulus_at,
+        })
+    }
+
+    /// The last zone where it still serves, else the sites that may touch.
+    fn zone(&self, detection: &Detection) -> Vec<u32> {
+        let zone = candidates(self, detection);
+        let last = &self.memory.zone;
+        let is_warm = !self.memory.force.is_empty();
+        let is_known = |&s: &u32| detection.gaps[self.sites.vertex[s as usize] as usize].is_some();
+        let serves = is_warm
+            && last.len() <= zone.len() + zone.len() / 4
+            && zone.iter().all(|site| last.binary_search(site).is_ok())
+            && last.iter().all(is_known);
+        if serves { last.clone() } else { zone }
+    }
+
+    /// Moduli with what escapes sideways in deep presses taken off; model layer only.
+    fn effective_moduli(&self, shear_modulus: &[f64], detection: &Detection) -> Vec<f64> {
+        let kept = |(material, depth): (&Material, &f64)| match self.model {
+            Model::Layer => kept_stiffness(material, *depth),
+            Model::Paper => 1.0,
+        };
+        let kept = self
+            .materials
+            .iter()
+            .zip(&detection.max_penetration)
+            .map(kept);
+        shear_modulus
+            .iter()
+            .zip(kept)
+            .map(|(g, kept)| g * kept)
+            .collect()
+    }
+
+    /// Response weight sqrt((1 - nu) / (2 pi G)) and modulus of every site; blended over creases in model layer.
+    fn weights(&self, shear_modulus: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let softness: Vec<f64> = self
+            .materials
+            .iter()
+            .zip(shear_modulus)
+            .map(|(m, g)| (1.0 - m.poisson_ratio) / (std::f64::consts::TAU * g))
+            .collect();
+        let of_region = |values: &[f64]| match self.model {
+            Model::Layer => self.sites.blended(values),
+            Model::Paper => self
+                .sites
+                .region
+                .iter()
+                .map(|&r| values.get(r as usize).copied().unwrap_or(0.0))
+                .collect(),
+        };
+        let weight = of_region(&softness).into_iter().map(f64::sqrt).collect();
+        (weight, of_region(shear_modulus))
+    }
+
+    fn remember(&mut self, pressed: &Pressed, offset: f64) {
+        self.memory.force = vec![0.0; self.sites.len()];
+        for (&site, force) in pressed.solved.zone.iter().zip(&pressed.solved.force) {
+            self.memory.force[site as usize] = *force;
+        }
+        let triangle =
+            |gap: &Option<thenar_surface::Gap>| gap.as_ref().map_or(u32::MAX, |g| g.triangle);
+        self.memory.triangle = pressed.detection.gaps.iter().map(triangle).collect();
+        self.memory.offset = offset;
+    }
+}
+
+/// Adds the time since `started` to a stage.
+pub(crate) fn add_time(seconds: &mut Seconds, stage: &'static str, started: Instant) {
+    let elapsed = started.elapsed().as_secs_f64();
+    match seconds.iter_mut().find(|s| s.0 == stage) {
+        Some(entry) => entry.1 += elapsed,
+        None => seconds.push((stage, elapsed)),
+    }
+}

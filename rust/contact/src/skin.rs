@@ -1,0 +1,220 @@
+//! A hand prepared once for every posture and product.
+
+use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
+
+use crate::response::bonded_layer::Layer;
+use crate::response::kernel::RANGE_IN_THICKNESSES;
+use crate::response::rows::Response;
+use crate::sites::Sites;
+use crate::solve::operator::Rows;
+use crate::weld::Welded;
+use crate::{ContactError, Control, Material, Model, SkinInput};
+
+/// Spacing below which the paper's r0 makes its matrix indefinite, mm.
+pub(crate) const PAPER_SPACING: f64 = 0.8;
+
+/// A prepared skin. Presses reuse its compliance rows; results depend on input alone unless a warm start is asked for.
+#[derive(Debug, Clone)]
+pub struct Skin {
+    pub(crate) model: Model,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) regions: Vec<i32>,
+    pub(crate) welded: Welded,
+    pub(crate) adjacency: Adjacency,
+    pub(crate) metric: SkinDistance,
+    pub(crate) sites: Sites,
+    pub(crate) rest_area: Vec<f64>,
+    /// Median edge, mm.
+    pub(crate) spacing: f64,
+    pub(crate) response: Response,
+    pub(crate) memory: Memory,
+    warnings: Vec<String>,
+}
+
+/// What one press leaves for the next.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Memory {
+    /// Zone of the last press and its coupling.
+    pub zone: Vec<u32>,
+    pub coupling: Rows<f32>,
+    /// Nodal forces by site, N.
+    pub force: Vec<f64>,
+    /// Nearest product triangle by welded vertex.
+    pub triangle: Vec<u32>,
+    /// Travel found by force control, mm.
+    pub offset: f64,
+}
+
+impl Skin {
+    /// Prepares a hand: welds seams, numbers the skin, blends materials over creases, tabulates the kernel.
+    ///
+    /// # Errors
+    /// [`ContactError`] naming the material, region or array that is wrong, or `Cancelled`.
+    pub fn prepare(input: SkinInput, control: &Control) -> Result<Skin, ContactError> {
+        let SkinInput {
+            mesh,
+            mut regions,
+            materials,
+            model,
+        } = input;
+        let vertices = mesh.positions().len();
+        if regions.is_empty() {
+            regions = vec![0; vertices];
+        }
+        check_regions(&regions, &materials, vertices)?;
+        control.step("preparing", 0.0)?;
+        let (mesh, mut warnings) = audited(mesh)?;
+        let welded = Welded::new(&mesh).map_err(ContactError::Hand)?;
+        let spacing = median_edge_length(&welded.mesh);
+        if welded.merged() > 0 {
+            warnings.push(format!(
+                "the hand: {} vertices lie on another one and move with it; merge them by distance to be rid of this",
+                welded.merged()
+            ));
+        }
+        let welded_regions: Vec<i32> = welded.source.iter().map(|&v| regions[v as usize]).collect();
+        let adjacency = Adjacency::new(&welded.mesh);
+        control.step("preparing", 0.3)?;
+        let thickest = materials.iter().map(|m| m.thickness_mm).fold(0.0, f64::max);
+        let range = if model == Model::Paper {
+            f64::INFINITY
+        } else {
+            RANGE_IN_THICKNESSES * thickest
+        };
+        let metric = SkinDistance::new(&welded.mesh, range);
+        control.step("preparing", 0.6)?;
+        let sites = Sites::new(&welded.mesh, &welded_regions, spacing, &metric);
+        if sites.len() == 0 {
+            return Err(ContactError::NoSkin);
+        }
+        warnings.extend(model_warnings(model, spacing));
+        control.step("preparing", 0.8)?;
+        let response = Response::new(model, &layers(&materials), &sites, &metric);
+        control.step("preparing", 1.0)?;
+        let rest_area = vertex_areas(&welded.mesh);
+        let memory = Memory::default();
+        Ok(Skin {
+            model,
+            materials,
+            regions,
+            welded,
+            adjacency,
+            metric,
+            sites,
+            rest_area,
+            spacing,
+            response,
+            memory,
+            warnings,
+        })
+    }
+
+    /// Sentences about the hand mesh, found while preparing.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Number of vertices of the mesh as given.
+    pub fn vertices(&self) -> usize {
+        self.regions.len()
+    }
+
+    /// The model chosen.
+    pub fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Materials by region.
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// The welded mesh in a posture given for the mesh as given.
+    ///
+    /// # Errors
+    /// [`ContactError::PosedCount`] or [`ContactError::PosedNotFinite`].
+    pub(crate) fn posed(&self, posed: Option<&[Vec3]>) -> Result<Mesh, ContactError> {
+        let Some(posed) = posed else {
+            return Ok(self.welded.mesh.clone());
+        };
+        if posed.len() != self.regions.len() {
+            return Err(ContactError::PosedCount {
+                found: posed.len(),
+                expected: self.regions.len(),
+            });
+        }
+        if let Some(vertex) = posed.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+            return Err(ContactError::PosedNotFinite { vertex });
+        }
+        let positions = self
+            .welded
+            .source
+            .iter()
+            .map(|&v| posed[v as usize])
+            .collect();
+        self.welded
+            .mesh
+            .with_positions(positions)
+            .map_err(ContactError::Hand)
+    }
+}
+
+/// Turns a hand that is inside out, and says what is odd about it. Open edges are not: a hand may end at its wrist.
+fn audited(mesh: Mesh) -> Result<(Mesh, Vec<String>), ContactError> {
+    let mut audit = mesh.audit();
+    let is_inside_out = audit.is_inside_out();
+    audit.boundary_edges = 0;
+    let warnings = audit.warnings("the hand");
+    if !is_inside_out {
+        return Ok((mesh, warnings));
+    }
+    let turned = mesh
+        .triangles()
+        .iter()
+        .map(|t| [t[0], t[2], t[1]])
+        .collect();
+    let mesh = Mesh::new(mesh.positions().to_vec(), turned).map_err(ContactError::Hand)?;
+    Ok((mesh, warnings))
+}
+
+/// The layers of the materials.
+fn layers(materials: &[Material]) -> Vec<Layer> {
+    let layer = |m: &Material| Layer {
+        thickness: m.thickness_mm,
+        poisson_ratio: m.poisson_ratio,
+    };
+    materials.iter().map(layer).collect()
+}
+
+fn check_regions(
+    regions: &[i32],
+    materials: &[Material],
+    vertices: usize,
+) -> Result<(), ContactError> {
+    if regions.len() != vertices {
+        return Err(ContactError::RegionCount {
+            found: regions.len(),
+            expected: vertices,
+        });
+    }
+    for (index, material) in materials.iter().enumerate() {
+        material.validate(&format!("of region {index}"))?;
+    }
+    match regions.iter().copied().max() {
+        Some(most) if most < 0 => Err(ContactError::NoSkin),
+        Some(most) if most as usize >= materials.len() => Err(ContactError::MissingMaterial {
+            region: most,
+            materials: materials.len(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn model_warnings(model: Model, spacing: f64) -> Option<String> {
+    (model == Model::Paper && spacing < PAPER_SPACING).then(|| {
+        format!(
+            "model paper: the vertex spacing is {spacing:.2} mm; below {PAPER_SPACING} mm the paper's r0 = 0.5 mm makes its \
+             matrix indefinite and forces unreliable; use a coarser mesh or model layer"
+        )
+    })
+}

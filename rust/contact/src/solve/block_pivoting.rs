@@ -1,0 +1,325 @@
+//! The contact solver: block principal pivoting over the contact set, conjugate gradients inside, warm starts.
+//!
+//! Finds `p >= 0`, `s = A p + d >= 0`, `p s = 0` (Xie Eq. 13-14). Loose passes find the set, tight ones the forces
+//! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
+
+use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
+use super::operator::{Entry, Rows};
+use super::projection::mprgp;
+use crate::Control;
+
+/// Residuals of the levels, relative to the largest gap; the set must hold still before the next is taken.
+const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-7, 1e-12];
+/// Last of the loose levels.
+const ROUGH_LEVEL: usize = 1;
+/// Share of the unknowns above which the set is solved in place instead of copied out.
+const COPY_SHARE: f64 = 0.6;
+/// Passes that may go without fewer infeasible entries before single pivots are taken.
+const PATIENCE: usize = 8;
+/// Passes in all before the fallback.
+const MOST_PASSES: usize = 120;
+
+/// How far a contact problem is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Accuracy {
+    /// To 1e-4 of the largest gap: enough to see where the surface goes.
+    Rough,
+    /// To 1e-12 of it: the certificate.
+    Full,
+    /// To 1e-12 of it, from forces that are already rough: the loose levels are left out.
+    Polish,
+}
+
+/// Forces and what is left of the equations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// Nodal force, N, >= 0.
+    pub force: Vec<f64>,
+    /// Slack `A p + d`, mm, >= 0.
+    pub slack: Vec<f64>,
+    /// Largest |min(A_ii p_i, s_i)|, relative to the largest |d|.
+    pub complementarity: f64,
+    /// Changes of the contact set.
+    pub pivots: usize,
+    /// Conjugate-gradient steps, or products of the fallback.
+    pub steps: usize,
+    /// True if the fallback was needed.
+    pub fell_back: bool,
+}
+
+/// Solves the contact of `matrix` (mm/N) under `gap` (mm, negative: penetrating), starting from the forces `start`.
+///
+/// Always ends; how well is in [`Solution::complementarity`]. When cancelled it ends early: check `control` afterwards.
+pub fn solve_contact<T: Entry>(
+    matrix: &Rows<T>,
+    gap: &[f64],
+    start: Option<&[f64]>,
+    (accuracy, control): (Accuracy, &Control),
+) -> Solution {
+    let n = matrix.len();
+    let scale = gap.iter().fold(0.0, |most, d| f64::max(most, -d));
+    let mut run = Run {
+        force: vec![0.0; n],
+        slack: gap.to_vec(),
+        in_contact: vec![false; n],
+        pivots: 0,
+        steps: 0,
+    };
+    if scale > 0.0 {
+        run.start(gap, start);
+    }
+    let fell_back = scale > 0.0 && !run.pivot(matrix, gap, (scale, accuracy), control);
+    if fell_back {
+        let limits = (1e-12 * scale, 200 * n + 2000);
+        run.steps += mprgp(matrix, gap, &mut run.force, limits, control);
+        run.find_slack(matrix, gap);
+    }
+    let complementarity =
+        natural_residual(matrix, &run.force, &run.slack) / scale.max(f64::MIN_POSITIVE);
+    let Run {
+        force,
+        slack,
+        pivots,
+        steps,
+        ..
+    } = run;
+    Solution {
+        force,
+        slack,
+        complementarity,
+        pivots,
+        steps,
+        fell_back,
+    }
+}
+
+/// Largest |min(A_ii p_i, s_i)|, mm.
+fn natural_residual<T: Entry>(matrix: &Rows<T>, force: &[f64], slack: &[f64]) -> f64 {
+    let terms = force
+        .iter()
+        .zip(matrix.diagonal())
+        .zip(slack)
+        .map(|((p, a), s)| (p * a).min(*s).abs());
+    terms.fold(0.0, f64::max)
+}
+
+struct Run {
+    force: Vec<f64>,
+    slack: Vec<f64>,
+    in_contact: Vec<bool>,
+    pivots: usize,
+    steps: usize,
+}
+
+impl Run {
+    fn start(&mut self, gap: &[f64], start: Option<&[f64]>) {
+        match start {
+            Some(force) if force.iter().any(|p| *p > 0.0) => {
+                for (i, p) in force.iter().enumerate() {
+                    self.in_contact[i] = *p > 0.0;
+                    self.force[i] = p.max(0.0);
+                }
+            }
+            _ => {
+                for (inside, d) in self.in_contact.iter_mut().zip(gap) {
+                    *inside = *d < 0.0;
+                }
+            }
+        }
+    }
+
+    /// True if the set was found and the forces are tight.
+    fn pivot<T: Entry>(
+        &mut self,
+        matrix: &Rows<T>,
+        gap: &[f64],
+        (scale, accuracy): (f64, Accuracy),
+        control: &Control,
+    ) -> bool {
+        let finest = if accuracy == Accuracy::Rough {
+            ROUGH_LEVEL
+        } else {
+            TOLERANCES.len() - 1
+        };
+        let first = if accuracy == Accuracy::Polish {
+            ROUGH_LEVEL + 1
+        } else {
+            0
+        };
+        let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, first);
+        for _ in 0..MOST_PASSES {
+            if (control.cancelled)() {
+                return true;
+            }
+            if !self.solve_set(matrix, gap, (level, scale)) {
+                return false;
+            }
+            self.find_slack(matrix, gap);
+            let wrong = self.infeasible(TOLERANCES[level] * scale);
+            if wrong.is_empty() {
+                if level >= finest {
+                    return true;
+                }
+                level += 1;
+                continue;
+            }
+            // An unchanged set at a loose level is no cycle: count only passes that do not get better.
+            if wrong.len() < fewest {
+                (fewest, stalled) = (wrong.len(), 0);
+            } else {
+                stalled += 1;
+            }
+            if stalled > PATIENCE {
+                level = TOLERANCES.len() - 1;
+                self.flip(wrong[0]);
+            } else {
+                wrong.iter().for_each(|&i| self.flip(i));
+            }
+        }
+        false
+    }
+
+    fn flip(&mut self, i: u32) {
+        let inside = &mut self.in_contact[i as usize];
+        *inside = !*inside;
+        if !*inside {
+            self.force[i as usize] = 0.0;
+        }
+        self.pivots += 1;
+    }
+
+    fn solve_set<T: Entry>(
+        &mut self,
+        matrix: &Rows<T>,
+        gap: &[f64],
+        (level, scale): (usize, f64),
+    ) -> bool {
+        let set: Vec<u32> = (0..self.force.len() as u32)
+            .filter(|&i| self.in_contact[i as usize])
+            .collect();
+        let limits = CgLimits {
+            tolerance: TOLERANCES[level] * scale,
+            steps: 40 + 6 * set.len(),
+        };
+        if set.len() as f64 > COPY_SHARE * self.force.len() as f64 {
+            let right: Vec<f64> = gap.iter().map(|d| -d).collect();
+            let (end, steps) = conjugate_gradient(matrix, &right, (&mut self.force, &set), limits);
+            self.steps += steps;
+            return end == CgEnd::Converged;
+        }
+        let right: Vec<f64> = set.iter().map(|&i| -gap[i as usize]).collect();
+        let mut x: Vec<f64> = set.iter().map(|&i| self.force[i as usize]).collect();
+        let all: Vec<u32> = (0..set.len() as u32).collect();
+        // Single precision suffices to find the set.
+        let (end, steps) = if level <= ROUGH_LEVEL && size_of::<T>() > 4 {
+            conjugate_gradient(
+                &matrix.principal_narrow(&set),
+                &right,
+                (&mut x, &all),
+                limits,
+            )
+        } else {
+            conjugate_gradient(&matrix.principal(&set), &right, (&mut x, &all), limits)
+        };
+        self.steps += steps;
+        for (&i, x) in set.iter().zip(&x) {
+            self.force[i as usize] = *x;
+        }
+        end == CgEnd::Converged
+    }
+
+    fn find_slack<T: Entry>(&mut self, matrix: &Rows<T>, gap: &[f64]) {
+        matrix.times(&self.force, &mut self.slack);
+        for (s, d) in self.slack.iter_mut().zip(gap) {
+            *s += d;
+        }
+    }
+
+    fn infeasible(&self, tolerance: f64) -> Vec<u32> {
+        let wrong = |i: &u32| {
+            let i = *i as usize;
+            if self.in_contact[i] {
+                self.force[i] < 0.0
+            } else {
+                self.slack[i] < -tolerance
+            }
+        };
+        (0..self.force.len() as u32).filter(wrong).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FULL: (Accuracy, &Control<'static>) = (
+        Accuracy::Full,
+        &Control {
+            cancelled: &|| false,
+            progress: &|_, _| {},
+        },
+    );
+
+    /// A compliance like the half space's on a line, and a paraboloid gap.
+    fn problem(n: usize) -> (Vec<f64>, Vec<f64>) {
+        let entry = |i: usize, j: usize| {
+            if i == j {
+                3.0
+            } else {
+                1.0 / (i as f64 - j as f64).abs()
+            }
+        };
+        let matrix = (0..n * n).map(|k| entry(k / n, k % n)).collect();
+        let gap = (0..n)
+            .map(|i| (i as f64 / n as f64 - 0.4).powi(2) * 20.0 - 1.0)
+            .collect();
+        (matrix, gap)
+    }
+
+    #[test]
+    fn complementarity_holds_and_the_fallback_agrees() {
+        let (matrix, gap) = problem(80);
+        let rows = Rows::dense(matrix, 80);
+        let solution = solve_contact(&rows, &gap, None, FULL);
+        assert!(!solution.fell_back);
+        assert!(
+            solution.complementarity < 1e-11,
+            "{}",
+            solution.complementarity
+        );
+        assert!(solution.force.iter().all(|p| *p >= 0.0));
+        let mut other = vec![0.0; 80];
+        mprgp(&rows, &gap, &mut other, (1e-13, 100_000), FULL.1);
+        for (a, b) in solution.force.iter().zip(&other) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_warm_start_changes_nothing_but_the_work() {
+        let (matrix, gap) = problem(60);
+        let rows = Rows::dense(matrix, 60);
+        let cold = solve_contact(&rows, &gap, None, FULL);
+        let moved: Vec<f64> = gap.iter().map(|d| d - 0.01).collect();
+        let warm = solve_contact(&rows, &moved, Some(&cold.force), FULL);
+        let fresh = solve_contact(&rows, &moved, None, FULL);
+        for (a, b) in warm.force.iter().zip(&fresh.force) {
+            assert!((a - b).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn without_penetration_there_is_no_force() {
+        let (matrix, _) = problem(10);
+        let solution = solve_contact(&Rows::dense(matrix, 10), &[0.5; 10], Some(&[1.0; 10]), FULL);
+        assert_eq!(solution.force, vec![0.0; 10]);
+        assert_eq!(solution.complementarity, 0.0);
+    }
+
+    #[test]
+    fn an_indefinite_matrix_ends_all_the_same() {
+        let matrix = vec![1.0, 2.0, 2.0, 1.0];
+        let solution = solve_contact(&Rows::dense(matrix, 2), &[-1.0, -1.0], None, FULL);
+        assert!(solution.force.iter().all(|p| p.is_finite() && *p >= 0.0));
+    }
+}

@@ -1,0 +1,83 @@
+//! Conjugate gradients with Jacobi's preconditioner on a principal submatrix.
+
+use super::operator::{Entry, Rows};
+
+/// How a run of conjugate gradients ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CgEnd {
+    /// The residual is within the tolerance.
+    Converged,
+    /// The step limit was reached.
+    StepLimit,
+    /// A direction of no or negative curvature: the matrix is not definite.
+    NotDefinite,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub struct CgLimits {
+    /// Largest residual entry, in the right-hand side's unit.
+    pub tolerance: f64,
+    /// Most steps.
+    pub steps: usize,
+}
+
+/// Solves `matrix x = right` for the unknowns in `set` (ascending), from the `x` given; others are and stay zero.
+///
+/// Returns how it ended and the steps taken.
+pub fn conjugate_gradient<T: Entry>(
+    matrix: &Rows<T>,
+    right: &[f64],
+    (x, set): (&mut [f64], &[u32]),
+    limits: CgLimits,
+) -> (CgEnd, usize) {
+    let n = matrix.len();
+    let mut image = vec![0.0; set.len()];
+    matrix.times_rows(set, x, &mut image);
+    let mut residual: Vec<f64> = set
+        .iter()
+        .zip(&image)
+        .map(|(&i, a)| right[i as usize] - a)
+        .collect();
+    let per_diagonal: Vec<f64> = set
+        .iter()
+        .map(|&i| 1.0 / matrix.diagonal()[i as usize])
+        .collect();
+    let mut direction = vec![0.0; n];
+    let mut weight = 0.0;
+    for step in 0..limits.steps {
+        if largest(&residual) <= limits.tolerance {
+            return (CgEnd::Converged, step);
+        }
+        let previous = weight;
+        weight = residual
+            .iter()
+            .zip(&per_diagonal)
+            .map(|(r, d)| r * r * d)
+            .sum();
+        let beta = if step == 0 { 0.0 } else { weight / previous };
+        for ((&i, r), d) in set.iter().zip(&residual).zip(&per_diagonal) {
+            let p = &mut direction[i as usize];
+            *p = r * d + beta * *p;
+        }
+        matrix.times_rows(set, &direction, &mut image);
+        let curvature: f64 = set
+            .iter()
+            .zip(&image)
+            .map(|(&i, q)| direction[i as usize] * q)
+            .sum();
+        if curvature.is_nan() || curvature <= 0.0 {
+            return (CgEnd::NotDefinite, step);
+        }
+        let length = weight / curvature;
+        for ((&i, r), q) in set.iter().zip(&mut residual).zip(&image) {
+            x[i as usize] += length * direction[i as usize];
+            *r -= length * q;
+        }
+    }
+    (CgEnd::StepLimit, limits.steps)
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, v| f64::max(most, v.abs()))
+}

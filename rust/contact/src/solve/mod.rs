@@ -1,0 +1,11 @@
+//! Stage 4: the contact problem and its solvers.
+
+pub mod operator;
+
+mod block_pivoting;
+mod conjugate_gradient;
+mod dense;
+mod projection;
+
+pub use block_pivoting::{Accuracy, Solution, solve_contact};
+pub use dense::solve_dense;

@@ -1,0 +1,232 @@
+//! From a solved contact to what the caller reads: arrays by vertex, the region table, totals, warnings.
+
+use thenar_surface::{Gap, Mesh, Product, Vec3, vertex_areas};
+
+use crate::fields::contact_area::{EdgeData, contact_areas};
+use crate::fields::patch_peak::{Field, patch_peak};
+use crate::fields::product_side::product_pressure;
+use crate::press::{Contact, RegionResult, Residual};
+use crate::remarks::remarks;
+use crate::simulate::Pressed;
+use crate::skin::Skin;
+
+/// Least posed area of a vertex relative to its rest area: posing must not turn a sliver into infinite pressure.
+const LEAST_AREA_SHARE: f64 = 0.05;
+
+/// Builds the result of a press with the product moved by `offset` along `direction`.
+pub fn summarize(
+    skin: &Skin,
+    (posed, product): (&Mesh, &Product),
+    pressed: &Pressed,
+    (offset, direction): (f64, Vec3),
+) -> Contact {
+    let fields = Fields::new(skin, posed, pressed);
+    let touches: Vec<(f64, Gap)> = pressed
+        .solved
+        .force
+        .iter()
+        .zip(&pressed.solved.touch)
+        .filter(|(f, _)| **f > 0.0)
+        .map(|(f, g)| (*f, *g))
+        .collect();
+    let (product_pressure, product_force) = product_pressure(product, &touches, skin.spacing);
+    let normal_force: f64 = touches.iter().map(|t| t.0).sum();
+    let shift = direction * offset;
+    let total_force: Vec3 = touches.iter().map(|(f, g)| -g.normal * *f).sum();
+    let moment = |(f, g): &(f64, Gap)| (g.closest + shift).cross(&(-g.normal * *f));
+    let center: Vec3 = touches.iter().map(|(f, g)| (g.closest + shift) * *f).sum();
+    let contact_area: f64 = fields.contact_area.iter().sum();
+    let solved = &pressed.solved;
+    let load_balance = if normal_force > 0.0 {
+        (product_force - normal_force).abs() / normal_force
+    } else {
+        0.0
+    };
+    let spread = |values: &[f64]| -> Vec<f64> {
+        skin.welded
+            .welded
+            .iter()
+            .map(|&w| values[w as usize])
+            .collect()
+    };
+    let spread_vectors = |values: &[Vec3]| -> Vec<Vec3> {
+        skin.welded
+            .welded
+            .iter()
+            .map(|&w| values[w as usize])
+            .collect()
+    };
+    Contact {
+        displacement: spread_vectors(&fields.displacement),
+        nodal_force: fields.force_by_vertex(skin),
+        pressure: spread(&fields.pressure),
+        gap: spread(&fields.gap),
+        normal: spread_vectors(&fields.normal),
+        total_force,
+        total_moment: touches.iter().map(moment).sum(),
+        center_of_pressure: if normal_force > 0.0 {
+            center / normal_force
+        } else {
+            Vec3::zeros()
+        },
+        contact_area,
+        peak_pressure: fields
+            .pressure
+            .iter()
+            .fold(0.0, |most, p| f64::max(most, *p)),
+        mean_pressure: if contact_area > 0.0 {
+            normal_force / contact_area
+        } else {
+            0.0
+        },
+        patch_peak: fields.patch_peak(skin, posed),
+        regions: region_table(skin, pressed, &fields),
+        product_pressure,
+        offset,
+        direction,
+        residual: Residual {
+            complementarity: solved.complementarity,
+            penetration_mm: solved.penetration,
+            load_balance,
+        },
+        convergence: solved.convergence,
+        warnings: remarks(skin, posed, product, pressed),
+        seconds: Vec::new(),
+    }
+}
+
+/// Fields by welded vertex.
+struct Fields {
+    displacement: Vec<Vec3>,
+    force: Vec<f64>,
+    pressure: Vec<f64>,
+    gap: Vec<f64>,
+    normal: Vec<Vec3>,
+    area: Vec<f64>,
+    contact_area: Vec<f64>,
+}
+
+impl Fields {
+    fn new(skin: &Skin, posed: &Mesh, pressed: &Pressed) -> Self {
+        let n = posed.positions().len();
+        let (sites, solved) = (&skin.sites, &pressed.solved);
+        let mut displacement = vec![Vec3::zeros(); n];
+        for (site, u) in solved.displacement.iter().enumerate() {
+            displacement[sites.vertex[site] as usize] = *u;
+        }
+        let area: Vec<f64> = vertex_areas(posed)
+            .into_iter()
+            .zip(&skin.rest_area)
+            .map(|(now, rest)| now.max(LEAST_AREA_SHARE * rest))
+            .collect();
+        let gap: Vec<f64> = pressed
+            .detection
+            .gaps
+            .iter()
+            .map(|g| g.as_ref().map_or(f64::INFINITY, |g| g.distance))
+            .collect();
+        let (mut force, mut pressure, mut normal) =
+            (vec![0.0; n], vec![0.0; n], vec![Vec3::zeros(); n]);
+        let mut slack = gap.clone();
+        let mut modulus = vec![0.0; n];
+        for (k, &site) in solved.zone.iter().enumerate() {
+            let vertex = sites.vertex[site as usize] as usize;
+            slack[vertex] = solved.slack[k].max(0.0);
+            if solved.force[k] > 0.0 {
+                force[vertex] = solved.force[k];
+                pressure[vertex] = solved.force[k] / area[vertex];
+                normal[vertex] = solved.touch[k].normal;
+                let material = &skin.materials[sites.region[site as usize] as usize];
+                modulus[vertex] =
+                    2.0 * pressed.modulus_at[site as usize] / (1.0 - material.poisson_ratio);
+            }
+        }
+        let deformed: Vec<Vec3> = posed
+            .positions()
+            .iter()
+            .zip(&displacement)
+            .map(|(x, u)| x + u)
+            .collect();
+        let edge = EdgeData {
+            positions: &deformed,
+            pressure: &pressure,
+            slack: &slack,
+            contact_modulus: &modulus,
+        };
+        let contact_area = contact_areas(posed.triangles(), edge);
+        Fields {
+            displacement,
+            force,
+            pressure,
+            gap,
+            normal,
+            area,
+            contact_area,
+        }
+    }
+
+    /// Nodal forces of the mesh as given: merged vertices bear none, the one that stands for them bears all.
+    fn force_by_vertex(&self, skin: &Skin) -> Vec<f64> {
+        let mut force = vec![0.0; skin.vertices()];
+        for (&source, f) in skin.welded.source.iter().zip(&self.force) {
+            force[source as usize] = *f;
+        }
+        force
+    }
+
+    fn patch_peak(&self, skin: &Skin, posed: &Mesh) -> f64 {
+        let around = |v: usize| {
+            let neighbors = skin.adjacency.neighbors(v);
+            let sum: f64 = neighbors.iter().map(|&n| self.pressure[n as usize]).sum();
+            (sum + self.pressure[v]) / (neighbors.len() + 1) as f64
+        };
+        let smooth: Vec<(u32, f64)> = (0..self.force.len())
+            .filter(|&v| self.force[v] > 0.0)
+            .map(|v| (v as u32, around(v)))
+            .collect();
+        let most = smooth.iter().fold(0.0, |most, s| f64::max(most, s.1));
+        let centers: Vec<u32> = smooth
+            .iter()
+            .filter(|s| s.1 >= 0.5 * most)
+            .map(|s| s.0)
+            .collect();
+        let field = Field {
+            adjacency: &skin.adjacency,
+            positions: posed.positions(),
+            area: &self.area,
+            force: &self.force,
+        };
+        patch_peak(&centers, field)
+    }
+}
+
+fn region_table(skin: &Skin, pressed: &Pressed, fields: &Fields) -> Vec<RegionResult> {
+    let mut table: Vec<RegionResult> = (0..skin.materials.len())
+        .map(|index| RegionResult {
+            index,
+            force: 0.0,
+            area: 0.0,
+            peak: 0.0,
+            mean: 0.0,
+            max_penetration: pressed.detection.max_penetration[index],
+            shear_modulus: pressed.shear_modulus[index],
+        })
+        .collect();
+    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+        let (region, vertex) = (skin.sites.region[site], vertex as usize);
+        if region >= 0 {
+            let row = &mut table[region as usize];
+            row.force += fields.force[vertex];
+            row.area += fields.contact_area[vertex];
+            row.peak = row.peak.max(fields.pressure[vertex]);
+        }
+    }
+    for row in &mut table {
+        row.mean = if row.area > 0.0 {
+            row.force / row.area
+        } else {
+            0.0
+        };
+    }
+    table
+}

@@ -1,0 +1,135 @@
+//! Vertices that lie on one another, as at the seams of unwelded meshes, made one.
+
+use std::collections::HashMap;
+
+use thenar_surface::{Mesh, MeshError, Vec3};
+
+/// Share of the edges around both below which two vertices count as one: nearer points make the response indefinite.
+const MERGE_SHARE: f64 = 0.25;
+
+/// A mesh without coincident vertices, and which of its vertices stands for each original one.
+#[derive(Debug, Clone)]
+pub struct Welded {
+    /// The welded mesh.
+    pub mesh: Mesh,
+    /// Original vertex that each welded vertex takes its position from.
+    pub source: Vec<u32>,
+    /// Welded vertex of each original vertex.
+    pub welded: Vec<u32>,
+}
+
+impl Welded {
+    /// Merges vertices nearer to each other than a quarter of the mean edge around either.
+    ///
+    /// # Errors
+    /// [`MeshError`] if nothing is left after merging.
+    pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
+        let positions = mesh.positions();
+        let welded = representatives(positions, &merge_radii(mesh));
+        let mut number = vec![u32::MAX; positions.len()];
+        let mut source = Vec::new();
+        for (i, &w) in welded.iter().enumerate() {
+            if w as usize == i {
+                number[i] = source.len() as u32;
+                source.push(i as u32);
+            }
+        }
+        let welded: Vec<u32> = welded.iter().map(|&w| number[w as usize]).collect();
+        if source.len() == positions.len() {
+            return Ok(Welded {
+                mesh: mesh.clone(),
+                source,
+                welded,
+            });
+        }
+        let kept = source.iter().map(|&i| positions[i as usize]).collect();
+        let triangles = mesh
+            .triangles()
+            .iter()
+            .map(|t| t.map(|v| welded[v as usize]));
+        let triangles = triangles
+            .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
+            .collect();
+        Ok(Welded {
+            mesh: Mesh::new(kept, triangles)?,
+            source,
+            welded,
+        })
+    }
+
+    /// Number of original vertices that were merged into another.
+    pub fn merged(&self) -> usize {
+        self.welded.len() - self.source.len()
+    }
+}
+
+/// A quarter of the mean edge around every vertex, mm; 0 for loose ones.
+fn merge_radii(mesh: &Mesh) -> Vec<f64> {
+    let positions = mesh.positions();
+    let mut sums = vec![(0.0, 0u32); positions.len()];
+    for [a, b] in mesh.edges() {
+        let length = (positions[a as usize] - positions[b as usize]).norm();
+        for end in [a, b] {
+            let sum = &mut sums[end as usize];
+            *sum = (sum.0 + length, sum.1 + 1);
+        }
+    }
+    sums.iter()
+        .map(|(sum, count)| MERGE_SHARE * sum / f64::from((*count).max(1)))
+        .collect()
+}
+
+/// For each point, the lowest earlier point within both points' radius that stands for itself, or the point itself.
+fn representatives(points: &[Vec3], radius: &[f64]) -> Vec<u32> {
+    let widest = radius.iter().fold(0.0, |most, r| f64::max(most, *r));
+    if widest <= 0.0 {
+        return (0..points.len() as u32).collect();
+    }
+    let cell = |p: &Vec3| [p.x, p.y, p.z].map(|c| (c / widest).floor() as i64);
+    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(points.len());
+    let mut found = Vec::with_capacity(points.len());
+    for (i, p) in points.iter().enumerate() {
+        let home = cell(p);
+        let mut best: Option<u32> = None;
+        for offset in 0..27 {
+            let near = [
+                home[0] + offset % 3 - 1,
+                home[1] + offset / 3 % 3 - 1,
+                home[2] + offset / 9 - 1,
+            ];
+            for &other in cells.get(&near).map_or(&[][..], Vec::as_slice) {
+                if (points[other as usize] - p).norm() < radius[i].min(radius[other as usize]) {
+                    best = Some(best.map_or(other, |b| b.min(other)));
+                }
+            }
+        }
+        if best.is_none() {
+            cells.entry(home).or_default().push(i as u32);
+        }
+        found.push(best.unwrap_or(i as u32));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_seam_is_closed_and_distinct_vertices_stay() {
+        let p = |x: f64, y: f64| Vec3::new(x, y, 0.0);
+        let positions = vec![
+            p(0.0, 0.0),
+            p(1.0, 0.0),
+            p(0.0, 1.0),
+            p(1.0, 1e-9),
+            p(0.0, 1.0),
+            p(1.0, 1.0),
+        ];
+        let mesh = Mesh::new(positions, vec![[0, 1, 2], [3, 5, 4]]).unwrap();
+        let welded = Welded::new(&mesh).unwrap();
+        assert_eq!(welded.merged(), 2);
+        assert_eq!(welded.welded, [0, 1, 2, 1, 2, 3]);
+        assert_eq!(welded.mesh.triangles(), [[0, 1, 2], [1, 3, 2]]);
+    }
+}

@@ -1,0 +1,152 @@
+//! Stages 1 and 2: which sites penetrate, how deep each region is pressed, and which sites may come to touch.
+
+use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
+
+use crate::skin::Skin;
+use crate::{ContactError, Material, Model};
+
+/// Reach of the distance query outside the product, mm.
+pub const CUT_OFF: f64 = 8.0;
+/// Penetration beyond which no soft tissue of a hand can yield, mm.
+pub const MOST_DEPTH: f64 = 20.0;
+/// Power of thickness with which stiffness falls near that depth.
+const ESCAPE_POWER: f64 = 1.5;
+/// Least thickness in vertex spacings for which a vertex still yields to its own force (0.34 in theory).
+const COARSEST_SHARE: f64 = 0.4;
+/// Share of the largest penetration that a bulge may rise into the product (0.2 measured at most; see physics tests).
+const BULGE_SHARE: f64 = 0.25;
+/// Largest penetration over thickness for which the bonded layer's kernel is used as it is.
+pub const KERNEL_LIMIT: f64 = 0.5;
+
+/// The skin in one posture beside one product.
+pub struct Detection {
+    /// Posed positions of the welded vertices, mm, in the product's frame.
+    pub positions: Vec<Vec3>,
+    /// Posed outward normals.
+    pub normals: Vec<Vec3>,
+    /// Signed distance and closest point, by welded vertex.
+    pub gaps: Vec<Option<Gap>>,
+    /// Largest penetration, by region, mm.
+    pub max_penetration: Vec<f64>,
+}
+
+impl Detection {
+    /// Largest penetration of any region, mm.
+    pub fn deepest(&self) -> f64 {
+        self.max_penetration
+            .iter()
+            .fold(0.0, |most, d| f64::max(most, *d))
+    }
+}
+
+/// Reach and depth of every distance query.
+pub fn limits() -> GapLimits {
+    GapLimits {
+        cut_off_mm: CUT_OFF,
+        max_depth_mm: 2.0 * MOST_DEPTH,
+    }
+}
+
+/// Measures the gaps of a posed mesh to a product that was moved by `shift` (mm).
+///
+/// # Errors
+/// [`ContactError::Swallowed`] if skin lies deeper than any tissue yields.
+pub fn detect(
+    skin: &Skin,
+    posed: &Mesh,
+    product: &Product,
+    shift: Vec3,
+) -> Result<Detection, ContactError> {
+    let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
+    let normals = vertex_normals(posed);
+    let mut gaps = if skin.memory.triangle.len() == positions.len() {
+        product.gaps_near(&positions, Some(&normals), limits(), &skin.memory.triangle)
+    } else {
+        product.gaps(&positions, Some(&normals), limits())
+    };
+    // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
+    for (gap, position) in gaps.iter_mut().zip(&positions) {
+        if gap.as_ref().is_some_and(|g| -g.distance > MOST_DEPTH) {
+            *gap = product.gap(*position, None, limits());
+        }
+    }
+    let mut max_penetration = vec![0.0f64; skin.materials.len()];
+    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+        let (region, Some(gap)) = (skin.sites.region[site], &gaps[vertex as usize]) else {
+            continue;
+        };
+        if region < 0 {
+            continue;
+        }
+        if -gap.distance > MOST_DEPTH {
+            let vertex = skin.welded.source[vertex as usize] as usize;
+            return Err(ContactError::Swallowed {
+                vertex,
+                depth_mm: -gap.distance,
+                limit_mm: MOST_DEPTH,
+            });
+        }
+        let most = &mut max_penetration[region as usize];
+        *most = most.max(-gap.distance);
+    }
+    Ok(Detection {
+        positions,
+        normals,
+        gaps,
+        max_penetration,
+    })
+}
+
+/// Sites that may touch: skin that penetrates or may be lifted into the product, ascending.
+pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
+    let margin = match skin.model {
+        Model::Paper => 0.0,
+        Model::Layer => BULGE_SHARE * detection.deepest(),
+    };
+    let may_touch = |site: &u32| {
+        let site = *site as usize;
+        let gap = &detection.gaps[skin.sites.vertex[site] as usize];
+        skin.sites.is_skin(site) && gap.as_ref().is_some_and(|g| g.distance < margin)
+    };
+    if detection.deepest() <= 0.0 {
+        return Vec::new();
+    }
+    (0..skin.sites.len() as u32).filter(may_touch).collect()
+}
+
+/// Refuses to press skin whose vertices are too far apart for a layer so thin: one would answer its own force the wrong way.
+///
+/// # Errors
+/// [`ContactError::TooCoarse`] naming the first such vertex.
+pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
+    for &site in zone.iter().filter(|_| skin.model == Model::Layer) {
+        let region = skin.sites.region[site as usize];
+        let spacing_mm = (skin.sites.area[site as usize] * 2.0 / 3f64.sqrt()).sqrt();
+        let thickness_mm = skin.materials[region as usize].thickness_mm;
+        if thickness_mm < COARSEST_SHARE * spacing_mm {
+            let vertex = skin.welded.source[skin.sites.vertex[site as usize] as usize] as usize;
+            return Err(ContactError::TooCoarse {
+                region,
+                vertex,
+                spacing_mm,
+                thickness_mm,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Share of the small-strain stiffness that a region keeps when pressed to `depth` (mm); 1 up to half its thickness.
+///
+/// Beyond, free sides and a receding bone let the tissue escape as a thicker layer would. A pad on a layer needs a force
+/// that falls as the 1.5th power of thickness near these depths (fingertip of radius 8 mm at 4 mm: 6.25 times the half
+/// space's on 5 mm, 3.67 times on 7.1 mm), so the stiffness is that of a layer which is twice as thick as the press is deep.
+/// The response keeps its shape, stays definite, and force keeps growing with depth.
+pub fn kept_stiffness(material: &Material, depth: f64) -> f64 {
+    let excess = depth / (KERNEL_LIMIT * material.thickness_mm);
+    if excess > 1.0 {
+        excess.powf(-ESCAPE_POWER)
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,146 @@
+//! `thenar.Contact`: the result of a press as numpy arrays and records.
+
+use crate::arrays::{column, rows, triple};
+use crate::record::record;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use thenar_contact::RegionResult;
+
+/// The result of a press. Arrays over vertices are in the order of the skin's vertices.
+#[pyclass(frozen, get_all, module = "thenar")]
+pub struct Contact {
+    /// (n, 3), mm, to be added to the posed positions.
+    displacement_mm: Py<PyAny>,
+    /// (n,), MPa.
+    pressure_mpa: Py<PyAny>,
+    /// (n,), N, normal force per vertex.
+    force_n: Py<PyAny>,
+    /// (n,), mm, signed distance before deformation, inf beyond reach.
+    gap_mm: Py<PyAny>,
+    /// (n,), bool.
+    in_contact: Py<PyAny>,
+    /// (n, 3), the product's outward normal where the vertex touches, else zero.
+    product_normal: Py<PyAny>,
+    /// (3,), N, on the product.
+    total_force_n: Py<PyAny>,
+    /// (3,), N mm, of that force about the origin.
+    total_moment_nmm: Py<PyAny>,
+    /// (3,), mm.
+    center_of_pressure_mm: Py<PyAny>,
+    contact_area_mm2: f64,
+    peak_pressure_mpa: f64,
+    mean_pressure_mpa: f64,
+    /// Largest mean pressure over 24 mm2, a mat's sensel.
+    patch_peak_mpa: f64,
+    /// A record per region: index, name, force_n, area_mm2, peak_mpa, mean_mpa, dmax_mm, g_mpa.
+    regions: Py<PyAny>,
+    /// (k,), MPa, one per product vertex, force conserving.
+    product_pressure_mpa: Py<PyAny>,
+    /// Travel of the product along `direction`, mm.
+    offset_mm: f64,
+    /// (3,), direction of travel, or of the mean normal force without force control.
+    direction: Py<PyAny>,
+    /// A record: complementarity, penetration_mm, load_balance.
+    residual: Py<PyAny>,
+    /// A record: has_converged, passes, pivots, cg_steps.
+    convergence: Py<PyAny>,
+    /// Sentences for the user.
+    warnings: Py<PyAny>,
+    /// A record of wall time by stage, s.
+    seconds: Py<PyAny>,
+}
+
+impl Contact {
+    /// Moves the result into Python; `names` is empty or has one name per region.
+    pub fn new(
+        py: Python<'_>,
+        contact: thenar_contact::Contact,
+        names: &[String],
+    ) -> PyResult<Contact> {
+        let regions: Vec<_> = contact
+            .regions
+            .iter()
+            .map(|region| region_record(py, region, names))
+            .collect::<PyResult<_>>()?;
+        let seconds = PyDict::new(py);
+        for (stage, time) in &contact.seconds {
+            seconds.set_item(stage, time)?;
+        }
+        Ok(Contact {
+            displacement_mm: rows(py, &contact.displacement)?,
+            pressure_mpa: column(py, contact.pressure),
+            in_contact: column(
+                py,
+                contact
+                    .nodal_force
+                    .iter()
+                    .map(|force| *force > 0.0)
+                    .collect(),
+            ),
+            force_n: column(py, contact.nodal_force),
+            gap_mm: column(py, contact.gap),
+            product_normal: rows(py, &contact.normal)?,
+            total_force_n: triple(py, contact.total_force),
+            total_moment_nmm: triple(py, contact.total_moment),
+            center_of_pressure_mm: triple(py, contact.center_of_pressure),
+            contact_area_mm2: contact.contact_area,
+            peak_pressure_mpa: contact.peak_pressure,
+            mean_pressure_mpa: contact.mean_pressure,
+            patch_peak_mpa: contact.patch_peak,
+            regions: PyList::new(py, regions)?.into_any().unbind(),
+            product_pressure_mpa: column(py, contact.product_pressure),
+            offset_mm: contact.offset,
+            direction: triple(py, contact.direction),
+            residual: residual_record(py, &contact.residual)?,
+            convergence: convergence_record(py, &contact.convergence)?,
+            warnings: PyList::new(py, contact.warnings)?.into_any().unbind(),
+            seconds: record(seconds)?,
+        })
+    }
+}
+
+#[pymethods]
+impl Contact {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let force: [f64; 3] = self.total_force_n.extract(py)?;
+        let newton = force.iter().map(|part| part * part).sum::<f64>().sqrt();
+        Ok(format!(
+            "<thenar.Contact: {newton:.3} N on {:.1} mm2, peak {:.1} kPa>",
+            self.contact_area_mm2,
+            1e3 * self.peak_pressure_mpa
+        ))
+    }
+}
+
+fn region_record(py: Python<'_>, region: &RegionResult, names: &[String]) -> PyResult<Py<PyAny>> {
+    let entries = PyDict::new(py);
+    entries.set_item("index", region.index)?;
+    entries.set_item("name", names.get(region.index))?;
+    entries.set_item("force_n", region.force)?;
+    entries.set_item("area_mm2", region.area)?;
+    entries.set_item("peak_mpa", region.peak)?;
+    entries.set_item("mean_mpa", region.mean)?;
+    entries.set_item("dmax_mm", region.max_penetration)?;
+    entries.set_item("g_mpa", region.shear_modulus)?;
+    record(entries)
+}
+
+fn residual_record(py: Python<'_>, residual: &thenar_contact::Residual) -> PyResult<Py<PyAny>> {
+    let entries = PyDict::new(py);
+    entries.set_item("complementarity", residual.complementarity)?;
+    entries.set_item("penetration_mm", residual.penetration_mm)?;
+    entries.set_item("load_balance", residual.load_balance)?;
+    record(entries)
+}
+
+fn convergence_record(
+    py: Python<'_>,
+    convergence: &thenar_contact::Convergence,
+) -> PyResult<Py<PyAny>> {
+    let entries = PyDict::new(py);
+    entries.set_item("has_converged", convergence.has_converged)?;
+    entries.set_item("passes", convergence.passes)?;
+    entries.set_item("pivots", convergence.pivots)?;
+    entries.set_item("cg_steps", convergence.cg_steps)?;
+    record(entries)
+}

@@ -1,0 +1,127 @@
+//! The one error table: which Rust error becomes which Python exception.
+
+use pyo3::create_exception;
+use pyo3::exceptions::PyException;
+use pyo3::prelude::*;
+use thenar_contact::ContactError;
+use thenar_hand::HandError;
+use thenar_surface::MeshError as MeshFault;
+
+create_exception!(
+    thenar,
+    ThenarError,
+    PyException,
+    "Anything that thenar refuses; the message says what, where, and the remedy."
+);
+create_exception!(
+    thenar,
+    MeshError,
+    ThenarError,
+    "A mesh, or an array that belongs to one, cannot be used."
+);
+create_exception!(
+    thenar,
+    MaterialError,
+    ThenarError,
+    "A material number is not admissible, or a region has no material."
+);
+create_exception!(
+    thenar,
+    SolveError,
+    ThenarError,
+    "A press was asked for something it cannot do, or failed inside."
+);
+create_exception!(
+    thenar,
+    RecordingError,
+    ThenarError,
+    "A recording or study file cannot be used."
+);
+create_exception!(thenar, Cancelled, ThenarError, "The caller asked to stop.");
+
+/// What an argument belongs to, and with it the exception its faults raise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Topic {
+    Mesh,
+    Material,
+    Solve,
+}
+
+impl Topic {
+    /// The exception for a fault in an argument of this topic.
+    pub fn error(self, message: String) -> PyErr {
+        match self {
+            Topic::Mesh => MeshError::new_err(message),
+            Topic::Material => MaterialError::new_err(message),
+            Topic::Solve => SolveError::new_err(message),
+        }
+    }
+}
+
+/// Why work in a thread ended without a result.
+#[derive(Debug)]
+pub enum Failure {
+    Contact(ContactError),
+    Mesh(MeshFault),
+    Hand(HandError),
+    Cancelled,
+    /// An earlier panic left the prepared skin half changed.
+    Spoiled,
+}
+
+impl From<ContactError> for Failure {
+    fn from(error: ContactError) -> Failure {
+        Failure::Contact(error)
+    }
+}
+
+impl From<MeshFault> for Failure {
+    fn from(error: MeshFault) -> Failure {
+        Failure::Mesh(error)
+    }
+}
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> PyErr {
+        match failure {
+            Failure::Contact(error) => from_contact(error),
+            Failure::Mesh(error) => MeshError::new_err(error.to_string()),
+            Failure::Hand(error) => MeshError::new_err(error.to_string()),
+            Failure::Cancelled => {
+                Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
+            }
+            Failure::Spoiled => SolveError::new_err(
+                "an earlier error inside thenar spoiled this skin; prepare it again",
+            ),
+        }
+    }
+}
+
+fn from_contact(error: ContactError) -> PyErr {
+    let message = error.to_string();
+    match error {
+        ContactError::Cancelled => Failure::Cancelled.into(),
+        ContactError::Hand(_)
+        | ContactError::Product(_)
+        | ContactError::RegionCount { .. }
+        | ContactError::NoSkin
+        | ContactError::TooCoarse { .. }
+        | ContactError::PosedCount { .. }
+        | ContactError::PosedNotFinite { .. } => MeshError::new_err(message),
+        ContactError::Material { .. } | ContactError::MissingMaterial { .. } => {
+            MaterialError::new_err(message)
+        }
+        _ => SolveError::new_err(message),
+    }
+}
+
+/// Adds every exception to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("ThenarError", py.get_type::<ThenarError>())?;
+    module.add("MeshError", py.get_type::<MeshError>())?;
+    module.add("MaterialError", py.get_type::<MaterialError>())?;
+    module.add("SolveError", py.get_type::<SolveError>())?;
+    module.add("RecordingError", py.get_type::<RecordingError>())?;
+    module.add("Cancelled", py.get_type::<Cancelled>())
+}

@@ -1,0 +1,36 @@
+//! The native Python module: exports, arrays, one error table. Knows no algorithm.
+
+mod errors;
+mod arrays;
+mod record;
+mod running;
+mod material;
+mod product;
+mod skin;
+mod contact;
+mod hand;
+mod complementarity;
+mod about;
+
+use pyo3::prelude::*;
+
+/// Contact of soft skin with products: forces, pressures and shapes, in mm, N, MPa and s.
+#[pymodule]
+fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    running::keep_panics_off_the_terminal();
+    errors::register(module)?;
+    record::register(module)?;
+    module.add_class::<material::Material>()?;
+    module.add_class::<product::Product>()?;
+    module.add_class::<skin::Skin>()?;
+    module.add_class::<contact::Contact>()?;
+    module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
+    module.add_function(wrap_pyfunction!(
+        complementarity::solve_complementarity,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
+    module.add_function(wrap_pyfunction!(about::build_info, module)?)?;
+    module.add_function(wrap_pyfunction!(running::_panic, module)?)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))
+}

@@ -1,0 +1,43 @@
+//! A record: a dict whose entries are attributes too.
+
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyType};
+
+/// A subclass of a builtin needs Python 3.12 in the stable ABI, so the class is made by Python itself.
+const SOURCE: &std::ffi::CStr = c"
+class Record(dict):
+    'A dict whose entries are attributes too: record.force_n is record[\"force_n\"].'
+    __slots__ = ()
+    def __getattr__(self, name):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f'this record has no {name!r}; it has ' + ', '.join(map(str, self))) from None
+    def __dir__(self):
+        return [*super().__dir__(), *self]
+    def __repr__(self):
+        return 'Record(' + ', '.join(f'{name}={value!r}' for name, value in self.items()) + ')'
+Record.__module__ = 'thenar'
+";
+
+static RECORD: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+
+fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
+    RECORD
+        .get_or_try_init(py, || {
+            let module = PyModule::from_code(py, SOURCE, c"thenar_record.py", c"thenar_record")?;
+            Ok(module.getattr("Record")?.cast_into::<PyType>()?.unbind())
+        })
+        .map(|class| class.bind(py))
+}
+
+/// Adds the class `Record` to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("Record", class(module.py())?)
+}
+
+/// A record with these entries.
+pub fn record(entries: Bound<'_, PyDict>) -> PyResult<Py<PyAny>> {
+    Ok(class(entries.py())?.call1((entries,))?.unbind())
+}

@@ -1,0 +1,233 @@
+"""Contact of soft skin with products: forces, pressures and shapes, in mm, N, MPa and s."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, Protocol, Self, TypeAlias, TypedDict, final, overload, type_check_only
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Floats: TypeAlias = NDArray[np.float64]
+
+@type_check_only
+class _IsSet(Protocol):
+    def is_set(self) -> bool: ...
+
+_Cancel: TypeAlias = Callable[[], bool] | _IsSet
+_Progress: TypeAlias = Callable[[str, float], object]
+
+class ThenarError(Exception):
+    """Anything that thenar refuses; the message says what, where, and the remedy."""
+
+class MeshError(ThenarError):
+    """A mesh, or an array that belongs to one, cannot be used."""
+
+class MaterialError(ThenarError):
+    """A material number is not admissible, or a region has no material."""
+
+class SolveError(ThenarError):
+    """A press was asked for something it cannot do, or failed inside."""
+
+class RecordingError(ThenarError):
+    """A recording or study file cannot be used."""
+
+class Cancelled(ThenarError):
+    """The caller asked to stop."""
+
+class Record(dict[str, Any]):
+    """A dict whose entries are attributes too."""
+
+    def __getattr__(self, name: str) -> Any: ...
+
+@final
+class Material:
+    """Soft tissue of one region; numbers not given take the defaults of `parameters()`. Raises `MaterialError`."""
+
+    def __new__(
+        cls,
+        *,
+        g0_mpa: float | None = None,
+        g_lim_mpa: float | None = None,
+        d_lim_mm: float | None = None,
+        thickness_mm: float | None = None,
+        poisson_ratio: float | None = None,
+        zone_mm: float | None = None,
+        swelling: tuple[float, float, float] | None = None,
+        swelling_height_mm_per_n: float | None = None,
+        swelling_radius_mm: float | None = None,
+        swelling_width_mm: float | None = None,
+    ) -> Self: ...
+    @staticmethod
+    def finger() -> Material: ...
+    @staticmethod
+    def palm() -> Material: ...
+    @staticmethod
+    def finger_layer() -> Material: ...
+    @staticmethod
+    def palm_layer() -> Material: ...
+    def replace(self, **numbers: float | tuple[float, float, float]) -> Material: ...
+    @property
+    def g0_mpa(self) -> float: ...
+    @property
+    def g_lim_mpa(self) -> float: ...
+    @property
+    def d_lim_mm(self) -> float: ...
+    @property
+    def thickness_mm(self) -> float: ...
+    @property
+    def poisson_ratio(self) -> float: ...
+    @property
+    def zone_mm(self) -> float: ...
+    @property
+    def swelling(self) -> tuple[float, float, float]: ...
+    @property
+    def swelling_height_mm_per_n(self) -> float: ...
+    @property
+    def swelling_radius_mm(self) -> float: ...
+    @property
+    def swelling_width_mm(self) -> float: ...
+
+@type_check_only
+class _Gaps(TypedDict):
+    gap_mm: _Floats
+    closest_mm: _Floats
+    normal: _Floats
+    triangle: NDArray[np.int64]
+
+@final
+class Product:
+    """A mesh prepared once for many presses and distance queries: vertices (n, 3) mm, triangles (m, 3)."""
+
+    def __new__(cls, vertices_mm: ArrayLike, triangles: ArrayLike) -> Self: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def vertex_count(self) -> int: ...
+    @property
+    def triangle_count(self) -> int: ...
+    def gap_mm(
+        self,
+        points_mm: ArrayLike,
+        skin_normals: ArrayLike | None = None,
+        cut_off_mm: float | None = None,
+        max_depth_mm: float | None = None,
+        *,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+    ) -> _Gaps: ...
+
+@final
+class Skin:
+    """A hand prepared once and pressed in any posture: vertices (n, 3) mm, triangles (m, 3), regions (n,) or None."""
+
+    def __new__(
+        cls,
+        vertices_mm: ArrayLike,
+        triangles: ArrayLike,
+        regions: ArrayLike | None = None,
+        materials: Material | Sequence[Material] | Mapping[int | str, Material] | None = None,
+        model: Literal["layer", "paper"] = "layer",
+        *,
+        region_names: Sequence[str] | None = None,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+    ) -> Self: ...
+    @property
+    def model(self) -> Literal["layer", "paper"]: ...
+    @property
+    def vertex_count(self) -> int: ...
+    @property
+    def materials(self) -> list[Material]: ...
+    @property
+    def region_names(self) -> list[str]: ...
+    @overload
+    def press(
+        self,
+        product_vertices_mm: Product,
+        product_triangles: None = None,
+        posed_vertices_mm: ArrayLike | None = None,
+        force_n: float | None = None,
+        direction: ArrayLike | None = None,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+        *,
+        warm_start: bool = False,
+    ) -> Contact: ...
+    @overload
+    def press(
+        self,
+        product_vertices_mm: ArrayLike,
+        product_triangles: ArrayLike,
+        posed_vertices_mm: ArrayLike | None = None,
+        force_n: float | None = None,
+        direction: ArrayLike | None = None,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+        *,
+        warm_start: bool = False,
+    ) -> Contact: ...
+
+@final
+class Contact:
+    """The result of a press; arrays over vertices are in the order of the skin's vertices."""
+
+    @property
+    def displacement_mm(self) -> _Floats: ...
+    @property
+    def pressure_mpa(self) -> _Floats: ...
+    @property
+    def force_n(self) -> _Floats: ...
+    @property
+    def gap_mm(self) -> _Floats: ...
+    @property
+    def in_contact(self) -> NDArray[np.bool_]: ...
+    @property
+    def product_normal(self) -> _Floats: ...
+    @property
+    def total_force_n(self) -> _Floats: ...
+    @property
+    def total_moment_nmm(self) -> _Floats: ...
+    @property
+    def center_of_pressure_mm(self) -> _Floats: ...
+    @property
+    def contact_area_mm2(self) -> float: ...
+    @property
+    def peak_pressure_mpa(self) -> float: ...
+    @property
+    def mean_pressure_mpa(self) -> float: ...
+    @property
+    def patch_peak_mpa(self) -> float: ...
+    @property
+    def regions(self) -> list[Record]: ...
+    @property
+    def product_pressure_mpa(self) -> _Floats: ...
+    @property
+    def offset_mm(self) -> float: ...
+    @property
+    def direction(self) -> _Floats: ...
+    @property
+    def residual(self) -> Record: ...
+    @property
+    def convergence(self) -> Record: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    @property
+    def seconds(self) -> Record: ...
+
+def hand(
+    length_mm: float | None = None,
+    breadth_mm: float | None = None,
+    percentile: float | None = None,
+    sex: Literal["male", "female"] = "male",
+    side: Literal["right", "left"] = "right",
+    spacing_mm: float | None = None,
+    *,
+    cancel: _Cancel | None = None,
+) -> Record: ...
+def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float64]: ...
+def parameters() -> list[Record]:
+    """The table of material numbers: name, symbol, unit, default, low, high, meaning, source."""
+
+def build_info() -> Record:
+    """Version, target, profile, abi and threads of the native module."""

@@ -1,0 +1,93 @@
+//! A fault inside a mesh file before the file's name is known to it.
+
+use crate::RecordingError;
+use std::path::Path;
+
+/// Where in a file a fault lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Place {
+    File,
+    Line(usize),
+    Byte(usize),
+}
+
+/// What is wrong, where, and what to do about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    place: Place,
+    problem: String,
+    remedy: &'static str,
+}
+
+impl Fault {
+    pub fn file(problem: String, remedy: &'static str) -> Fault {
+        Fault::at(Place::File, problem, remedy)
+    }
+
+    pub fn line(line: usize, problem: String, remedy: &'static str) -> Fault {
+        Fault::at(Place::Line(line), problem, remedy)
+    }
+
+    pub fn at(place: Place, problem: String, remedy: &'static str) -> Fault {
+        Fault {
+            place,
+            problem,
+            remedy,
+        }
+    }
+
+    pub fn in_file(self, file: &Path) -> RecordingError {
+        let (file, problem, remedy) = (file.to_path_buf(), self.problem, self.remedy);
+        match self.place {
+            Place::File => RecordingError::File {
+                file,
+                problem,
+                remedy,
+            },
+            Place::Line(line) => RecordingError::Line {
+                file,
+                line,
+                problem,
+                remedy,
+            },
+            Place::Byte(byte) => RecordingError::Byte {
+                file,
+                byte,
+                problem,
+                remedy,
+            },
+        }
+    }
+}
+
+/// A word of a file as it may stand in a message: readable and short.
+pub(super) fn shown(word: &[u8]) -> String {
+    let text: String = String::from_utf8_lossy(word)
+        .chars()
+        .take(24)
+        .map(|c| if c.is_control() { '?' } else { c })
+        .collect();
+    if word.len() > 24 {
+        format!("'{text}...'")
+    } else {
+        format!("'{text}'")
+    }
+}
+
+/// A finite number, or what is wrong with it.
+pub(super) fn number(word: &[u8]) -> Result<f64, String> {
+    let value = std::str::from_utf8(word)
+        .ok()
+        .and_then(|text| text.parse::<f64>().ok());
+    match value {
+        None => Err(format!("{} is not a number", shown(word))),
+        Some(value) if !value.is_finite() => Err(format!("{} is not a finite number", shown(word))),
+        Some(value) => Ok(value),
+    }
+}
+
+/// Words of a line, split at blanks.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(|byte| byte.is_ascii_whitespace())
+        .filter(|word| !word.is_empty())
+}

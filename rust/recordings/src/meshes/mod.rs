@@ -1,0 +1,114 @@
+//! Mesh files (OBJ, PLY, STL) to vertices and triangles; knows nothing of units: numbers come out as written.
+
+mod fault;
+mod obj;
+mod ply;
+mod ply_header;
+mod ply_values;
+mod stl;
+mod weld;
+
+use crate::RecordingError;
+use fault::Fault;
+use nalgebra::Vector3;
+use std::path::Path;
+
+/// Largest mesh file that is read, bytes. A 500,000-triangle ASCII STL is about 130 MB.
+pub const LARGEST_FILE: u64 = 2 << 30;
+
+/// What a mesh file holds, in its own unit and its own vertex order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MeshFile {
+    /// Vertex positions, finite. Equal corners of an STL are one vertex, in order of first appearance.
+    pub positions: Vec<Vector3<f64>>,
+    /// Triangles as vertex numbers from 0, all in range; larger faces are cut into fans.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The mesh formats that can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Polygon file format, ASCII or binary of either byte order.
+    Ply,
+    /// Stereolithography, ASCII or binary.
+    Stl,
+}
+
+impl Format {
+    /// The format that a file name's ending says.
+    pub fn of(file: &Path) -> Option<Format> {
+        match file.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "obj" => Some(Format::Obj),
+            "ply" => Some(Format::Ply),
+            "stl" => Some(Format::Stl),
+            _ => None,
+        }
+    }
+}
+
+/// Reads a mesh file; the format follows from the name's ending.
+///
+/// # Errors
+/// [`RecordingError`] if the file cannot be read, is larger than [`LARGEST_FILE`], breaks its format, holds a number
+/// that is not finite, an index without a vertex, or no triangle.
+pub fn read(file: &Path) -> Result<MeshFile, RecordingError> {
+    let named = |fault: Fault| fault.in_file(file);
+    let Some(format) = Format::of(file) else {
+        let found = file
+            .extension()
+            .map_or("no ending".into(), |e| format!(".{}", e.display()));
+        let problem = format!("not a mesh format that is known ({found})");
+        return Err(named(Fault::file(problem, "save it as .obj, .ply or .stl")));
+    };
+    let unreadable = |source| RecordingError::Unreadable {
+        file: file.to_path_buf(),
+        source,
+    };
+    let size = std::fs::metadata(file).map_err(unreadable)?.len();
+    if size > LARGEST_FILE {
+        let problem = format!("{size} bytes are more than the {LARGEST_FILE} that are read");
+        return Err(named(Fault::file(problem, "decimate the mesh")));
+    }
+    let bytes = std::fs::read(file).map_err(unreadable)?;
+    parse(&bytes, format).map_err(named)
+}
+
+/// Reads a mesh from the bytes of a file that is called `file` in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_bytes(bytes: &[u8], format: Format, file: &Path) -> Result<MeshFile, RecordingError> {
+    parse(bytes, format).map_err(|fault| fault.in_file(file))
+}
+
+fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    let mesh = match format {
+        Format::Obj => obj::parse(bytes)?,
+        Format::Ply => ply::parse(bytes)?,
+        Format::Stl => stl::parse(bytes)?,
+    };
+    if mesh.positions.is_empty() {
+        return Err(Fault::file(
+            "it holds no vertices".into(),
+            "export the mesh again",
+        ));
+    }
+    if mesh.triangles.is_empty() {
+        return Err(Fault::file(
+            "it holds no faces".into(),
+            "export the surface, not a point cloud or curve",
+        ));
+    }
+    Ok(mesh)
+}
+
+impl MeshFile {
+    /// Adds a face of any number of corners as a fan around its first corner.
+    fn push_face(&mut self, corners: &[u32]) {
+        for pair in corners[1..].windows(2) {
+            self.triangles.push([corners[0], pair[0], pair[1]]);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! Wavefront OBJ: `v` and `f` lines; everything else (normals, groups, materials, curves) is passed over.
+
+use super::MeshFile;
+use super::fault::{Fault, number, shown, words};
+use nalgebra::Vector3;
+use std::borrow::Cow;
+
+const AGAIN: &str = "export the mesh again";
+
+/// Vertices with or without weight or colours; faces of three or more corners, with negative or positive indices.
+pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let mut mesh = MeshFile::default();
+    let mut corners = Vec::new();
+    let mut farthest = (0, 0);
+    for (line, text) in lines(bytes) {
+        let mut words = words(&text);
+        match words.next() {
+            Some(b"v") => mesh.positions.push(vertex(words, line)?),
+            Some(b"f") => {
+                corners.clear();
+                for word in words {
+                    corners.push(
+                        corner(word, mesh.positions.len())
+                            .map_err(|problem| Fault::line(line, problem, AGAIN))?,
+                    );
+                }
+                if corners.len() < 3 {
+                    let problem =
+                        format!("a face with {} corners, expected 3 or more", corners.len());
+                    return Err(Fault::line(
+                        line,
+                        problem,
+                        "delete loose edges and export again",
+                    ));
+                }
+                let last = corners.iter().copied().max().unwrap_or(0);
+                farthest = farthest.max((last, line));
+                mesh.push_face(&corners);
+            }
+            _ => {}
+        }
+    }
+    let (last, line) = farthest;
+    if !mesh.triangles.is_empty() && last as usize >= mesh.positions.len() {
+        let problem = format!(
+            "a face uses vertex {}, the file has {}",
+            u64::from(last) + 1,
+            mesh.positions.len()
+        );
+        return Err(Fault::line(line, problem, AGAIN));
+    }
+    Ok(mesh)
+}
+
+/// Numbered lines (from 1) with comments cut off and lines that end in a backslash joined.
+fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
+    let mut physical = bytes.split(|&byte| byte == b'\n').zip(1..);
+    std::iter::from_fn(move || {
+        let (text, line) = physical.next()?;
+        let mut text = Cow::Borrowed(content(text));
+        while let Some(open) = text.strip_suffix(b"\\") {
+            let mut joined = open.to_vec();
+            joined.push(b' ');
+            joined.extend_from_slice(physical.next().map_or(&[][..], |(next, _)| content(next)));
+            text = Cow::Owned(joined);
+        }
+        Some((line, text))
+    })
+}
+
+fn content(line: &[u8]) -> &[u8] {
+    line.split(|&byte| byte == b'#')
+        .next()
+        .unwrap_or(line)
+        .trim_ascii_end()
+}
+
+fn vertex<'a>(
+    mut words: impl Iterator<Item = &'a [u8]>,
+    line: usize,
+) -> Result<Vector3<f64>, Fault> {
+    let mut position = Vector3::zeros();
+    for axis in 0..3 {
+        let Some(word) = words.next() else {
+            return Err(Fault::line(
+                line,
+                format!("a vertex with {axis} coordinates, expected 3"),
+                AGAIN,
+            ));
+        };
+        position[axis] = number(word).map_err(|problem| {
+            Fault::line(line, problem, "give every vertex finite coordinates")
+        })?;
+    }
+    Ok(position)
+}
+
+/// Vertex number from 0 of one corner (`7`, `7/1`, `7//3`, `-2/...`), `seen` vertices having been read.
+fn corner(word: &[u8], seen: usize) -> Result<u32, String> {
+    let first = word.split(|&byte| byte == b'/').next().unwrap_or(word);
+    let index = std::str::from_utf8(first)
+        .ok()
+        .and_then(|text| text.parse::<i64>().ok());
+    let Some(index) = index else {
+        return Err(format!("{} is not a vertex number", shown(word)));
+    };
+    let from_zero = match index {
+        0 => return Err("a face uses vertex 0, OBJ counts from 1".into()),
+        1.. => index - 1,
+        _ => seen as i64 + index,
+    };
+    u32::try_from(from_zero)
+        .ok()
+        .filter(|&index| index != u32::MAX)
+        .ok_or_else(|| format!("a face uses vertex {index}, {seen} were read before it"))
+}

@@ -1,0 +1,257 @@
+//! Mesh files: what the formats allow is read, what they forbid is refused by name, place and remedy.
+#![allow(clippy::unwrap_used)]
+
+mod samples;
+
+use std::path::Path;
+use thenar_recordings::meshes::read;
+
+use samples::*;
+
+#[test]
+fn obj_quads_colours_groups_and_negative_indices_give_the_same_square() {
+    let plain = "v 0 0 0\nv 2 0 0\nv 2 1 .5\nv 0 1 .5\nf 1 2 3 4\n";
+    let rich = "# made by hand\no palm\nv 0 0 0 1 0.5 0.2\r\nv 2 0 0 1 1 1\nv 2 1 5e-1\nvn 0 0 1\nvt 0 0\ng a b\nusemtl skin\n\
+                v 0 1 \\\n 0.5\nf -4/1/1 -3//1 -2/1 4 # last\n";
+    assert_eq!(obj(plain), Ok(square()));
+    assert_eq!(obj(rich), Ok(square()));
+}
+
+#[test]
+fn obj_faces_may_come_before_their_vertices() {
+    assert_eq!(
+        obj("f 1 2 3 4\nv 0 0 0\nv 2 0 0\nv 2 1 .5\nv 0 1 .5"),
+        Ok(square())
+    );
+}
+
+#[test]
+fn obj_faults_name_file_line_and_remedy() {
+    let three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    let cases = [
+        (
+            "v 0 0 0\nv 1 nan 0\n",
+            "a.obj, line 2: 'nan' is not a finite number; give",
+        ),
+        (
+            "v 1 1e999 0\n",
+            "a.obj, line 1: '1e999' is not a finite number",
+        ),
+        (
+            "v 1 2\n",
+            "a.obj, line 1: a vertex with 2 coordinates, expected 3; export",
+        ),
+        ("v 1 x 3\n", "a.obj, line 1: 'x' is not a number"),
+        (
+            &format!("{three}f 1 2 9\n"),
+            "a.obj, line 4: a face uses vertex 9, the file has 3; export",
+        ),
+        (
+            &format!("{three}f 1 2 -4\n"),
+            "a.obj, line 4: a face uses vertex -4, 3 were read before it",
+        ),
+        (
+            &format!("{three}f 0 1 2\n"),
+            "a.obj, line 4: a face uses vertex 0, OBJ counts from 1",
+        ),
+        (
+            &format!("{three}f 1 2\n"),
+            "a.obj, line 4: a face with 2 corners, expected 3 or more; delete",
+        ),
+        (
+            &format!("{three}f 1 2 b/1\n"),
+            "a.obj, line 4: 'b/1' is not a vertex number",
+        ),
+        (three, "a.obj: it holds no faces; export the surface"),
+        ("", "a.obj: it holds no vertices"),
+    ];
+    for (text, expected) in cases {
+        let message = obj(text).unwrap_err();
+        assert!(message.starts_with(expected), "{text:?} gave {message:?}");
+    }
+}
+
+#[test]
+fn ply_of_every_encoding_gives_the_same_square() {
+    assert_eq!(ply(ASCII_PLY.as_bytes()), Ok(square()));
+    assert_eq!(ply(&binary_ply(false)), Ok(square()));
+    assert_eq!(ply(&binary_ply(true)), Ok(square()));
+}
+
+#[test]
+fn ply_faults_name_file_place_and_remedy() {
+    let changed = |from: &str, to: &str| ply(ASCII_PLY.replace(from, to).as_bytes()).unwrap_err();
+    let cases = [
+        (
+            changed("ply\r", "plx\r"),
+            "a.ply, line 1: the file does not begin with 'ply'",
+        ),
+        (
+            changed("ascii", "utf8"),
+            "a.ply, line 2: 'utf8' is not a PLY format",
+        ),
+        (
+            changed("vertex 4", "vertex four"),
+            "a.ply, line 3: 'four' is not a count of elements",
+        ),
+        (
+            changed("float y", "float q"),
+            "a.ply, line 3: a vertex needs x, y and z, each once",
+        ),
+        (
+            changed("float y", "half y"),
+            "a.ply, line 5: 'half' is not a PLY type",
+        ),
+        (
+            changed("vertex 4", "vertex 4000000000"),
+            "a.ply, line 3: 4000000000 elements 'vertex' do not fit",
+        ),
+        (
+            changed("2 1 0.5", "2 inf 0.5"),
+            "a.ply, line 12: 'inf' is not a finite number",
+        ),
+        (
+            changed("4 0 1 2 3", "4 0 1 2 -3"),
+            "a.ply, line 14: -3 is not a count or vertex number",
+        ),
+        (
+            changed("4 0 1 2 3", "4 0 1 2 7"),
+            "a.ply: triangle 1 is [0, 2, 7], the file has 4 vertices",
+        ),
+        (
+            changed("4 0 1 2 3", "2 0 1"),
+            "a.ply, line 14: a face with 2 corners",
+        ),
+        (
+            changed("4 0 1 2 3", "4 0 1"),
+            "a.ply, line 15: the file ends before its last value",
+        ),
+        (
+            changed("end_header", "comment"),
+            "a.ply, line 10: '0' is not a word of a PLY header",
+        ),
+        (changed("face 1", "face 0"), "a.ply: it holds no faces"),
+        (
+            changed("element face", "element tristrips"),
+            "a.ply, line 7: triangle strips are not read; export faces",
+        ),
+    ];
+    for (message, expected) in cases {
+        assert!(
+            message.starts_with(expected),
+            "expected {expected:?}, got {message:?}"
+        );
+    }
+    let whole = binary_ply(false);
+    let cut = ply(&whole[..whole.len() - 6]).unwrap_err();
+    assert!(
+        cut.contains(", byte ") && cut.contains("cut short"),
+        "{cut}"
+    );
+    let mut not_a_number = whole.clone();
+    let start = not_a_number.len() - 4 - 17 - 7 - 4 * 17;
+    not_a_number[start + 1..start + 9].copy_from_slice(&f64::NAN.to_le_bytes());
+    let message = ply(&not_a_number).unwrap_err();
+    assert!(
+        message.contains(&format!("byte {}: vertex 0 is not finite", start + 1)),
+        "{message}"
+    );
+}
+
+#[test]
+fn an_element_without_properties_and_a_huge_count_does_not_hang() {
+    let text = ASCII_PLY.replace(
+        "element face",
+        "element nothing 18446744073709551615\r\nelement face",
+    );
+    assert_eq!(ply(text.as_bytes()), Ok(square()));
+}
+
+#[test]
+fn stl_of_both_kinds_welds_equal_corners() {
+    assert_eq!(stl(&binary_stl(&square())), Ok(square()));
+    assert_eq!(stl(ascii_stl(&square()).as_bytes()), Ok(square()));
+    let minus_zero = ascii_stl(&square()).replacen("vertex 0e0 0 0", "vertex -0.0 0 -0", 1);
+    assert_eq!(stl(minus_zero.as_bytes()).unwrap().positions.len(), 4);
+}
+
+#[test]
+fn stl_faults_name_file_place_and_remedy() {
+    let text = ascii_stl(&square());
+    let changed = |from: &str, to: &str| stl(text.replacen(from, to, 1).as_bytes()).unwrap_err();
+    let cases = [
+        (
+            changed("vertex 2e0 0 0", "vertex 2e0 nan 0"),
+            "a.stl, line 5: 'nan' is not a finite number",
+        ),
+        (
+            changed("vertex 2e0 0 0", "vertex 2e0 0"),
+            "a.stl, line 5: a corner with 2 coordinates",
+        ),
+        (
+            changed("      vertex 2e0 0 0\n", ""),
+            "a.stl, line 7: a facet with 2 corners, expected 3",
+        ),
+        (
+            changed("vertex", "vortex"),
+            "a.stl, line 4: 'vortex' is not a word of an STL facet",
+        ),
+        (
+            changed("  endfacet\n", ""),
+            "a.stl, line 8: a facet begins before the last one ended",
+        ),
+        (
+            stl(&text.as_bytes()[..text.len() - 40]).unwrap_err(),
+            "a.stl, line 9: a facet that does not end; the file is cut",
+        ),
+        (
+            stl(b"nothing").unwrap_err(),
+            "a.stl, byte 7: 7 bytes are too few for an STL file",
+        ),
+        (
+            stl(b"solid x\nendsolid x\n").unwrap_err(),
+            "a.stl: it holds no vertices",
+        ),
+    ];
+    for (message, expected) in cases {
+        assert!(
+            message.starts_with(expected),
+            "expected {expected:?}, got {message:?}"
+        );
+    }
+    let mut bytes = binary_stl(&square());
+    bytes[84 + 12..84 + 16].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    assert!(
+        stl(&bytes)
+            .unwrap_err()
+            .starts_with("a.stl, byte 96: corner 1 of triangle 0 is not finite")
+    );
+    bytes[0] = b'x';
+    bytes.pop();
+    assert!(
+        stl(&bytes)
+            .unwrap_err()
+            .starts_with("a.stl, byte 80: the header counts 2 triangles, the file has room for 1")
+    );
+}
+
+#[test]
+fn files_that_are_not_there_or_of_another_kind_are_named() {
+    let message = read(Path::new("/nowhere/hand.obj"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.starts_with("/nowhere/hand.obj: cannot be read (No such file"),
+        "{message}"
+    );
+    let message = read(Path::new("hand.fbx")).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "hand.fbx: not a mesh format that is known (.fbx); save it as .obj, .ply or .stl"
+    );
+    let message = read(Path::new("/tmp")).unwrap_err().to_string();
+    assert_eq!(
+        message,
+        "/tmp: not a mesh format that is known (no ending); save it as .obj, .ply or .stl"
+    );
+}

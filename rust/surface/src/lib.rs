@@ -1,0 +1,38 @@
+//! Meshes, regions, distances and the nearest triangle; knows nothing of forces.
+//!
+//! Lengths are in mm, areas in mm2, volumes in mm3, angles in radians. A [`Mesh`] is a checked triangle mesh, a [`Product`] a mesh prepared
+//! for signed-distance queries, a [`SkinDistance`] a coarse table of distances along a skin.
+// Boxes are arrays over axes and lanes; an index over both reads better than zipped iterators, and becomes vector code.
+#![allow(clippy::needless_range_loop)]
+
+mod adjacency;
+mod audit;
+mod crossings;
+mod edges;
+mod facing;
+mod vicinity;
+mod poke;
+mod interior;
+mod mesh;
+mod nearest;
+mod rays;
+mod normals;
+mod orient;
+mod patches;
+mod product;
+mod sign;
+mod paths;
+mod skin_distance;
+mod tree;
+mod leaf;
+mod triangle;
+mod winding;
+
+pub use adjacency::Adjacency;
+pub use audit::{Audit, connected_parts};
+pub use crossings::self_intersections;
+pub use mesh::{Mesh, MeshError, Vec3};
+pub use normals::{median_edge_length, vertex_areas, vertex_normals};
+pub use product::{Gap, GapLimits, Product};
+pub use skin_distance::SkinDistance;
+pub use triangle::{ClosestPoint, Feature, closest_point};

@@ -1,0 +1,57 @@
+//! Normals, areas and edge lengths of a mesh.
+
+use crate::mesh::{Mesh, Vec3};
+
+/// Unit normal at each vertex (n), the sum of the triangle normals weighted by the angle at the vertex (Thuermer & Wuethrich 1998).
+///
+/// Zero where no triangle with area meets. Degenerate and duplicated triangles are ignored.
+pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::zeros(); mesh.positions().len()];
+    for (vertices, corners) in mesh.sound_triangles() {
+        add_angle_weighted(&mut sums, vertices, corners);
+    }
+    for n in &mut sums {
+        *n = n.try_normalize(1e-12).unwrap_or_default();
+    }
+    sums
+}
+
+/// Adds the normal of one triangle to its vertices, weighted by the angle at each.
+pub(crate) fn add_angle_weighted(sums: &mut [Vec3], vertices: [u32; 3], corners: [Vec3; 3]) {
+    let [a, b, c] = corners;
+    let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else {
+        return;
+    };
+    for k in 0..3 {
+        let (u, v) = (
+            corners[(k + 1) % 3] - corners[k],
+            corners[(k + 2) % 3] - corners[k],
+        );
+        sums[vertices[k] as usize] += normal * u.cross(&v).norm().atan2(u.dot(&v));
+    }
+}
+
+/// Area of each vertex (n), mm2: a third of each triangle around it. Degenerate and duplicated triangles are ignored.
+pub fn vertex_areas(mesh: &Mesh) -> Vec<f64> {
+    let mut areas = vec![0.0; mesh.positions().len()];
+    for (vertices, [a, b, c]) in mesh.sound_triangles() {
+        let third = (b - a).cross(&(c - a)).norm() / 6.0;
+        vertices.iter().for_each(|&i| areas[i as usize] += third);
+    }
+    areas
+}
+
+/// Median length of the edges, mm (the upper one of two); 0 for a mesh whose triangles name one vertex only.
+pub fn median_edge_length(mesh: &Mesh) -> f64 {
+    let p = mesh.positions();
+    let mut lengths: Vec<f64> = mesh
+        .edges()
+        .iter()
+        .map(|&[a, b]| (p[a as usize] - p[b as usize]).norm())
+        .collect();
+    if lengths.is_empty() {
+        return 0.0;
+    }
+    let middle = lengths.len() / 2;
+    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
+}

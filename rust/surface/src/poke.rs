@@ -1,0 +1,165 @@
+//! Depth of skin that has come out on the far side of a thin wall.
+//!
+//! Such a vertex is outside, and faces away from the wall; so does the back of a finger whose pad presses the other side. What tells them
+//! apart is their neighborhood: walking over the skin from where it plainly touches or enters the wall, the depth grows steadily up to the
+//! vertex that has come out, while it would have to jump to reach the back. So a reading through the wall is accepted only if
+//! 1. the ray from the vertex into the finger meets the wall's far side, then its near side, within the deepest depth asked for, and
+//! 2. at least two neighbors, whose reading is settled, are pushed the same way and to a depth that differs by no more than the way between
+//!    (a signed distance grows by at most 1 mm a mm). Settled are readings found without this rule, and those it has accepted.
+//!
+//! What is accepted does not depend on the order of the vertices.
+
+use rayon::prelude::*;
+
+use crate::mesh::Vec3;
+use crate::nearest::Pending;
+use crate::product::{Gap, GapLimits, Product, Side};
+use crate::vicinity::Vicinity;
+
+/// Cosine between skin normal and the product's outward direction from which a point outside may have come through. Tests pass from 0.1 to 0.5.
+const FACING_AWAY: f64 = 0.3;
+
+/// Cosine from which two readings push the same way.
+const SAME_WAY: f64 = 0.5;
+
+/// Growth of depth, mm a mm, that neighbors may show; 1 in a smooth field, and some for the corners of a product.
+const STEEPEST: f64 = 1.1;
+
+/// Settled neighbors needed, so that no vertex is judged by one other alone.
+const WITNESSES: usize = 2;
+
+/// Points of one query, with the skin's normals.
+pub(crate) struct Skin<'a> {
+    pub points: &'a [Vec3],
+    pub normals: &'a [Vec3],
+}
+
+/// A point outside that may have come through, with what it would read: through a wall, and through a sheet without thickness.
+struct Candidate {
+    at: u32,
+    readings: [Option<Gap>; 2],
+}
+
+/// Replaces the readings of points that have come through a wall.
+pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &mut [Option<Gap>]) {
+    let faces_away = |(i, gap): (usize, &Option<Gap>)| {
+        let away = gap.filter(|g| g.distance > 0.0 && g.distance <= limits.max_depth_mm)?;
+        (away.normal.dot(&skin.normals[i]) > FACING_AWAY).then_some((i as u32, away))
+    };
+    let away: Vec<(u32, Gap)> = gaps.iter().enumerate().filter_map(faces_away).collect();
+    let read = |&(at, gap): &(u32, Gap)| {
+        let readings = product.readings_through(skin, at as usize, &gap, limits);
+        readings
+            .iter()
+            .any(Option::is_some)
+            .then_some(Candidate { at, readings })
+    };
+    let candidates: Vec<Candidate> = away.par_iter().filter_map(read).collect();
+    if candidates.is_empty() {
+        return;
+    }
+    let mut is_settled: Vec<bool> = gaps.iter().map(Option::is_some).collect();
+    candidates
+        .iter()
+        .for_each(|c| is_settled[c.at as usize] = false);
+    let seen: Vec<u32> = (0..gaps.len() as u32)
+        .filter(|&i| gaps[i as usize].is_some())
+        .collect();
+    let places: Vec<u32> = candidates.iter().map(|c| c.at).collect();
+    grow(
+        skin,
+        &candidates,
+        &Vicinity::new(skin.points, &seen, &places),
+        &mut is_settled,
+        gaps,
+    );
+}
+
+/// Accepts candidates next to settled points, until no more can be.
+fn grow(
+    skin: &Skin,
+    candidates: &[Candidate],
+    vicinity: &Vicinity,
+    is_settled: &mut [bool],
+    gaps: &mut [Option<Gap>],
+) {
+    let around = |c: &Candidate| {
+        let own = skin.normals[c.at as usize];
+        let mut near = vicinity.around(c.at);
+        near.retain(|&j| j != c.at && skin.normals[j as usize].dot(&own) > 0.0);
+        near
+    };
+    let neighbors: Vec<Vec<u32>> = candidates.par_iter().map(around).collect();
+    let mut pending: Vec<usize> = (0..candidates.len()).collect();
+    while !pending.is_empty() {
+        let before = pending.len();
+        pending.retain(|&k| {
+            let at = candidates[k].at as usize;
+            let continues = |reading: &Gap, j: u32| {
+                let other = gaps[j as usize].filter(|_| is_settled[j as usize]);
+                let apart = (skin.points[at] - skin.points[j as usize]).norm();
+                other.is_some_and(|g| {
+                    let grown = (g.distance - reading.distance).abs();
+                    g.normal.dot(&reading.normal) > SAME_WAY && grown <= STEEPEST * apart
+                })
+            };
+            let agreed = candidates[k].readings.iter().flatten().find(|reading| {
+                neighbors[k]
+                    .iter()
+                    .filter(|&&j| continues(reading, j))
+                    .take(WITNESSES)
+                    .count()
+                    == WITNESSES
+            });
+            if let Some(reading) = agreed {
+                gaps[at] = Some(*reading);
+                is_settled[at] = true;
+            }
+            agreed.is_none()
+        });
+        if pending.len() == before {
+            break;
+        }
+    }
+}
+
+impl Product {
+    /// What a point outside, whose plain gap is `gap`, would read if it had come through a wall, and if it had come through a sheet.
+    fn readings_through(
+        &self,
+        skin: &Skin,
+        at: usize,
+        gap: &Gap,
+        limits: GapLimits,
+    ) -> [Option<Gap>; 2] {
+        let (query, normal) = (self.tree.query(skin.points[at]), skin.normals[at]);
+        let mut pending = Pending::default();
+        let crossings =
+            self.tree
+                .crossings(query.point, -normal, limits.max_depth_mm, &mut pending);
+        let away = |slot: u32| self.tree.faces[slot as usize].normal.dot(&normal);
+        let entry = crossings.iter().find(|(_, slot)| away(*slot) < 0.0);
+        let comes_through = crossings.first().is_some_and(|(_, slot)| away(*slot) > 0.0);
+        let wall = entry.filter(|_| comes_through).and_then(|&(reach, _)| {
+            // The near side of the wall: faces that oppose the skin and have the point behind them.
+            let hit = self.tree.nearest(
+                &query,
+                reach * reach * (1.0 + 1e-9),
+                &mut pending,
+                |face, _| {
+                    let is_near_side = face.normal.dot(&normal) < 0.0
+                        && (query.point - face.a).dot(&face.normal) < 0.0;
+                    if is_near_side { 1.0 } else { f64::INFINITY }
+                },
+            );
+            hit.map(|hit| self.reading(&query, &hit, Side::Inside))
+        });
+        let is_sheet = self.tree.faces[self.tree.slots[gap.triangle as usize] as usize].is_sheet;
+        let flipped = Gap {
+            distance: -gap.distance,
+            normal: -gap.normal,
+            ..*gap
+        };
+        [wall, (is_sheet && !crossings.is_empty()).then_some(flipped)]
+    }
+}

@@ -1,0 +1,242 @@
+//! A product prepared for signed-distance queries, and the queries.
+
+use rayon::prelude::*;
+
+use crate::facing::Facing;
+use crate::interior::{Interior, Place};
+use crate::mesh::{Mesh, MeshError, Standing, Vec3};
+use crate::nearest::{Hit, Pending};
+use crate::orient::orient;
+use crate::poke::{Skin, settle};
+use crate::sign::Sign;
+use crate::tree::{Query, Source, Tree};
+use crate::winding::Winding;
+
+/// Points answered by one task.
+const CHUNK: usize = 256;
+
+/// Distances below this part of the product's extent have no direction of their own; the surface's is used.
+const TOUCHING: f64 = 1e-9;
+
+/// How far queries look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GapLimits {
+    /// Points outside and farther from the product than this give `None`, mm; infinity for a search in full.
+    pub cut_off_mm: f64,
+    /// Deepest penetration, mm, to be read through thin walls.
+    pub max_depth_mm: f64,
+}
+
+/// Signed distance from a point to a product.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gap {
+    /// Signed distance, mm, < 0 inside.
+    pub distance: f64,
+    /// The point of the product it is measured to, mm.
+    pub closest: Vec3,
+    /// Unit gradient of the signed distance: away from the product outside, the shortest way out inside. On edges it is the mean direction.
+    pub normal: Vec3,
+    /// Triangle of [`Product::mesh`] that holds `closest`.
+    pub triangle: u32,
+    /// Weights of `closest` on the corners of that triangle.
+    pub barycentric: [f64; 3],
+}
+
+/// A mesh prepared for signed-distance queries.
+///
+/// Degenerate and duplicated triangles are left out. Triangles that face against their neighbors, and closed parts that are inside out, are
+/// turned (cavities stay). Inside and outside follow angle-weighted pseudo-normals; where the surface is open, not manifold, or made of
+/// parts that may overlap, the generalised winding number.
+#[derive(Debug, Clone)]
+pub struct Product {
+    mesh: Mesh,
+    pub(crate) tree: Tree,
+    pub(crate) sign: Sign,
+    /// For surfaces without holes.
+    interior: Option<Interior>,
+    /// Whether some part is not a sheet.
+    has_body: bool,
+    may_overlap: bool,
+    warnings: Vec<String>,
+}
+
+impl Product {
+    /// Prepares a product.
+    ///
+    /// # Errors
+    /// [`MeshError::AllDegenerate`] if no triangle has area.
+    pub fn new(mesh: Mesh) -> Result<Product, MeshError> {
+        let oriented = orient(mesh);
+        let sound =
+            (0..oriented.standing.len()).filter(|&t| oriented.standing[t] == Standing::Sound);
+        let source = |t| Source {
+            id: t as u32,
+            corners: oriented.mesh.corners(t),
+            is_sheet: oriented.is_sheet[t],
+        };
+        let sound: Vec<Source> = sound.map(source).collect();
+        if sound.is_empty() {
+            return Err(MeshError::AllDegenerate {
+                triangles: oriented.standing.len(),
+            });
+        }
+        let tree = Tree::new(&sound, oriented.standing.len());
+        let sign = Sign::new(&oriented, &tree);
+        let is_closed = !oriented.is_open;
+        let has_body = tree.faces.iter().any(|f| !f.is_sheet);
+        let may_overlap = oriented.may_overlap;
+        let (mesh, warnings) = (oriented.mesh, oriented.warnings);
+        let mut product = Product {
+            mesh,
+            tree,
+            sign,
+            interior: None,
+            has_body,
+            may_overlap,
+            warnings,
+        };
+        if is_closed {
+            let mut pending = Pending::default();
+            product.interior = Some(Interior::new(&product.tree, |p| {
+                product.holds(p, &mut pending)
+            }));
+        }
+        Ok(product)
+    }
+
+    /// The mesh queries refer to: as given, but with triangles turned outward.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// What was wrong with the mesh and what was done about it, one sentence each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Whether the surface has no holes, so that it has an inside everywhere.
+    pub fn is_closed(&self) -> bool {
+        self.interior.is_some()
+    }
+
+    /// Signed distance of one point, mm; `None` where it is outside and beyond the cut-off.
+    ///
+    /// `skin_normal` is the unit outward normal of the skin at the point. With it, the depth of a point inside is measured to the part of
+    /// the surface that opposes the skin, so that a thin wall does not cut it short. Points outside read the plain distance: a single point
+    /// has no neighbors that could show that it has come out on the far side; [`Product::gaps`] sees that.
+    pub fn gap(&self, point: Vec3, skin_normal: Option<Vec3>, limits: GapLimits) -> Option<Gap> {
+        Facing::new(self, limits, &mut Pending::default()).gap(point, skin_normal, None)
+    }
+
+    /// Signed distances of many points, as [`Product::gap`]; with skin normals also through thin walls.
+    ///
+    /// `points` (n), mm; `skin_normals` (n), unit, outward from the skin, zero where there is none. A point that is not finite gives `None`.
+    /// The same bits for any number of threads.
+    pub fn gaps(
+        &self,
+        points: &[Vec3],
+        skin_normals: Option<&[Vec3]>,
+        limits: GapLimits,
+    ) -> Vec<Option<Gap>> {
+        self.gaps_near(points, skin_normals, limits, &[])
+    }
+
+    /// [`Product::gaps`] with a triangle for each point to begin with, such as that of the last frame; the result is the same.
+    ///
+    /// `hints` (n), indices into the triangles of [`Product::mesh`]; others, such as `u32::MAX`, and missing ones stand for none.
+    pub fn gaps_near(
+        &self,
+        points: &[Vec3],
+        skin_normals: Option<&[Vec3]>,
+        limits: GapLimits,
+        hints: &[u32],
+    ) -> Vec<Option<Gap>> {
+        let mut gaps = vec![None; points.len()];
+        gaps.par_chunks_mut(CHUNK)
+            .enumerate()
+            .for_each(|(chunk, out)| {
+                let mut pending = Pending::default();
+                let mut facing = Facing::new(self, limits, &mut pending);
+                let mut last = None;
+                for (k, gap) in out.iter_mut().enumerate() {
+                    let i = chunk * CHUNK + k;
+                    let hint = hints.get(i).copied().filter(|t| *t != u32::MAX).or(last);
+                    *gap = facing.gap(
+                        points[i],
+                        skin_normals.and_then(|n| n.get(i).copied()),
+                        hint,
+                    );
+                    // Neighbors in the list tend to be neighbors in space.
+                    last = gap.map(|g| g.triangle).or(last);
+                }
+            });
+        if let Some(normals) = skin_normals.filter(|n| n.len() == points.len()) {
+            settle(self, &Skin { points, normals }, limits, &mut gaps);
+        }
+        gaps
+    }
+
+    /// The winding number, where parts may lie within each other and leave surface inside.
+    pub(crate) fn overlaps(&self) -> Option<&Winding> {
+        match &self.sign {
+            Sign::Winding(winding) if self.may_overlap && self.is_closed() => Some(winding),
+            _ => None,
+        }
+    }
+
+    /// Whether a point beyond the cut-off is inside; sheets have no inside.
+    pub(crate) fn holds_far(&self, query: &Query, pending: &mut Pending) -> bool {
+        match (&self.interior, &self.sign) {
+            (Some(grid), _) => match grid.place(query.point) {
+                Place::Outside => false,
+                Place::Inside => true,
+                Place::NearSurface => self.holds(query.point, pending),
+            },
+            (None, Sign::Winding(winding)) if self.has_body => {
+                winding.number(&self.tree, query.point) > 0.5
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether a point about the tree's center is inside.
+    fn holds(&self, point: Vec3, pending: &mut Pending) -> bool {
+        let query = self.tree.local_query(point);
+        let hit = self
+            .tree
+            .nearest(&query, f64::INFINITY, pending, |_, _| 1.0);
+        hit.is_some_and(|hit| self.sign.is_inside(&self.tree, query.point, &hit))
+    }
+
+    /// The gap to a face found, on the given side.
+    pub(crate) fn reading(&self, query: &Query, hit: &Hit, side: Side) -> Gap {
+        let face = &self.tree.faces[hit.slot as usize];
+        let distance = hit.on.distance_squared.sqrt();
+        let sign = if side == Side::Inside { -1.0 } else { 1.0 };
+        let away = (query.point - hit.on.point) * sign;
+        let normal = if distance * self.tree.shrink > TOUCHING {
+            // Normalized anew: far from the product, the root of the square is not exactly its length.
+            away.normalize()
+        } else {
+            self.sign
+                .normal(&self.tree, hit)
+                .try_normalize(0.0)
+                .unwrap_or(face.normal)
+        };
+        let (closest, barycentric) = (hit.on.point + self.tree.center, hit.on.barycentric);
+        Gap {
+            distance: sign * distance,
+            closest,
+            normal,
+            triangle: face.id,
+            barycentric,
+        }
+    }
+}
+
+/// Which side of the surface a point is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Inside,
+    Outside,
+}

@@ -1,0 +1,85 @@
+//! Signed distance against closed forms and against trying every triangle.
+
+#![allow(clippy::unwrap_used)]
+
+mod shapes;
+
+use shapes::{Random, brute_distance, cuboid, cylinder, inside_out, sphere, v};
+use thenar_surface::{GapLimits, Product, Vec3};
+
+const FULL: GapLimits = GapLimits {
+    cut_off_mm: f64::INFINITY,
+    max_depth_mm: 15.0,
+};
+
+/// Closed form for a box about the origin.
+fn box_distance(half: Vec3, p: Vec3) -> f64 {
+    let q = p.abs() - half;
+    q.sup(&Vec3::zeros()).norm() + q.max().min(0.0)
+}
+
+#[test]
+fn box_has_its_closed_form_everywhere() {
+    let half = v(10.0, 4.0, 7.0);
+    let product = Product::new(cuboid(-half, half)).unwrap();
+    assert!(product.warnings().is_empty(), "{:?}", product.warnings());
+    let mut random = Random(1);
+    for _ in 0..20_000 {
+        let p = random.within(20.0);
+        let gap = product.gap(p, None, FULL).unwrap();
+        assert!(
+            (gap.distance - box_distance(half, p)).abs() < 1e-12,
+            "{p:?}"
+        );
+        let step = p + gap.normal * 1e-6;
+        assert!(
+            (box_distance(half, step) - gap.distance - 1e-6).abs() < 1e-9,
+            "gradient at {p:?}"
+        );
+    }
+}
+
+#[test]
+fn prism_of_128_sides_has_its_closed_form() {
+    let (r, h, n) = (24.0, 100.0, 128);
+    let product = Product::new(cylinder(r, h, n)).unwrap();
+    let apothem = r * (std::f64::consts::PI / f64::from(n)).cos();
+    let mut random = Random(2);
+    for _ in 0..20_000 {
+        let p = random.within(60.0) + v(0.0, 0.0, 50.0);
+        let gap = product.gap(p, None, FULL).unwrap();
+        let rho = p.xy().norm();
+        let (low, high) = (
+            box_distance(v(apothem, 1e9, h / 2.0), v(rho, 0.0, p.z - h / 2.0)),
+            box_distance(v(r, 1e9, h / 2.0), v(rho, 0.0, p.z - h / 2.0)),
+        );
+        // The prism lies between the cylinders through its sides and through its edges.
+        assert!(
+            gap.distance >= high.min(low) - 1e-9 && gap.distance <= high.max(low) + 1e-9,
+            "{p:?}: {} not in {high}..{low}",
+            gap.distance
+        );
+    }
+}
+
+#[test]
+fn nearest_triangle_is_that_of_trying_all() {
+    let mesh = sphere(20.0, 24, 40);
+    let product = Product::new(mesh.clone()).unwrap();
+    let mut random = Random(3);
+    for _ in 0..2_000 {
+        let p = random.within(40.0);
+        let gap = product.gap(p, None, FULL).unwrap();
+        assert_eq!(gap.distance.abs(), brute_distance(&mesh, p));
+        let [a, b, c] = product.mesh().corners(gap.triangle as usize);
+        let [x, y, z] = gap.barycentric;
+        assert!((a * x + b * y + c * z - gap.closest).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn inside_out_product_is_turned_and_told() {
+    let product = Product::new(inside_out(&cuboid(v(0., 0., 0.), v(1., 2., 3.)))).unwrap();
+    assert!(product.gap(v(0.5, 1.0, 1.5), None, FULL).unwrap().distance < 0.0);
+    assert_eq!(product.warnings().len(), 1);
+}

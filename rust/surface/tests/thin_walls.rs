@@ -1,0 +1,202 @@
+//! Depth through walls thinner than the press: plates, cups, sheets, seen by a whole fingertip.
+#![allow(clippy::unwrap_used)]
+
+mod shapes;
+
+use shapes::{cuboid, moved, sphere, v};
+use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
+
+const LIMITS: GapLimits = GapLimits {
+    cut_off_mm: 8.0,
+    max_depth_mm: 15.0,
+};
+const R: f64 = 8.0;
+
+/// A ball of 8 mm as fingertip, its lowest point at z = `-depth`, with spacing about 1.7 mm.
+fn tip(depth: f64) -> Mesh {
+    moved(&sphere(R, 16, 28), |p| p + v(0.3, 0.2, R - depth))
+}
+
+fn press(product: &Product, skin: &Mesh) -> Vec<Option<Gap>> {
+    product.gaps(skin.positions(), Some(&vertex_normals(skin)), LIMITS)
+}
+
+/// Largest error of the readings of the lower half against the depth below z = 0, and how many of the upper half read inside.
+fn judge(product: &Product, depth: f64) -> (f64, usize) {
+    let skin = tip(depth);
+    let middle = R - depth;
+    let (mut worst, mut false_inside) = (0.0f64, 0);
+    for (p, gap) in skin.positions().iter().zip(press(product, &skin)) {
+        if p.z < middle - 0.25 * R {
+            let gap = gap.unwrap();
+            worst = worst.max((gap.distance - p.z).abs());
+        } else if p.z > 0.0 && gap.is_some_and(|g| g.distance < 0.0) {
+            false_inside += 1;
+        }
+    }
+    (worst, false_inside)
+}
+
+fn plate(thickness: f64) -> Product {
+    Product::new(cuboid(v(-60., -60., -thickness), v(60., 60., 0.))).unwrap()
+}
+
+#[test]
+fn plate_reads_the_press_not_the_far_side() {
+    // Deeper into the thinner walls, the ball is through to beyond its middle, and which way it came is anyone's guess.
+    for (thickness, depth) in [
+        (8., 4.),
+        (8., 6.),
+        (8., 10.),
+        (2., 4.),
+        (2., 6.),
+        (1., 4.),
+        (1., 6.),
+    ] {
+        let (worst, false_inside) = judge(&plate(thickness), depth);
+        assert!(
+            worst < 1e-9,
+            "press {depth} into {thickness} is off by {worst}"
+        );
+        assert_eq!(false_inside, 0, "press {depth} into {thickness}");
+    }
+}
+
+#[test]
+fn plate_reads_the_same_wherever_it_lies() {
+    let turn = nalgebra::Rotation3::from_euler_angles(0.7, 0.3, -1.9);
+    let go = |p: Vec3| turn * p + v(100.0, -3000.0, 20.0);
+    let slab = cuboid(v(-60., -60., -2.), v(60., 60., 0.));
+    let skin = tip(6.0);
+    let still = press(&Product::new(slab.clone()).unwrap(), &skin);
+    let there = press(&Product::new(moved(&slab, go)).unwrap(), &moved(&skin, go));
+    for (a, b) in still.iter().zip(&there) {
+        assert_eq!(a.is_some(), b.is_some());
+        if let (Some(a), Some(b)) = (a, b) {
+            assert!(
+                (a.distance - b.distance).abs() < 1e-9
+                    && (turn * a.normal - b.normal).norm() < 1e-6,
+                "{a:?} {b:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn plate_without_skin_normals_reads_the_nearest_side() {
+    let gap = plate(8.0).gap(v(0., 0., -6.0), None, LIMITS).unwrap();
+    assert!((gap.distance + 2.0).abs() < 1e-12);
+    let gap = plate(8.0)
+        .gap(v(0., 0., -6.0), Some(v(0., 0., -1.)), LIMITS)
+        .unwrap();
+    assert!((gap.distance + 6.0).abs() < 1e-12 && (gap.normal - v(0., 0., 1.)).norm() < 1e-12);
+}
+
+#[test]
+fn back_of_a_fold_near_a_thin_wall_stays_outside() {
+    // A flat fold of skin 6 mm thick lies on a wall 1 mm thick: its back faces away at 6 mm and is not through.
+    let fold = moved(&sphere(1.0, 16, 28), |p| {
+        v(15.0 * p.x, 15.0 * p.y, 3.0 * p.z + 2.99)
+    });
+    for gap in press(&plate(1.0), &fold).iter().flatten() {
+        assert!(gap.distance > -0.0101, "{gap:?}");
+    }
+}
+
+#[test]
+fn lone_vertex_beyond_the_wall_is_not_taken_through() {
+    let gaps = plate(1.0).gaps(&[v(0., 0., -3.)], Some(&[v(0., 0., -1.)]), LIMITS);
+    assert!(gaps[0].unwrap().distance > 0.0);
+}
+
+/// A round cup about z, open at the top, radius 30 outside, 60 high, wall 2 mm; or only its outer sheet.
+fn cup(has_thickness: bool) -> Product {
+    let profile: &[(f64, f64)] = if has_thickness {
+        &[
+            (0., 0.),
+            (30., 0.),
+            (30., 60.),
+            (28., 60.),
+            (28., 2.),
+            (0., 2.),
+        ]
+    } else {
+        &[(0., 0.), (30., 0.), (30., 60.)]
+    };
+    let sides = 256u32;
+    let (mut p, mut t) = (Vec::new(), Vec::new());
+    for &(r, z) in profile {
+        for k in 0..sides {
+            let (s, c) = (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
+            p.push(v(r * c, r * s, z));
+        }
+    }
+    for ring in 0..profile.len() as u32 - 1 {
+        for k in 0..sides {
+            let (a, b) = (ring * sides + k, ring * sides + (k + 1) % sides);
+            t.extend([[a, b, b + sides], [a, b + sides, a + sides]]);
+        }
+    }
+    Product::new(Mesh::new(p, t).unwrap()).unwrap()
+}
+
+/// Presses a tip `depth` into the wall of a cup at mid height, from outside (1) or inside (-1), and compares with a round wall.
+fn judge_cup(product: &Product, radius: f64, depth: f64, from: f64) {
+    let center = v(radius + from * (R - depth), 0.0, 30.0);
+    let skin = moved(&sphere(R, 16, 28), |p| v(p.z, p.x, p.y) * -from + center);
+    assert!(skin.audit().signed_volume_mm3 > 0.0 || from > 0.0);
+    let normals: Vec<Vec3> = skin.positions().iter().map(|p| (p - center) / R).collect();
+    let gaps = product.gaps(skin.positions(), Some(&normals), LIMITS);
+    for ((p, normal), gap) in skin.positions().iter().zip(&normals).zip(gaps) {
+        let wanted = from * (p.xy().norm() - radius);
+        if normal.x * from < -0.3 {
+            let gap = gap.unwrap();
+            assert!(
+                (gap.distance - wanted).abs() < 0.02,
+                "{} for {wanted} at {p:?} from {from}",
+                gap.distance
+            );
+        } else if normal.x * from > 0.2 {
+            assert!(
+                gap.is_none_or(|g| g.distance > 0.0),
+                "{gap:?} at {p:?} from {from}"
+            );
+        }
+    }
+}
+
+#[test]
+fn cup_reads_right_from_outside_and_inside() {
+    for depth in [1.0, 3.0, 5.0] {
+        judge_cup(&cup(true), 30.0, depth, 1.0);
+        judge_cup(&cup(true), 28.0, depth, -1.0);
+    }
+}
+
+#[test]
+fn cup_of_a_single_sheet_reads_right_from_outside_and_inside() {
+    for depth in [1.0, 3.0, 5.0] {
+        judge_cup(&cup(false), 30.0, depth, 1.0);
+        judge_cup(&cup(false), 30.0, depth, -1.0);
+    }
+}
+
+#[test]
+fn flat_sheet_reads_right_from_both_sides() {
+    let corners = vec![
+        v(-60., -60., 0.),
+        v(60., -60., 0.),
+        v(60., 60., 0.),
+        v(-60., 60., 0.),
+    ];
+    for triangles in [vec![[0, 1, 2], [0, 2, 3]], vec![[0, 2, 1], [0, 3, 2]]] {
+        let sheet = Product::new(Mesh::new(corners.clone(), triangles).unwrap()).unwrap();
+        for depth in [1.0, 4.0, 6.0] {
+            let (worst, false_inside) = judge(&sheet, depth);
+            assert!(
+                worst < 1e-9 && false_inside == 0,
+                "press {depth}: off by {worst}, {false_inside} false"
+            );
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The project's commands: which word runs what, and how a failure is told.
+
+mod places;
+mod process;
+mod stamp;
+mod python;
+mod wheel;
+mod extension;
+mod setup;
+mod testing;
+mod tally;
+mod demo;
+
+use anyhow::{Result, bail};
+use places::Places;
+use std::process::ExitCode;
+
+const USAGE: &str = "cargo xtask COMMAND
+
+  setup     wheel, extension zip, target/venv with bpy, target/blender, target/release/thenar
+  demo      solve and render the sample grasp into target/demo
+  test      every test: Rust, Python, Blender, architecture, packaging, docs, lint
+  samples   make blend-samples anew from code
+  bench     benchmarks, each as a ratio against a peer in the same run
+  bundle WHEEL...  one extension zip per platform from ready wheels (for releases)";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match dispatch(&arguments) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(arguments: &[String]) -> Result<ExitCode> {
+    let (command, rest) = match arguments.split_first() {
+        Some((command, rest)) => (command.as_str(), rest),
+        None => ("help", arguments),
+    };
+    let places = Places::find()?;
+    match command {
+        "setup" => setup::run(&places),
+        "demo" => demo::demo(&places, rest),
+        "test" => testing::run(&places),
+        "samples" => demo::samples(&places),
+        "bench" => demo::bench(&places, rest),
+        "bundle" => extension::bundle_command(&places, rest),
+        "help" | "--help" | "-h" => {
+            println!("{USAGE}");
+            Ok(ExitCode::SUCCESS)
+        }
+        other => bail!("there is no command '{other}'; run `cargo xtask` for the list"),
+    }
+}

@@ -1,0 +1,225 @@
+//! `cargo xtask test`: every check as a step with a time limit, and one honest sum at the end.
+
+use crate::places::Places;
+use crate::process::{self, Watched};
+use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313};
+use crate::setup::{self, cargo};
+use crate::tally::{self, Tally};
+use anyhow::{Context, Result};
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::{Duration, Instant};
+
+/// Longest time for one step; the longest takes a few minutes on two cores.
+const LIMIT: Duration = Duration::from_secs(30 * 60);
+
+/// Folders of `tests` for which there are steps of their own.
+const NOT_PLAIN: [&str; 1] = ["blender"];
+
+/// How the tests of a step are counted.
+#[derive(Clone, Copy)]
+enum Counted {
+    AsOne,
+    ByCargo,
+    ByPytest,
+}
+
+struct Step {
+    name: String,
+    command: Command,
+    counted: Counted,
+}
+
+struct Done {
+    name: String,
+    tally: Tally,
+    seconds: f64,
+    note: &'static str,
+}
+
+/// Sets up, runs every step, prints the sum.
+///
+/// # Errors
+/// If the set-up fails; a failed step is an exit code.
+pub fn run(places: &Places) -> Result<ExitCode> {
+    setup::test_environment(places)?;
+    let mut steps = rust_steps(places);
+    steps.extend(lint_steps(places));
+    steps.extend(python_steps(places)?);
+    let mut done = Vec::new();
+    for step in steps {
+        done.push(run_step(step));
+    }
+    Ok(report(&done))
+}
+
+fn rust_steps(places: &Places) -> Vec<Step> {
+    let mut doc = cargo(places);
+    doc.args(["doc", "--workspace", "--no-deps", "--locked", "--quiet"])
+        .env("RUSTDOCFLAGS", "-D warnings");
+    let mut clippy = cargo(places);
+    clippy.args([
+        "clippy",
+        "--workspace",
+        "--all-targets",
+        "--locked",
+        "--quiet",
+        "--",
+        "-D",
+        "warnings",
+    ]);
+    let mut format = cargo(places);
+    format.args(["fmt", "--all", "--check"]);
+    let mut test = cargo(places);
+    test.args(["test", "--workspace", "--locked", "--no-fail-fast"]);
+    vec![
+        step("cargo fmt", format, Counted::AsOne),
+        step("cargo clippy", clippy, Counted::AsOne),
+        step("cargo test", test, Counted::ByCargo),
+        step("cargo doc", doc, Counted::AsOne),
+    ]
+}
+
+fn lint_steps(places: &Places) -> Vec<Step> {
+    let ruff = |arguments: &[&str]| {
+        let mut command = Command::new(places.target.join("tools/bin/ruff"));
+        command
+            .current_dir(&places.root)
+            .args(arguments)
+            .args(["addon", "tests", "rust"]);
+        command
+    };
+    vec![
+        step("ruff check", ruff(&["check"]), Counted::AsOne),
+        step("ruff format", ruff(&["format", "--check"]), Counted::AsOne),
+    ]
+}
+
+fn python_steps(places: &Places) -> Result<Vec<Step>> {
+    let tests = places.root.join("tests");
+    let mut folders: Vec<String> = std::fs::read_dir(&tests)
+        .with_context(|| format!("cannot list {}", tests.display()))?
+        .flatten()
+        .filter(|entry| holds_tests(&entry.path()))
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| !NOT_PLAIN.contains(&name.as_str()))
+        .collect();
+    folders.sort();
+    let mut steps: Vec<Step> = folders
+        .iter()
+        .map(|folder| pytest(places, folder, BLENDER_50.name))
+        .collect();
+    if tests.join("python").is_dir() && python::find(PLAIN_313.version).is_ok() {
+        steps.push(pytest(places, "python", PLAIN_313.name));
+    }
+    if tests.join("blender").is_dir() {
+        steps.push(pytest(places, "blender", BLENDER_50.name));
+        steps.push(pytest(places, "blender", BLENDER_45.name));
+    }
+    Ok(steps)
+}
+
+/// Whether pytest finds a file of tests directly in `folder`; it fails where there is none.
+fn holds_tests(folder: &Path) -> bool {
+    std::fs::read_dir(folder).is_ok_and(|entries| {
+        entries.flatten().any(|entry| {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            name.starts_with("test_") && name.ends_with(".py")
+        })
+    })
+}
+
+fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
+    let mut command = Command::new(places.python(environment));
+    command
+        .current_dir(&places.root)
+        .args(["-m", "pytest", "--quiet", "--durations=3"])
+        .arg(Path::new("tests").join(folder))
+        // Keeps the preferences of the person who runs this out of the tests, and the tests out of theirs.
+        .env(
+            "BLENDER_USER_RESOURCES",
+            places.target.join("test-blender").join(environment),
+        );
+    step(
+        &format!("pytest tests/{folder} ({environment})"),
+        command,
+        Counted::ByPytest,
+    )
+}
+
+fn step(name: &str, command: Command, counted: Counted) -> Step {
+    Step {
+        name: name.to_string(),
+        command,
+        counted,
+    }
+}
+
+fn run_step(mut step: Step) -> Done {
+    println!("\n== {}", step.name);
+    let start = Instant::now();
+    let (tally, note) = match process::watched(&mut step.command, LIMIT) {
+        Ok(end) if end.timed_out => (count(step.counted, &end), "ran past its time limit"),
+        Ok(end) => (count(step.counted, &end), ""),
+        Err(error) => {
+            println!("{error:#}");
+            (
+                Tally {
+                    failed: 1,
+                    ..Tally::default()
+                },
+                "could not be run",
+            )
+        }
+    };
+    Done {
+        name: step.name,
+        tally,
+        seconds: start.elapsed().as_secs_f64(),
+        note,
+    }
+}
+
+fn count(counted: Counted, end: &Watched) -> Tally {
+    let mut tally = match counted {
+        Counted::AsOne => Tally {
+            passed: usize::from(end.succeeded),
+            ..Tally::default()
+        },
+        Counted::ByCargo => tally::of_cargo(&end.text),
+        Counted::ByPytest => tally::of_pytest(&end.text),
+    };
+    // What fails without naming a test (a compiler error, a hang), and what holds no test at all, is a failure too.
+    if (!end.succeeded && tally.failed == 0) || tally == Tally::default() {
+        tally.failed = 1;
+    }
+    tally
+}
+
+fn report(done: &[Done]) -> ExitCode {
+    let mut sum = Tally::default();
+    println!(
+        "\n{:<38} {:>7} {:>7} {:>7} {:>8}",
+        "step", "passed", "failed", "skipped", "seconds"
+    );
+    for Done {
+        name,
+        tally,
+        seconds,
+        note,
+    } in done
+    {
+        println!(
+            "{name:<38} {:>7} {:>7} {:>7} {seconds:>8.1} {note}",
+            tally.passed, tally.failed, tally.skipped
+        );
+        sum += *tally;
+    }
+    println!("\n{} skipped or ignored", sum.skipped);
+    println!("{} passed, {} failed", sum.passed, sum.failed);
+    if sum.failed == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}

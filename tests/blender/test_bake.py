@@ -1,0 +1,82 @@
+"""A bake plays what a solve of each frame gives, survives reloading, and is whole or not there."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+
+
+def animated(tmp_path, prepare=lambda hand: None):
+    hand, product = stage.scene(top=-7.5)
+    prepare(hand)
+    bpy.context.view_layer.update()
+    stage.raise_under(hand, product, depth=0.5)
+    for frame, rise in ((1, 0.0), (3, 0.001)):
+        product.location.z += rise
+        product.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "grip.blend"))
+    return bpy.data.objects["Pad"], bpy.data.objects["Plate"]
+
+
+def solved_frames(hand):
+    shapes = {}
+    for frame in (1, 2, 3):
+        bpy.context.scene.frame_set(frame)
+        result = stage.solve()
+        shapes[frame] = stage.evaluated(hand), stage.attribute(hand, "pressure_kpa"), result.force_n
+        bpy.ops.thenar.clear()
+    return shapes
+
+
+@pytest.mark.parametrize("prepare", [lambda hand: None, stage.bend], ids=["plain", "armature"])
+def test_bake_plays_the_frames_as_solved(tmp_path, prepare):
+    hand, _ = animated(tmp_path, prepare)
+    expected = solved_frames(hand)
+    bpy.context.scene.frame_set(2)
+    assert bpy.ops.thenar.bake(frame_start=1, frame_end=3) == {"FINISHED"}
+    assert bpy.context.scene.frame_current == 2
+    path = str(tmp_path / "grip.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    hand = bpy.data.objects["Pad"]
+    for frame in (3, 1, 2):
+        bpy.context.scene.frame_set(frame)
+        shape, pressure, _ = expected[frame]
+        assert np.abs(stage.evaluated(hand) - shape).max() < 0.01, frame
+        assert np.abs(stage.attribute(hand, "pressure_kpa") - pressure).max() < 1e-3 * pressure.max()
+    assert expected[3][2] > expected[1][2] > 0
+
+
+def test_clear_takes_the_bake_away(tmp_path):
+    hand, _ = animated(tmp_path)
+    bpy.ops.thenar.bake(frame_start=1, frame_end=2)
+    with pytest.raises(RuntimeError, match="'Pad' plays a bake; press Clear first"):
+        bpy.ops.thenar.solve()
+    bpy.ops.thenar.clear()
+    assert not hand.modifiers and not hand.thenar.bake_path
+    assert bpy.ops.thenar.solve() == {"FINISHED"}
+
+
+def test_a_frame_that_cannot_be_pressed_leaves_nothing(tmp_path):
+    hand, product = animated(tmp_path)
+    product.hide_viewport = False
+    product.keyframe_insert("hide_viewport", frame=1)
+    product.hide_viewport = True
+    product.keyframe_insert("hide_viewport", frame=3)
+    bpy.context.scene.frame_set(1)
+    with pytest.raises(RuntimeError, match="'Plate' is disabled in viewports"):
+        bpy.ops.thenar.bake(frame_start=1, frame_end=3)
+    assert not hand.modifiers and bpy.context.scene.frame_current == 1
+    assert not [path for path in tmp_path.rglob("*") if path.suffix in (".pc2", ".npz", ".partial")]
+
+
+def test_refused_ranges(tmp_path):
+    stage.scene()
+    with pytest.raises(RuntimeError, match="save the file first"):
+        bpy.ops.thenar.bake(frame_start=1, frame_end=2)
+    with pytest.raises(RuntimeError, match="before it starts"):
+        bpy.ops.thenar.bake(frame_start=3, frame_end=2)
+    bpy.context.scene.thenar.use_force = True
+    with pytest.raises(RuntimeError, match="switch Force Target off"):
+        bpy.ops.thenar.bake(frame_start=1, frame_end=2)

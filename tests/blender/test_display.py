@@ -1,0 +1,124 @@
+"""Looks: pressure over the user's materials and back, colours after the range, the render preset and its legend."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+
+
+def colors(obj):
+    return stage.attribute(obj, "Thenar Pressure")
+
+
+def test_materials_come_back():
+    hand, product = stage.scene()
+    own = bpy.data.materials.new("Leather")
+    hand.data.materials.append(own)
+    linked = bpy.data.materials.new("Paint")
+    product.data.materials.append(None)
+    product.material_slots[0].link = "OBJECT"
+    product.material_slots[0].material = linked
+    stage.solve()
+    for _ in range(2):
+        bpy.ops.thenar.show_pressure()
+    assert hand.data.materials[0] == own, "the mesh keeps the user's material"
+    shown = hand.material_slots[0].material
+    assert shown.name == "Leather · pressure" and shown.node_tree.nodes.get("Thenar Pressure Overlay") is None
+    assert any(node.type == "GROUP" for node in shown.node_tree.nodes)
+    bpy.ops.thenar.show_pressure(show=False)
+    assert hand.material_slots[0].material == own and hand.material_slots[0].link == "DATA"
+    assert product.material_slots[0].material == linked and product.material_slots[0].link == "OBJECT"
+    assert sorted(material.name for material in bpy.data.materials) == ["Leather", "Paint"]
+
+
+def test_colors_follow_range_and_palette():
+    hand, _ = stage.scene()
+    stage.solve()
+    settings = bpy.context.scene.thenar
+    settings.range_kpa = 1000
+    pale = colors(hand)
+    settings.range_kpa = 10
+    strong = colors(hand)
+    pressure = stage.attribute(hand, "pressure_kpa")
+    assert not np.allclose(pale, strong)
+    assert np.array_equal(pale[pressure == 0], strong[pressure == 0]), "bare skin keeps its colour"
+    settings.palette = "CIVIDIS"
+    assert not np.allclose(colors(hand)[pressure > 0], strong[pressure > 0])
+    bpy.ops.thenar.show_pressure()
+    group = bpy.data.node_groups["Thenar Pressure Overlay"]
+    settings.range_kpa = 77
+    assert group.nodes["Range"].inputs["From Max"].default_value == 77
+
+
+def test_fit_range_covers_the_peak():
+    hand, product = stage.scene()
+    stage.solve()
+    bpy.ops.thenar.reset_range()
+    peak = max(stage.attribute(obj, "pressure_kpa").max() for obj in (hand, product))
+    assert peak <= bpy.context.scene.thenar.range_kpa <= 2 * peak
+
+
+def test_render_preset_is_taken_back():
+    stage.scene()
+    stage.solve()
+    scene = bpy.context.scene
+    scene.view_settings.view_transform, scene.cycles.use_denoising = "AgX", True
+    bpy.ops.thenar.render_preset()
+    assert scene.view_settings.view_transform == "Standard" and not scene.cycles.use_denoising
+    bpy.ops.thenar.render_preset(restore=True)
+    assert scene.view_settings.view_transform == "AgX" and scene.cycles.use_denoising
+
+
+def rendered(path, **options):
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 4
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 160, 120, 100
+    scene.render.filepath = str(path)
+    bpy.ops.thenar.render_preset(**options)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(str(path))
+    flat = np.empty(160 * 120 * 4, np.float32)
+    image.pixels.foreach_get(flat)
+    bpy.data.images.remove(image)
+    return flat.reshape(120, 160, 4)[..., :3]
+
+
+def test_rendered_pressure_has_the_legends_color(tmp_path):
+    from thenar_blender import colormap
+
+    hand, product = stage.scene()
+    stage.solve()
+    bpy.ops.thenar.show_pressure()
+    hand.hide_render = True
+    values = np.full(len(product.data.vertices), 90.0, np.float32)
+    product.data.attributes["pressure_kpa"].data.foreach_set("value", values)
+    bpy.context.scene.thenar.range_kpa = 150
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 0.02, (0, 0, 0.5)
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    picture = rendered(tmp_path / "a.png")
+    assert np.abs(picture[60, 100] - colormap.srgb("VIRIDIS", np.array([0.6]))[0]).max() < 0.01
+    top = colormap.srgb("VIRIDIS", np.array([1.0]))[0]
+    left = picture[:, :40].reshape(-1, 3)
+    assert np.abs(left - top).max(axis=1).min() < 0.02, "the legend's top colour stands in the picture"
+    plain = rendered(tmp_path / "b.png", restore=True)
+    assert np.abs(plain[:, :40].reshape(-1, 3) - top).max(axis=1).min() > 0.05
+
+
+def test_legend_can_write_without_blenders_font():
+    from thenar_blender.views import legend, pixel_font
+
+    settings = bpy.context.scene.thenar
+    written = "".join(text for *_, text in legend.layout(settings, settings.result, 540, 0).texts) + "0123456789.+"
+    assert all(pixel_font.glyph(letter).any() for letter in written)
+    ink = pixel_font.ink([(10, 10, 20, "7")], 40, 40)
+    assert ink[10:24, 10:20].any() and ink[23, 10:20].all(), "the bar of the seven is its top"
+
+
+@pytest.mark.parametrize("name", ["CIVIDIS", "VIRIDIS"])
+def test_lightness_of_the_maps_rises_evenly(name):
+    from thenar_blender import colormap
+
+    light = colormap.to_linear(colormap.srgb(name, np.linspace(0, 1, 200))) @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(np.cbrt(light)) > 0).all()

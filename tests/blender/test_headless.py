@@ -1,0 +1,112 @@
+"""The command line: solve and batch, resumable, one bad case beside good ones."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+import stage
+import thenar_blender
+
+
+def command(*arguments):
+    package = Path(thenar_blender.__file__).parent.parent
+    paths = os.pathsep.join(path for path in (str(package), os.environ.get("PYTHONPATH", "")) if path)
+    return subprocess.run(
+        [sys.executable, "-m", "thenar_blender", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, "PYTHONPATH": paths},
+    )
+
+
+@pytest.fixture
+def grip(tmp_path):
+    stage.scene()
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 120, 90
+    path = tmp_path / "grip.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_solve_writes_file_and_summary(grip, tmp_path):
+    expected = stage.solve().force_n
+    done = command(
+        "solve",
+        grip,
+        "--hand",
+        "Pad",
+        "--product",
+        "Plate",
+        "--out",
+        tmp_path / "o.blend",
+        "--json",
+        tmp_path / "o.json",
+        "--render",
+        tmp_path / "o.png",
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "o.json").read_text())["force_n"] == pytest.approx(expected, rel=1e-6)
+    image = bpy.data.images.load(str(tmp_path / "o.png"))
+    assert tuple(image.size) == (120, 90) and np.ptp(np.array(image.pixels[:]).reshape(-1, 4)[:, :3]) > 0.3
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "o.blend"))
+    assert bpy.context.scene.thenar.result.force_n == pytest.approx(expected, rel=1e-6)
+    assert "Thenar Contact" in bpy.data.objects["Pad"].data.shape_keys.key_blocks
+
+
+def test_bad_input_is_one_sentence(grip, tmp_path):
+    done = command("solve", grip, "--hand", "Paw", "--json", tmp_path / "o.json")
+    assert done.returncode == 2 and not (tmp_path / "o.json").exists()
+    assert "there is no object 'Paw' for the hand; meshes in the file: Pad, Plate" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert command("solve", tmp_path / "none.blend").returncode == 2
+
+
+def test_batch_resumes_and_survives_a_bad_case(grip, tmp_path):
+    jobs, out = tmp_path / "jobs.toml", tmp_path / "out"
+    jobs.write_text(
+        'blend = "grip.blend"\nsave = false\n[[case]]\nname = "posed"\n'
+        '[[case]]\nname = "two newtons"\nforce_n = 2.0\n[[case]]\nname = "bad"\nhand = "Paw"\n'
+    )
+    done = command("batch", jobs, "--out", out)
+    assert done.returncode == 2 and "1 of 3 cases failed (bad)" in done.stderr
+    rows = {row["name"]: row for row in csv.DictReader((out / "results.csv").open())}
+    assert [row["status"] for row in rows.values()] == ["done", "done", "failed"]
+    assert float(rows["two newtons"]["force_n"]) == pytest.approx(2.0, rel=0.02)
+    assert "no object 'Paw'" in rows["bad"]["message"]
+    jobs.write_text(jobs.read_text().replace("2.0", "3.0").replace("Paw", "Pad"))
+    done = command("batch", jobs, "--out", out)
+    assert done.returncode == 0, done.stderr
+    rows = {row["name"]: row for row in csv.DictReader((out / "results.csv").open())}
+    assert [row["status"] for row in rows.values()] == ["kept", "done", "done"]
+    assert float(rows["two newtons"]["force_n"]) == pytest.approx(3.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "lists no case"),
+        ("[[case]]\nname = 1", "names no file"),
+        ('[[case]]\nblend = "a"\ncolour = 1', "unknown key 'colour'"),
+        ("[[case", "is not TOML"),
+    ],
+)
+def test_job_files_that_cannot_be_read(tmp_path, text, sentence):
+    from thenar_blender import batch
+    from thenar_blender.scene.checks import Refusal
+
+    path = tmp_path / "jobs.toml"
+    path.write_text(text)
+    with pytest.raises(Refusal, match=sentence):
+        batch.read_jobs(path)
+
+
+def test_demo_without_samples_says_so(tmp_path):
+    done = command("demo", "--samples", tmp_path, "--out", tmp_path / "demo")
+    assert done.returncode == 2 and "no sample of the 48 mm cylinder" in done.stderr

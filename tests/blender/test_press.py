@@ -1,0 +1,148 @@
+"""What a press in Blender must give: forces that agree, a surface that does not penetrate, the same twice."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+
+
+def triangle_areas(obj):
+    """Triangles and their areas, mm², of the evaluated mesh."""
+    points = stage.evaluated(obj)
+    obj.data.calc_loop_triangles()
+    corners = np.array([triangle.vertices[:] for triangle in obj.data.loop_triangles])
+    a, b, c = points[corners[:, 0]], points[corners[:, 1]], points[corners[:, 2]]
+    return corners, 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+
+def test_totals_are_those_of_the_vertices():
+    hand, _ = stage.scene()
+    result = stage.solve()
+    force, pressure = stage.attribute(hand, "contact_force_n"), stage.attribute(hand, "pressure_kpa")
+    assert result.force_n > 0.1
+    assert result.force_n == pytest.approx(force.sum(), rel=1e-4)
+    assert result.peak_kpa == pytest.approx(pressure.max(), rel=1e-5)
+    assert result.mean_kpa == pytest.approx(1000 * result.force_n / result.area_mm2, rel=1e-4)
+    assert ((force > 0) == (pressure > 0)).all() and (force >= 0).all()
+    assert np.array(result.force_vector_n)[2] == pytest.approx(-result.force_n, rel=1e-2), "the plate is pushed down"
+
+
+def test_written_surface_does_not_penetrate():
+    hand, _ = stage.scene()
+    before = stage.evaluated(hand)[:, 2].min()
+    result = stage.solve()
+    assert before == pytest.approx(-8.0, abs=1e-3)
+    assert stage.evaluated(hand)[:, 2].min() >= -6.8 - 0.02
+    assert result.depth_mm == pytest.approx(1.2, abs=0.01)
+    assert stage.attribute(hand, "contact_depth_mm").max() == pytest.approx(1.2, abs=0.01)
+
+
+def test_product_carries_the_same_force():
+    _, product = stage.scene(cuts=60)
+    result = stage.solve()
+    corners, areas = triangle_areas(product)
+    pressure = stage.attribute(product, "pressure_kpa").astype(float) / 1000
+    assert (pressure[corners].mean(axis=1) * areas).sum() == pytest.approx(result.force_n, rel=0.01)
+
+
+def test_second_solve_does_not_read_the_first():
+    hand, _ = stage.scene()
+    stage.solve()
+    first = [stage.attribute(hand, name) for name in ("pressure_kpa", "contact_displacement_mm")]
+    shape = stage.evaluated(hand)
+    for _ in range(2):
+        stage.solve()
+    second = [stage.attribute(hand, name) for name in ("pressure_kpa", "contact_displacement_mm")]
+    for one, two in zip(first, second, strict=True):
+        assert np.array_equal(one, two)
+    assert np.abs(stage.evaluated(hand) - shape).max() < 1e-4
+
+
+def test_force_target_moves_the_product_and_clear_puts_it_back():
+    hand, product = stage.scene()
+    settings = bpy.context.scene.thenar
+    settings.use_force, settings.force_n = True, 3.0
+    place = stage.evaluated(product)
+    result = stage.solve()
+    offset = result.offset_mm
+    assert result.force_n == pytest.approx(3.0, rel=0.02)
+    moved = stage.evaluated(product) - place
+    assert np.abs(moved - offset * np.array(result.direction)).max() < 1e-3
+    assert stage.solve().offset_mm == pytest.approx(offset, abs=1e-6), "again from its own place"
+    assert bpy.ops.thenar.clear() == {"FINISHED"}
+    assert np.abs(stage.evaluated(product) - place).max() < 1e-4
+    assert tuple(product.delta_location) == (0, 0, 0)
+
+
+def test_regions_come_from_vertex_groups():
+    hand, _ = stage.scene()
+    points = stage.evaluated(hand)
+    for name, side in (("index_left", points[:, 0] < 0), ("index_right", points[:, 0] >= 0)):
+        hand.vertex_groups.new(name=name).add(np.flatnonzero(side & (points[:, 2] < 4)).tolist(), 1.0, "REPLACE")
+    assert bpy.ops.thenar.assign_regions() == {"FINISHED"}
+    result = stage.solve()
+    region = stage.attribute(hand, "contact_region")
+    assert (region[points[:, 2] >= 4] == -1).all()
+    assert (region[(points[:, 2] < 4) & (points[:, 0] < 0)] == 0).all()
+    assert [row.name for row in result.regions] == ["index_left", "index_right"]
+    force = stage.attribute(hand, "contact_force_n")
+    for index, row in enumerate(result.regions):
+        assert row.force_n == pytest.approx(force[region == index].sum(), rel=1e-3)
+    assert sum(row.force_n for row in result.regions) == pytest.approx(result.force_n, rel=1e-3)
+    bpy.ops.thenar.select_region(index=1)
+    assert [vertex.select for vertex in hand.data.vertices] == (region == 1).tolist()
+
+
+def test_clear_leaves_nothing_behind():
+    hand, product = stage.scene()
+    before = sorted(hand.data.attributes.keys()), sorted(product.data.attributes.keys())
+    shape = stage.evaluated(hand)
+    stage.solve()
+    bpy.ops.thenar.show_pressure()
+    bpy.ops.thenar.clear()
+    assert (sorted(hand.data.attributes.keys()), sorted(product.data.attributes.keys())) == before
+    assert hand.data.shape_keys is None and not bpy.context.scene.thenar.result.is_valid
+    assert np.array_equal(stage.evaluated(hand), shape)
+    with pytest.raises(RuntimeError, match="press Solve first"):
+        bpy.ops.thenar.clear()
+
+
+def test_apply_keeps_the_shape_without_the_key():
+    hand, _ = stage.scene()
+    stage.solve()
+    shape = stage.evaluated(hand)
+    bpy.ops.thenar.apply()
+    assert hand.data.shape_keys is None
+    assert np.abs(stage.evaluated(hand) - shape).max() < 1e-4
+
+
+def test_no_contact_is_a_result_and_is_said():
+    hand, product = stage.scene(top=-9.0)
+    result = stage.solve()
+    assert result.force_n == 0 and result.area_mm2 == 0
+    assert np.abs(stage.attribute(hand, "contact_displacement_mm")).max() == 0
+
+
+@pytest.mark.parametrize("scale", [0.001, 0.01, 1.0])
+def test_unit_scale_changes_nothing(scale):
+    hand, product = stage.scene()
+    expected = stage.solve()
+    expected = (expected.force_n, expected.area_mm2, expected.peak_kpa)
+    bpy.ops.thenar.clear()
+    bpy.context.scene.unit_settings.scale_length = scale
+    for obj in (hand, product):
+        obj.scale /= scale
+        obj.location /= scale
+    bpy.context.view_layer.update()
+    result = stage.solve()
+    assert (result.force_n, result.area_mm2, result.peak_kpa) == pytest.approx(expected, rel=1e-4)
+
+
+def test_far_from_the_origin_changes_little():
+    hand, product = stage.scene()
+    expected = stage.solve().force_n
+    bpy.ops.thenar.clear()
+    for obj in (hand, product):
+        obj.location.x += 64.0  # exact in single precision beside the parts' own 0.01 mm
+    bpy.context.view_layer.update()
+    assert stage.solve().force_n == pytest.approx(expected, rel=1e-3)

@@ -1,0 +1,23 @@
+"""What the tests of the hand read from scenes and products."""
+
+import bpy
+import numpy as np
+
+
+def evaluated_mm(obj):
+    """World positions (n, 3) of an object's evaluated mesh, mm, at scene scale `1 unit = 1 m` unless scaled."""
+    context = bpy.context
+    context.view_layer.update()
+    mesh = obj.evaluated_get(context.evaluated_depsgraph_get()).data
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", flat)
+    world = np.array(obj.matrix_world, dtype=np.float64)
+    return (flat.reshape(-1, 3) @ world[:3, :3].T + world[:3, 3]) * 1000.0 * context.scene.unit_settings.scale_length
+
+
+def triangles_of(faces):
+    """Faces of three or four corners as triangles (m, 3) int32."""
+    out = []
+    for face in faces:
+        out += [face[:3]] if len(face) == 3 else [face[:3], [face[0], face[2], face[3]]]
+    return np.array(out, np.int32)

@@ -1,0 +1,104 @@
+"""The grasp fitter: targets reached, limits kept, tissue not pierced, on cylinders, a box and a bottle."""
+
+import numpy as np
+import pytest
+import thenar
+from hand_scenes import triangles_of
+from thenar_blender.hand import capsules, grasp, least_squares, pads, products, roles, skinning
+
+
+def product_of(shape):
+    vertices, faces = shape
+    return thenar.Product(vertices, triangles_of(faces)), vertices
+
+
+def box(width, depth, height):
+    """A box with its top at half its height, about the origin."""
+    vertices, faces = products.plate(width, depth, height, 3.0)
+    return vertices + [0.0, 0.0, 0.5 * height], faces
+
+
+def fit(arrays, shape, targets, **wish):
+    product, vertices = product_of(shape)
+    return grasp.fit(arrays, product, vertices, grasp.Wish(targets, **wish)), product
+
+
+UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}
+
+
+@pytest.mark.parametrize("diameter", [48, 60, 100])
+@pytest.mark.parametrize("targets", [pads.LIGHT_MM, pads.FIRM_MM], ids=["light", "firm"])
+def test_cylinder(arrays, diameter, targets):
+    found, product = fit(arrays, products.cylinder(diameter), targets, **UPRIGHT)
+    misses = np.array([found.depths_mm[name] - want for name, want in found.targets_mm.items()])
+    assert np.sqrt((misses**2).mean()) < (0.8 if targets is pads.LIGHT_MM else 1.2)
+    assert np.median(np.abs(misses)) < 0.6
+    assert not found.warnings
+    for pad in arrays.pads:
+        assert found.depths_mm[pad.name] < pad.limit_mm + 0.5
+    rig = arrays.rig.moved(found.place)
+    posed = skinning.pose_matrices(rig, found.angles)
+    assert capsules.overlaps(arrays.capsules, rig, posed)[0].max() < 1.0
+    for role, bone in arrays.joints.bones.items():
+        for angle in roles.limits_of(role):
+            low, high = roles.angle_bounds(arrays.joints, role, angle)
+            assert low - 1e-9 <= found.angles[bone, roles.COLUMNS[angle]] <= high + 1e-9
+
+
+@pytest.mark.parametrize("shape", [products.bottle(), box(45.0, 60.0, 200.0)], ids=["bottle", "box"])
+def test_other_products(arrays, shape):
+    found, _ = fit(arrays, shape, pads.LIGHT_MM, **UPRIGHT)
+    misses = np.array([abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()])
+    assert np.median(misses) < 0.5
+    assert (misses < 2.0).mean() > 0.7
+
+
+def test_same_input_same_grasp(arrays):
+    first, _ = fit(arrays, products.cylinder(60), pads.LIGHT_MM, **UPRIGHT)
+    second, _ = fit(arrays, products.cylinder(60), pads.LIGHT_MM, **UPRIGHT)
+    assert np.array_equal(first.angles, second.angles)
+    assert np.array_equal(first.place, second.place)
+
+
+def test_depth_is_the_mean_of_the_four_deepest():
+    gap = np.array([3.0, -4.0, -1.0, 2.0, -3.0, -2.0, 9.0])
+    assert pads.pad_depth(gap) == pytest.approx(2.5)
+
+
+def test_out_of_reach_is_refused(arrays):
+    product, vertices = product_of(products.cylinder(48))
+    with pytest.raises(grasp.GraspError, match="reach"):
+        far = vertices + [900.0, 0.0, 0.0]
+        product = thenar.Product(far, triangles_of(products.cylinder(48)[1]))
+        grasp.fit(arrays, product, far, grasp.Wish(pads.LIGHT_MM, is_placed=True))
+
+
+def test_jacobian_of_the_fit(arrays):
+    product, vertices = product_of(products.cylinder(60))
+    wish = grasp.Wish(pads.FIRM_MM, **UPRIGHT)
+    wanted = grasp._wanted(arrays.pads, wish)
+    start = grasp._start(arrays, product, wanted, (grasp._placings(arrays, vertices, wish)[0], None))
+    task = grasp._Task(arrays, product, wanted, start, wish)
+    rng = np.random.default_rng(0)
+    x = task.start + 0.03 * rng.normal(size=len(task.start))
+    x[-6:] *= 20.0
+    task.residuals(x)
+    slope = task.jacobian(x)
+    step = 1e-5 * np.eye(len(x))
+    quotient = np.stack([(task.residuals(x + e) - task.residuals(x - e)) / 2e-5 for e in step], axis=1)
+    off = np.abs(slope - quotient) > 0.02 * np.abs(quotient).max()
+    assert off.any(axis=1).sum() <= 2, "a few pads may change which vertices are deepest within the step"
+
+
+def test_minimizer_keeps_bounds_and_resists_an_outlier():
+    data = np.array([1.0, 1.1, 0.9, 1.0, 30.0])
+    low, high = np.array([-5.0]), np.array([5.0])
+    problem = least_squares.Problem(
+        lambda x: x[0] - data, lambda x: np.ones((5, 1)), low, high, lambda values: np.ones(len(values), bool)
+    )
+    free = least_squares.minimize(problem, np.array([-3.0]), 200, 1e-12)
+    assert free.x[0] == pytest.approx(1.35, abs=0.15)
+    problem = least_squares.Problem(
+        problem.residuals, problem.jacobian, np.array([-5.0]), np.array([0.5]), problem.robust
+    )
+    assert least_squares.minimize(problem, np.array([-3.0])).x[0] == 0.5

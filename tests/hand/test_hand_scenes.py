@@ -1,0 +1,189 @@
+"""The hand in Blender: making, units, foreign rigs, the fit operator, and samples that solve."""
+
+import numpy as np
+import pytest
+from hand_scenes import evaluated_mm
+from mathutils.bvhtree import BVHTree
+from thenar_blender.hand import bonemap, build, fitting, grasp, pads, products, reading, roles, samples, studio
+
+SAMPLE_KINDS = (
+    "fingertip_on_plate", "palm_on_plate", "cylinder_48", "cylinder_60", "cylinder_100", "handlebar", "bottle",
+)  # fmt: skip
+
+
+def with_cylinder(context, hand, diameter=60.0, **wish):
+    """A cylinder in the scene and the grasp fitted to it."""
+    material = studio.plain("Any", (0.5, 0.5, 0.5, 1.0), 0.5)
+    product = studio.add_mesh(context, "Product", products.cylinder(diameter), material)
+    context.scene.thenar.product = product
+    context.view_layer.update()
+    return product, fitting.prepare(context, hand, [product], grasp.Wish(pads.LIGHT_MM, **wish))
+
+
+def test_hand_has_groups_materials_and_a_rig(blender, hand, made):
+    mesh, rig = hand
+    assert {bone["name"] for bone in made["bones"]} == {bone.name for bone in rig.data.bones}
+    listed = [material.name for material in mesh.thenar.materials]
+    assert listed == build.group_names(made) and len(listed) == 19
+    assert all(name in mesh.vertex_groups for name in listed)
+    assert [material.thickness_mm for material in mesh.thenar.materials] == pytest.approx(list(made["thickness_mm"]))
+    assert evaluated_mm(mesh) == pytest.approx(made["vertices_mm"], abs=1e-3)
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.001, 0.01, 0.0254])
+def test_hand_is_as_large_in_every_unit(blender, made, scale):
+    blender.context.scene.unit_settings.scale_length = scale
+    mesh, rig = build.add_hand(blender.context, made)
+    arrays, _ = reading.read_rig(blender.context, mesh)
+    assert evaluated_mm(mesh) == pytest.approx(made["vertices_mm"], abs=2e-3)
+    assert arrays.vertices * (1000.0 * scale) == pytest.approx(made["vertices_mm"], abs=2e-3)
+
+
+def test_positive_turn_about_x_flexes(blender, hand):
+    mesh, rig = hand
+    tip = rig.pose.bones["middle_distal"]
+    before = np.array(rig.matrix_world @ tip.tail)
+    rig.pose.bones["middle_proximal"].rotation_euler = (0.6, 0.0, 0.0)
+    blender.context.view_layer.update()
+    moved = np.array(rig.matrix_world @ tip.tail) - before
+    assert moved[2] > 0.02, "the palm of the made hand faces +Z"
+
+
+def test_fit_operator_moves_the_hand_only(blender, hand):
+    mesh, rig = hand
+    product, _ = with_cylinder(blender.context, mesh)
+    product.location = (0.4, 0.1, 0.2)
+    blender.context.view_layer.update()
+    there = product.matrix_world.copy()
+    assert blender.ops.thenar.fit_grasp(strength="LIGHT") == {"FINISHED"}
+    assert product.matrix_world == there
+    near = np.linalg.norm(evaluated_mm(mesh).mean(axis=0) - np.array(there.translation) * 1000.0)
+    assert near < 120.0
+
+
+def test_fit_operator_can_move_the_product(blender, hand):
+    mesh, rig = hand
+    product, _ = with_cylinder(blender.context, mesh)
+    product.location = (0.4, 0.1, 0.2)
+    blender.context.view_layer.update()
+    there = rig.matrix_world.copy()
+    assert blender.ops.thenar.fit_grasp(strength="LIGHT", moves="PRODUCT") == {"FINISHED"}
+    assert rig.matrix_world == there
+    fit = fitting.prepare(blender.context, mesh, [product], grasp.Wish(pads.LIGHT_MM, is_placed=True))
+    depths = [pads.pad_depth(pads.gaps(fit.product, evaluated_mm(mesh))[pad.rows]) for pad in fit.hand.pads]
+    assert np.median(np.abs(np.array(depths) - 2.6)) < 0.8
+
+
+def test_written_grasp_is_the_fitted_one(blender, hand):
+    mesh, rig = hand
+    product, job = with_cylinder(blender.context, mesh)
+    found = fitting.compute(job)
+    fitting.finish(blender.context, job, found, "HAND")
+    gap = pads.gaps(job.product, evaluated_mm(mesh))
+    for pad in job.hand.pads:
+        assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.01)
+
+
+def test_foreign_bone_names_and_axes(blender, hand):
+    """The made hand with other names and rolls is still found, posed and fitted."""
+    mesh, rig = hand
+    renamed = {"carpus": "hand.R", "thumb_metacarpal": "thumb.01.R", "thumb_proximal": "thumb.02.R"}
+    renamed["thumb_distal"] = "thumb.03.R"
+    for finger in roles.FINGERS:
+        renamed[f"{finger}_metacarpal"] = f"palm.{finger}.R"
+        for k, segment in enumerate(("proximal", "middle", "distal")):
+            renamed[f"{finger}_{segment}"] = f"f_{'pinky' if finger == 'little' else finger}.0{k + 1}.R"
+    for old, new in renamed.items():
+        rig.data.bones[old].name = new
+    blender.context.view_layer.objects.active = rig
+    blender.ops.object.mode_set(mode="EDIT")
+    for bone in rig.data.edit_bones:
+        bone.roll += 0.7
+    blender.ops.object.mode_set(mode="OBJECT")
+    for bone in rig.pose.bones:
+        bone.rotation_mode = "QUATERNION"
+        for constraint in list(bone.constraints):
+            bone.constraints.remove(constraint)
+    bonemap.set_map(rig, {}, "AUTO")
+    assert blender.ops.thenar.guess_bones() == {"FINISHED"}
+    assert bonemap.get_map(rig)["little_middle"] == "f_pinky.02.R"
+    assert len(bonemap.get_map(rig)) == len(roles.ROLES)
+    product, job = with_cylinder(blender.context, mesh)
+    found = fitting.compute(job)
+    fitting.finish(blender.context, job, found, "HAND")
+    misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
+    assert np.median(misses) < 0.6
+    gap = pads.gaps(job.product, evaluated_mm(mesh))
+    for pad in job.hand.pads:
+        assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.02)
+
+
+def test_missing_bone_is_named(blender, hand):
+    mesh, rig = hand
+    with_cylinder(blender.context, mesh)
+    rig.thenar_bones.ring_middle = "no such bone"
+    with pytest.raises(RuntimeError, match="No bone called 'no such bone' for ring middle"):
+        blender.ops.thenar.fit_grasp()
+
+
+def test_hand_without_regions_gets_pads_from_its_bones(blender, hand):
+    mesh, rig = hand
+    mesh.thenar.materials.clear()
+    found = {pad.role: pad for pad in fitting.read_hand(blender.context, mesh).pads}
+    assert {"index_distal", "little_middle", "thumb_distal"} <= set(found)
+    assert np.array(mesh.data.vertices[int(found["index_distal"].rows[0])].normal)[2] > -0.5
+
+
+def test_out_of_reach_is_reported(blender, hand):
+    mesh, rig = hand
+    product, _ = with_cylinder(blender.context, mesh)
+    product.location = (2.0, 0.0, 0.0)
+    blender.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="reach"):
+        blender.ops.thenar.fit_grasp(place="KEEP", moves="FINGERS")
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_both_hands_grasp(blender, side):
+    assert blender.ops.thenar.make_hand(side=side) == {"FINISHED"}
+    mesh = blender.context.scene.thenar.hand
+    _, job = with_cylinder(blender.context, mesh)
+    found = fitting.compute(job)
+    misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
+    assert np.median(misses) < 0.5
+    assert not found.warnings
+
+
+@pytest.mark.parametrize("kind", SAMPLE_KINDS)
+def test_sample_is_complete_and_solves(blender, kind):
+    assert blender.ops.thenar.add_sample(kind=kind) == {"FINISHED"}
+    scene = blender.context.scene
+    settings = scene.thenar
+    assert scene.camera is not None and scene.unit_settings.length_unit == "MILLIMETERS"
+    assert sum(obj.type == "LIGHT" for obj in scene.objects) == 3
+    posed = evaluated_mm(settings.hand)
+    triangles = np.array([face.vertices for face in settings.hand.data.polygons])
+    assert self_crossing(posed, triangles) <= (0.02 if kind == "handlebar" else 0.01), "a fist on 32 mm folds more"
+    assert blender.ops.thenar.solve() == {"FINISHED"}
+    result = settings.result
+    assert result.force_n > 0.5 and result.area_mm2 > 50.0 and result.penetration_mm < 0.021
+    touching = {region.name for region in result.regions if region.force_n > 0.0}
+    if kind.startswith("cylinder"):
+        assert len(touching) == 19, "every region touches in the paper's grasps"
+        wanted = {"cylinder_48": 337.0, "cylinder_60": 260.0, "cylinder_100": 122.0}[kind]
+        assert result.force_n == pytest.approx(wanted, rel=0.05)
+    for region, material in zip(result.regions, settings.hand.thenar.materials, strict=True):
+        assert region.depth_mm < material.thickness_mm
+
+
+def self_crossing(vertices, triangles):
+    """Share of triangles that cut another one with which they share no vertex."""
+    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist())
+    pairs = np.array([pair for pair in tree.overlap(tree) if pair[0] < pair[1]], int).reshape(-1, 2)
+    first, second = triangles[pairs[:, 0]], triangles[pairs[:, 1]]
+    apart = ~(first[:, :, None] == second[:, None, :]).any(axis=(1, 2))
+    return len(np.unique(pairs[apart])) / len(triangles)
+
+
+def test_samples_list_is_the_public_one():
+    assert tuple(samples.SAMPLES) == SAMPLE_KINDS

@@ -1,0 +1,80 @@
+"""The extension zip: holds the add-on, the wheel and the license, nothing else, and Blender accepts it."""
+
+import tomllib
+import zipfile
+
+import products
+import pytest
+
+ADDON = products.ROOT / "addon"
+PLATFORMS = {"linux-x64", "windows-x64", "macos-arm64", "macos-x64", "windows-arm64", "linux-arm64"}
+
+
+@pytest.fixture(scope="module")
+def names():
+    with zipfile.ZipFile(products.ZIP) as archive:
+        assert archive.testzip() is None
+        return set(archive.namelist())
+
+
+@pytest.fixture(scope="module")
+def manifest():
+    with zipfile.ZipFile(products.ZIP) as archive:
+        return tomllib.loads(archive.read("blender_manifest.toml").decode())
+
+
+def test_zip_holds_the_add_on_and_nothing_else(names):
+    sources = {
+        path.relative_to(ADDON).as_posix()
+        for path in ADDON.rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith(".")
+    }
+    expected = sources | {"LICENSE", f"wheels/{products.WHEEL.name}"}
+    assert {name for name in names if not name.endswith("/")} == expected
+
+
+def test_zip_holds_no_tests_caches_or_sources(names):
+    forbidden = ("__pycache__", ".pyc", ".rs", "test_", "conftest", ".git", ".blend1", "egg-info")
+    assert not [name for name in names if any(word in name for word in forbidden)]
+
+
+def test_zip_holds_the_wheel_that_was_built():
+    with zipfile.ZipFile(products.ZIP) as archive:
+        assert archive.read(f"wheels/{products.WHEEL.name}") == products.WHEEL.read_bytes()
+
+
+def test_manifest_follows_the_platform_rules(manifest):
+    assert manifest["id"] == "thenar" and manifest["type"] == "add-on"
+    assert manifest["version"] == products.VERSION
+    assert manifest["platforms"] == ["linux-x64"] and set(manifest["platforms"]) <= PLATFORMS
+    assert manifest["wheels"] == [f"./wheels/{products.WHEEL.name}"]
+    assert manifest["license"] == ["SPDX:GPL-3.0-or-later"]
+    assert manifest["blender_version_min"] == "4.2.0" and "blender_version_max" not in manifest
+    assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
+    assert "blender" not in manifest["name"].lower()
+    assert set(manifest["permissions"]) == {"files"}
+    assert all(len(text) <= 64 and not text.endswith(".") for text in manifest["permissions"].values())
+
+
+@pytest.mark.parametrize("environment", products.BLENDERS)
+def test_blender_validates_the_zip(environment):
+    assert validate(environment, products.ZIP).returncode == 0
+
+
+@pytest.mark.parametrize("environment", products.BLENDERS)
+def test_validation_sees_an_unknown_tag(environment, tmp_path):
+    with zipfile.ZipFile(products.ZIP) as archive:
+        text = archive.read("blender_manifest.toml").decode()
+    broken = tmp_path / "broken.zip"
+    with zipfile.ZipFile(broken, "w") as archive:
+        archive.writestr("__init__.py", "")
+        archive.writestr("blender_manifest.toml", text.replace('"Physics"', '"NotATag"'))
+    end = validate(environment, broken)
+    assert end.returncode != 0 and "NotATag" in end.stdout + end.stderr
+
+
+def validate(environment, zip_path):
+    scripts = products.blender_scripts(environment)
+    tags = scripts / "modules/_bpy_internal/extensions/tags.py"
+    script = scripts / "addons_core/bl_pkg/cli/blender_ext.py"
+    return products.run(environment, [script, "validate", f"--valid-tags={tags}", zip_path])

@@ -1,0 +1,126 @@
+"""A bonded elastic layer under an axisymmetric load, by Hankel transforms: reference for Thenar's `layer` model.
+
+G shear modulus (MPa), nu Poisson's ratio, h thickness (mm, infinite for the half space), k wave number, s = k h.
+"""
+
+import numpy as np
+from scipy.special import j0, j1
+
+from proof.complementarity import lemke
+
+
+def transform(s, nu):
+    """K(s) of u^(k) = (1 - nu) / (G k) K(k h) p^(k), closed form: 1 for a half space, 0 for no layer at all."""
+    s = np.asarray(s, float)
+    kappa, far = 3.0 - 4.0 * nu, np.exp(-2.0 * s)
+    top = kappa * (1.0 - far**2) - 4.0 * s * far
+    bottom = kappa * (1.0 + far**2) + (4.0 * s**2 + 1.0 + kappa**2) * far
+    # Below s = 0.02 the numerator cancels: its series for kappa = 1 does not.
+    series = 8.0 / 3.0 * s**3 - 16.0 / 3.0 * s**4 + 88.0 / 15.0 * s**5 - 208.0 / 45.0 * s**6
+    small = (s < 0.02) & (kappa == 1.0)
+    return np.where(small, series, top) / bottom
+
+
+def transform_by_boundary_values(s, nu):
+    """The same K(s), found by solving Navier's equations through the thickness at one s > 0, for check.
+
+    With u_z = W(z) cos kx, u_x = U(z) sin kx, G = k = 1 and the layer from z = 0 (bonded) to z = s (loaded by p cos x),
+    the general solution (Papkovich and Neuber) has four constants, set by u = 0 below and by the tractions above.
+    """
+    kappa = 3.0 - 4.0 * nu
+    # u = (kappa B - grad terms): harmonic phi = (a1 e^z + a2 e^-z) cos x, psi = (b1 e^z + b2 e^-z) cos x along z:
+    # u_x = -d/dx (phi + z psi), u_z = -d/dz (phi + z psi) + (kappa + 1) psi.
+    rows = np.zeros((4, 4))
+    for column in range(4):
+        sign = 1.0 if column % 2 == 0 else -1.0
+        is_psi = column >= 2
+
+        def fields(z, sign=sign, is_psi=is_psi):
+            e = np.exp(sign * (z - (s if sign > 0 else 0.0)))
+            if not is_psi:
+                u, w, du, dw = e, -sign * e, sign * e, -e
+            else:
+                u, du = z * e, (1.0 + sign * z) * e
+                w, dw = (kappa - sign * z) * e, sign * (kappa - sign * z) * e - sign * e
+            return u, w, du, dw
+
+        u0, w0, _, _ = fields(0.0)
+        u1, w1, du1, dw1 = fields(s)
+        # Shear du/dz - w = 0; normal 2 (dw/dz + nu / (1 - 2 nu) div) with div = u + dw/dz = 2 (1 - 2 nu) dpsi/dz.
+        divergence = (2.0 * (1.0 - 2.0 * nu) * sign * np.exp(0.0 if sign > 0 else -s)) if is_psi else 0.0
+        pressure_part = (2.0 * sign * np.exp(0.0 if sign > 0 else -s)) if is_psi else 0.0
+        assert abs(u1 + dw1 - divergence) < 1e-9 * (1.0 + abs(dw1))
+        rows[:, column] = [u0, w0, du1 - w1, 2.0 * (dw1 + nu * pressure_part)]
+    constants = np.linalg.solve(rows, [0.0, 0.0, 0.0, -1.0])
+    top = 0.0
+    for column in range(4):
+        sign = 1.0 if column % 2 == 0 else -1.0
+        e = 1.0 if sign > 0 else np.exp(-s)
+        top += constants[column] * (-sign * e if column < 2 else (kappa - sign * s) * e)
+    return -top / (1.0 - nu)
+
+
+def wave_numbers(edges):
+    """Gauss nodes and weights on k, from 0 to where rings as fine as `edges` (mm) have nothing more to say."""
+    finest, extent = np.diff(edges).min(), edges[-1]
+    panel = min(np.pi / (2.0 * extent), 0.25)
+    panels = int(np.ceil(60.0 / finest / panel))
+    node, weight = np.polynomial.legendre.leggauss(5)
+    start = np.arange(panels)[:, None] * panel
+    return (start + (node + 1.0) * panel / 2.0).ravel(), np.tile(weight * panel / 2.0, panels)
+
+
+def ring_compliance(edges, shear_modulus, nu, thickness):
+    """Mean displacement (mm) of every ring under a unit force (N) on every other; rings between `edges` (n + 1)."""
+    k, weight = wave_numbers(edges)
+    outer = edges[:, None] * j1(np.outer(edges, k))
+    ring = np.diff(outer, axis=0)  # k times the transform of a unit pressure on the ring
+    factor = np.ones_like(k) if np.isinf(thickness) else transform(k * thickness, nu)
+    area = np.pi * np.diff(edges**2)
+    spread = (ring * (weight * factor / k**2)) @ ring.T
+    # Beyond the last k only K = 1 and the mean of r J1(k r)^2 r = r / (pi k) are left, on the shared edges.
+    tail = np.zeros_like(spread)
+    rest = 1.0 / (2.0 * np.pi * k.max() ** 2)
+    i = np.arange(len(edges) - 1)
+    tail[i, i] = (edges[:-1] + edges[1:]) * rest
+    tail[i[:-1], i[1:]] = tail[i[1:], i[:-1]] = -edges[1:-1] * rest
+    return (1.0 - nu) / shear_modulus * 2.0 * np.pi * (spread + tail) / np.outer(area, area)
+
+
+def press(profile, edges, shear_modulus, nu, thickness):
+    """Frictionless press of a rigid axisymmetric product into the layer.
+
+    `profile(r)` is the gap (mm, < 0 in overlap). Returns (force N, pressure MPa by ring, contact radius mm).
+    """
+    middle = np.sqrt((edges[1:] ** 2 + edges[:-1] ** 2) / 2.0)
+    force, _ = lemke(ring_compliance(edges, shear_modulus, nu, thickness), profile(middle))
+    pressed = np.flatnonzero(force > 0.0)
+    area = np.pi * np.diff(edges**2)
+    return force.sum(), force / area, float(edges[pressed[-1] + 1]) if len(pressed) else 0.0
+
+
+def surface_displacement(radius, edges, pressure, material):
+    """Displacement (mm) at the radii given, under pressure (MPa) by ring; `material` is (G, nu, h)."""
+    shear_modulus, nu, thickness = material
+    k, weight = wave_numbers(np.concatenate([edges, [max(edges[-1], np.max(radius)) * 1.01]]))
+    load = (np.diff(edges[:, None] * j1(np.outer(edges, k)), axis=0) * pressure[:, None]).sum(axis=0) / k
+    factor = np.ones_like(k) if np.isinf(thickness) else transform(k * thickness, nu)
+    return (1.0 - nu) / shear_modulus * (j0(np.outer(radius, k)) @ (weight * load * factor))
+
+
+def smooth_kernel(x, nu=0.5):
+    """Phi(x) = integral of (1 - K(s)) J0(s x) ds, the layer's departure from 1/r (physics.md section 5)."""
+    node, weight = np.polynomial.legendre.leggauss(12)
+    start = np.arange(120)[:, None] * 0.25
+    s, w = (start + (node + 1.0) * 0.125).ravel(), np.tile(weight * 0.125, 120)
+    return j0(np.outer(np.atleast_1d(x), s)) @ (w * (1.0 - transform(s, nu)))
+
+
+def sneddon_sphere(radius, contact_radius, shear_modulus, nu):
+    """(depth mm, force N) of a true rigid sphere, not its parabola, on a half space (Sneddon 1965)."""
+    modulus, a, log = (
+        2.0 * shear_modulus / (1.0 - nu),
+        contact_radius,
+        np.log((radius + contact_radius) / (radius - contact_radius)),
+    )
+    return a / 2.0 * log, modulus * ((a * a + radius * radius) / 2.0 * log - a * radius)

@@ -1,0 +1,104 @@
+"""Materials in Python: defaults from the table, refusals, and which region gets which."""
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pressing_shapes as shapes
+import pytest
+import thenar
+
+VERTICES, TRIANGLES = shapes.sheet(7)
+SOFT, HARD = thenar.Material(g0_mpa=0.004), thenar.Material(g0_mpa=0.04)
+REGIONS = np.where(VERTICES[:, 0] < 0, 0, 2)
+
+
+def test_defaults_are_the_table():
+    table = {row.name: row for row in thenar.parameters()}
+    material = thenar.Material()
+    for name, row in table.items():
+        assert getattr(material, name) == row.default
+        assert row.low <= row.default <= row.high
+        assert getattr(thenar.Material(**{name: row.default / 2}), name) == row.default / 2
+    swelling = [table[f"swelling_{name}"].default for name in ("height_mm_per_n", "radius_mm", "width_mm")]
+    assert list(material.swelling) == swelling
+    assert all(row.meaning and row.source and row.unit for row in table.values())
+
+
+def test_numbers_are_kept_compared_copied_and_shown():
+    given = {"g0_mpa": 0.01, "g_lim_mpa": 0.1, "d_lim_mm": 3.0, "thickness_mm": math.inf, "swelling": (1.0, 7.0, 2.0)}
+    material = thenar.Material(**given)
+    assert {name: getattr(material, name) for name in given} == given
+    assert material == thenar.Material(**given) != material.replace(d_lim_mm=4)
+    assert material == pickle.loads(pickle.dumps(material)) == copy.deepcopy(material)
+    assert eval(repr(material), {"thenar": thenar, "inf": math.inf}) == material
+    with pytest.raises(AttributeError):
+        material.g0_mpa = 1.0
+
+
+def test_presets_differ_and_are_admissible():
+    presets = [
+        thenar.Material.finger(),
+        thenar.Material.palm(),
+        thenar.Material.finger_layer(),
+        thenar.Material.palm_layer(),
+    ]
+    assert len({repr(preset) for preset in presets}) == 4
+    assert all(preset.replace() == preset for preset in presets)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "sentence"),
+    [
+        ({"g0_mpa": 0}, "g0_mpa is 0, but must be positive"),
+        ({"g_lim_mpa": -1.0}, "g_lim_mpa is -1"),
+        ({"d_lim_mm": math.nan}, "^d_lim_mm: NaN"),
+        ({"d_lim_mm": math.inf}, "d_lim_mm is inf"),
+        ({"poisson_ratio": 0.6}, "poisson_ratio is 0.6, but must be from 0 to 0.5"),
+        ({"thickness_mm": "5"}, "^thickness_mm: expected a number, got str"),
+        ({"zone_mm": True}, "^zone_mm: expected a number, got bool"),
+        ({"swelling": (1, 2)}, "^swelling: expected 3 numbers"),
+        ({"swelling": None, "young_mpa": 1.0}, 'a material has no "young_mpa"; it has g0_mpa'),
+    ],
+)
+def test_numbers_that_no_tissue_has_are_refused(numbers, sentence):
+    with pytest.raises(thenar.MaterialError, match=sentence):
+        thenar.Material(**numbers)
+
+
+def materials(given, **keywords):
+    return thenar.Skin(VERTICES, TRIANGLES, REGIONS, given, **keywords).materials
+
+
+def test_materials_find_their_regions():
+    names = ["left", "nothing", "right"]
+    preset = thenar.Material.finger_layer()
+    assert materials(None) == [preset] * 3
+    assert materials(None, model="paper") == [thenar.Material.finger()] * 3
+    assert materials(SOFT) == [SOFT] * 3
+    assert materials([SOFT, SOFT, HARD]) == materials((SOFT, SOFT, HARD)) == [SOFT, SOFT, HARD]
+    assert materials({0: SOFT, 2: HARD}) == [SOFT, preset, HARD]
+    assert materials({np.int64(2): HARD, "default": SOFT}) == [SOFT, SOFT, HARD]
+    assert materials({"right": HARD, "left": SOFT}, region_names=names) == [SOFT, preset, HARD]
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ([SOFT, HARD], r"^materials: region 2 has none \(2 were given\)"),
+        ({0: SOFT}, r"^materials: region 2 has none \(it is not in the dict"),
+        ({3: SOFT, "default": SOFT}, "^materials: there is no region 3; the keys are 0 to 2 or 'default'"),
+        ({"palm": SOFT}, "^materials: there is no region 'palm'"),
+        ([SOFT, 0.1, HARD], "^materials: region 1 has float, expected a thenar.Material"),
+        (0.1, "^materials: expected a Material, a list or a dict of them, got float"),
+    ],
+)
+def test_regions_without_a_material_are_refused(given, sentence):
+    with pytest.raises(thenar.MaterialError, match=sentence):
+        materials(given)
+
+
+def test_too_few_region_names_are_refused():
+    with pytest.raises(thenar.MeshError, match="^region_names: 2 names for regions 0 to 2"):
+        materials(SOFT, region_names=["a", "b"])
