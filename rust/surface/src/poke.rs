@@ -7,6 +7,9 @@
 //! 2. at least two neighbors, whose reading is settled, are pushed the same way and to a depth that differs by no more than the way between
 //!    (a signed distance grows by at most 1 mm a mm). Settled are readings found without this rule, and those it has accepted.
 //!
+//! A piece of skin that lies wholly behind a sheet, as all of a patch in a box without its lid, has no such neighbors: it is through where
+//! the sheet winds around all of it.
+//!
 //! What is accepted does not depend on the order of the vertices.
 
 use rayon::prelude::*;
@@ -66,30 +69,35 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
         .filter(|&i| gaps[i as usize].is_some())
         .collect();
     let places: Vec<u32> = candidates.iter().map(|c| c.at).collect();
-    grow(
+    let vicinity = Vicinity::new(skin.points, &seen, &places);
+    let neighbors: Vec<Vec<u32>> = candidates
+        .par_iter()
+        .map(|c| neighbors(skin, &vicinity, c.at))
+        .collect();
+    grow(skin, (&candidates, &neighbors), &mut is_settled, gaps);
+    enclose(
+        product,
         skin,
-        &candidates,
-        &Vicinity::new(skin.points, &seen, &places),
-        &mut is_settled,
-        gaps,
+        (&candidates, &neighbors),
+        (&is_settled, gaps),
     );
+}
+
+/// The points near a point whose skin faces the same way.
+fn neighbors(skin: &Skin, vicinity: &Vicinity, at: u32) -> Vec<u32> {
+    let own = skin.normals[at as usize];
+    let mut near = vicinity.around(at);
+    near.retain(|&j| j != at && skin.normals[j as usize].dot(&own) > 0.0);
+    near
 }
 
 /// Accepts candidates next to settled points, until no more can be.
 fn grow(
     skin: &Skin,
-    candidates: &[Candidate],
-    vicinity: &Vicinity,
+    (candidates, neighbors): (&[Candidate], &[Vec<u32>]),
     is_settled: &mut [bool],
     gaps: &mut [Option<Gap>],
 ) {
-    let around = |c: &Candidate| {
-        let own = skin.normals[c.at as usize];
-        let mut near = vicinity.around(c.at);
-        near.retain(|&j| j != c.at && skin.normals[j as usize].dot(&own) > 0.0);
-        near
-    };
-    let neighbors: Vec<Vec<u32>> = candidates.par_iter().map(around).collect();
     let mut pending: Vec<usize> = (0..candidates.len()).collect();
     while !pending.is_empty() {
         let before = pending.len();
@@ -119,6 +127,47 @@ fn grow(
         });
         if pending.len() == before {
             break;
+        }
+    }
+}
+
+/// Accepts pieces of skin that lie wholly behind a sheet which winds around all of them.
+fn enclose(
+    product: &Product,
+    skin: &Skin,
+    (candidates, neighbors): (&[Candidate], &[Vec<u32>]),
+    (is_settled, gaps): (&[bool], &mut [Option<Gap>]),
+) {
+    let mut seen = vec![false; candidates.len()];
+    for start in 0..candidates.len() {
+        if seen[start] || is_settled[candidates[start].at as usize] {
+            continue;
+        }
+        seen[start] = true;
+        let (mut piece, mut next, mut is_whole) = (vec![start], 0, true);
+        while next < piece.len() {
+            for other in &neighbors[piece[next]] {
+                match candidates.binary_search_by_key(other, |c| c.at) {
+                    Ok(k) if !is_settled[*other as usize] => {
+                        if !seen[k] {
+                            seen[k] = true;
+                            piece.push(k);
+                        }
+                    }
+                    _ => is_whole = false,
+                }
+            }
+            next += 1;
+        }
+        let is_behind = |k: &usize| {
+            let at = candidates[*k].at as usize;
+            candidates[*k].readings[1].is_some() && product.winds_around(skin.points[at])
+        };
+        // Fewer than a vertex and its witnesses are no piece of skin.
+        if is_whole && piece.len() > WITNESSES && piece.iter().all(is_behind) {
+            for k in piece {
+                gaps[candidates[k].at as usize] = candidates[k].readings[1];
+            }
         }
     }
 }

@@ -199,6 +199,12 @@ impl Product {
         }
     }
 
+    /// Whether an open product winds around a point more than it leaves open.
+    pub(crate) fn winds_around(&self, point: Vec3) -> bool {
+        let query = self.tree.query(point);
+        matches!(&self.sign, Sign::Winding(winding) if winding.number(&self.tree, query.point) > 0.5)
+    }
+
     /// Whether a point about the tree's center is inside.
     fn holds(&self, point: Vec3, pending: &mut Pending) -> bool {
         let query = self.tree.local_query(point);

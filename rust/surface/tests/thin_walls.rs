@@ -200,3 +200,44 @@ fn flat_sheet_reads_right_from_both_sides() {
         }
     }
 }
+
+/// A box of one sheet about the origin, 40 mm wide and 20 deep, its floor at z = 0, without its lid.
+fn lidless() -> Product {
+    let walls = cuboid(v(-20., -20., 0.), v(20., 20., 20.));
+    let is_lid = |t: &[u32; 3]| t.iter().all(|&i| walls.positions()[i as usize].z > 19.0);
+    let kept: Vec<[u32; 3]> = walls
+        .triangles()
+        .iter()
+        .copied()
+        .filter(|t| !is_lid(t))
+        .collect();
+    assert_eq!(kept.len(), 10);
+    Product::new(Mesh::new(walls.positions().to_vec(), kept).unwrap()).unwrap()
+}
+
+#[test]
+fn patch_of_skin_wholly_within_a_lidless_box_has_come_through_its_floor() {
+    let points: Vec<Vec3> = (0..49)
+        .map(|i| v(f64::from(i % 7) - 3.0, f64::from(i / 7) - 3.0, 0.6))
+        .collect();
+    let facing = |z: f64| vec![v(0.0, 0.0, z); points.len()];
+    for gap in lidless().gaps(&points, Some(&facing(1.0)), LIMITS) {
+        let gap = gap.unwrap();
+        assert!((gap.distance + 0.6).abs() < 1e-12, "{gap:?}");
+        assert!((gap.normal - v(0., 0., -1.)).norm() < 1e-12, "{gap:?}");
+    }
+    // Skin that faces the floor from within has not touched it.
+    for gap in lidless().gaps(&points, Some(&facing(-1.0)), LIMITS) {
+        assert!((gap.unwrap().distance - 0.6).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn closed_finger_within_a_lidless_box_stays_out_of_its_floor() {
+    let finger = moved(&sphere(1.0, 16, 28), |p| {
+        v(12.0 * p.x, 3.0 * p.y, 3.0 * p.z + 3.4)
+    });
+    for gap in press(&lidless(), &finger).iter().flatten() {
+        assert!(gap.distance > 0.0, "{gap:?}");
+    }
+}
