@@ -101,6 +101,15 @@ pub enum ContactError {
         column: usize,
         found: f64,
     },
+    /// An effect's number, form, region or painting is not admissible.
+    #[error("effect {effect}: {problem}")]
+    Effect {
+        effect: &'static str,
+        problem: String,
+    },
+    /// There is no effect of that name.
+    #[error("there is no effect {name:?}; there are {known}")]
+    UnknownEffect { name: String, known: String },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

@@ -4,6 +4,7 @@
 //! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
 
 pub mod parameters;
+pub mod effects;
 
 mod control;
 mod direction;
@@ -25,6 +26,7 @@ mod weld;
 mod zone;
 
 pub use control::Control;
+pub use effects::ActiveEffect;
 pub use errors::ContactError;
 pub use material::{Material, Swelling};
 pub use press::{

@@ -71,13 +71,18 @@ fn swelling_heights(skin: &Skin, setting: &Setting<'_>) -> Vec<f64> {
     let height = |(m, depth): (&crate::Material, &f64)| {
         m.swelling.height_mm_per_n * m.g0_mpa / m.shear_modulus(*depth)
     };
-    skin.materials.iter().zip(depths).map(height).collect()
+    skin.tissue
+        .materials
+        .iter()
+        .zip(depths)
+        .map(height)
+        .collect()
 }
 
 /// Rise of a site beside the pressed ones, mm (Xie Eq. 5).
 fn swelling(skin: &Skin, pressed: &[(u32, f64)], (site, heights): (u32, &[f64])) -> f64 {
     let region = skin.sites.region[site as usize];
-    let swelling = skin.materials[region as usize].swelling;
+    let swelling = skin.tissue.materials[region as usize].swelling;
     let reach = swelling.radius_mm + GAUSSIAN_REACH * swelling.width_mm;
     let here = &skin.sites.rest[site as usize];
     let mut rise = 0.0;
@@ -101,7 +106,7 @@ fn swelling(skin: &Skin, pressed: &[(u32, f64)], (site, heights): (u32, &[f64]))
 fn is_active(skin: &Skin, colliding: &[u32], site: u32) -> bool {
     let sites = &skin.sites;
     let region = sites.region[site as usize];
-    let reach = skin.materials[region as usize].zone_mm;
+    let reach = skin.tissue.materials[region as usize].zone_mm;
     let here = sites.rest[site as usize].position;
     colliding.iter().any(|&other| {
         sites.region[other as usize] == region

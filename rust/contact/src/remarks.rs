@@ -39,7 +39,7 @@ pub fn remarks(skin: &Skin, posed: &Mesh, product: &Product, pressed: &Pressed) 
 }
 
 fn region(skin: &Skin, index: usize, depth: f64) -> Vec<String> {
-    let material = &skin.materials[index];
+    let material = &skin.tissue.materials[index];
     let mut said = Vec::new();
     if depth > material.d_lim_mm && material.g_lim_mpa != material.g0_mpa {
         said.push(format!(

@@ -9,8 +9,10 @@ use crate::linearize::{Setting, Solved, solve};
 use crate::press::{Contact, Press, Start};
 use crate::skin::Skin;
 use crate::summary::summarize;
-use crate::zone::{Detection, candidates, check_resolution, detect, kept_stiffness};
-use crate::{ContactError, Control, Material, Model};
+use crate::zone::{
+    Detection, candidates, check_resolution, detect, kept_stiffness, pressed_thickness,
+};
+use crate::{ContactError, Control, Model};
 
 /// Share of a force target that may be missed without a word.
 const FORCE_MISS: f64 = 1e-3;
@@ -114,6 +116,7 @@ impl Skin {
         let zone = self.zone(&detection);
         check_resolution(self, &zone)?;
         let shear_modulus: Vec<f64> = self
+            .tissue
             .materials
             .iter()
             .zip(&detection.max_penetration)
@@ -159,15 +162,12 @@ impl Skin {
 
     /// Moduli with what escapes sideways in deep presses taken off; model layer only.
     fn effective_moduli(&self, shear_modulus: &[f64], detection: &Detection) -> Vec<f64> {
-        let kept = |(material, depth): (&Material, &f64)| match self.model {
-            Model::Layer => kept_stiffness(material, *depth),
+        let thickness = pressed_thickness(self, detection);
+        let kept = |(thickness, depth): (&f64, &f64)| match self.model {
+            Model::Layer => kept_stiffness(*thickness, *depth),
             Model::Paper => 1.0,
         };
-        let kept = self
-            .materials
-            .iter()
-            .zip(&detection.max_penetration)
-            .map(kept);
+        let kept = thickness.iter().zip(&detection.max_penetration).map(kept);
         shear_modulus
             .iter()
             .zip(kept)
@@ -178,6 +178,7 @@ impl Skin {
     /// Response weight sqrt((1 - nu) / (2 pi G)) and modulus of every site; blended over creases in model layer.
     fn weights(&self, shear_modulus: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let softness: Vec<f64> = self
+            .tissue
             .materials
             .iter()
             .zip(shear_modulus)

@@ -93,6 +93,15 @@ impl Sites {
         self.region[site] >= 0
     }
 
+    /// Region of a site, or in the fringe the one it is most of.
+    pub fn home_region(&self, site: usize) -> u32 {
+        if self.region[site] >= 0 {
+            return self.region[site] as u32;
+        }
+        let most = self.blend[site].iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        most.map_or(0, |share| share.0)
+    }
+
     /// Values of `of_region` blended at every site.
     pub fn blended(&self, of_region: &[f64]) -> Vec<f64> {
         self.blend

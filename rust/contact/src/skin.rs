@@ -2,13 +2,13 @@
 
 use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
 
-use crate::response::bonded_layer::Layer;
+use crate::effects::tissue::Tissue;
 use crate::response::kernel::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
 use crate::sites::Sites;
 use crate::solve::operator::Rows;
 use crate::weld::Welded;
-use crate::{ContactError, Control, Material, Model, SkinInput};
+use crate::{ActiveEffect, ContactError, Control, Material, Model, SkinInput};
 
 /// Spacing below which the paper's r0 makes its matrix indefinite, mm.
 pub(crate) const PAPER_SPACING: f64 = 0.8;
@@ -17,11 +17,17 @@ pub(crate) const PAPER_SPACING: f64 = 0.8;
 #[derive(Debug, Clone)]
 pub struct Skin {
     pub(crate) model: Model,
-    pub(crate) materials: Vec<Material>,
+    /// Materials as given, by region.
+    base: Vec<Material>,
+    effects: Vec<ActiveEffect>,
+    /// What the effects make of the materials and the response.
+    pub(crate) tissue: Tissue,
     pub(crate) regions: Vec<i32>,
     pub(crate) welded: Welded,
     pub(crate) adjacency: Adjacency,
     pub(crate) metric: SkinDistance,
+    /// Range of the metric, mm.
+    range: f64,
     pub(crate) sites: Sites,
     pub(crate) rest_area: Vec<f64>,
     /// Median edge, mm.
@@ -76,11 +82,7 @@ impl Skin {
         let adjacency = Adjacency::new(&welded.mesh);
         control.step("preparing", 0.3)?;
         let thickest = materials.iter().map(|m| m.thickness_mm).fold(0.0, f64::max);
-        let range = if model == Model::Paper {
-            f64::INFINITY
-        } else {
-            RANGE_IN_THICKNESSES * thickest
-        };
+        let range = range(model, thickest);
         let metric = SkinDistance::new(&welded.mesh, range);
         control.step("preparing", 0.6)?;
         let sites = Sites::new(&welded.mesh, &welded_regions, spacing, &metric);
@@ -89,13 +91,17 @@ impl Skin {
         }
         warnings.extend(model_warnings(model, spacing));
         control.step("preparing", 0.8)?;
-        let response = Response::new(model, &layers(&materials), &sites, &metric);
+        let tissue = Tissue::new(&materials, &[], (&sites, &welded.source));
+        let response = Response::new(model, &tissue.geometry, &sites, &metric);
         control.step("preparing", 1.0)?;
         let rest_area = vertex_areas(&welded.mesh);
         let memory = Memory::default();
         Ok(Skin {
             model,
-            materials,
+            base: materials,
+            effects: Vec::new(),
+            tissue,
+            range,
             regions,
             welded,
             adjacency,
@@ -124,9 +130,42 @@ impl Skin {
         self.model
     }
 
-    /// Materials by region.
+    /// Materials by region, as given.
     pub fn materials(&self) -> &[Material] {
-        &self.materials
+        &self.base
+    }
+
+    /// The effects switched on.
+    pub fn effects(&self) -> &[ActiveEffect] {
+        &self.effects
+    }
+
+    /// Switches effects on, in place of those before. The response is prepared again only where they change it.
+    ///
+    /// # Errors
+    /// [`ContactError::Effect`] naming the effect, the number and what is admissible, or `Cancelled`; the skin then stays
+    /// as it was.
+    pub fn set_effects(
+        &mut self,
+        effects: Vec<ActiveEffect>,
+        control: &Control,
+    ) -> Result<(), ContactError> {
+        for effect in &effects {
+            effect.validate(self.model, (self.base.len(), self.vertices()))?;
+        }
+        let tissue = Tissue::new(&self.base, &effects, (&self.sites, &self.welded.source));
+        if tissue.geometry != self.tissue.geometry {
+            control.step("preparing", 0.0)?;
+            let range = range(self.model, tissue.thickest());
+            if range > self.range {
+                self.metric = SkinDistance::new(&self.welded.mesh, range);
+                self.range = range;
+            }
+            self.response = Response::new(self.model, &tissue.geometry, &self.sites, &self.metric);
+            self.memory = Memory::default();
+        }
+        (self.tissue, self.effects) = (tissue, effects);
+        control.step("preparing", 1.0)
     }
 
     /// The welded mesh in a posture given for the mesh as given.
@@ -177,13 +216,12 @@ fn audited(mesh: Mesh) -> Result<(Mesh, Vec<String>), ContactError> {
     Ok((mesh, warnings))
 }
 
-/// The layers of the materials.
-fn layers(materials: &[Material]) -> Vec<Layer> {
-    let layer = |m: &Material| Layer {
-        thickness: m.thickness_mm,
-        poisson_ratio: m.poisson_ratio,
-    };
-    materials.iter().map(layer).collect()
+/// Range of distances along the skin that the response needs, mm.
+fn range(model: Model, thickest: f64) -> f64 {
+    match model {
+        Model::Paper => f64::INFINITY,
+        Model::Layer => RANGE_IN_THICKNESSES * thickest,
+    }
 }
 
 fn check_regions(

@@ -136,7 +136,7 @@ impl Fields {
                 force[vertex] = solved.force[k];
                 pressure[vertex] = solved.force[k] / area[vertex];
                 normal[vertex] = solved.touch[k].normal;
-                let material = &skin.materials[sites.region[site as usize] as usize];
+                let material = &skin.tissue.materials[sites.region[site as usize] as usize];
                 modulus[vertex] =
                     2.0 * pressed.modulus_at[site as usize] / (1.0 - material.poisson_ratio);
             }
@@ -201,7 +201,7 @@ impl Fields {
 }
 
 fn region_table(skin: &Skin, pressed: &Pressed, fields: &Fields) -> Vec<RegionResult> {
-    let mut table: Vec<RegionResult> = (0..skin.materials.len())
+    let mut table: Vec<RegionResult> = (0..skin.tissue.materials.len())
         .map(|index| RegionResult {
             index,
             force: 0.0,

@@ -3,7 +3,7 @@
 use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
 
 use crate::skin::Skin;
-use crate::{ContactError, Material, Model};
+use crate::{ContactError, Model};
 
 /// Reach of the distance query outside the product, mm.
 pub const CUT_OFF: f64 = 8.0;
@@ -70,7 +70,7 @@ pub fn detect(
             *gap = product.gap(*position, None, limits());
         }
     }
-    let mut max_penetration = vec![0.0f64; skin.materials.len()];
+    let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let (region, Some(gap)) = (skin.sites.region[site], &gaps[vertex as usize]) else {
             continue;
@@ -114,6 +114,25 @@ pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
     (0..skin.sites.len() as u32).filter(may_touch).collect()
 }
 
+/// Thickness where each region is pressed deepest, mm.
+pub fn pressed_thickness(skin: &Skin, detection: &Detection) -> Vec<f64> {
+    let of_region = skin.tissue.materials.iter().map(|m| m.thickness_mm);
+    let mut thickness: Vec<f64> = of_region.collect();
+    if skin.tissue.geometry.curvature.is_none() {
+        return thickness;
+    }
+    let mut deepest = vec![0.0; thickness.len()];
+    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+        let (region, gap) = (skin.sites.region[site], &detection.gaps[vertex as usize]);
+        let depth = gap.as_ref().map_or(0.0, |g| -g.distance);
+        if region >= 0 && depth > deepest[region as usize] {
+            deepest[region as usize] = depth;
+            thickness[region as usize] = skin.tissue.thickness(site, region as usize);
+        }
+    }
+    thickness
+}
+
 /// Refuses to press skin whose vertices are too far apart for a layer so thin: one would answer its own force the wrong way.
 ///
 /// # Errors
@@ -122,7 +141,7 @@ pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
     for &site in zone.iter().filter(|_| skin.model == Model::Layer) {
         let region = skin.sites.region[site as usize];
         let spacing_mm = (skin.sites.area[site as usize] * 2.0 / 3f64.sqrt()).sqrt();
-        let thickness_mm = skin.materials[region as usize].thickness_mm;
+        let thickness_mm = skin.tissue.thickness(site as usize, region as usize);
         if thickness_mm < COARSEST_SHARE * spacing_mm {
             let vertex = skin.welded.source[skin.sites.vertex[site as usize] as usize] as usize;
             return Err(ContactError::TooCoarse {
@@ -136,14 +155,14 @@ pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Share of the small-strain stiffness that a region keeps when pressed to `depth` (mm); 1 up to half its thickness.
+/// Share of the small-strain stiffness that tissue of `thickness` (mm) keeps when pressed to `depth` (mm); 1 up to half.
 ///
 /// Beyond, free sides and a receding bone let the tissue escape as a thicker layer would. A pad on a layer needs a force
 /// that falls as the 1.5th power of thickness near these depths (fingertip of radius 8 mm at 4 mm: 6.25 times the half
 /// space's on 5 mm, 3.67 times on 7.1 mm), so the stiffness is that of a layer which is twice as thick as the press is deep.
 /// The response keeps its shape, stays definite, and force keeps growing with depth.
-pub fn kept_stiffness(material: &Material, depth: f64) -> f64 {
-    let excess = depth / (KERNEL_LIMIT * material.thickness_mm);
+pub fn kept_stiffness(thickness: f64, depth: f64) -> f64 {
+    let excess = depth / (KERNEL_LIMIT * thickness);
     if excess > 1.0 {
         excess.powf(-ESCAPE_POWER)
     } else {

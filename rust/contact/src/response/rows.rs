@@ -27,6 +27,26 @@ const LADDER_RATIO: f64 = 1.3;
 /// Two layers and the weight of the first.
 type Mix = (u16, u16, f64);
 
+/// A cut between blocks of the skin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cut {
+    /// Block of every site.
+    pub block: Vec<u32>,
+    /// Share of the response that is kept between different blocks, 0 to 1.
+    pub kept: f64,
+}
+
+/// What the response of model layer depends on, besides the skin's shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Geometry {
+    /// Layer of every region.
+    pub layers: Vec<Layer>,
+    /// Inverse thickness at every site, 1/mm, where it does not follow from the regions.
+    pub curvature: Option<Vec<f64>>,
+    /// Cuts, each a factor between 0 and 1 that keeps the response definite (Schur product).
+    pub cuts: Vec<Cut>,
+}
+
 /// Rows of the response that were needed so far.
 #[derive(Debug, Clone)]
 pub struct Response {
@@ -40,19 +60,20 @@ pub struct Response {
     near: Vec<Vec<(u32, u32)>>,
     /// Lower bounds of skin distance to those patches, mm.
     at_least: Vec<Vec<f64>>,
+    cuts: Vec<Cut>,
     rows: Vec<Option<Box<[f32]>>>,
 }
 
 impl Response {
     /// Prepares tables and patch neighborhoods for the layers of the regions; no row yet.
-    pub fn new(model: Model, of_region: &[Layer], sites: &Sites, metric: &SkinDistance) -> Self {
+    pub fn new(model: Model, geometry: &Geometry, sites: &Sites, metric: &SkinDistance) -> Self {
         let half_space = Layer {
             thickness: f64::INFINITY,
             poisson_ratio: 0.5,
         };
         let (layers, mix) = match model {
             Model::Paper => (vec![half_space], vec![(0, 0, 1.0); sites.len()]),
-            Model::Layer => mix_layers(of_region, sites),
+            Model::Layer => mix_layers(geometry, sites),
         };
         let reach_of = |&(a, b, w): &Mix| {
             let thickness = |layer: u16| layers[layer as usize].thickness;
@@ -79,6 +100,7 @@ impl Response {
             mix,
             near,
             at_least,
+            cuts: geometry.cuts.clone(),
             rows: vec![None; sites.len()],
         }
     }
@@ -144,12 +166,26 @@ impl Response {
                 Model::Layer => {
                     self.find_psi(there.clone(), j, &distances, &mut psi);
                     for (i, (r, psi)) in there.zip(distances.iter().zip(&psi)) {
-                        row.push(self.layer_entry((i, j), *r, *psi, sites) as f32);
+                        let entry = self.layer_entry((i, j), *r, *psi, sites);
+                        row.push((entry * self.kept(i, j)) as f32);
                     }
                 }
             }
         }
         row.into_boxed_slice()
+    }
+
+    /// Share of the response that cuts leave between two sites.
+    #[inline]
+    fn kept(&self, i: usize, j: usize) -> f64 {
+        let share = |cut: &Cut| {
+            if cut.block[i] == cut.block[j] {
+                1.0
+            } else {
+                cut.kept
+            }
+        };
+        self.cuts.iter().map(share).product()
     }
 
     /// `K_ij` of the layer, 1/mm.
@@ -231,39 +267,52 @@ fn extent(sites: &Sites) -> f64 {
     (diagonal * std::f64::consts::FRAC_PI_2).max(f64::MIN_POSITIVE)
 }
 
-/// The layers to tabulate and each site's mix of two of them, by the curvature 1/h of its thickness.
-fn mix_layers(of_region: &[Layer], sites: &Sites) -> (Vec<Layer>, Vec<Mix>) {
-    let curvature: Vec<f64> = of_region.iter().map(|l| 1.0 / l.thickness).collect();
-    let of_site = sites.blended(&curvature);
+/// The layers to tabulate and each site's mix of two of them, by the inverse 1/h of its thickness.
+fn mix_layers(geometry: &Geometry, sites: &Sites) -> (Vec<Layer>, Vec<Mix>) {
+    let of_region = &geometry.layers;
     let poisson: Vec<f64> = of_region.iter().map(|l| l.poisson_ratio).collect();
     let has_one_poisson = poisson.iter().all(|nu| *nu == poisson[0]);
-    let mut levels = curvature.clone();
+    let curvature: Vec<f64> = of_region.iter().map(|l| 1.0 / l.thickness).collect();
+    let (of_site, mut levels) = match &geometry.curvature {
+        Some(field) => (field.clone(), field.clone()),
+        None if has_one_poisson => (sites.blended(&curvature), curvature),
+        None => return per_region(of_region, sites),
+    };
     levels.sort_by(f64::total_cmp);
     levels.dedup();
     if levels.len() > EXACT_LAYERS {
         levels = ladder(&levels);
     }
-    if !has_one_poisson {
-        return per_region(of_region, sites);
-    }
-    let layers = levels
+    let mut ratios = poisson.clone();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup();
+    let layer = |nu: &f64, z: &f64| Layer {
+        thickness: 1.0 / z,
+        poisson_ratio: *nu,
+    };
+    let layers = ratios
         .iter()
-        .map(|z| Layer {
-            thickness: 1.0 / z,
-            poisson_ratio: poisson[0],
-        })
+        .flat_map(|nu| levels.iter().map(move |z| layer(nu, z)))
         .collect();
-    let mix = of_site.iter().map(|&z| {
-        let upper = levels
-            .partition_point(|level| *level < z)
-            .min(levels.len() - 1);
-        if levels[upper] <= z || upper == 0 {
-            return (upper as u16, upper as u16, 1.0);
-        }
-        let weight = (levels[upper] - z) / (levels[upper] - levels[upper - 1]);
-        ((upper - 1) as u16, upper as u16, weight)
+    let mix = of_site.iter().enumerate().map(|(site, &z)| {
+        let nu = poisson[sites.home_region(site) as usize];
+        let first = levels.len() * ratios.partition_point(|ratio| *ratio < nu);
+        let (lower, upper, weight) = between(&levels, z);
+        ((first + lower) as u16, (first + upper) as u16, weight)
     });
     (layers, mix.collect())
+}
+
+/// The levels around `z` and the weight of the first.
+fn between(levels: &[f64], z: f64) -> (usize, usize, f64) {
+    let upper = levels
+        .partition_point(|level| *level < z)
+        .min(levels.len() - 1);
+    if levels[upper] <= z || upper == 0 {
+        return (upper, upper, 1.0);
+    }
+    let weight = (levels[upper] - z) / (levels[upper] - levels[upper - 1]);
+    (upper - 1, upper, weight)
 }
 
 /// Where Poisson's ratio differs too, each region is a layer of its own and a crease mixes its two largest shares.

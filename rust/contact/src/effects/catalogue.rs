@@ -1,0 +1,80 @@
+//! The list of effects, by the names that scripts, files and findings use.
+
+use super::entry::Entry;
+use super::{bone, region_coupling};
+
+/// An effect of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Effect {
+    /// Soft tissue of another thickness over bone.
+    Bone,
+    /// Regions that answer each other's forces only in part.
+    RegionCoupling,
+}
+
+/// Every effect with what is known of it, in the order in which they compose.
+pub const CATALOGUE: [(Effect, &Entry); 2] = [
+    (Effect::Bone, &bone::ENTRY),
+    (Effect::RegionCoupling, &region_coupling::ENTRY),
+];
+
+impl Effect {
+    /// The effect of that name.
+    pub fn named(name: &str) -> Option<Effect> {
+        CATALOGUE
+            .iter()
+            .find(|(_, entry)| entry.name == name)
+            .map(|(effect, _)| *effect)
+    }
+
+    /// What the catalogue says of it.
+    pub fn entry(self) -> &'static Entry {
+        CATALOGUE[self.place()].1
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        self.entry().name
+    }
+
+    /// Its place in the catalogue, and so in the order of composition.
+    pub fn place(self) -> usize {
+        self as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn the_catalogue_stands_in_the_order_of_effects_and_stages() {
+        for (place, (effect, entry)) in CATALOGUE.iter().enumerate() {
+            assert_eq!(effect.place(), place, "{}", entry.name);
+            assert_eq!(Effect::named(entry.name), Some(*effect));
+        }
+        assert!(CATALOGUE.windows(2).all(|w| w[0].1.stage <= w[1].1.stage));
+        let names: BTreeSet<&str> = CATALOGUE.iter().map(|(_, e)| e.name).collect();
+        assert_eq!(names.len(), CATALOGUE.len());
+    }
+
+    #[test]
+    fn every_number_has_a_source_and_a_default_within_its_ranges() {
+        for (_, entry) in CATALOGUE {
+            assert!(!entry.consequences.is_empty() && !entry.source.is_empty());
+            for number in entry.shape {
+                let within =
+                    |range: [f64; 2]| range[0] <= number.default && number.default <= range[1];
+                let what = format!("{} {}", entry.name, number.name);
+                assert!(
+                    within(number.admissible) && within(number.physiological),
+                    "{what}"
+                );
+                assert!(number.admissible[0] <= number.physiological[0], "{what}");
+                assert!(number.admissible[1] >= number.physiological[1], "{what}");
+                assert!(number.source.len() > 8 && !number.unit.is_empty(), "{what}");
+            }
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! What the catalogue says of one effect: its numbers with their sources, and the signs it must leave in data.
+
+/// When an effect acts, in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// Bone, layers and what ties regions together: shapes the response.
+    Geometry,
+    /// How stiff the tissue is, by place and depth.
+    Stiffening,
+    /// What the tissue remembers of earlier steps.
+    History,
+    /// Forces between skin and product.
+    Interface,
+    /// What a sensor makes of the result.
+    Instrument,
+}
+
+/// One number that shapes an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShapeNumber {
+    /// Name in Python, TOML and reports, with its unit.
+    pub name: &'static str,
+    /// Unit, as written in documents ("1" for none).
+    pub unit: &'static str,
+    /// Value where none is given.
+    pub default: f64,
+    /// Smallest and largest admissible value.
+    pub admissible: [f64; 2],
+    /// Smallest and largest value credible for a hand.
+    pub physiological: [f64; 2],
+    /// What it means, in one line.
+    pub meaning: &'static str,
+    /// Where default and range come from.
+    pub source: &'static str,
+}
+
+/// A choice between forms of an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Choice {
+    /// Name in Python and TOML.
+    pub name: &'static str,
+    /// What can be chosen; the first is the default.
+    pub options: &'static [&'static str],
+    /// What it decides, in one line.
+    pub meaning: &'static str,
+}
+
+/// Something that can be seen in recordings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Sign {
+    /// Force at held depth falls with time.
+    ForceFallsInHold,
+    /// Force at held depth stays as it is.
+    ForceStaysInHold,
+    /// Force at equal depth is larger in faster presses.
+    ForceGrowsWithRate,
+    /// Curves at different speeds lie on one another.
+    SpeedDoesNotMatter,
+    /// The time scale is the same for every contact size.
+    ClockIsFixed,
+    /// The time scale grows as the contact's area.
+    ClockGrowsWithArea,
+    /// Loading and unloading enclose a loop.
+    LoopIsOpen,
+    /// Loading and unloading are one curve.
+    LoopIsClosed,
+    /// Area at equal depth differs from the base model's.
+    AreaChanges,
+    /// Area at equal depth is the base model's.
+    AreaStays,
+    /// Force at equal depth is larger than the base model's.
+    ForceIsLarger,
+    /// Force at equal depth is smaller than the base model's.
+    ForceIsSmaller,
+    /// Force grows faster with depth, the larger contact over thickness.
+    StiffensWithContactSize,
+    /// Force grows with depth otherwise than linearly in the modulus.
+    CurveBends,
+    /// Differs from place to place on the skin, and moves with the skin.
+    BelongsToThePlace,
+    /// Matters only where the contact crosses a border of regions.
+    BelongsToTheCrease,
+    /// Skin beside the contact rises by less than the dent's volume.
+    VolumeIsLost,
+    /// Small tools feel stiffer than large ones of the same shape.
+    SmallToolsFeelStiffer,
+    /// Later cycles need less force than the first.
+    LaterCyclesAreSofter,
+    /// What earlier cycles took away comes back in rest.
+    RestRestores,
+    /// A force along the surface of the product.
+    TangentialForce,
+    /// The force pulls on the way out.
+    ForcePulls,
+    /// Contact without load, or before it.
+    AreaAtZeroForce,
+    /// Turns round with the direction of sliding.
+    FollowsSliding,
+}
+
+/// A sign that must hold in data if the effect is at work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Consequence {
+    /// What can be tested.
+    pub sign: Sign,
+    /// The same in words, for the report.
+    pub sentence: &'static str,
+}
+
+/// What the catalogue says of one effect.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Name in Python, TOML and findings.
+    pub name: &'static str,
+    /// When it acts.
+    pub stage: Stage,
+    /// What it is, in one sentence.
+    pub meaning: &'static str,
+    /// What amplitude 1 means.
+    pub amplitude: &'static str,
+    /// Largest admissible amplitude; the smallest is 0.
+    pub most: f64,
+    /// Numbers that shape it, in the order of [`crate::ActiveEffect::shape`].
+    pub shape: &'static [ShapeNumber],
+    /// Forms to choose from.
+    pub choices: &'static [Choice],
+    /// Whether values can be painted per vertex instead, and of what.
+    pub painted: Option<&'static str>,
+    /// Signs that must hold in data if it is at work.
+    pub consequences: &'static [Consequence],
+    /// Where the model comes from.
+    pub source: &'static str,
+}
