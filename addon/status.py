@@ -5,11 +5,10 @@ import sys
 
 
 class Run:
-    """The solve under way: `stage` (empty when none runs), `fraction` done, and the text last `shown` of them."""
+    """The solve under way: `stage` (empty when none runs) and `fraction` done."""
 
     stage = ""
     fraction = 0.0
-    shown = ""
 
 
 run = Run()

@@ -3,7 +3,15 @@
 import bpy
 
 from .. import workflow
-from . import display, polling, running
+from . import display, running
+
+
+def _has_output(cls, context):
+    hand = context.scene.thenar.hand
+    if hand is None or not workflow.has_output(context):
+        cls.poll_message_set("There is no result on the hand; press Solve first")
+        return False
+    return True
 
 
 class THENAR_OT_clear(bpy.types.Operator):
@@ -15,7 +23,7 @@ class THENAR_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return polling.allows(cls, polling.no_output(context))
+        return _has_output(cls, context)
 
     def execute(self, context):
         display.hide(context)
@@ -34,7 +42,7 @@ class THENAR_OT_apply(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return polling.allows(cls, polling.no_output(context))
+        return _has_output(cls, context)
 
     def execute(self, context):
         if running.attempt(self, workflow.apply, context) is None:

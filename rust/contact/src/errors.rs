@@ -110,6 +110,12 @@ pub enum ContactError {
     /// There is no effect of that name.
     #[error("there is no effect {name:?}; there are {known}")]
     UnknownEffect { name: String, known: String },
+    /// A row of a protocol cannot be followed.
+    #[error("protocol, row {row}: {problem}")]
+    Protocol { row: usize, problem: String },
+    /// A protocol has no rows.
+    #[error("the protocol has no rows; give at least one time with a depth, an offset or a force")]
+    EmptyProtocol,
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

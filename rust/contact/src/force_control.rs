@@ -11,7 +11,7 @@ use crate::{ContactError, Control};
 /// Force within this share of the target ends the search.
 const FORCE_TOLERANCE: f64 = 1e-5;
 /// Farthest travel from where the product stands, mm.
-const MOST_TRAVEL: f64 = 120.0;
+pub(crate) const MOST_TRAVEL: f64 = 120.0;
 /// First step of the search, mm.
 const FIRST_STEP: f64 = 0.4;
 /// Most presses of one search.
@@ -61,7 +61,11 @@ pub(crate) fn find_offset(
 }
 
 /// Mean product normal of the penetrating skin by depth and area, or at the nearest skin where none penetrates.
-fn mean_normal(skin: &Skin, posed: &Mesh, product: &Product) -> Result<Vec3, ContactError> {
+pub(crate) fn mean_normal(
+    skin: &Skin,
+    posed: &Mesh,
+    product: &Product,
+) -> Result<Vec3, ContactError> {
     let normals = thenar_surface::vertex_normals(posed);
     let reach = GapLimits {
         cut_off_mm: MOST_TRAVEL,

@@ -11,6 +11,7 @@ mod direction;
 mod errors;
 mod fields;
 mod force_control;
+mod history;
 mod linearize;
 mod material;
 mod paper;
@@ -28,6 +29,7 @@ mod zone;
 pub use control::Control;
 pub use effects::ActiveEffect;
 pub use errors::ContactError;
+pub use history::{Course, Demand, Keep, Protocol, Row, Run, Step};
 pub use material::{Material, Swelling};
 pub use press::{
     Contact, Convergence, ForceTarget, Model, Press, RegionResult, Residual, SkinInput, Start,

@@ -31,6 +31,8 @@ pub struct Solved {
     pub touch: Vec<Gap>,
     /// Slack of the last linear problem, mm.
     pub slack: Vec<f64>,
+    /// Direction in which each yields times its cosine with the normal: load per normal force.
+    pub bearing: Vec<Vec3>,
     /// Displacement of every site, mm.
     pub displacement: Vec<Vec3>,
     /// Signed distance of the written zone, and of every other site that was lifted towards the product, at worst, mm.
@@ -296,7 +298,9 @@ impl State {
     fn finish(mut self, displacement: Vec<Vec3>, worst: f64, tolerance: f64) -> Solved {
         self.convergence.has_converged = self.misfit <= tolerance && self.complementarity <= 1e-10;
         let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
+        let bearing = self.direction.iter().zip(&self.cosine);
         Solved {
+            bearing: bearing.map(|(d, c)| d * *c).collect(),
             zone: self.zone,
             force: self.force,
             touch: self.touch,

@@ -41,7 +41,9 @@ pub fn remarks(skin: &Skin, posed: &Mesh, product: &Product, pressed: &Pressed) 
 fn region(skin: &Skin, index: usize, depth: f64) -> Vec<String> {
     let material = &skin.tissue.materials[index];
     let mut said = Vec::new();
-    if depth > material.d_lim_mm && material.g_lim_mpa != material.g0_mpa {
+    let laws = &skin.tissue.laws;
+    let is_line = !laws.iter().any(|law| law.acts_on(index as u32));
+    if is_line && depth > material.d_lim_mm && material.g_lim_mpa != material.g0_mpa {
         said.push(format!(
             "region {index} is pressed {depth:.2} mm deep, beyond its dlim of {:.2} mm: its modulus is held at Glim",
             material.d_lim_mm

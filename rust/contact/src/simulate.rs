@@ -4,7 +4,10 @@ use std::time::Instant;
 
 use thenar_surface::{Mesh, Product, Vec3};
 
+use crate::effects::stiffening_law::shear_moduli;
 use crate::force_control::find_offset;
+use crate::history::recalled::{moved, restore};
+use crate::history::state::Recall;
 use crate::linearize::{Setting, Solved, solve};
 use crate::press::{Contact, Press, Start};
 use crate::skin::Skin;
@@ -28,6 +31,15 @@ pub(crate) struct Pressed {
     pub shear_modulus: Vec<f64>,
     /// Effective shear modulus by site, blended, MPa.
     pub modulus_at: Vec<f64>,
+    /// What memory did to it, if the tissue remembers.
+    pub recalled: Option<Recalled>,
+}
+
+/// The memory's part in a press.
+pub(crate) struct Recalled {
+    pub recall: Recall,
+    /// What each site of the zone bears in the elastic tissue's terms, N.
+    pub bearing: Vec<(u32, Vec3)>,
 }
 
 impl Pressed {
@@ -110,41 +122,58 @@ impl Skin {
     ) -> Result<Pressed, ContactError> {
         control.step("distances", 0.0)?;
         let started = Instant::now();
-        let detection = detect(self, posed, product, shift)?;
+        let truth = detect(self, posed, product, shift)?;
         add_time(seconds, "distances", started);
         let started = Instant::now();
-        let zone = self.zone(&detection);
+        let mut shear_modulus = shear_moduli(self, &self.tissue.laws, &truth);
+        let recall = self.recall(&truth);
+        if let Some(recall) = &recall {
+            recall.soften(&mut shear_modulus);
+        }
+        let effective = self.effective_moduli(&shear_modulus, &truth);
+        let (mut weight, mut modulus_at) = self.weights(&effective);
+        self.tissue.scale(&mut weight, &mut modulus_at);
+        let moved = recall
+            .as_ref()
+            .map(|recall| moved(self, product, (&truth, recall), &weight));
+        let detection = moved.as_ref().map_or(&truth, |moved| &moved.detection);
+        let zone = self.zone(detection);
         check_resolution(self, &zone)?;
-        let shear_modulus: Vec<f64> = self
-            .tissue
-            .materials
-            .iter()
-            .zip(&detection.max_penetration)
-            .map(|(m, depth)| m.shear_modulus(*depth))
-            .collect();
-        let effective = self.effective_moduli(&shear_modulus, &detection);
-        let (weight, modulus_at) = self.weights(&effective);
         add_time(seconds, "response", started);
         let started = Instant::now();
         let force = std::mem::take(&mut self.memory.force);
-        let start = (force.len() == self.sites.len()).then_some(&force[..]);
+        let elastic = recall
+            .as_ref()
+            .map(|recall| recall.elastic(&force, &self.sites));
+        let start = elastic.as_deref().unwrap_or(&force);
         let setting = Setting {
             product,
-            detection: &detection,
+            detection,
             weight: &weight,
-            start,
+            start: (start.len() == self.sites.len()).then_some(start),
             spacing: self.spacing,
         };
         let solved = solve(self, zone, &setting, control);
         self.memory.force = force;
-        let solved = solved?;
+        let mut solved = solved?;
+        let recalled = moved.zip(recall).map(|(moved, recall)| {
+            let bearing = restore(self, &mut solved, &mut modulus_at, (&moved, &recall));
+            Recalled { recall, bearing }
+        });
         add_time(seconds, "solve", started);
         Ok(Pressed {
-            detection,
+            detection: truth,
             solved,
             shear_modulus,
             modulus_at,
+            recalled,
         })
+    }
+
+    /// What the tissue remembers of the steps before, if a protocol is followed.
+    fn recall(&self, detection: &Detection) -> Option<Recall> {
+        let history = self.history.as_ref()?;
+        Some(history.recall(&detection.max_penetration, &self.sites))
     }
 
     /// The last zone where it still serves, else the sites that may touch.
@@ -197,7 +226,7 @@ impl Skin {
         (weight, of_region(shear_modulus))
     }
 
-    fn remember(&mut self, pressed: &Pressed, offset: f64) {
+    pub(crate) fn remember(&mut self, pressed: &Pressed, offset: f64) {
         self.memory.force = vec![0.0; self.sites.len()];
         for (&site, force) in pressed.solved.zone.iter().zip(&pressed.solved.force) {
             self.memory.force[site as usize] = *force;

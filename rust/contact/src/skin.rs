@@ -2,7 +2,8 @@
 
 use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
 
-use crate::effects::tissue::Tissue;
+use crate::effects::tissue::{Place, Tissue};
+use crate::history::state::History;
 use crate::response::kernel::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
 use crate::sites::Sites;
@@ -34,6 +35,8 @@ pub struct Skin {
     pub(crate) spacing: f64,
     pub(crate) response: Response,
     pub(crate) memory: Memory,
+    /// What the tissue remembers, while a protocol is followed.
+    pub(crate) history: Option<History>,
     warnings: Vec<String>,
 }
 
@@ -91,7 +94,7 @@ impl Skin {
         }
         warnings.extend(model_warnings(model, spacing));
         control.step("preparing", 0.8)?;
-        let tissue = Tissue::new(&materials, &[], (&sites, &welded.source));
+        let tissue = Tissue::bare(&materials);
         let response = Response::new(model, &tissue.geometry, &sites, &metric);
         control.step("preparing", 1.0)?;
         let rest_area = vertex_areas(&welded.mesh);
@@ -111,6 +114,7 @@ impl Skin {
             spacing,
             response,
             memory,
+            history: None,
             warnings,
         })
     }
@@ -153,7 +157,12 @@ impl Skin {
         for effect in &effects {
             effect.validate(self.model, (self.base.len(), self.vertices()))?;
         }
-        let tissue = Tissue::new(&self.base, &effects, (&self.sites, &self.welded.source));
+        let place = Place {
+            sites: &self.sites,
+            metric: &self.metric,
+            source: &self.welded.source,
+        };
+        let tissue = Tissue::new(&self.base, &effects, &place)?;
         if tissue.geometry != self.tissue.geometry {
             control.step("preparing", 0.0)?;
             let range = range(self.model, tissue.thickest());

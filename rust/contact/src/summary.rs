@@ -95,6 +95,31 @@ pub fn summarize(
     }
 }
 
+/// Sums of a press, without what only a full result needs.
+pub struct Totals {
+    /// Contact area by region, mm2.
+    pub region_area: Vec<f64>,
+    /// Normal force by region, N.
+    pub region_force: Vec<f64>,
+    /// Pressure (MPa) of the vertices in contact, by vertex of the mesh as given.
+    pub pressure: Vec<(u32, f64)>,
+}
+
+/// Sums up a press.
+pub fn totals(skin: &Skin, posed: &Mesh, pressed: &Pressed) -> Totals {
+    let fields = Fields::new(skin, posed, pressed);
+    let table = region_table(skin, pressed, &fields);
+    let pressed = skin.welded.welded.iter().enumerate();
+    Totals {
+        region_area: table.iter().map(|row| row.area).collect(),
+        region_force: table.iter().map(|row| row.force).collect(),
+        pressure: pressed
+            .map(|(v, &w)| (v as u32, fields.pressure[w as usize]))
+            .filter(|(_, p)| *p > 0.0)
+            .collect(),
+    }
+}
+
 /// Fields by welded vertex.
 struct Fields {
     displacement: Vec<Vec3>,

@@ -1,7 +1,8 @@
 //! One effect switched on: amplitude, shape numbers, forms chosen, and where it acts.
 
 use super::catalogue::{CATALOGUE, Effect};
-use super::{bone, entry::Entry};
+use super::entry::Entry;
+use super::{bone, relaxation};
 use crate::{ContactError, Model};
 
 /// An effect that a user, or a diagnosis, has switched on.
@@ -176,6 +177,7 @@ impl ActiveEffect {
         self.check_place(regions, vertices)?;
         match self.effect {
             Effect::Bone => bone::check(self),
+            Effect::Relaxation => relaxation::check(self),
             _ => Ok(()),
         }
         .map_err(|problem| self.refuse(problem))

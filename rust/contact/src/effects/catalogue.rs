@@ -1,21 +1,43 @@
 //! The list of effects, by the names that scripts, files and findings use.
 
 use super::entry::Entry;
-use super::{bone, region_coupling};
+use super::{bone, compressibility, cycle_softening, drainage, inclusion, rate_independent_loss};
+use super::{region_coupling, relaxation, stiffening_law};
 
 /// An effect of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Effect {
     /// Soft tissue of another thickness over bone.
     Bone,
+    /// Tissue that gives up volume.
+    Compressibility,
     /// Regions that answer each other's forces only in part.
     RegionCoupling,
+    /// Another growth of the modulus.
+    StiffeningLaw,
+    /// A place where the tissue is stiffer or softer.
+    Inclusion,
+    /// Stiffness that falls with use and recovers in rest.
+    CycleSoftening,
+    /// Force that fades with time.
+    Relaxation,
+    /// Fluid that leaves the pressed tissue.
+    Drainage,
+    /// Energy lost per cycle at any speed.
+    RateIndependentLoss,
 }
 
 /// Every effect with what is known of it, in the order in which they compose.
-pub const CATALOGUE: [(Effect, &Entry); 2] = [
+pub const CATALOGUE: [(Effect, &Entry); 9] = [
     (Effect::Bone, &bone::ENTRY),
+    (Effect::Compressibility, &compressibility::ENTRY),
     (Effect::RegionCoupling, &region_coupling::ENTRY),
+    (Effect::StiffeningLaw, &stiffening_law::ENTRY),
+    (Effect::Inclusion, &inclusion::ENTRY),
+    (Effect::CycleSoftening, &cycle_softening::ENTRY),
+    (Effect::Relaxation, &relaxation::ENTRY),
+    (Effect::Drainage, &drainage::ENTRY),
+    (Effect::RateIndependentLoss, &rate_independent_loss::ENTRY),
 ];
 
 impl Effect {

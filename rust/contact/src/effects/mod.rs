@@ -9,7 +9,14 @@ pub mod active;
 pub mod catalogue;
 pub(crate) mod tissue;
 mod bone;
+mod compressibility;
 mod region_coupling;
+mod inclusion;
+pub(crate) mod stiffening_law;
+pub(crate) mod relaxation;
+pub(crate) mod drainage;
+pub(crate) mod cycle_softening;
+pub(crate) mod rate_independent_loss;
 
 pub use active::ActiveEffect;
 pub use catalogue::{CATALOGUE, Effect};

@@ -1,12 +1,25 @@
 //! What the effects that act at all times make of the tissue, worked out once when effects are set.
 
+use thenar_surface::SkinDistance;
+
 use super::active::ActiveEffect;
 use super::catalogue::Effect;
-use super::{bone, region_coupling};
-use crate::Material;
+use super::{bone, compressibility, inclusion, region_coupling};
 use crate::response::bonded_layer::Layer;
 use crate::response::rows::Geometry;
 use crate::sites::Sites;
+use crate::{ContactError, Material};
+
+/// The skin that effects act on.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// Its sites.
+    pub sites: &'a Sites,
+    /// Distances along it.
+    pub metric: &'a SkinDistance,
+    /// Vertex of the mesh as given that each welded vertex stands for.
+    pub source: &'a [u32],
+}
 
 /// The tissue as the effects leave it.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,35 +28,76 @@ pub struct Tissue {
     pub materials: Vec<Material>,
     /// What the response depends on.
     pub geometry: Geometry,
+    /// Laws of stiffening, in their order.
+    pub laws: Vec<ActiveEffect>,
+    /// Factor of the modulus at every site, where there is one.
+    pub factor: Option<Vec<f64>>,
 }
 
 impl Tissue {
-    /// Composes the effects in the order of the catalogue. `effects` must have been validated; `source` is the vertex of the
-    /// mesh as given that each welded vertex stands for.
-    pub fn new(
-        base: &[Material],
-        effects: &[ActiveEffect],
-        (sites, source): (&Sites, &[u32]),
-    ) -> Tissue {
-        let mut tissue = Tissue {
+    /// The tissue without effects.
+    pub fn bare(base: &[Material]) -> Tissue {
+        Tissue {
             materials: base.to_vec(),
             geometry: Geometry {
-                layers: Vec::new(),
+                layers: layers(base),
                 curvature: None,
                 cuts: Vec::new(),
             },
-        };
+            laws: Vec::new(),
+            factor: None,
+        }
+    }
+
+    /// Composes the effects in the order of the catalogue. `effects` must have been validated.
+    ///
+    /// # Errors
+    /// [`ContactError::Effect`] where an effect does not fit the tissue that those before it leave.
+    pub fn new(
+        base: &[Material],
+        effects: &[ActiveEffect],
+        place: &Place<'_>,
+    ) -> Result<Tissue, ContactError> {
+        let mut tissue = Tissue::bare(base);
         for effect in in_order(effects) {
             match effect.effect {
-                Effect::Bone => tissue.lay_on_bone(effect, (sites, source)),
+                Effect::Bone => tissue.lay_on_bone(effect, place),
+                Effect::Compressibility => {
+                    for (region, material) in tissue.materials.iter_mut().enumerate() {
+                        material.poisson_ratio = compressibility::poisson_ratio(
+                            effect,
+                            region as u32,
+                            material.poisson_ratio,
+                        );
+                    }
+                }
                 Effect::RegionCoupling => tissue
                     .geometry
                     .cuts
-                    .push(region_coupling::cut(effect, sites)),
+                    .push(region_coupling::cut(effect, place.sites)),
+                Effect::StiffeningLaw => tissue.laws.push(effect.clone()),
+                Effect::Inclusion => tissue.include(effect, place)?,
+                // What remembers acts in `history`.
+                Effect::CycleSoftening
+                | Effect::Relaxation
+                | Effect::Drainage
+                | Effect::RateIndependentLoss => {}
             }
         }
         tissue.geometry.layers = layers(&tissue.materials);
-        tissue
+        Ok(tissue)
+    }
+
+    /// Applies the factor of the modulus to response weights and moduli by site.
+    pub fn scale(&self, weight: &mut [f64], modulus: &mut [f64]) {
+        for ((w, g), factor) in weight
+            .iter_mut()
+            .zip(modulus)
+            .zip(self.factor.iter().flatten())
+        {
+            *w /= factor.sqrt();
+            *g *= factor;
+        }
     }
 
     /// Thickness at a site of `region`, mm.
@@ -65,7 +119,27 @@ impl Tissue {
         field.fold(thickest, f64::max)
     }
 
-    fn lay_on_bone(&mut self, effect: &ActiveEffect, (sites, source): (&Sites, &[u32])) {
+    fn include(&mut self, effect: &ActiveEffect, place: &Place<'_>) -> Result<(), ContactError> {
+        let home = inclusion::home(effect, place.sites);
+        let (depth, thickness) = (
+            inclusion::depth(effect),
+            self.thickness(home, place.sites.home_region(home) as usize),
+        );
+        if depth >= thickness {
+            return Err(effect.refuse(format!(
+                "depth_mm is {depth}, but must be less than the {thickness:.2} mm of soft tissue there"
+            )));
+        }
+        let factors = inclusion::factors(effect, (place.sites, place.metric));
+        self.factor = Some(match self.factor.take() {
+            Some(before) => before.iter().zip(&factors).map(|(a, b)| a * b).collect(),
+            None => factors,
+        });
+        Ok(())
+    }
+
+    fn lay_on_bone(&mut self, effect: &ActiveEffect, place: &Place<'_>) {
+        let (sites, source) = (place.sites, place.source);
         if bone::is_field(effect) || self.geometry.curvature.is_some() {
             let curvature = match self.geometry.curvature.take() {
                 Some(curvature) => curvature,

@@ -1,0 +1,17 @@
+//! What the tissue remembers: presses that follow one another in time, by a protocol.
+//!
+//! The force on a site is `f = g * d f_e` (quasi-linear viscoelasticity, Fung 1993, 7.6) with f_e the force an elastic tissue
+//! would bear and `u = R f_e`. Over one step, with f_e a ramp, `f = a f_e + b`: a and b follow from the branches. With the
+//! unknown `x = f / a` that reads `u = R x - R b / a`, `x >= 0`: the base model's own contact problem, in a posture that is
+//! displaced by `-R b / a`, whose forces are then scaled by a. Detection, linearization and solver need know nothing of it.
+
+pub(crate) mod branches;
+pub(crate) mod state;
+pub(crate) mod recalled;
+mod protocol;
+mod course;
+mod run;
+
+pub use course::{Course, Keep, Step};
+pub use protocol::{Demand, Protocol, Row};
+pub use run::Run;
