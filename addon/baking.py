@@ -1,11 +1,12 @@
 """The order of a bake: frame by frame read and press, then publish all frames at once."""
 
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
-from . import workflow
-from .scene import baked, checks, own, units
+from . import native, workflow
+from .scene import baked, checks, moving, own, units
 
 
 @dataclass
@@ -31,13 +32,12 @@ class Bake:
 
 def begin(context, frame_start, frame_end):
     """Check the scene and the range. Raises `Refusal`."""
-    settings = context.scene.thenar
     if frame_end < frame_start:
         raise checks.Refusal(f"the bake ends at frame {frame_end} before it starts at {frame_start}; swap them")
-    if settings.use_force:
-        raise checks.Refusal("a bake presses the product where it stands; switch Force Target off")
-    workflow.check(context)
-    return Bake(frame_start, frame_end, baked.folder_of(settings.hand), context.scene.frame_current)
+    hand, parts = workflow.check(context)
+    if context.scene.thenar.use_force:
+        moving.check_movable(context, parts)
+    return Bake(frame_start, frame_end, baked.folder_of(hand), context.scene.frame_current)
 
 
 def read_frame(context, bake):
@@ -62,18 +62,19 @@ def keep_frame(bake, job, contact):
             "force_n": float(np.asarray(contact.force_n).sum()),
             "area_mm2": contact.contact_area_mm2,
             "peak_kpa": float(units.kpa(contact.peak_pressure_mpa)),
+            "offset": workflow.offset_mm(contact, job) / skin.scale,
         }
     )
 
 
 def publish(context, bake):
-    """Write the files, hang them on the hand, and show the frame that was current before."""
+    """Write the files and hang them on the hand; the next change of frame plays them."""
     settings = context.scene.thenar
     baked.publish(settings.hand, bake.stem, bake.first, bake.done)
+    for part in workflow.product_parts(settings):
+        moving.send_home(part)
     context.scene.render.use_lock_interface = True
     settings.result.state_hash = ""
-    leave(context, bake)
-    baked.play(context.scene, workflow.product_parts)
 
 
 def leave(context, bake):
@@ -81,14 +82,29 @@ def leave(context, bake):
     context.scene.frame_set(bake.frame_before)
 
 
-def run(context, frame_start, frame_end):
-    """A whole bake in this thread. Returns the `Bake`. Raises `Refusal` and the native module's errors."""
+def steps(context, frame_start, frame_end):
+    """A whole bake as the steps of a computation. Returns the `Bake`; the current frame stays what it was.
+
+    Raises `Refusal` and the native module's errors, which name the frame; then nothing is written.
+    """
     bake = begin(context, frame_start, frame_end)
     try:
         while not bake.is_complete:
             job = read_frame(context, bake)
-            keep_frame(bake, job, workflow.compute(job))
+            try:
+                contact = yield partial(_compute, bake, job)
+            except native.error_types() as error:
+                raise type(error)(f"at frame {bake.frame}, {error}") from None
+            keep_frame(bake, job, contact)
         publish(context, bake)
     finally:
         leave(context, bake)
     return bake
+
+
+def _compute(bake, job, cancel, progress):
+    def report(stage, fraction):
+        share = (len(bake.done) + fraction) / (bake.last - bake.first + 1)
+        progress(f"frame {bake.frame} of {bake.last}, {stage}", share)
+
+    return workflow.compute(job, cancel, progress and report)

@@ -5,10 +5,11 @@ import sys
 
 
 class Run:
-    """The solve under way: `stage` (empty when none runs) and `fraction` done."""
+    """The solve under way: `stage` (empty when none runs), `fraction` done, and the text last `shown` of them."""
 
     stage = ""
     fraction = 0.0
+    shown = ""
 
 
 run = Run()

@@ -3,6 +3,7 @@
 import re
 import time
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from . import cache, names, native, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
+from .steps import at_once
 
 
 @dataclass
@@ -177,18 +179,21 @@ def finish(context, job, contact):
     return result
 
 
-def solve(context, cancel=None, progress=None):
-    """One press from start to end, in this thread. Returns the scene's result."""
+def steps(context):
+    """One press as the steps of a computation. Returns the scene's result."""
     job = prepare(context)
-    return finish(context, job, compute(job, cancel, progress))
+    contact = yield partial(compute, job)
+    return finish(context, job, contact)
+
+
+def solve(context):
+    """One press from start to end, in this thread. Returns the scene's result."""
+    return at_once(steps(context))
 
 
 def fields_of(contact, job):
     """The native contact's arrays as the writer wants them."""
     gap = np.asarray(contact.gap_mm)
-    offset = np.zeros(3)
-    if job.force_n is not None:
-        offset = float(contact.offset_mm) * np.asarray(contact.direction, dtype=np.float64)
     return write.Fields(
         displacement_mm=np.asarray(contact.displacement_mm),
         pressure_mpa=np.asarray(contact.pressure_mpa),
@@ -196,8 +201,15 @@ def fields_of(contact, job):
         depth_mm=np.where(np.isfinite(gap), np.maximum(-gap, 0.0), 0.0),
         regions=job.reading.hand.regions,
         product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
-        offset_mm=offset,
+        offset_mm=offset_mm(contact, job),
     )
+
+
+def offset_mm(contact, job):
+    """How far the product moved to carry its force (3), world axes, mm; zero without a force target."""
+    if job.force_n is None:
+        return np.zeros(3)
+    return float(contact.offset_mm) * np.asarray(contact.direction, dtype=np.float64)
 
 
 def state_hash(context):

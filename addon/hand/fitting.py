@@ -75,8 +75,9 @@ def read_skin(context, hand_object, rig, joints):
     return pads.Skin(regions.vertex_regions(context, hand_object, names), names, kinds, thickness)
 
 
-def compute(fit, watch=grasp.ALONE):
-    """The grasp of a `Fit`. Raises `grasp.GraspError`."""
+def compute(fit, cancel=None, progress=None):
+    """The grasp of a `Fit`. `cancel` has `is_set()`; `progress(stage, fraction)`. Raises `grasp.GraspError`."""
+    watch = grasp.Watch(progress or grasp.ALONE.report, cancel)
     found = grasp.fit(fit.hand, fit.product, fit.product_mm[0], fit.wish, watch)
     if fit.force_n is None:
         return found

@@ -18,13 +18,13 @@ SCALES = (0.2, 2.0)
 """Pad depths are scaled between these at most; beyond, the target is not a matter of depth."""
 
 
-def force_of(fit, found):
-    """Total compressive force of a grasp, N: the sum over the skin, as a mat reads it."""
+def force_of(fit, found, cancel=None):
+    """Total compressive force of a grasp, N: the sum over the skin, as a mat reads it; `cancel` ends the press."""
     rig = fit.hand.rig.moved(found.place)
     read = fit.press.reading
     posed = skin(rig, pose_matrices(rig, found.angles)) - read.hand.origin_mm
     press = replace(fit.press, force_n=None, reading=replace(read, hand=replace(read.hand, posed_mm=posed)))
-    return float(np.asarray(workflow.compute(press).force_n).sum())
+    return float(np.asarray(workflow.compute(press, cancel).force_n).sum())
 
 
 def reach(fit, first, watch=grasp.ALONE):
@@ -34,7 +34,7 @@ def reach(fit, first, watch=grasp.ALONE):
     way from the one to the other, joint by joint, force has no leaps: it is bisected. Returns the nearest grasp
     found, with a warning if the force is not within `TOLERANCE`.
     """
-    tried = [(force_of(fit, first), first)]
+    tried = [(force_of(fit, first, watch.cancel), first)]
     scale = 1.0
     for count in range(ROUNDS):
         force, found = tried[-1]
@@ -45,7 +45,7 @@ def reach(fit, first, watch=grasp.ALONE):
         scale = float(np.clip(scale * np.clip(step, 1.0 / LARGEST_STEP, LARGEST_STEP), *SCALES))
         targets = {kind: scale * value for kind, value in fit.wish.targets_mm.items()}
         found = grasp.refit(fit.hand, fit.product, found, replace(fit.wish, targets_mm=targets), watch)
-        tried.append((force_of(fit, found), found))
+        tried.append((force_of(fit, found, watch.cancel), found))
     if _is_bracketed(tried, fit.force_n):
         low = max((entry for entry in tried if entry[0] < fit.force_n), key=lambda entry: entry[0])[1]
         high = min((entry for entry in tried if entry[0] >= fit.force_n), key=lambda entry: entry[0])[1]
@@ -54,7 +54,7 @@ def reach(fit, first, watch=grasp.ALONE):
                 break
             watch.report("Force between two grasps", 0.85 + 0.01 * count)
             middle = _between(low, high)
-            tried.append((force_of(fit, middle), middle))
+            tried.append((force_of(fit, middle, watch.cancel), middle))
             low, high = (middle, high) if tried[-1][0] < fit.force_n else (low, middle)
     force, found = min(tried, key=lambda entry: abs(entry[0] - fit.force_n))
     warnings = found.warnings

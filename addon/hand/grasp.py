@@ -98,10 +98,14 @@ class Wish:
 
 @dataclass(frozen=True)
 class Watch:
-    """Called between evaluations: `report(text, fraction)` and `cancelled()`."""
+    """Called between evaluations: `report(text, fraction)`; `cancel` has `is_set()`, or is None."""
 
     report: object = lambda text, fraction: None
-    cancelled: object = lambda: False
+    cancel: object = None
+
+    def cancelled(self):
+        """Whether the fit shall end."""
+        return self.cancel is not None and self.cancel.is_set()
 
 
 ALONE = Watch()
@@ -117,6 +121,7 @@ def fit(hand, product, vertices, wish, watch=ALONE):
     starts = []
     for count, placing in enumerate(_placings(hand, vertices, wish)):
         watch.report("Closing the fingers", 0.1 * count)
+        _leave_if_cancelled(watch)
         starts.append(_start(hand, product, wanted, (placing, wish.angles)))
     tasks = [_Task(hand, product, wanted, start, wish) for start in starts]
     tasks.sort(key=lambda task: task.first_cost)
@@ -127,9 +132,13 @@ def fit(hand, product, vertices, wish, watch=ALONE):
         used += found.evaluations
         if best is None or found.cost < best[0].cost:
             best = found, task
-        if watch.cancelled():
-            raise GraspError("the fit was cancelled")
+        _leave_if_cancelled(watch)
     return _grasp(best[1], best[0].x, used, time.perf_counter() - began)
+
+
+def _leave_if_cancelled(watch):
+    if watch.cancelled():
+        raise GraspError("the fit was cancelled")
 
 
 def refit(hand, product, found, wish, watch=ALONE):

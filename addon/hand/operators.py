@@ -1,12 +1,12 @@
 """Operators of the hand: make it, pose it, name its bones, fit a grasp, add a sample."""
 
-import threading
+from functools import partial
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from .. import native, status, workflow
-from ..operators import running
+from .. import status, workflow
+from ..operators import computing, polling, running
 from ..scene.checks import Refusal
 from . import build, fitting, grasp, pads, posing, samples
 from .poses import LABELS
@@ -63,7 +63,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _poll(cls, context)
+        return _can_make(cls, context)
 
     def execute(self, context):
         hand = running.attempt(self, self._make, context)
@@ -93,7 +93,7 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _poll_hand(cls, context)
+        return _can_pose(cls, context)
 
     def execute(self, context):
         done = running.attempt(self, posing.apply_pose, context, context.scene.thenar.hand, self.name)
@@ -109,7 +109,7 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _poll_hand(cls, context)
+        return _can_pose(cls, context)
 
     def execute(self, context):
         found = running.attempt(self, posing.guess_bones, context, context.scene.thenar.hand)
@@ -119,12 +119,13 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class THENAR_OT_fit_grasp(bpy.types.Operator):
+class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     """Close the hand on the product until every pad lies as deep in it as asked, within the limits of the joints"""
 
     bl_idname = "thenar.fit_grasp"
     bl_label = "Fit Grasp"
     bl_options = {"REGISTER", "UNDO"}
+    noun = "Fit"
 
     strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM")
     distal_mm: _depth("distal")
@@ -142,11 +143,7 @@ class THENAR_OT_fit_grasp(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        settings = getattr(context.scene, "thenar", None)
-        if settings is not None and settings.product is None and settings.product_collection is None:
-            cls.poll_message_set("Choose the product, or a collection of its parts, first")
-            return False
-        return _poll_hand(cls, context)
+        return polling.allows(cls, polling.no_product(context)) and _can_pose(cls, context)
 
     def draw(self, context):
         layout = self.layout
@@ -159,41 +156,13 @@ class THENAR_OT_fit_grasp(bpy.types.Operator):
         layout.row().prop(self, "digits")
         layout.prop(self, "force_n")
 
-    def execute(self, context):
-        return self._report(context, running.attempt(self, self._fit, context))
-
-    def invoke(self, context, event):
-        if bpy.app.background or context.window is None:
-            return self.execute(context)
-        fit = running.attempt(self, self._prepare, context)
-        if fit is None:
-            return {"CANCELLED"}
-        self._worker = FitWorker(fit)
-        self._timer = running.begin(context, self)
-        return {"RUNNING_MODAL"}
-
-    def modal(self, context, event):
-        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self.cancel(context)
-            self.report({"WARNING"}, "Fit cancelled; the scene is as before")
-            return {"CANCELLED"}
-        if event.type != "TIMER":
-            return {"PASS_THROUGH"} if running.is_navigation(event) else {"RUNNING_MODAL"}
-        if not self._worker.is_done():
-            running.show(context)
-            return {"RUNNING_MODAL"}
-        running.end(context, self._timer)
-        return self._report(context, running.attempt(self, self._outcome, context))
-
-    def cancel(self, context):
-        self._worker.stop()
-        running.end(context, self._timer)
-
-    def _prepare(self, context):
+    def steps(self, context):
         settings = context.scene.thenar
-        return fitting.prepare(
-            context, settings.hand, workflow.product_parts(settings), self._wish(), self.force_n or None
-        )
+        parts = workflow.product_parts(settings)
+        fit = fitting.prepare(context, settings.hand, parts, self._wish(), self.force_n or None)
+        found = yield partial(fitting.compute, fit)
+        fitting.finish(context, fit, found, self.moves)
+        return found
 
     def _wish(self):
         depths = {"LIGHT": pads.LIGHT_MM, "FIRM": pads.FIRM_MM}.get(self.strength)
@@ -207,21 +176,7 @@ class THENAR_OT_fit_grasp(bpy.types.Operator):
         digits = None if len(self.digits) == len(DIGITS) else tuple(sorted(self.digits))
         return grasp.Wish(depths, digits, placed, free_mm)
 
-    def _fit(self, context):
-        fit = self._prepare(context)
-        found = fitting.compute(fit)
-        fitting.finish(context, fit, found, self.moves)
-        return found
-
-    def _outcome(self, context):
-        if self._worker.error is not None:
-            raise self._worker.error
-        fitting.finish(context, self._worker.fit, self._worker.found, self.moves)
-        return self._worker.found
-
     def _report(self, context, found):
-        if found is None:
-            return {"CANCELLED"}
         for text in found.warnings:
             self.report({"WARNING"}, running.sentence(text))
         misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
@@ -232,35 +187,6 @@ class THENAR_OT_fit_grasp(bpy.types.Operator):
             f"(mean {sum(misses) / len(misses):.1f} mm){force}, {found.seconds:.1f} s",
         )
         return {"FINISHED"}
-
-
-class FitWorker:
-    """One fit in a daemon thread; `found` or `error` is set once `is_done()`."""
-
-    def __init__(self, fit):
-        self.fit, self.found, self.error = fit, None, None
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._work, daemon=True)
-        self._thread.start()
-
-    def is_done(self):
-        """Whether the fit has ended, well or not."""
-        return not self._thread.is_alive()
-
-    def stop(self):
-        """Ask the fit to end; if it does not at once, its outcome is dropped."""
-        self._stop.set()
-        self._thread.join(0.2)
-
-    def _work(self):
-        try:
-            self.found = fitting.compute(self.fit, grasp.Watch(_progress, self._stop.is_set))
-        except BaseException as error:  # handed to the window's thread, which reports it
-            self.error = error
-
-
-def _progress(stage, fraction):
-    status.run.stage, status.run.fraction = stage, fraction
 
 
 class THENAR_OT_add_sample(bpy.types.Operator):
@@ -278,32 +204,20 @@ class THENAR_OT_add_sample(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _poll(cls, context)
+        return _can_make(cls, context)
 
     def execute(self, context):
         made = running.attempt(self, samples.add_sample_scene, context, self.kind)
         return {"FINISHED"} if made else {"CANCELLED"}
 
 
-def _poll(cls, context):
-    problem = native.problem()
-    if problem:
-        cls.poll_message_set(running.sentence(problem))
-    elif context.mode != "OBJECT" and context.mode != "POSE":
-        cls.poll_message_set("Go back to Object Mode first (Tab)")
-    elif status.run.stage:
-        cls.poll_message_set("A computation is under way; press Esc to cancel it")
-    else:
-        return True
-    return False
+def _can_make(cls, context):
+    return polling.allows(cls, status.native_problem, polling.wrong_mode(context), polling.busy())
 
 
-def _poll_hand(cls, context):
-    settings = getattr(context.scene, "thenar", None)
-    if settings is None or settings.hand is None:
-        cls.poll_message_set("Choose the hand's mesh under Hand first")
-        return False
-    return _poll(cls, context)
+def _can_pose(cls, context):
+    problems = (polling.no_hand(context), status.native_problem, polling.wrong_mode(context), polling.busy())
+    return polling.allows(cls, *problems)
 
 
 CLASSES = (

@@ -3,15 +3,7 @@
 import bpy
 
 from .. import workflow
-from . import display, running
-
-
-def _has_output(cls, context):
-    hand = context.scene.thenar.hand
-    if hand is None or not workflow.has_output(context):
-        cls.poll_message_set("There is no result on the hand; press Solve first")
-        return False
-    return True
+from . import display, polling, running
 
 
 class THENAR_OT_clear(bpy.types.Operator):
@@ -23,7 +15,7 @@ class THENAR_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_output(cls, context)
+        return polling.allows(cls, polling.no_output(context))
 
     def execute(self, context):
         display.hide(context)
@@ -42,7 +34,7 @@ class THENAR_OT_apply(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_output(cls, context)
+        return polling.allows(cls, polling.no_output(context))
 
     def execute(self, context):
         if running.attempt(self, workflow.apply, context) is None:

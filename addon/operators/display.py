@@ -5,7 +5,7 @@ import bpy
 from .. import names, workflow
 from ..scene import attributes, colors, copies, shading
 from ..views import compositor
-from . import running
+from . import polling, running
 
 
 def shown_objects(context):
@@ -98,6 +98,10 @@ def _solid_colors(context, kind):
                     shader.color_type = kind
 
 
+def _no_pressure(context):
+    return "" if shown_objects(context) else "there is no pressure yet; press Solve first"
+
+
 class THENAR_OT_show_pressure(bpy.types.Operator):
     """Colour hand and product by pressure, over their own materials, with one range for both"""
 
@@ -109,10 +113,7 @@ class THENAR_OT_show_pressure(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if not shown_objects(context):
-            cls.poll_message_set("There is no pressure yet; press Solve first")
-            return False
-        return True
+        return polling.allows(cls, _no_pressure(context))
 
     def execute(self, context):
         if self.show:
@@ -131,7 +132,7 @@ class THENAR_OT_reset_range(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return THENAR_OT_show_pressure.poll.__func__(cls, context)
+        return polling.allows(cls, _no_pressure(context))
 
     def execute(self, context):
         fitting = fitting_range(context)

@@ -4,7 +4,7 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from .. import export
-from . import running
+from . import polling, running
 
 
 class THENAR_OT_export(bpy.types.Operator, ExportHelper):
@@ -20,10 +20,7 @@ class THENAR_OT_export(bpy.types.Operator, ExportHelper):
 
     @classmethod
     def poll(cls, context):
-        if not context.scene.thenar.result.is_valid:
-            cls.poll_message_set("There is no result to export; press Solve first")
-            return False
-        return True
+        return polling.allows(cls, polling.no_result(context))
 
     def execute(self, context):
         written = running.attempt(self, export.write, context, bpy.path.abspath(self.filepath))

@@ -2,9 +2,9 @@
 
 import bpy
 
-from .. import names, settings
+from .. import settings
 from ..scene import regions
-from . import running
+from . import polling, running
 
 
 class THENAR_OT_pick(bpy.types.Operator):
@@ -16,10 +16,10 @@ class THENAR_OT_pick(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.object is None or context.object.type != "MESH" or len(context.selected_objects) != 2:
-            cls.poll_message_set("Select the product, then Shift-click the hand's mesh, so that the hand is active")
-            return False
-        return True
+        active = context.object
+        picked = active is not None and active.type == "MESH" and len(context.selected_objects) == 2
+        text = "select the product, then Shift-click the hand's mesh, so that the hand is active"
+        return polling.allows(cls, "" if picked else text)
 
     def execute(self, context):
         scene = context.scene.thenar
@@ -37,11 +37,7 @@ class THENAR_OT_assign_regions(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        hand = context.scene.thenar.hand
-        if hand is None or hand.type != "MESH" or not hand.vertex_groups:
-            cls.poll_message_set("The hand has no vertex groups; paint one for each region of the skin first")
-            return False
-        return True
+        return polling.allows(cls, polling.no_groups(context))
 
     def execute(self, context):
         hand = context.scene.thenar.hand
@@ -68,7 +64,7 @@ class THENAR_OT_region_add(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return THENAR_OT_assign_regions.poll.__func__(cls, context)
+        return polling.allows(cls, polling.no_groups(context))
 
     def execute(self, context):
         hand = context.scene.thenar.hand
@@ -91,11 +87,7 @@ class THENAR_OT_region_remove(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        hand = context.scene.thenar.hand
-        if hand is None or not hand.thenar.materials:
-            cls.poll_message_set("No region is listed")
-            return False
-        return True
+        return polling.allows(cls, polling.no_regions(context))
 
     def execute(self, context):
         state = context.scene.thenar.hand.thenar
@@ -116,7 +108,7 @@ class THENAR_OT_region_preset(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return THENAR_OT_region_remove.poll.__func__(cls, context)
+        return polling.allows(cls, polling.no_regions(context))
 
     def execute(self, context):
         suffix = "_LAYER" if context.scene.thenar.model == "LAYER" else ""
@@ -136,11 +128,7 @@ class THENAR_OT_select_region(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        hand = context.scene.thenar.hand
-        if hand is None or hand.type != "MESH" or names.REGION not in hand.data.attributes:
-            cls.poll_message_set("There is no result on the hand; press Solve first")
-            return False
-        return True
+        return polling.allows(cls, polling.no_region_result(context))
 
     def execute(self, context):
         hand = context.scene.thenar.hand

@@ -2,10 +2,12 @@
 
 import threading
 
-from .. import native, status, workflow
+from .. import native, status
 from ..scene.checks import Refusal
 
 TICK_S = 0.05
+STOP_S = 0.2
+"""Longest wait of the window for a cancelled computation."""
 _NAVIGATION = {
     "MIDDLEMOUSE",
     "WHEELUPMOUSE",
@@ -18,34 +20,37 @@ _NAVIGATION = {
 
 
 class Worker:
-    """One job in a daemon thread; `contact` or `error` is set once `is_done()`."""
+    """One piece of work in a daemon thread: `work(cancel, progress)`."""
 
-    def __init__(self, job):
-        self.cancel = threading.Event()
-        self.contact = None
-        self.error = None
-        self._job = job
-        self._thread = threading.Thread(target=self._work, daemon=True)
+    def __init__(self, work):
+        self._cancel = threading.Event()
+        self._value, self._error = None, None
+        self._work = work
+        self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
     def is_done(self):
-        """Whether the job has ended, well or not."""
+        """Whether the work has ended, well or not."""
         return not self._thread.is_alive()
 
+    def hand_back(self, steps):
+        """Give the value, or the error, to `steps`. Returns their next work; raises what they raise."""
+        return steps.send(self._value) if self._error is None else steps.throw(self._error)
+
     def stop(self):
-        """Ask the job to end; it does within 0.2 s, and if not, its outcome is dropped."""
-        self.cancel.set()
-        self._thread.join(0.2)
+        """Ask the work to end and wait for it, `STOP_S` at most; an outcome that comes later is dropped."""
+        self._cancel.set()
+        self._thread.join(STOP_S)
 
-    def _work(self):
+    def _run(self):
         try:
-            self.contact = workflow.compute(self._job, self.cancel, _progress)
+            self._value = self._work(self._cancel, self._progress)
         except BaseException as error:  # handed to the window's thread, which reports it
-            self.error = error
+            self._error = error
 
-
-def _progress(stage, fraction):
-    status.run.stage, status.run.fraction = stage, fraction
+    def _progress(self, stage, fraction):
+        if not self._cancel.is_set():  # a late word would show as a run that never ends
+            status.run.stage, status.run.fraction = stage, fraction
 
 
 def is_navigation(event):
@@ -64,15 +69,22 @@ def begin(context, operator):
 
 
 def show(context):
-    """Progress to status bar and panels."""
+    """Progress to status bar and panels, where it changed; the views themselves stay, drawing them holds Esc up."""
     run = status.run
-    context.workspace.status_text_set(f"Thenar: {run.stage} {run.fraction:.0%}   Esc: cancel")
-    redraw(context)
+    text = f"Thenar: {run.stage} {run.fraction:.0%}   Esc: cancel"
+    if text == run.shown:
+        return
+    run.shown = text
+    context.workspace.status_text_set(text)
+    for area in _areas(context):
+        for region in area.regions:
+            if region.type == "UI" or area.type == "PROPERTIES":
+                region.tag_redraw()
 
 
 def end(context, timer):
     """Leave no trace of the run in the window."""
-    status.run.stage, status.run.fraction = "", 0.0
+    status.run.stage, status.run.fraction, status.run.shown = "", 0.0, ""
     context.window_manager.event_timer_remove(timer)
     context.workspace.status_text_set(None)
     redraw(context)
@@ -80,11 +92,14 @@ def end(context, timer):
 
 def redraw(context):
     """Redraw every 3D view and properties editor."""
+    for area in _areas(context):
+        area.tag_redraw()
+
+
+def _areas(context):
     manager = context.window_manager
-    for window in manager.windows if manager is not None else ():
-        for area in window.screen.areas:
-            if area.type in {"VIEW_3D", "PROPERTIES"}:
-                area.tag_redraw()
+    windows = manager.windows if manager is not None else ()
+    return [area for window in windows for area in window.screen.areas if area.type in {"VIEW_3D", "PROPERTIES"}]
 
 
 def attempt(operator, action, *arguments):

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, own
+from . import attributes, colors, moving, own
 from .checks import Refusal
 
 DEFORMERS = {
@@ -39,7 +39,7 @@ def publish(hand, stem, first_frame, frames):
     """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
 
     `frames`: dicts with `local` (n, 3) positions in object space, `pressure_kpa` (n), `parts` {name: kPa (k)},
-    and numbers `force_n`, `area_mm2`, `peak_kpa`.
+    numbers `force_n`, `area_mm2`, `peak_kpa`, and `offset` (3), how far the product moves, world, Blender units.
     """
     pc2, npz = stem.with_name(stem.name + ".pc2"), stem.with_name(stem.name + ".npz")
     _replace(pc2, lambda file: _write_pc2(file, first_frame, frames))
@@ -57,7 +57,7 @@ def publish(hand, stem, first_frame, frames):
 
 
 def play(scene, find_parts):
-    """Write the pressures of the scene's frame onto hand and product; nothing where there is no bake.
+    """Write the pressures of the scene's frame onto hand and product, and move the product; nothing without a bake.
 
     `find_parts(settings)` gives the product's objects. A missing file is left for the panel to tell.
     """
@@ -69,10 +69,14 @@ def play(scene, find_parts):
         return
     row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["hand"]) - 1))
     _show(hand.data, tables["hand"][row], scene.thenar, colors.SKIN)
-    for part in find_parts(scene.thenar):
+    parts = find_parts(scene.thenar)
+    for part in parts:
         values = tables.get(f"part/{part.name}")
         if values is not None and part.type == "MESH" and part.mode != "EDIT":
             _show(part.data, values[row], scene.thenar, colors.BARE)
+    offsets = tables["offset"]
+    for part in own.roots(parts) if np.any(offsets) else ():
+        moving.shift(part, offsets[row])
 
 
 def is_missing(hand):
@@ -108,7 +112,7 @@ def _tables(first_frame, frames):
     tables = {"first_frame": np.int32(first_frame), "hand": np.stack([frame["pressure_kpa"] for frame in frames])}
     for name in frames[0]["parts"]:
         tables[f"part/{name}"] = np.stack([frame["parts"][name] for frame in frames])
-    for name in ("force_n", "area_mm2", "peak_kpa"):
+    for name in ("force_n", "area_mm2", "peak_kpa", "offset"):
         tables[name] = np.array([frame[name] for frame in frames])
     return tables
 

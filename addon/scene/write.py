@@ -7,8 +7,7 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, copies, key, own, units
-from .checks import Refusal
+from . import attributes, colors, copies, key, moving, own, units
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ def write_contact(context, hand, parts, reading, fields):
         undo.callback(context.view_layer.update)
         _keep_key(undo, hand)
         undo.callback(attributes.snapshot(hand.data, names.HAND_ATTRIBUTES))
-        move_parts(context, undo, parts, fields.offset_mm / skin.scale)
+        moving.move_parts(context, undo, parts, fields.offset_mm / skin.scale)
         contact = key.ensure_key(hand)
         wanted = units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale)
         report = key.fit_key(context, hand, contact, wanted)
@@ -63,47 +62,6 @@ def write_hand(hand, fields, look):
     attributes.write(mesh, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
     mesh.update()
-
-
-def move_parts(context, undo, parts, offset):
-    """Move the product by `offset` (3), world, Blender units, keeping its own location, and remember its home."""
-    for part in own.roots(parts):
-        state = part.thenar
-        before, home, was_moved = part.delta_location.copy(), state.home[:], state.is_moved
-        undo.callback(_place, part, before, home, was_moved)
-        if was_moved:
-            part.delta_location = state.home
-    if not np.any(offset):
-        for part in own.roots(parts):
-            part.thenar.is_moved = False
-        context.view_layer.update()
-        return
-    context.view_layer.update()
-    for part in own.roots(parts):
-        _move(context, part, offset)
-
-
-def _move(context, part, offset):
-    if not part.is_editable:
-        raise Refusal(f"the product '{part.name}' is linked and cannot be moved to reach the force; make it local")
-    world, basis = units.world_from_local(part), np.array(part.matrix_basis, dtype=np.float64)
-    parent = (world @ np.linalg.inv(basis))[:3, :3]
-    part.thenar.home = part.delta_location
-    part.thenar.is_moved = True
-    part.delta_location = np.array(part.delta_location) + np.linalg.solve(parent, offset)
-    context.view_layer.update()
-    achieved = units.world_from_local(part)[:3, 3] - world[:3, 3]
-    if np.abs(achieved - offset).max() > 1e-3 * np.abs(offset).max() + 1e-6 * np.abs(world[:3, 3]).max():
-        raise Refusal(
-            f"the product '{part.name}' is held by a constraint or driver and cannot move to reach the force; "
-            "mute it, or solve without a force target"
-        )
-
-
-def _place(part, delta, home, is_moved):
-    part.delta_location = delta
-    part.thenar.home = home
-    part.thenar.is_moved = is_moved
 
 
 def _keep_key(undo, hand):
@@ -157,9 +115,7 @@ def clear(context, hand, parts):
     hand.data.update()
     for part in parts:
         copies.remove_copy(part.name)
-        if part.thenar.is_moved:
-            part.delta_location = part.thenar.home
-            part.thenar.is_moved = False
+        moving.send_home(part)
         if part.type == "MESH" and part.data.is_editable and part.mode != "EDIT":
             attributes.remove(part.data, names.PRODUCT_ATTRIBUTES)
             part.data.update()
