@@ -1,5 +1,6 @@
 //! Why a file could not be read: which file, where in it, what is wrong, what to do.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// A file that could not be turned into arrays.
@@ -21,7 +22,7 @@ pub enum RecordingError {
         /// What is wrong.
         problem: String,
         /// What to do about it.
-        remedy: &'static str,
+        remedy: Cow<'static, str>,
     },
     /// One line of a text file is wrong.
     #[error("{}, line {line}: {problem}; {remedy}", file.display())]
@@ -33,7 +34,7 @@ pub enum RecordingError {
         /// What is wrong.
         problem: String,
         /// What to do about it.
-        remedy: &'static str,
+        remedy: Cow<'static, str>,
     },
     /// One place of a binary file is wrong.
     #[error("{}, byte {byte}: {problem}; {remedy}", file.display())]
@@ -45,6 +46,6 @@ pub enum RecordingError {
         /// What is wrong.
         problem: String,
         /// What to do about it.
-        remedy: &'static str,
+        remedy: Cow<'static, str>,
     },
 }

@@ -1,6 +1,5 @@
 //! Mesh files (OBJ, PLY, STL) to vertices and triangles; knows nothing of units: numbers come out as written.
 
-mod fault;
 mod obj;
 mod ply;
 mod ply_header;
@@ -9,7 +8,7 @@ mod stl;
 mod weld;
 
 use crate::RecordingError;
-use fault::Fault;
+use crate::fault::{Fault, number};
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -102,6 +101,26 @@ fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
         ));
     }
     Ok(mesh)
+}
+
+/// The three finite coordinates that follow the word of a `what` (vertex, corner) on a line.
+fn position<'a>(
+    mut words: impl Iterator<Item = &'a [u8]>,
+    line: usize,
+    what: &str,
+) -> Result<Vector3<f64>, Fault> {
+    let mut position = Vector3::zeros();
+    for axis in 0..3 {
+        let Some(word) = words.next() else {
+            let problem = format!("a {what} with {axis} coordinates, expected 3");
+            return Err(Fault::line(line, problem, "export the mesh again"));
+        };
+        position[axis] = number(word).map_err(|problem| {
+            let remedy = format!("give every {what} finite coordinates");
+            Fault::line(line, problem, remedy)
+        })?;
+    }
+    Ok(position)
 }
 
 impl MeshFile {

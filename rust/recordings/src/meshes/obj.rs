@@ -1,8 +1,7 @@
 //! Wavefront OBJ: `v` and `f` lines; everything else (normals, groups, materials, curves) is passed over.
 
-use super::MeshFile;
-use super::fault::{Fault, number, shown, words};
-use nalgebra::Vector3;
+use super::{MeshFile, position};
+use crate::fault::{Fault, shown, words};
 use std::borrow::Cow;
 
 const AGAIN: &str = "export the mesh again";
@@ -15,7 +14,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
     for (line, text) in lines(bytes) {
         let mut words = words(&text);
         match words.next() {
-            Some(b"v") => mesh.positions.push(vertex(words, line)?),
+            Some(b"v") => mesh.positions.push(position(words, line, "vertex")?),
             Some(b"f") => {
                 corners.clear();
                 for word in words {
@@ -73,26 +72,6 @@ fn content(line: &[u8]) -> &[u8] {
         .next()
         .unwrap_or(line)
         .trim_ascii_end()
-}
-
-fn vertex<'a>(
-    mut words: impl Iterator<Item = &'a [u8]>,
-    line: usize,
-) -> Result<Vector3<f64>, Fault> {
-    let mut position = Vector3::zeros();
-    for axis in 0..3 {
-        let Some(word) = words.next() else {
-            return Err(Fault::line(
-                line,
-                format!("a vertex with {axis} coordinates, expected 3"),
-                AGAIN,
-            ));
-        };
-        position[axis] = number(word).map_err(|problem| {
-            Fault::line(line, problem, "give every vertex finite coordinates")
-        })?;
-    }
-    Ok(position)
 }
 
 /// Vertex number from 0 of one corner (`7`, `7/1`, `7//3`, `-2/...`), `seen` vertices having been read.

@@ -1,9 +1,9 @@
 //! PLY: the elements `vertex` (x, y, z) and `face` (a list of vertex numbers); all else is passed over.
 
 use super::MeshFile;
-use super::fault::{Fault, shown};
 use super::ply_header::{self, Element};
 use super::ply_values::Values;
+use crate::fault::{Fault, shown};
 use nalgebra::Vector3;
 
 const AGAIN: &str = "export the mesh again";

@@ -1,6 +1,6 @@
 //! The header of a PLY file: encoding, elements, properties.
 
-use super::fault::{Fault, shown, words};
+use crate::fault::{Fault, shown, words};
 
 const AGAIN: &str = "export the mesh again";
 

@@ -1,7 +1,7 @@
 //! The values behind a PLY header, one after the other, from text or from bytes of either order.
 
-use super::fault::{Fault, Place, number, shown};
 use super::ply_header::{Encoding, Header, Scalar};
+use crate::fault::{Fault, Place, number, shown};
 
 const CUT: &str = "the file is cut short; export it again";
 

@@ -1,8 +1,8 @@
 //! STL, ASCII and binary. Normals and attributes are passed over; equal corners become one vertex.
 
-use super::MeshFile;
-use super::fault::{Fault, Place, number, shown, words};
 use super::weld::Weld;
+use super::{MeshFile, position};
+use crate::fault::{Fault, Place, shown, words};
 use nalgebra::Vector3;
 
 const HEADER: usize = 84;
@@ -99,7 +99,7 @@ fn ascii(bytes: &[u8]) -> Result<MeshFile, Fault> {
             }
             open = Some(line);
         } else if first.eq_ignore_ascii_case(b"vertex") {
-            let position = vertex(words, line)?;
+            let position = position(words, line, "corner")?;
             corners.push(weld.number(position).ok_or_else(too_many)?);
         } else if first.eq_ignore_ascii_case(b"endfacet") {
             let [a, b, c] = corners[..] else {
@@ -135,26 +135,6 @@ fn ascii(bytes: &[u8]) -> Result<MeshFile, Fault> {
         positions: weld.positions,
         triangles,
     })
-}
-
-fn vertex<'a>(
-    mut words: impl Iterator<Item = &'a [u8]>,
-    line: usize,
-) -> Result<Vector3<f64>, Fault> {
-    let mut position = Vector3::zeros();
-    for axis in 0..3 {
-        let Some(word) = words.next() else {
-            return Err(Fault::line(
-                line,
-                format!("a corner with {axis} coordinates, expected 3"),
-                AGAIN,
-            ));
-        };
-        position[axis] = number(word).map_err(|problem| {
-            Fault::line(line, problem, "give every corner finite coordinates")
-        })?;
-    }
-    Ok(position)
 }
 
 fn too_many() -> Fault {

@@ -1,11 +1,12 @@
-//! A fault inside a mesh file before the file's name is known to it.
+//! A fault inside a file before the file's name is known to it; words and numbers as they may stand in a message.
 
 use crate::RecordingError;
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Where in a file a fault lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(crate) enum Place {
     File,
     Line(usize),
     Byte(usize),
@@ -13,26 +14,26 @@ pub(super) enum Place {
 
 /// What is wrong, where, and what to do about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     place: Place,
     problem: String,
-    remedy: &'static str,
+    remedy: Cow<'static, str>,
 }
 
 impl Fault {
-    pub fn file(problem: String, remedy: &'static str) -> Fault {
+    pub fn file(problem: String, remedy: impl Into<Cow<'static, str>>) -> Fault {
         Fault::at(Place::File, problem, remedy)
     }
 
-    pub fn line(line: usize, problem: String, remedy: &'static str) -> Fault {
+    pub fn line(line: usize, problem: String, remedy: impl Into<Cow<'static, str>>) -> Fault {
         Fault::at(Place::Line(line), problem, remedy)
     }
 
-    pub fn at(place: Place, problem: String, remedy: &'static str) -> Fault {
+    pub fn at(place: Place, problem: String, remedy: impl Into<Cow<'static, str>>) -> Fault {
         Fault {
             place,
             problem,
-            remedy,
+            remedy: remedy.into(),
         }
     }
 
@@ -61,7 +62,7 @@ impl Fault {
 }
 
 /// A word of a file as it may stand in a message: readable and short.
-pub(super) fn shown(word: &[u8]) -> String {
+pub(crate) fn shown(word: &[u8]) -> String {
     let text: String = String::from_utf8_lossy(word)
         .chars()
         .take(24)
@@ -75,7 +76,7 @@ pub(super) fn shown(word: &[u8]) -> String {
 }
 
 /// A finite number, or what is wrong with it.
-pub(super) fn number(word: &[u8]) -> Result<f64, String> {
+pub(crate) fn number(word: &[u8]) -> Result<f64, String> {
     let value = std::str::from_utf8(word)
         .ok()
         .and_then(|text| text.parse::<f64>().ok());
@@ -87,7 +88,7 @@ pub(super) fn number(word: &[u8]) -> Result<f64, String> {
 }
 
 /// Words of a line, split at blanks.
-pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| byte.is_ascii_whitespace())
         .filter(|word| !word.is_empty())
 }

@@ -1,0 +1,196 @@
+//! Which maker's format a file has, from its first bytes.
+
+use crate::fault::Fault;
+use crate::fields::Separator;
+use crate::lines::Lines;
+use crate::tables::columns;
+
+/// Bytes that are looked at.
+pub(crate) const HEAD: usize = 1 << 16;
+/// Lines among them.
+const LINES: usize = 80;
+
+/// The formats that can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Tekscan I-Scan or F-Scan, ASCII movie.
+    Tekscan,
+    /// Novel pedar, insoles.
+    Pedar,
+    /// Novel pliance, mats.
+    Pliance,
+    /// Novel emed, platforms.
+    Emed,
+    /// XSENSOR, CSV.
+    Xsensor,
+    /// RSscan footscan, dynamic roll-off.
+    Footscan,
+    /// Logger of sensor insoles, CSV.
+    InsoleLogger,
+    /// Aurora Scientific DMC, `.ddf`.
+    Aurora,
+    /// Optics11 Chiaro or Piuma, text.
+    Optics11,
+    /// JPK force curve, exported as text.
+    JpkText,
+    /// JPK force curve, `.jpk-force`.
+    JpkArchive,
+    /// Workbook of a testing machine (Zwick testXpert).
+    Workbook,
+    /// Table of an indentation: plain CSV, or a testing machine's CSV with header lines (Instron).
+    CurveTable,
+    /// Table of pressures: plain CSV of a study.
+    MapTable,
+}
+
+impl Format {
+    /// Name for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Tekscan => "Tekscan ASCII",
+            Format::Pedar => "Novel pedar",
+            Format::Pliance => "Novel pliance",
+            Format::Emed => "Novel emed",
+            Format::Xsensor => "XSENSOR CSV",
+            Format::Footscan => "RSscan footscan",
+            Format::InsoleLogger => "insole logger CSV",
+            Format::Aurora => "Aurora DMC",
+            Format::Optics11 => "Optics11 Chiaro or Piuma",
+            Format::JpkText => "JPK text",
+            Format::JpkArchive => "JPK force curve",
+            Format::Workbook => "testing machine workbook",
+            Format::CurveTable => "indentation table",
+            Format::MapTable => "pressure table",
+        }
+    }
+
+    pub(crate) fn is_archive(self) -> bool {
+        matches!(self, Format::JpkArchive | Format::Workbook)
+    }
+}
+
+/// The format of a file that begins with `head`.
+pub(crate) fn format_of(head: &[u8]) -> Result<Format, Fault> {
+    if head.is_empty() {
+        let problem = "the file is empty".to_string();
+        return Err(Fault::line(1, problem, "export the recording again"));
+    }
+    if head.starts_with(b"PK\x03\x04") {
+        let is_jpk = memchr::memmem::find(head, b"header.properties").is_some();
+        return Ok(if is_jpk {
+            Format::JpkArchive
+        } else {
+            Format::Workbook
+        });
+    }
+    if head.starts_with(b"\xD0\xCF\x11\xE0") {
+        return Ok(Format::Workbook);
+    }
+    if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
+        let problem = "the text is saved as UTF-16".to_string();
+        return Err(Fault::line(1, problem, "save it as UTF-8 or Latin-1"));
+    }
+    // The last line of the head may be cut.
+    let whole = match memchr::memrchr2(b'\n', b'\r', head) {
+        Some(end) if head.len() == HEAD => &head[..end],
+        _ => head,
+    };
+    let lines = first_lines(whole);
+    MARKS
+        .iter()
+        .find(|(_, is_that)| is_that(&lines))
+        .map(|(format, _)| *format)
+        .or_else(|| table_format(&lines))
+        .ok_or_else(not_known)
+}
+
+fn not_known() -> Fault {
+    Fault::line(
+        1,
+        "this is no recording format that is known (Tekscan, Novel, XSENSOR, footscan, Aurora, Optics11, JPK, testing machine, CSV)"
+            .into(),
+        "export it as text from the maker's program, or as CSV with columns such as time_s, depth_mm, force_n",
+    )
+}
+
+type Mark = fn(&[String]) -> bool;
+
+/// Format and what tells it, in the order they are tried.
+const MARKS: &[(Format, Mark)] = &[
+    (Format::Tekscan, |lines| {
+        any(lines, &["ASCII_DATA", "VERSION Tekscan"]) || first(lines).starts_with("DATA_TYPE")
+    }),
+    (Format::Pliance, |lines| {
+        any(lines, &["mat type"]) && any(lines, &["pressure values"])
+    }),
+    (Format::Pedar, |lines| {
+        any(lines, &["mask definition", "left insole", "right insole"])
+            && any(lines, &["sensor type", "pressure values"])
+    }),
+    (Format::Emed, |lines| {
+        lines.iter().any(|line| line.contains("Matrix:"))
+            && lines.iter().any(|line| line.contains("Sensor area:"))
+    }),
+    (Format::Xsensor, |lines| {
+        any(lines, &["SENSOR,"]) && any(lines, &["Units:,", "FRAME,"])
+    }),
+    (Format::Footscan, |lines| {
+        any(
+            lines,
+            &[
+                "Left foot data",
+                "Right foot data",
+                "Right rectangle",
+                "Left rectangle",
+            ],
+        )
+    }),
+    (Format::InsoleLogger, |lines| {
+        first(lines).starts_with("sole_id") && first(lines).contains("pressure_")
+    }),
+    (Format::Aurora, |lines| {
+        first(lines).starts_with("DMC") && first(lines).contains("Data File")
+    }),
+    (Format::Optics11, |lines| {
+        any(lines, &["Tip radius ("]) && any(lines, &["k (N/m)"])
+    }),
+    (Format::JpkText, |lines| {
+        any(lines, &["# columns:"]) && any(lines, &["# units:"])
+    }),
+];
+
+fn any(lines: &[String], starts: &[&str]) -> bool {
+    lines
+        .iter()
+        .any(|line| starts.iter().any(|start| line.starts_with(start)))
+}
+
+fn first(lines: &[String]) -> &str {
+    lines.first().map_or("", String::as_str)
+}
+
+/// The first lines that hold anything, without blanks around them.
+fn first_lines(head: &[u8]) -> Vec<String> {
+    let mut lines = Lines::new(head);
+    let mut found = Vec::new();
+    while let Ok(Some(line)) = lines.next_filled(&[',', ';']) {
+        found.push(line.text.trim().to_string());
+        if found.len() == LINES {
+            break;
+        }
+    }
+    found
+}
+
+fn table_format(lines: &[String]) -> Option<Format> {
+    lines.iter().find_map(|line| {
+        let names = columns::names(line, Separator::of(line));
+        if columns::is_map(&names) {
+            Some(Format::MapTable)
+        } else if columns::is_curve(&names) {
+            Some(Format::CurveTable)
+        } else {
+            None
+        }
+    })
+}

@@ -1,0 +1,204 @@
+//! 120,000 damaged exports over all readers: a recording that keeps its promises or one sentence, never a panic.
+#![allow(clippy::unwrap_used)]
+
+mod exports;
+
+use exports::*;
+use thenar_recordings::RecordingFile;
+
+/// Damaged files per format of text, and per archive.
+const TEXTS: usize = 8_000;
+const ARCHIVES: usize = 4_000;
+/// Pieces that mislead readers.
+const PIECES: &[&[u8]] = &[
+    b"nan",
+    b"1e999",
+    b"-1",
+    b"99999999999999999999",
+    b",",
+    b"\t",
+    b"\n",
+    b"\r",
+    b"\xff",
+    b"\x00",
+    b"Frame ",
+    b"SENSOR,",
+    b"Rows,4096\n",
+    b"ROWS 4096\n",
+    b"time[secs]",
+    b"Force",
+    b"#",
+    b"\"",
+    b";",
+    b"B",
+    b"0",
+    b"4294967296",
+    b"1,5",
+    b"@@",
+];
+
+/// SplitMix64 (Steele, Lea & Flood 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n.max(1) as u64) as usize
+    }
+
+    /// Bytes changed, a piece put in, a part cut out, doubled or moved.
+    fn damage(&mut self, bytes: &mut Vec<u8>) {
+        for _ in 0..=self.below(4) {
+            let (at, other) = (self.below(bytes.len() + 1), self.below(bytes.len() + 1));
+            let (start, end) = (at.min(other), at.max(other));
+            match self.below(6) {
+                0 if at < bytes.len() => bytes[at] = self.next() as u8,
+                1 => drop(bytes.splice(at..at, PIECES[self.below(PIECES.len())].iter().copied())),
+                2 => drop(bytes.drain(start..end.min(start + 40))),
+                3 => {
+                    let part = bytes[start..end.min(start + 200)].to_vec();
+                    drop(bytes.splice(at..at, part));
+                }
+                4 => bytes.truncate(at.max(bytes.len() / 2)),
+                _ => {
+                    let digit = b"0123456789.,-e"[self.below(14)];
+                    if let Some(byte) = bytes[start..].iter_mut().find(|byte| byte.is_ascii_digit())
+                    {
+                        *byte = digit;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What a recording promises to whoever uses it.
+fn keeps_its_promises(file: &RecordingFile) {
+    assert!(!file.maps.is_empty() || !file.curves.is_empty());
+    for map in &file.maps {
+        assert!(map.frames() > 0 && map.values.len() == map.frames() * map.sensels.len());
+        assert!(map.values.iter().all(|value| !value.is_infinite()));
+        if let Some(times) = &map.time_s {
+            assert!(times.len() == map.frames() && times.windows(2).all(|pair| pair[0] < pair[1]));
+        }
+        assert!(
+            map.channels
+                .iter()
+                .all(|channel| channel.values.len() == map.frames())
+        );
+        assert!(map.clipped_count() <= map.values.len());
+        assert!(
+            map.grid()
+                .is_none_or(|grid| grid.rows * grid.columns == map.sensels.len())
+        );
+        assert!(map.force_n(0).is_none_or(|force| !force.is_nan()));
+    }
+    for curve in &file.curves {
+        assert!(curve.samples() > 0 && !curve.channels.is_empty());
+        assert!(
+            curve
+                .channels
+                .iter()
+                .all(|channel| channel.values.len() == curve.samples())
+        );
+        assert!(
+            curve
+                .segments
+                .iter()
+                .all(|part| part.start <= part.end && part.end <= curve.samples())
+        );
+    }
+}
+
+/// Reads damaged copies of a file and counts those that were read.
+fn survive(name: &str, bytes: &[u8], count: usize) -> usize {
+    let mut random = Random(
+        name.bytes()
+            .fold(1, |seed, byte| seed * 31 + u64::from(byte)),
+    );
+    let mut read = 0;
+    for _ in 0..count {
+        let mut damaged = bytes.to_vec();
+        random.damage(&mut damaged);
+        match export(&damaged) {
+            Ok(file) => {
+                keeps_its_promises(&file);
+                read += 1;
+            }
+            Err(message) => {
+                let is_sentence = message.starts_with("a.txt")
+                    && message.contains("; ")
+                    && !message.contains(['\n', '\r']);
+                assert!(is_sentence && message.len() < 500, "{name}: {message:?}");
+            }
+        }
+    }
+    read
+}
+
+#[test]
+fn damaged_texts_are_read_or_refused() {
+    for (name, bytes) in texts() {
+        let read = survive(name, &bytes, TEXTS);
+        assert!(
+            (TEXTS / 50..TEXTS - TEXTS / 50).contains(&read),
+            "{name}: {read} of {TEXTS} were read, the damage proves little"
+        );
+    }
+}
+
+#[test]
+fn damaged_archives_are_read_or_refused() {
+    let read = survive("jpk archive", &jpk_archive(), ARCHIVES)
+        + survive("workbook", &workbook(), ARCHIVES);
+    assert!(read < 2 * ARCHIVES);
+}
+
+/// Damage inside the members, which the checksums of the archive do not hide.
+#[test]
+fn damaged_members_are_read_or_refused() {
+    let mut random = Random(7);
+    for bytes in [jpk_archive(), workbook()] {
+        let mut members = Vec::new();
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+        for k in 0..archive.len() {
+            let mut member = archive.by_index(k).unwrap();
+            let mut contents = Vec::new();
+            std::io::Read::read_to_end(&mut member, &mut contents).unwrap();
+            members.push((member.name().unwrap().to_string(), contents));
+        }
+        for _ in 0..ARCHIVES {
+            let mut changed = members.clone();
+            let at = random.below(changed.len());
+            random.damage(&mut changed[at].1);
+            let parts: Vec<(&str, &[u8])> = changed
+                .iter()
+                .map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
+                .collect();
+            if let Ok(file) = export(&zipped(&parts)) {
+                keeps_its_promises(&file);
+            }
+        }
+    }
+}
+
+#[test]
+fn bytes_at_random_are_refused() {
+    let mut random = Random(3);
+    for _ in 0..8_000 {
+        let length = random.below(400);
+        let bytes: Vec<u8> = (0..length).map(|_| random.next() as u8).collect();
+        let message = export(&bytes).unwrap_err();
+        assert!(
+            message.starts_with("a.txt") && !message.contains(['\n', '\r']),
+            "{message:?}"
+        );
+    }
+}
