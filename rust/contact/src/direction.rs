@@ -79,9 +79,15 @@ fn spread(b: &[[f64; 4]], neighbors: &[Vec<u32>], spacing: f64) -> Vec<[f64; 4]>
             (next * rho, 2.0 * next / half)
         };
         for (i, list) in neighbors.iter().enumerate() {
+            let mut around = [0.0; 4];
+            for &j in list {
+                for (sum, x) in around.iter_mut().zip(&x[j as usize]) {
+                    *sum += x;
+                }
+            }
+            let own = 1.0 + c * list.len() as f64;
             for axis in 0..4 {
-                let around: f64 = list.iter().map(|&j| x[j as usize][axis]).sum();
-                let residual = b[i][axis] - (1.0 + c * list.len() as f64) * x[i][axis] + c * around;
+                let residual = b[i][axis] - own * x[i][axis] + c * around[axis];
                 step[i][axis] = keep * step[i][axis] + gain * residual;
             }
         }

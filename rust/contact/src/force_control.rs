@@ -2,6 +2,7 @@
 
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
+use crate::memory::Last;
 use crate::press::ForceTarget;
 use crate::simulate::{Pressed, Seconds};
 use crate::skin::Skin;
@@ -112,10 +113,11 @@ impl Search<'_, '_> {
             (self.product, shift),
             (self.control, self.seconds),
         )?;
-        self.skin.memory.force = vec![0.0; self.skin.sites.len()];
-        for (&site, force) in pressed.solved.zone.iter().zip(&pressed.solved.force) {
-            self.skin.memory.force[site as usize] = *force;
-        }
+        // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
+        self.skin.memory.last = Last {
+            travel: Vec::new(),
+            ..Last::of(&pressed.solved, self.skin.sites.len())
+        };
         Ok((pressed.force_along(&self.direction), pressed))
     }
 

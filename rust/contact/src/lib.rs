@@ -14,6 +14,7 @@ mod force_control;
 mod history;
 mod linearize;
 mod material;
+mod memory;
 mod paper;
 mod press;
 mod remarks;

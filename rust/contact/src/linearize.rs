@@ -3,6 +3,7 @@
 use thenar_surface::{Gap, Product, Vec3};
 
 use crate::direction::{LEAST_COSINE, yielding_directions};
+use crate::memory::Last;
 use crate::paper;
 use crate::press::Convergence;
 use crate::response::assembly::{Load, compliance, coupling, displacements};
@@ -29,6 +30,8 @@ pub struct Solved {
     pub force: Vec<f64>,
     /// Where each touches, or would: closest point and normal after deformation.
     pub touch: Vec<Gap>,
+    /// Travel of each along its direction, mm.
+    pub travel: Vec<f64>,
     /// Slack of the last linear problem, mm.
     pub slack: Vec<f64>,
     /// Direction in which each yields times its cosine with the normal: load per normal force.
@@ -51,8 +54,8 @@ pub struct Setting<'a> {
     pub detection: &'a Detection,
     /// Response weight s = sqrt((1 - nu) / (2 pi G)) of every site.
     pub weight: &'a [f64],
-    /// Forces to start from, by site.
-    pub start: Option<&'a [f64]>,
+    /// What to start from.
+    pub start: Option<&'a Last>,
     /// Median edge, mm.
     pub spacing: f64,
 }
@@ -131,17 +134,21 @@ impl State {
             Model::Paper => normal,
             Model::Layer => self.averaged_directions(skin, setting, &normal),
         };
-        self.cosine = (0..self.zone.len())
-            .map(|k| self.touch[k].normal.dot(&self.direction[k]))
-            .collect();
         self.travel = vec![0.0; self.zone.len()];
+        let travel = setting.start.map_or(&[][..], |last| &last.travel);
+        if !travel.is_empty() && skin.model == Model::Layer {
+            // Little has moved: the product is met where the skin lay last.
+            self.travel = self.zone.iter().map(|&s| travel[s as usize]).collect();
+            self.place(skin, setting);
+        }
+        self.see_along_normals();
         let carried = std::mem::take(&mut self.force);
         self.force = if carried.len() == self.zone.len() {
             carried
         } else {
             self.zone
                 .iter()
-                .map(|&s| setting.start.map_or(0.0, |start| start[s as usize]))
+                .map(|&s| setting.start.map_or(0.0, |start| start.force[s as usize]))
                 .collect()
         };
     }
@@ -171,21 +178,14 @@ impl State {
     /// Re-linearizes until the zone fits the product.
     fn passes(
         &mut self,
-        skin: &Skin,
+        skin: &mut Skin,
         setting: &Setting<'_>,
         (tolerance, control): (f64, &Control),
     ) -> Result<(), ContactError> {
-        let mut matrix = self.matrix(skin, setting);
-        // Rough steps end where rounding lets them: a fresh start takes none, so that the same scene, turned or renumbered,
-        // gives the same result.
-        let accuracy = if setting.start.is_some() {
-            Accuracy::Rough
-        } else {
-            Accuracy::Full
-        };
+        self.matrix(skin, setting);
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
-            self.solve_linear(&matrix, (accuracy, control))?;
+            self.solve_linear(&skin.memory.compliance, control)?;
             self.convergence.passes = pass + 1;
             self.place(skin, setting);
             if self.misfit <= tolerance {
@@ -193,18 +193,18 @@ impl State {
             }
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
-                for k in 0..self.zone.len() {
-                    let cosine = self.touch[k].normal.dot(&self.direction[k]);
-                    self.cosine[k] = cosine.max(LEAST_COSINE);
-                }
-                matrix = self.matrix(skin, setting);
+                self.see_along_normals();
+                self.matrix(skin, setting);
             }
         }
-        if accuracy == Accuracy::Rough {
-            self.solve_linear(&matrix, (Accuracy::Full, control))?;
-            self.place(skin, setting);
-        }
         Ok(())
+    }
+
+    /// Takes the cosines between directions and the product's normals as they are now.
+    fn see_along_normals(&mut self) {
+        let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
+        let cosines = self.touch.iter().zip(&self.direction).map(cosine);
+        self.cosine = cosines.map(|c| c.max(LEAST_COSINE)).collect();
     }
 
     /// Measures the displaced zone against the product.
@@ -228,29 +228,30 @@ impl State {
         self.misfit = self.measure();
     }
 
-    /// Compliance along the directions, seen along the normals.
-    fn matrix(&self, skin: &Skin, setting: &Setting<'_>) -> Rows<f32> {
+    /// Compliance along the directions, seen along the normals, into the skin's memory.
+    fn matrix(&self, skin: &mut Skin, setting: &Setting<'_>) {
         let weight = |(&site, cosine): (&u32, &f64)| setting.weight[site as usize] * cosine;
         let weights: Vec<f64> = self.zone.iter().zip(&self.cosine).map(weight).collect();
+        let memory = &mut skin.memory;
         match skin.model {
-            Model::Layer => compliance(&skin.memory.coupling, &weights, &self.direction),
+            Model::Layer => compliance(
+                &memory.coupling,
+                (&weights, &self.direction),
+                &mut memory.compliance,
+            ),
             Model::Paper => compliance(
-                &skin.memory.coupling,
-                &weights,
-                &vec![Vec3::x(); weights.len()],
+                &memory.coupling,
+                (&weights, &vec![Vec3::x(); weights.len()]),
+                &mut memory.compliance,
             ),
         }
     }
 
-    fn solve_linear(
-        &mut self,
-        matrix: &Rows<f32>,
-        (accuracy, control): (Accuracy, &Control),
-    ) -> Result<(), ContactError> {
+    fn solve_linear(&mut self, matrix: &Rows<f32>, control: &Control) -> Result<(), ContactError> {
         let gap: Vec<f64> = (0..self.zone.len())
             .map(|k| self.touch[k].distance - self.cosine[k] * self.travel[k])
             .collect();
-        let solution = solve_contact(matrix, &gap, Some(&self.force), (accuracy, control));
+        let solution = solve_contact(matrix, &gap, Some(&self.force), (Accuracy::Full, control));
         control.check()?;
         for (k, travel) in self.travel.iter_mut().enumerate() {
             *travel = (solution.slack[k] - gap[k]) / self.cosine[k];
@@ -304,6 +305,7 @@ impl State {
             zone: self.zone,
             force: self.force,
             touch: self.touch,
+            travel: self.travel,
             slack: self.slack,
             displacement,
             penetration: deepest.max(0.0),

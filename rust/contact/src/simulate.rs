@@ -9,11 +9,13 @@ use crate::force_control::find_offset;
 use crate::history::recalled::{moved, restore};
 use crate::history::state::Recall;
 use crate::linearize::{Setting, Solved, solve};
+use crate::memory::Last;
 use crate::press::{Contact, Press, Start};
 use crate::skin::Skin;
 use crate::summary::summarize;
 use crate::zone::{
-    Detection, candidates, check_resolution, detect, kept_stiffness, pressed_thickness,
+    Detection, candidates, check_resolution, detect, kept_stiffness, lasting_candidates,
+    pressed_thickness,
 };
 use crate::{ContactError, Control, Model};
 
@@ -67,7 +69,7 @@ impl Skin {
     /// or `Cancelled`. The prepared skin stays usable after any of them.
     pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
         if press.start == Start::Fresh {
-            self.memory.force.clear();
+            self.memory.last = Last::default();
             self.memory.triangle.clear();
             self.memory.offset = 0.0;
         }
@@ -141,20 +143,21 @@ impl Skin {
         check_resolution(self, &zone)?;
         add_time(seconds, "response", started);
         let started = Instant::now();
-        let force = std::mem::take(&mut self.memory.force);
-        let elastic = recall
-            .as_ref()
-            .map(|recall| recall.elastic(&force, &self.sites));
-        let start = elastic.as_deref().unwrap_or(&force);
+        let last = std::mem::take(&mut self.memory.last);
+        let elastic = recall.as_ref().map(|recall| Last {
+            force: recall.elastic(&last.force, &self.sites),
+            travel: Vec::new(),
+        });
+        let start = elastic.as_ref().unwrap_or(&last);
         let setting = Setting {
             product,
             detection,
             weight: &weight,
-            start: (start.len() == self.sites.len()).then_some(start),
+            start: (start.force.len() == self.sites.len()).then_some(start),
             spacing: self.spacing,
         };
         let solved = solve(self, zone, &setting, control);
-        self.memory.force = force;
+        self.memory.last = last;
         let mut solved = solved?;
         let recalled = moved.zip(recall).map(|(moved, recall)| {
             let bearing = restore(self, &mut solved, &mut modulus_at, (&moved, &recall));
@@ -180,13 +183,17 @@ impl Skin {
     fn zone(&self, detection: &Detection) -> Vec<u32> {
         let zone = candidates(self, detection);
         let last = &self.memory.zone;
-        let is_warm = !self.memory.force.is_empty();
+        let is_warm = !self.memory.last.force.is_empty();
         let is_known = |&s: &u32| detection.gaps[self.sites.vertex[s as usize] as usize].is_some();
         let serves = is_warm
             && last.len() <= zone.len() + zone.len() / 4
             && zone.iter().all(|site| last.binary_search(site).is_ok())
             && last.iter().all(is_known);
-        if serves { last.clone() } else { zone }
+        match (serves, is_warm && !zone.is_empty()) {
+            (true, _) => last.clone(),
+            (false, true) => lasting_candidates(self, detection),
+            (false, false) => zone,
+        }
     }
 
     /// Moduli with what escapes sideways in deep presses taken off; model layer only.
@@ -227,10 +234,7 @@ impl Skin {
     }
 
     pub(crate) fn remember(&mut self, pressed: &Pressed, offset: f64) {
-        self.memory.force = vec![0.0; self.sites.len()];
-        for (&site, force) in pressed.solved.zone.iter().zip(&pressed.solved.force) {
-            self.memory.force[site as usize] = *force;
-        }
+        self.memory.last = Last::of(&pressed.solved, self.sites.len());
         let triangle =
             |gap: &Option<thenar_surface::Gap>| gap.as_ref().map_or(u32::MAX, |g| g.triangle);
         self.memory.triangle = pressed.detection.gaps.iter().map(triangle).collect();

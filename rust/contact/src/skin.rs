@@ -4,10 +4,10 @@ use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, ve
 
 use crate::effects::tissue::{Place, Tissue};
 use crate::history::state::History;
+use crate::memory::Memory;
 use crate::response::kernel::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
 use crate::sites::Sites;
-use crate::solve::operator::Rows;
 use crate::weld::Welded;
 use crate::{ActiveEffect, ContactError, Control, Material, Model, SkinInput};
 
@@ -38,20 +38,6 @@ pub struct Skin {
     /// What the tissue remembers, while a protocol is followed.
     pub(crate) history: Option<History>,
     warnings: Vec<String>,
-}
-
-/// What one press leaves for the next.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Memory {
-    /// Zone of the last press and its coupling.
-    pub zone: Vec<u32>,
-    pub coupling: Rows<f32>,
-    /// Nodal forces by site, N.
-    pub force: Vec<f64>,
-    /// Nearest product triangle by welded vertex.
-    pub triangle: Vec<u32>,
-    /// Travel found by force control, mm.
-    pub offset: f64,
 }
 
 impl Skin {

@@ -15,6 +15,8 @@ const ESCAPE_POWER: f64 = 1.5;
 const COARSEST_SHARE: f64 = 0.4;
 /// Share of the largest penetration that a bulge may rise into the product (0.2 measured at most; see physics tests).
 const BULGE_SHARE: f64 = 0.25;
+/// Gap beyond that margin up to which sites join the zone of a warm start, mm: the zone then serves many small moves.
+const WARM_MARGIN: f64 = 0.3;
 /// Largest penetration over thickness for which the bonded layer's kernel is used as it is.
 pub const KERNEL_LIMIT: f64 = 0.5;
 
@@ -99,9 +101,18 @@ pub fn detect(
 
 /// Sites that may touch: skin that penetrates or may be lifted into the product, ascending.
 pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
+    within(skin, detection, 0.0)
+}
+
+/// [`candidates`] and their surroundings, to be kept while the posture changes little.
+pub fn lasting_candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
+    within(skin, detection, WARM_MARGIN)
+}
+
+fn within(skin: &Skin, detection: &Detection, more: f64) -> Vec<u32> {
     let margin = match skin.model {
         Model::Paper => 0.0,
-        Model::Layer => BULGE_SHARE * detection.deepest(),
+        Model::Layer => BULGE_SHARE * detection.deepest() + more,
     };
     let may_touch = |site: &u32| {
         let site = *site as usize;

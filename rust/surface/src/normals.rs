@@ -19,15 +19,19 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
 /// Adds the normal of one triangle to its vertices, weighted by the angle at each.
 pub(crate) fn add_angle_weighted(sums: &mut [Vec3], vertices: [u32; 3], corners: [Vec3; 3]) {
     let [a, b, c] = corners;
-    let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let cross = ab.cross(&ac);
+    let twice = cross.norm();
+    if twice <= 0.0 {
         return;
-    };
-    for k in 0..3 {
-        let (u, v) = (
-            corners[(k + 1) % 3] - corners[k],
-            corners[(k + 2) % 3] - corners[k],
-        );
-        sums[vertices[k] as usize] += normal * u.cross(&v).norm().atan2(u.dot(&v));
+    }
+    // The sine part of every angle is twice the area; the last angle is what the others leave.
+    let at_a = twice.atan2(ab.dot(&ac));
+    let at_b = twice.atan2(-ab.dot(&bc));
+    let at_c = std::f64::consts::PI - at_a - at_b;
+    let normal = cross / twice;
+    for (vertex, angle) in vertices.into_iter().zip([at_a, at_b, at_c]) {
+        sums[vertex as usize] += normal * angle;
     }
 }
 

@@ -41,46 +41,94 @@ pub(crate) struct Skin<'a> {
 struct Candidate {
     at: u32,
     readings: [Option<Gap>; 2],
+    neighbors: Vec<u32>,
 }
 
 /// Replaces the readings of points that have come through a wall.
 pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &mut [Option<Gap>]) {
     let faces_away = |(i, gap): (usize, &Option<Gap>)| {
         let away = gap.filter(|g| g.distance > 0.0 && g.distance <= limits.max_depth_mm)?;
-        (away.normal.dot(&skin.normals[i]) > FACING_AWAY).then_some((i as u32, away))
+        (away.normal.dot(&skin.normals[i]) > FACING_AWAY).then_some(i as u32)
     };
-    let away: Vec<(u32, Gap)> = gaps.iter().enumerate().filter_map(faces_away).collect();
-    let read = |&(at, gap): &(u32, Gap)| {
-        let readings = product.readings_through(skin, at as usize, &gap, limits);
-        readings
-            .iter()
-            .any(Option::is_some)
-            .then_some(Candidate { at, readings })
-    };
-    let candidates: Vec<Candidate> = away.par_iter().filter_map(read).collect();
-    if candidates.is_empty() {
+    let away: Vec<u32> = gaps.iter().enumerate().filter_map(faces_away).collect();
+    if away.is_empty() {
         return;
     }
-    let mut is_settled: Vec<bool> = gaps.iter().map(Option::is_some).collect();
-    candidates
-        .iter()
-        .for_each(|c| is_settled[c.at as usize] = false);
     let seen: Vec<u32> = (0..gaps.len() as u32)
         .filter(|&i| gaps[i as usize].is_some())
         .collect();
-    let places: Vec<u32> = candidates.iter().map(|c| c.at).collect();
-    let vicinity = Vicinity::new(skin.points, &seen, &places);
-    let neighbors: Vec<Vec<u32>> = candidates
+    let vicinity = Vicinity::new(skin.points, &seen, &away);
+    let neighbors: Vec<Vec<u32>> = away
         .par_iter()
-        .map(|c| neighbors(skin, &vicinity, c.at))
+        .map(|&at| neighbors(skin, &vicinity, at))
         .collect();
-    grow(skin, (&candidates, &neighbors), &mut is_settled, gaps);
-    enclose(
-        product,
-        skin,
-        (&candidates, &neighbors),
-        (&is_settled, gaps),
-    );
+    let mut is_settled: Vec<bool> = gaps.iter().map(Option::is_some).collect();
+    away.iter().for_each(|&i| is_settled[i as usize] = false);
+    let mut is_unread = vec![true; away.len()];
+    let mut candidates = Vec::new();
+    loop {
+        let needed = needed(skin, (&away, &neighbors, &is_unread), (product, gaps));
+        if needed.is_empty() {
+            break;
+        }
+        let read = |k: &usize| {
+            let at = away[*k];
+            let reading = |gap| product.readings_through(skin, at as usize, gap, limits);
+            let readings = gaps[at as usize].as_ref().map_or([None; 2], reading);
+            let neighbors = neighbors[*k].clone();
+            Candidate {
+                at,
+                readings,
+                neighbors,
+            }
+        };
+        let read: Vec<Candidate> = needed.par_iter().map(read).collect();
+        needed.iter().for_each(|&k| is_unread[k] = false);
+        for candidate in read {
+            if candidate.readings.iter().any(Option::is_some) {
+                candidates.push(candidate);
+            } else {
+                is_settled[candidate.at as usize] = true;
+            }
+        }
+        grow(skin, &candidates, &mut is_settled, gaps);
+    }
+    candidates.sort_by_key(|c| c.at);
+    enclose(product, skin, &candidates, (&is_settled, gaps));
+}
+
+/// Which of the points that face away to read next: those that some neighbors could agree with, as far as these are known.
+///
+/// Through a wall a point is at least as deep as it is now away, so that most are never read.
+fn needed(
+    skin: &Skin,
+    (away, neighbors, is_unread): (&[u32], &[Vec<u32>], &[bool]),
+    (product, gaps): (&Product, &[Option<Gap>]),
+) -> Vec<usize> {
+    let distance = |i: u32| {
+        gaps[i as usize]
+            .as_ref()
+            .map_or(f64::INFINITY, |g| g.distance)
+    };
+    let agrees = |i: u32, j: u32| {
+        let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
+        distance(i) + distance(j) <= STEEPEST * apart
+    };
+    let mut is_needed = vec![false; away.len()];
+    for (k, near) in neighbors.iter().enumerate().filter(|(k, _)| is_unread[*k]) {
+        let at = away[k];
+        let agreeing = || near.iter().filter(|&&j| agrees(at, j));
+        let is_sheet = product.is_sheet_at(gaps[at as usize].as_ref());
+        if is_sheet || agreeing().take(WITNESSES).count() == WITNESSES {
+            is_needed[k] = true;
+            for other in agreeing() {
+                if let Ok(other) = away.binary_search(other) {
+                    is_needed[other] = is_unread[other];
+                }
+            }
+        }
+    }
+    (0..away.len()).filter(|&k| is_needed[k]).collect()
 }
 
 /// The points near a point whose skin faces the same way.
@@ -92,13 +140,10 @@ fn neighbors(skin: &Skin, vicinity: &Vicinity, at: u32) -> Vec<u32> {
 }
 
 /// Accepts candidates next to settled points, until no more can be.
-fn grow(
-    skin: &Skin,
-    (candidates, neighbors): (&[Candidate], &[Vec<u32>]),
-    is_settled: &mut [bool],
-    gaps: &mut [Option<Gap>],
-) {
-    let mut pending: Vec<usize> = (0..candidates.len()).collect();
+fn grow(skin: &Skin, candidates: &[Candidate], is_settled: &mut [bool], gaps: &mut [Option<Gap>]) {
+    let mut pending: Vec<usize> = (0..candidates.len())
+        .filter(|&k| !is_settled[candidates[k].at as usize])
+        .collect();
     while !pending.is_empty() {
         let before = pending.len();
         pending.retain(|&k| {
@@ -112,7 +157,8 @@ fn grow(
                 })
             };
             let agreed = candidates[k].readings.iter().flatten().find(|reading| {
-                neighbors[k]
+                candidates[k]
+                    .neighbors
                     .iter()
                     .filter(|&&j| continues(reading, j))
                     .take(WITNESSES)
@@ -135,7 +181,7 @@ fn grow(
 fn enclose(
     product: &Product,
     skin: &Skin,
-    (candidates, neighbors): (&[Candidate], &[Vec<u32>]),
+    candidates: &[Candidate],
     (is_settled, gaps): (&[bool], &mut [Option<Gap>]),
 ) {
     let mut seen = vec![false; candidates.len()];
@@ -146,7 +192,7 @@ fn enclose(
         seen[start] = true;
         let (mut piece, mut next, mut is_whole) = (vec![start], 0, true);
         while next < piece.len() {
-            for other in &neighbors[piece[next]] {
+            for other in &candidates[piece[next]].neighbors {
                 match candidates.binary_search_by_key(other, |c| c.at) {
                     Ok(k) if !is_settled[*other as usize] => {
                         if !seen[k] {
@@ -173,6 +219,12 @@ fn enclose(
 }
 
 impl Product {
+    /// Whether a gap was measured to a sheet.
+    fn is_sheet_at(&self, gap: Option<&Gap>) -> bool {
+        let face = |g: &Gap| &self.tree.faces[self.tree.slots[g.triangle as usize] as usize];
+        gap.is_some_and(|g| face(g).is_sheet)
+    }
+
     /// What a point outside, whose plain gap is `gap`, would read if it had come through a wall, and if it had come through a sheet.
     fn readings_through(
         &self,
@@ -203,7 +255,7 @@ impl Product {
             );
             hit.map(|hit| self.reading(&query, &hit, Side::Inside))
         });
-        let is_sheet = self.tree.faces[self.tree.slots[gap.triangle as usize] as usize].is_sheet;
+        let is_sheet = self.is_sheet_at(Some(gap));
         let flipped = Gap {
             distance: -gap.distance,
             normal: -gap.normal,

@@ -6,6 +6,7 @@ use crate::facing::Facing;
 use crate::interior::{Interior, Place};
 use crate::mesh::{Mesh, MeshError, Standing, Vec3};
 use crate::nearest::{Hit, Pending};
+use crate::normals::vertex_areas;
 use crate::orient::orient;
 use crate::poke::{Skin, settle};
 use crate::sign::Sign;
@@ -57,6 +58,7 @@ pub struct Product {
     /// Whether some part is not a sheet.
     has_body: bool,
     may_overlap: bool,
+    vertex_areas: Vec<f64>,
     warnings: Vec<String>,
 }
 
@@ -86,8 +88,10 @@ impl Product {
         let has_body = tree.faces.iter().any(|f| !f.is_sheet);
         let may_overlap = oriented.may_overlap;
         let (mesh, warnings) = (oriented.mesh, oriented.warnings);
+        let vertex_areas = vertex_areas(&mesh);
         let mut product = Product {
             mesh,
+            vertex_areas,
             tree,
             sign,
             interior: None,
@@ -107,6 +111,11 @@ impl Product {
     /// The mesh queries refer to: as given, but with triangles turned outward.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// Area of each vertex, mm2, as [`vertex_areas`] gives it.
+    pub fn vertex_areas(&self) -> &[f64] {
+        &self.vertex_areas
     }
 
     /// What was wrong with the mesh and what was done about it, one sentence each.

@@ -6,6 +6,7 @@ use super::course::{Course, Keep, Step};
 use super::protocol::{Demand, Protocol};
 use super::state::History;
 use crate::force_control::{MOST_TRAVEL, find_offset, mean_normal};
+use crate::memory::Last;
 use crate::press::ForceTarget;
 use crate::simulate::{Pressed, Seconds};
 use crate::skin::Skin;
@@ -44,7 +45,7 @@ impl Skin {
     pub fn run(&mut self, run: &Run<'_>, control: &Control) -> Result<Course, ContactError> {
         run.protocol.validate()?;
         let posed = self.posed(run.posed)?;
-        self.memory.force.clear();
+        self.memory.last = Last::default();
         self.memory.triangle.clear();
         self.memory.offset = 0.0;
         self.history = History::new(

@@ -1,5 +1,7 @@
 //! From rows of the response to the matrix of a contact problem, and from forces to displacements.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
@@ -56,20 +58,26 @@ pub fn coupling(response: &Response, zone: &[u32], sites: &Sites) -> Rows<f32> {
 }
 
 /// The compliance (mm/N) along directions: `A_ij = w_i w_j K_ij t_i.t_j`, for weights `w` and unit directions `t`.
-pub fn compliance(coupling: &Rows<f32>, weight: &[f64], direction: &[Vec3]) -> Rows<f32> {
+///
+/// Written to `out`, whose storage is used again.
+pub fn compliance(
+    coupling: &Rows<f32>,
+    (weight, direction): (&[f64], &[Vec3]),
+    out: &mut Rows<f32>,
+) {
     let weighted: Vec<[f64; 3]> = weight
         .iter()
         .zip(direction)
         .map(|(w, t)| [w * t.x, w * t.y, w * t.z])
         .collect();
-    coupling.map_runs(|i, start, values, out| {
+    coupling.map_runs(out, |i, start, values, out| {
         scale_run(
             &weighted[start..start + values.len()],
             weighted[i],
             values,
             out,
         )
-    })
+    });
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
@@ -88,49 +96,87 @@ pub struct Load {
     pub load: Vec3,
 }
 
+/// Patches whose field is summed at a time: it stays in the cache, and the pieces of the rows are long.
+const BLOCK: u32 = 32;
+
 /// `sum_j K_ij load_j` at every site; zero out of range. Multiply by the response weight s of the site for mm.
+///
+/// `loads` in ascending order of sites.
 pub fn displacements(response: &Response, loads: &[Load], sites: &Sites) -> Vec<Vec3> {
-    let fields: Vec<Vec<Vec3>> = (0..sites.patch_range.len() as u32)
+    let patch = |load: &Load| sites.patch[load.site as usize];
+    let homes: Vec<&[Load]> = loads.chunk_by(|a, b| patch(a) == patch(b)).collect();
+    let patches = sites.patch_range.len() as u32;
+    let fields: Vec<Vec<Vec3>> = (0..patches.div_ceil(BLOCK))
         .into_par_iter()
-        .with_min_len(16)
-        .map(|patch| patch_field(response, loads, (patch, sites)))
+        .map(|block| {
+            let block = block * BLOCK..patches.min((block + 1) * BLOCK);
+            block_field(response, &homes, (block, sites))
+        })
         .collect();
     fields.concat()
 }
 
-fn patch_field(response: &Response, loads: &[Load], (patch, sites): (u32, &Sites)) -> Vec<Vec3> {
-    let (first, last) = sites.patch_range[patch as usize];
-    let n = (last - first) as usize;
-    let mut field = vec![0.0; 3 * n];
-    let mut home = (u32::MAX, None);
-    for load in loads {
-        let from = sites.patch[load.site as usize];
-        if home.0 != from {
-            let near = response.near(from);
-            let offset = near
-                .binary_search_by_key(&patch, |entry| entry.0)
-                .ok()
-                .map(|k| near[k].1 as usize);
-            home = (from, offset);
-        }
-        if let Some(offset) = home.1 {
-            accumulate(
-                &mut field,
-                &response.row(load.site)[offset..offset + n],
-                [load.load.x, load.load.y, load.load.z],
-            );
+/// The field on a block of patches.
+fn block_field(
+    response: &Response,
+    homes: &[&[Load]],
+    (block, sites): (Range<u32>, &Sites),
+) -> Vec<Vec3> {
+    let begin = sites.patch_range[block.start as usize].0 as usize;
+    let end = sites.patch_range[block.end as usize - 1].1 as usize;
+    let mut field = [(); 3].map(|()| vec![0.0; end - begin]);
+    for loads in homes {
+        let near = response.near(sites.patch[loads[0].site as usize]);
+        let from = near.partition_point(|entry| entry.0 < block.start);
+        let to = near.partition_point(|entry| entry.0 < block.end);
+        // Patches that follow one another are one piece of a row.
+        for piece in near[from..to]
+            .chunk_by(|a, b| sites.patch_range[a.0 as usize].1 == sites.patch_range[b.0 as usize].0)
+        {
+            let (first, last) = (piece[0], piece[piece.len() - 1]);
+            let there = sites.patch_range[first.0 as usize].0 as usize - begin
+                ..sites.patch_range[last.0 as usize].1 as usize - begin;
+            let row = first.1 as usize..first.1 as usize + there.len();
+            let field = field.each_mut().map(|axis| &mut axis[there.clone()]);
+            add_loads(field, loads, |site| &response.row(site)[row.clone()]);
         }
     }
-    (0..n)
-        .map(|i| Vec3::new(field[i], field[n + i], field[2 * n + i]))
+    let [x, y, z] = field;
+    (0..end - begin)
+        .map(|i| Vec3::new(x[i], y[i], z[i]))
         .collect()
 }
 
+/// Adds the fields of `loads`, four at a time.
+fn add_loads<'a>(mut field: [&mut [f64]; 3], loads: &[Load], row: impl Fn(u32) -> &'a [f32]) {
+    let mut fours = loads.chunks_exact(4);
+    for four in &mut fours {
+        let load = [0, 1, 2].map(|axis| [0, 1, 2, 3].map(|k| four[k].load[axis]));
+        let rows = [0, 1, 2, 3].map(|k| row(four[k].site));
+        accumulate(field.each_mut().map(|axis| &mut axis[..]), rows, load);
+    }
+    for one in fours.remainder() {
+        let load = [0, 1, 2].map(|axis| [one.load[axis]]);
+        accumulate(
+            field.each_mut().map(|axis| &mut axis[..]),
+            [row(one.site)],
+            load,
+        );
+    }
+}
+
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn accumulate(field: &mut [f64], row: &[f32], load: [f64; 3]) {
-    for (component, load) in field.chunks_exact_mut(row.len()).zip(load) {
-        for (out, k) in component.iter_mut().zip(row) {
-            *out += f64::from(*k) * load;
+fn accumulate<const N: usize>(field: [&mut [f64]; 3], rows: [&[f32]; N], load: [[f64; N]; 3]) {
+    let n = field[0].len();
+    let rows = rows.map(|row| &row[..n]);
+    let [x, y, z] = field;
+    let (y, z) = (&mut y[..n], &mut z[..n]);
+    for i in 0..n {
+        for k in 0..N {
+            let value = f64::from(rows[k][i]);
+            x[i] += value * load[0][k];
+            y[i] += value * load[1][k];
+            z[i] += value * load[2][k];
         }
     }
 }

@@ -4,6 +4,7 @@
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
+use super::kept::Kept;
 use super::operator::{Entry, Rows};
 use super::projection::mprgp;
 use crate::Control;
@@ -12,8 +13,6 @@ use crate::Control;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-7, 1e-12];
 /// Last of the loose levels.
 const ROUGH_LEVEL: usize = 1;
-/// Share of the unknowns above which the set is solved in place instead of copied out.
-const COPY_SHARE: f64 = 0.6;
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
 const PATIENCE: usize = 8;
 /// Passes in all before the fallback.
@@ -64,6 +63,7 @@ pub fn solve_contact<T: Entry>(
         in_contact: vec![false; n],
         pivots: 0,
         steps: 0,
+        kept: None,
     };
     if scale > 0.0 {
         run.start(gap, start);
@@ -103,15 +103,16 @@ fn natural_residual<T: Entry>(matrix: &Rows<T>, force: &[f64], slack: &[f64]) ->
     terms.fold(0.0, f64::max)
 }
 
-struct Run {
+struct Run<'a> {
     force: Vec<f64>,
     slack: Vec<f64>,
     in_contact: Vec<bool>,
     pivots: usize,
     steps: usize,
+    kept: Option<Kept<'a>>,
 }
 
-impl Run {
+impl<'a> Run<'a> {
     fn start(&mut self, gap: &[f64], start: Option<&[f64]>) {
         match start {
             Some(force) if force.iter().any(|p| *p > 0.0) => {
@@ -131,7 +132,7 @@ impl Run {
     /// True if the set was found and the forces are tight.
     fn pivot<T: Entry>(
         &mut self,
-        matrix: &Rows<T>,
+        matrix: &'a Rows<T>,
         gap: &[f64],
         (scale, accuracy): (f64, Accuracy),
         control: &Control,
@@ -154,10 +155,11 @@ impl Run {
             if !self.solve_set(matrix, gap, (level, scale)) {
                 return false;
             }
-            self.find_slack(matrix, gap);
+            self.find_outer_slack(matrix, gap);
             let wrong = self.infeasible(TOLERANCES[level] * scale);
             if wrong.is_empty() {
                 if level >= finest {
+                    self.find_slack(matrix, gap);
                     return true;
                 }
                 level += 1;
@@ -190,7 +192,7 @@ impl Run {
 
     fn solve_set<T: Entry>(
         &mut self,
-        matrix: &Rows<T>,
+        matrix: &'a Rows<T>,
         gap: &[f64],
         (level, scale): (usize, f64),
     ) -> bool {
@@ -201,30 +203,23 @@ impl Run {
             tolerance: TOLERANCES[level] * scale,
             steps: 40 + 6 * set.len(),
         };
-        if set.len() as f64 > COPY_SHARE * self.force.len() as f64 {
-            let right: Vec<f64> = gap.iter().map(|d| -d).collect();
-            let (end, steps) = conjugate_gradient(matrix, &right, (&mut self.force, &set), limits);
-            self.steps += steps;
-            return end == CgEnd::Converged;
-        }
-        let right: Vec<f64> = set.iter().map(|&i| -gap[i as usize]).collect();
-        let mut x: Vec<f64> = set.iter().map(|&i| self.force[i as usize]).collect();
-        let all: Vec<u32> = (0..set.len() as u32).collect();
         // Single precision suffices to find the set.
-        let (end, steps) = if level <= ROUGH_LEVEL && size_of::<T>() > 4 {
-            conjugate_gradient(
-                &matrix.principal_narrow(&set),
-                &right,
-                (&mut x, &all),
-                limits,
-            )
-        } else {
-            conjugate_gradient(&matrix.principal(&set), &right, (&mut x, &all), limits)
+        let is_narrow = level <= ROUGH_LEVEL && size_of::<T>() > 4;
+        let kept = match self.kept.take() {
+            Some(kept) if kept.is_narrow == is_narrow && kept.holds(&set) => kept,
+            _ => Kept::new(matrix, &set, is_narrow),
         };
+        let right: Vec<f64> = kept.rows.iter().map(|&i| -gap[i as usize]).collect();
+        let mut x: Vec<f64> = kept.rows.iter().map(|&i| self.force[i as usize]).collect();
+        let places: Vec<u32> = (0..kept.rows.len() as u32)
+            .filter(|&k| self.in_contact[kept.rows[k as usize] as usize])
+            .collect();
+        let (end, steps) = conjugate_gradient(&*kept.matrix, &right, (&mut x, &places), limits);
         self.steps += steps;
-        for (&i, x) in set.iter().zip(&x) {
+        for (&i, x) in kept.rows.iter().zip(&x) {
             self.force[i as usize] = *x;
         }
+        self.kept = Some(kept);
         end == CgEnd::Converged
     }
 
@@ -232,6 +227,18 @@ impl Run {
         matrix.times(&self.force, &mut self.slack);
         for (s, d) in self.slack.iter_mut().zip(gap) {
             *s += d;
+        }
+    }
+
+    /// The slack outside the contact set, which is all that finding the set needs.
+    fn find_outer_slack<T: Entry>(&mut self, matrix: &Rows<T>, gap: &[f64]) {
+        let outer: Vec<u32> = (0..self.force.len() as u32)
+            .filter(|&i| !self.in_contact[i as usize])
+            .collect();
+        let mut image = vec![0.0; outer.len()];
+        matrix.times_rows(&outer, &self.force, &mut image);
+        for (&i, image) in outer.iter().zip(&image) {
+            self.slack[i as usize] = image + gap[i as usize];
         }
     }
 

@@ -1,6 +1,6 @@
 //! Conjugate gradients with Jacobi's preconditioner on a principal submatrix.
 
-use super::operator::{Entry, Rows};
+use super::half::Symmetric;
 
 /// How a run of conjugate gradients ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,19 +25,18 @@ pub struct CgLimits {
 /// Solves `matrix x = right` for the unknowns in `set` (ascending), from the `x` given; others are and stay zero.
 ///
 /// Returns how it ended and the steps taken.
-pub fn conjugate_gradient<T: Entry>(
-    matrix: &Rows<T>,
+pub fn conjugate_gradient(
+    matrix: &dyn Symmetric,
     right: &[f64],
     (x, set): (&mut [f64], &[u32]),
     limits: CgLimits,
 ) -> (CgEnd, usize) {
-    let n = matrix.len();
-    let mut image = vec![0.0; set.len()];
-    matrix.times_rows(set, x, &mut image);
+    let n = matrix.diagonal().len();
+    let mut image = vec![0.0; n];
+    matrix.times(x, &mut image);
     let mut residual: Vec<f64> = set
         .iter()
-        .zip(&image)
-        .map(|(&i, a)| right[i as usize] - a)
+        .map(|&i| right[i as usize] - image[i as usize])
         .collect();
     let per_diagonal: Vec<f64> = set
         .iter()
@@ -60,19 +59,18 @@ pub fn conjugate_gradient<T: Entry>(
             let p = &mut direction[i as usize];
             *p = r * d + beta * *p;
         }
-        matrix.times_rows(set, &direction, &mut image);
+        matrix.times(&direction, &mut image);
         let curvature: f64 = set
             .iter()
-            .zip(&image)
-            .map(|(&i, q)| direction[i as usize] * q)
+            .map(|&i| direction[i as usize] * image[i as usize])
             .sum();
         if curvature.is_nan() || curvature <= 0.0 {
             return (CgEnd::NotDefinite, step);
         }
         let length = weight / curvature;
-        for ((&i, r), q) in set.iter().zip(&mut residual).zip(&image) {
+        for (&i, r) in set.iter().zip(&mut residual) {
             x[i as usize] += length * direction[i as usize];
-            *r -= length * q;
+            *r -= length * image[i as usize];
         }
     }
     (CgEnd::StepLimit, limits.steps)

@@ -5,6 +5,8 @@ pub mod operator;
 mod block_pivoting;
 mod conjugate_gradient;
 mod dense;
+mod half;
+mod kept;
 mod projection;
 
 pub use block_pivoting::{Accuracy, Solution, solve_contact};

@@ -85,6 +85,11 @@ impl<T: Entry> Rows<T> {
         self.diagonal.len()
     }
 
+    /// Whether products are worth several threads.
+    pub fn is_large(&self) -> bool {
+        self.values.len() >= PARALLEL_ENTRIES
+    }
+
     /// Diagonal entries, positive.
     pub fn diagonal(&self) -> &[f64] {
         &self.diagonal
@@ -111,7 +116,7 @@ impl<T: Entry> Rows<T> {
 
     /// Some rows of the matrix times `x`; the same bits for any number of threads.
     pub fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
-        if self.values.len() < PARALLEL_ENTRIES {
+        if !self.is_large() {
             multiply(self, rows, x, out);
         } else {
             let parts = rows.par_chunks(256).zip(out.par_chunks_mut(256));
@@ -119,32 +124,30 @@ impl<T: Entry> Rows<T> {
         }
     }
 
-    /// The matrix with every run replaced by `run(row, first column, values, out)`, which must keep it symmetric.
-    pub fn map_runs(&self, run: impl Fn(usize, usize, &[T], &mut [T])) -> Self {
-        let mut values = self.values.clone();
-        let mut diagonal = self.diagonal.clone();
+    /// Writes the matrix with every run replaced by `run(row, first column, values, out)`, which must keep it symmetric, to `mapped`.
+    pub fn map_runs(&self, mapped: &mut Self, run: impl Fn(usize, usize, &[T], &mut [T])) {
+        mapped.run_ends.clone_from(&self.run_ends);
+        mapped.runs.clone_from(&self.runs);
+        mapped.value_ends.clone_from(&self.value_ends);
+        mapped.diagonal.clone_from(&self.diagonal);
+        if mapped.values.len() != self.values.len() {
+            mapped.values.clone_from(&self.values);
+        }
         let mut first = 0;
-        for (i, diagonal) in diagonal.iter_mut().enumerate() {
+        for (i, diagonal) in mapped.diagonal.iter_mut().enumerate() {
             for Run { start, len } in self.row(i).0 {
                 let (start, len) = (*start as usize, *len as usize);
                 run(
                     i,
                     start,
                     &self.values[first..first + len],
-                    &mut values[first..first + len],
+                    &mut mapped.values[first..first + len],
                 );
                 if (start..start + len).contains(&i) {
-                    *diagonal = values[first + i - start].wide();
+                    *diagonal = mapped.values[first + i - start].wide();
                 }
                 first += len;
             }
-        }
-        Rows {
-            values,
-            diagonal,
-            run_ends: self.run_ends.clone(),
-            runs: self.runs.clone(),
-            value_ends: self.value_ends.clone(),
         }
     }
 
