@@ -1,7 +1,7 @@
 //! Mesh, study and measurement files to arrays with units; the only library crate that reads files.
 //!
 //! Knows nothing of physics or of Blender. Every error names the file, the line or byte, and the remedy.
-//! [`read`] tells a maker's format by what a file holds and gives [`PressureMap`]s or [`Curve`]s.
+//! [`study::Study`] loads a folder of recordings with their setting. [`read`] tells a maker's format by what a file holds and gives [`PressureMap`]s or [`Curve`]s.
 
 mod error;
 mod fault;
@@ -17,6 +17,7 @@ mod tables;
 mod makers;
 mod recording;
 pub mod meshes;
+pub mod study;
 
 pub use check::Check;
 pub use curve::{Channel, Curve, Fact, Segment};
@@ -24,3 +25,4 @@ pub use detection::Format;
 pub use error::RecordingError;
 pub use pressure_map::{Grid, PressureMap, PressureUnit, Sensel, Source, Threshold};
 pub use recording::{LARGEST_ARCHIVE, LARGEST_TEXT, RecordingFile, read, read_bytes};
+pub use study::Study;

@@ -1,0 +1,143 @@
+//! A study: a folder with `study.toml`, the recordings it names and what they were taken from.
+
+mod toml_tree;
+mod place;
+mod skin;
+mod indenters;
+mod sites;
+mod sensels;
+mod recordings;
+mod instrument;
+
+pub use indenters::{Indenter, Shape};
+pub use instrument::Instrument;
+pub use recordings::{Data, StudyRecording};
+pub use sensels::PlacedSensel;
+pub use sites::Site;
+pub use skin::{StudyMaterial, StudySkin};
+
+use crate::RecordingError;
+use crate::fault::Fault;
+use place::Folder;
+use std::path::{Path, PathBuf};
+use toml_tree::{Document, Section};
+
+/// File in the folder that describes the study.
+pub const STUDY_FILE: &str = "study.toml";
+/// Tables of the description.
+const TABLES: &[&str] = &[
+    "study",
+    "skin",
+    "indenters",
+    "sites",
+    "recordings",
+    "instrument",
+];
+/// Largest description that is read, bytes.
+const LARGEST_STUDY: u64 = 4 << 20;
+
+/// Recordings, and the skin, tools and places they were taken with. mm, N, s, kPa for maps, MPa for moduli.
+#[derive(Debug, Clone)]
+pub struct Study {
+    /// The folder that was loaded.
+    pub folder: PathBuf,
+    /// Title, empty if there is none.
+    pub title: String,
+    /// The skin before it was touched.
+    pub skin: StudySkin,
+    /// Tools, by name.
+    pub indenters: Vec<Indenter>,
+    /// Places of first touch, by name.
+    pub sites: Vec<Site>,
+    /// Recordings, in the order of the file.
+    pub recordings: Vec<StudyRecording>,
+    /// The instrument's data sheet, if given.
+    pub instrument: Option<Instrument>,
+    /// What a reader should be told, a sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Study {
+    /// Loads the study in `folder` with every file that it names.
+    ///
+    /// # Errors
+    /// [`RecordingError`] that names file, line and remedy: a file that is missing, damaged or outside the folder, a key or a unit
+    /// that is not known, time that does not increase, NaN, a site off the skin, an indenter or site that is not defined.
+    pub fn load(folder: &Path) -> Result<Study, RecordingError> {
+        let file = folder.join(STUDY_FILE);
+        let text = read_text(folder, &file)?;
+        let here = |fault: Fault| fault.in_file(&file);
+        let document = Document::parse(&text).map_err(here)?;
+        document.root().only(TABLES).map_err(here)?;
+        let mut root = document.root();
+        let folder = Folder::new(folder, &file)?;
+        let mut about = root.section("study").map_err(here)?;
+        let title = match about.as_mut() {
+            Some(about) => about.text("title").map_err(here)?.unwrap_or_default(),
+            None => String::new(),
+        };
+        about.map_or(Ok(()), Section::finish).map_err(here)?;
+        let instrument = instrument::read(&mut root).map_err(here)?;
+        let indenters = indenters::read(&mut root, &folder)?;
+        let skin = skin::read(&mut root, &folder)?;
+        let sites = sites::read(&mut root, &skin).map_err(here)?;
+        let recordings = recordings::read(&mut root, (&indenters, &sites), &folder)?;
+        let warnings = recordings
+            .iter()
+            .flat_map(StudyRecording::warnings)
+            .collect();
+        Ok(Study {
+            folder: folder.path().to_path_buf(),
+            title,
+            skin,
+            indenters,
+            sites,
+            recordings,
+            instrument,
+            warnings,
+        })
+    }
+
+    /// The recording of a name.
+    pub fn recording(&self, name: &str) -> Option<&StudyRecording> {
+        self.recordings
+            .iter()
+            .find(|recording| recording.name == name)
+    }
+}
+
+fn read_text(folder: &Path, file: &Path) -> Result<String, RecordingError> {
+    if !folder.is_dir() {
+        let fault = Fault::file(
+            "it is no folder".into(),
+            "name the folder that holds study.toml",
+        );
+        return Err(fault.in_file(folder));
+    }
+    let unreadable = |source| RecordingError::Unreadable {
+        file: file.to_path_buf(),
+        source,
+    };
+    let size = std::fs::metadata(file).map_err(unreadable)?.len();
+    if size > LARGEST_STUDY {
+        let problem = format!("{size} bytes are more than the {LARGEST_STUDY} that are read");
+        return Err(Fault::file(problem, "keep measurements in files of their own").in_file(file));
+    }
+    let bytes = std::fs::read(file).map_err(unreadable)?;
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text.to_string()),
+        Err(error) => {
+            let line = 1 + bytes[..error.valid_up_to()]
+                .iter()
+                .filter(|byte| **byte == b'\n')
+                .count();
+            Err(Fault::line(
+                line,
+                "the text is not UTF-8".into(),
+                "save the file as UTF-8",
+            )
+            .in_file(file))
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! The skin of a study: mesh, regions by vertex, and the materials where fitting starts.
+
+use super::place::Folder;
+use super::toml_tree::{Section, nearest};
+use crate::RecordingError;
+use crate::fault::{Fault, shown};
+use crate::fields::Separator;
+use crate::lines::Lines;
+use crate::meshes::{self, MeshFile};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// Most regions of a hand.
+const MOST_REGIONS: usize = 4096;
+/// Parameters that a fit may change.
+const FITTED: &[&str] = &["g0_mpa", "g_lim_mpa", "d_lim_mm", "thickness_mm"];
+
+/// The undeformed skin.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StudySkin {
+    /// Vertices, mm, and triangles.
+    pub mesh: MeshFile,
+    /// Region of each vertex, -1 for no skin; empty if the study has one region.
+    pub regions: Vec<i32>,
+    /// Name of each region, in order of first appearance.
+    pub region_names: Vec<String>,
+    /// Materials by region name, `default` for all others.
+    pub materials: Vec<StudyMaterial>,
+}
+
+/// Where the fit of a region starts; what is not given is `None`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct StudyMaterial {
+    /// Region name, or `default`.
+    pub region: String,
+    /// Shear modulus at rest, MPa.
+    pub g0_mpa: Option<f64>,
+    /// Shear modulus it grows to, MPa.
+    pub g_lim_mpa: Option<f64>,
+    /// Depth of that growth, mm.
+    pub d_lim_mm: Option<f64>,
+    /// Soft tissue over bone, mm; infinite for a half space.
+    pub thickness_mm: Option<f64>,
+    /// Parameters that a fit may change.
+    pub fit: Vec<String>,
+}
+
+pub(super) fn read(root: &mut Section, folder: &Folder) -> Result<StudySkin, RecordingError> {
+    let here = |fault: Fault| folder.fault(fault);
+    let Some(mut section) = root.section("skin").map_err(here)? else {
+        return Err(here(Fault::line(
+            1,
+            "the study has no [skin]".into(),
+            "add [skin] with mesh = \"skin.ply\"",
+        )));
+    };
+    let Some(entry) = section.get("mesh") else {
+        return Err(here(
+            section.needs("mesh", "name the surface, mesh = \"skin.ply\""),
+        ));
+    };
+    let mut skin = StudySkin {
+        mesh: meshes::read(&folder.file(&entry)?)?,
+        ..StudySkin::default()
+    };
+    if let Some(entry) = section.get("regions") {
+        let file = folder.file(&entry)?;
+        let count = skin.mesh.positions.len();
+        (skin.regions, skin.region_names) = read_regions(&file, count)?;
+    }
+    if let Some(materials) = section.section("materials").map_err(here)? {
+        for (region, section) in materials.sections().map_err(here)? {
+            let line = section.line;
+            let material = read_material(region, section).map_err(here)?;
+            check_region(&material.region, &skin.region_names, line).map_err(here)?;
+            skin.materials.push(material);
+        }
+    }
+    let line = section.line;
+    section.finish().map_err(here)?;
+    check_covered(&skin, line).map_err(here)?;
+    Ok(skin)
+}
+
+fn read_material(region: String, mut section: Section) -> Result<StudyMaterial, Fault> {
+    let mut material = StudyMaterial {
+        region,
+        g0_mpa: section.positive("g0_mpa")?,
+        g_lim_mpa: section.positive("g_lim_mpa")?,
+        d_lim_mm: section.positive("d_lim_mm")?,
+        thickness_mm: None,
+        fit: vec!["g0_mpa".into(), "g_lim_mpa".into()],
+    };
+    if let Some(entry) = section.get("thickness_mm") {
+        let is_half_space = entry.is_text() && entry.text()? == "inf";
+        let thickness = if is_half_space {
+            f64::INFINITY
+        } else {
+            entry.number()?
+        };
+        if thickness <= 0.0 {
+            return Err(entry.fault(
+                format!("is {thickness}"),
+                "give a number above zero, or \"inf\" for a half space",
+            ));
+        }
+        material.thickness_mm = Some(thickness);
+    }
+    if let Some(entry) = section.get("fit") {
+        material.fit = entry.texts()?;
+        if let Some(unknown) = material
+            .fit
+            .iter()
+            .find(|name| !FITTED.contains(&name.as_str()))
+        {
+            let problem = format!(
+                "fit: {} is no parameter that can be fitted",
+                shown(unknown.as_bytes())
+            );
+            return Err(Fault::line(entry.line, problem, nearest(unknown, FITTED)));
+        }
+    }
+    section.finish()?;
+    Ok(material)
+}
+
+fn check_region(region: &str, names: &[String], line: usize) -> Result<(), Fault> {
+    if region == "default" || names.iter().any(|name| name == region) {
+        return Ok(());
+    }
+    let known: Vec<&str> = std::iter::once("default")
+        .chain(names.iter().map(String::as_str))
+        .collect();
+    let problem = format!("there is no region {}", shown(region.as_bytes()));
+    Err(Fault::line(line, problem, nearest(region, &known)))
+}
+
+/// Every region needs a material once there are materials.
+fn check_covered(skin: &StudySkin, line: usize) -> Result<(), Fault> {
+    let has = |name: &str| {
+        skin.materials
+            .iter()
+            .any(|material| material.region == name)
+    };
+    let bare = skin.region_names.iter().find(|name| !has(name));
+    match bare {
+        Some(name) if !skin.materials.is_empty() && !has("default") => {
+            let problem = format!("region {} has no material", shown(name.as_bytes()));
+            Err(Fault::line(
+                line,
+                problem,
+                "add [skin.materials.default] or a table for the region",
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Region of each vertex and the names of the regions, from a CSV of vertex,region.
+fn read_regions(file: &Path, vertices: usize) -> Result<(Vec<i32>, Vec<String>), RecordingError> {
+    let unreadable = |source| RecordingError::Unreadable {
+        file: file.to_path_buf(),
+        source,
+    };
+    let mut lines = Lines::new(BufReader::new(File::open(file).map_err(unreadable)?));
+    parse_regions(&mut lines, vertices).map_err(|fault| fault.in_file(file))
+}
+
+fn parse_regions(lines: &mut Lines, vertices: usize) -> Result<(Vec<i32>, Vec<String>), Fault> {
+    const UNSET: i32 = i32::MIN;
+    let (mut regions, mut names) = (vec![UNSET; vertices], Vec::<String>::new());
+    match lines.next_filled(&[','])? {
+        Some(line) if line.text.trim() == "vertex,region" => {}
+        _ => {
+            return Err(Fault::line(
+                1,
+                "the first line does not name the columns".into(),
+                "begin with vertex,region",
+            ));
+        }
+    }
+    while let Some(line) = lines.next_filled(&[','])? {
+        let mut fields = Separator::Comma.split(line.text);
+        let (vertex, region) = (fields.next().unwrap_or(""), fields.next().unwrap_or(""));
+        let Some(slot) = vertex
+            .parse::<usize>()
+            .ok()
+            .and_then(|vertex| regions.get_mut(vertex))
+        else {
+            let problem = format!(
+                "{} is no vertex, the mesh has {vertices}",
+                shown(vertex.as_bytes())
+            );
+            return Err(line.fault(
+                problem,
+                "number vertices from 0 in the order of the mesh file",
+            ));
+        };
+        if *slot != UNSET {
+            return Err(line.fault(
+                format!("vertex {vertex} stands twice"),
+                "name each vertex once",
+            ));
+        }
+        *slot = match (region, names.iter().position(|name| name == region)) {
+            ("" | "-1" | "none", _) => -1,
+            (_, Some(number)) => number as i32,
+            (_, None) if names.len() == MOST_REGIONS => {
+                return Err(line.fault(
+                    format!("there are more than {MOST_REGIONS} regions"),
+                    "merge some of them",
+                ));
+            }
+            (_, None) => {
+                names.push(region.to_string());
+                names.len() as i32 - 1
+            }
+        };
+    }
+    match regions.iter().position(|region| *region == UNSET) {
+        Some(vertex) => Err(Fault::file(
+            format!("vertex {vertex} has no region"),
+            "add it, with -1 for no skin",
+        )),
+        None => Ok((regions, names)),
+    }
+}
