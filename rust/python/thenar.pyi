@@ -152,6 +152,9 @@ class Skin:
         cancel: _Cancel | None = None,
         progress: _Progress | None = None,
         *,
+        slide_mm: ArrayLike | None = None,
+        twist_rad: ArrayLike | None = None,
+        drag_n: ArrayLike | None = None,
         warm_start: bool = False,
     ) -> Contact: ...
     @overload
@@ -165,6 +168,9 @@ class Skin:
         cancel: _Cancel | None = None,
         progress: _Progress | None = None,
         *,
+        slide_mm: ArrayLike | None = None,
+        twist_rad: ArrayLike | None = None,
+        drag_n: ArrayLike | None = None,
         warm_start: bool = False,
     ) -> Contact: ...
 
@@ -207,6 +213,18 @@ class Contact:
     @property
     def direction(self) -> _Floats: ...
     @property
+    def tangential_force_n(self) -> _Floats: ...
+    @property
+    def tangential_traction_mpa(self) -> _Floats: ...
+    @property
+    def slip_mm(self) -> _Floats: ...
+    @property
+    def slip_margin(self) -> _Floats: ...
+    @property
+    def is_sticking(self) -> NDArray[np.bool_]: ...
+    @property
+    def friction(self) -> Record | None: ...
+    @property
     def residual(self) -> Record: ...
     @property
     def convergence(self) -> Record: ...
@@ -226,6 +244,7 @@ def hand(
     cancel: _Cancel | None = None,
 ) -> Record: ...
 def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float64]: ...
+def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...
 def parameters() -> list[Record]:
     """The table of material numbers: name, symbol, unit, default, low, high, meaning, source."""
 

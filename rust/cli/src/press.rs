@@ -78,6 +78,7 @@ fn press(arguments: &PressArguments, control: &Control) -> Result<(Contact, Regi
             product: &product,
             posed,
             force,
+            drag: None,
             start: Start::Fresh,
         },
         control,

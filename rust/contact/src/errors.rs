@@ -116,6 +116,14 @@ pub enum ContactError {
     /// A protocol has no rows.
     #[error("the protocol has no rows; give at least one time with a depth, an offset or a force")]
     EmptyProtocol,
+    /// A drag is not finite, or a force to drag with is zero.
+    #[error(
+        "the product's travel, turn and force along the skin must be finite, and the force not zero"
+    )]
+    Drag,
+    /// A limit of friction is negative or not finite.
+    #[error("the limit of site {site} is {found} N; a limit of friction is finite and 0 or more")]
+    SlipLimit { site: usize, found: f64 },
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,

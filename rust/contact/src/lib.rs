@@ -10,6 +10,7 @@ mod control;
 mod direction;
 mod errors;
 mod fields;
+mod interface;
 mod force_control;
 mod history;
 mod linearize;
@@ -31,9 +32,11 @@ pub use control::Control;
 pub use effects::ActiveEffect;
 pub use errors::ContactError;
 pub use history::{Course, Demand, Keep, Protocol, Row, Run, Step};
+pub use interface::{StickSlip, solve_stick_slip};
 pub use material::{Material, Swelling};
 pub use press::{
-    Contact, Convergence, ForceTarget, Model, Press, RegionResult, Residual, SkinInput, Start,
+    Contact, Convergence, Drag, ForceTarget, Model, Press, RegionResult, Residual, Shear,
+    SkinInput, Start,
 };
 pub use skin::Skin;
 pub use solve::{Solution, solve_dense};

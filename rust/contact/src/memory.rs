@@ -1,5 +1,6 @@
 //! What one press leaves for the next, so that small moves are cheap.
 
+use crate::interface::shear_kernel::ShearTables;
 use crate::linearize::Solved;
 use crate::solve::operator::Rows;
 
@@ -17,6 +18,8 @@ pub struct Memory {
     pub triangle: Vec<u32>,
     /// Travel found by force control, mm.
     pub offset: f64,
+    /// Kernels of shear, once friction has needed them.
+    pub shear: Option<ShearTables>,
 }
 
 /// A solved contact by site, for the next solve to start from; empty for none.

@@ -35,6 +35,15 @@ pub struct ForceTarget {
     pub direction: Option<Vec3>,
 }
 
+/// How the product is dragged along the skin once it is pressed on. It stands where it ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drag {
+    /// A motion: travel (mm) and turn about the center of the contact (rad, small).
+    Motion { travel: Vec3, turn: Vec3 },
+    /// Along this force until the shear on the skin is as large, N.
+    Force(Vec3),
+}
+
 /// One press of a prepared skin.
 #[derive(Clone, Copy)]
 pub struct Press<'a> {
@@ -44,6 +53,8 @@ pub struct Press<'a> {
     pub posed: Option<&'a [Vec3]>,
     /// None leaves the product where it is.
     pub force: Option<ForceTarget>,
+    /// How the product is dragged under that press; works through the effect `friction`.
+    pub drag: Option<Drag>,
     /// Where the solver starts.
     pub start: Start,
 }
@@ -100,6 +111,33 @@ pub struct RegionResult {
     pub shear_modulus: f64,
 }
 
+/// What friction makes of a drag. Arrays have one entry per vertex of the hand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shear {
+    /// Shear force on the skin, N, in the product's tangent plane.
+    pub force: Vec<Vec3>,
+    /// Its length over the vertex area, MPa.
+    pub traction: Vec<f64>,
+    /// Slip of the skin over the product, mm.
+    pub slip: Vec<Vec3>,
+    /// 1 - shear force / (coefficient x normal force): 0 where skin slips, 1 without shear; NaN without contact.
+    pub margin: Vec<f64>,
+    /// True where skin in contact does not slip.
+    pub is_sticking: Vec<bool>,
+    /// Shear force on the skin in all, N.
+    pub total: Vec3,
+    /// Travel of the product, mm; found where a force was asked for.
+    pub travel: Vec3,
+    /// Turn of the product about the center of the contact, rad.
+    pub turn: Vec3,
+    /// Energy lost to slip, N mm.
+    pub dissipated: f64,
+    /// Energy stored in the sheared skin, N mm.
+    pub stored: f64,
+    /// Largest natural residual of the law of friction, relative to the longest travel.
+    pub residual: f64,
+}
+
 /// The result of a press. Arrays have one entry per vertex of the hand unless said otherwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
@@ -113,7 +151,7 @@ pub struct Contact {
     pub gap: Vec<f64>,
     /// Product's outward normal where the vertex touches; zero where it does not.
     pub normal: Vec<Vec3>,
-    /// Force on the product, N. The skin bears the opposite.
+    /// Force on the product, N, with what friction adds. The skin bears the opposite.
     pub total_force: Vec3,
     /// Moment of that force about the origin, N mm.
     pub total_moment: Vec3,
@@ -135,6 +173,8 @@ pub struct Contact {
     pub offset: f64,
     /// Direction of travel, or of the mean normal force without force control; zero without contact.
     pub direction: Vec3,
+    /// Shear, where friction acts and the product is dragged.
+    pub shear: Option<Shear>,
     /// What is left of the equations.
     pub residual: Residual,
     /// How the solve ended.

@@ -8,6 +8,7 @@ use crate::effects::stiffening_law::shear_moduli;
 use crate::force_control::find_offset;
 use crate::history::recalled::{moved, restore};
 use crate::history::state::Recall;
+use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
 use crate::memory::Last;
 use crate::press::{Contact, Press, Start};
@@ -35,6 +36,8 @@ pub(crate) struct Pressed {
     pub modulus_at: Vec<f64>,
     /// What memory did to it, if the tissue remembers.
     pub recalled: Option<Recalled>,
+    /// What friction made of a drag.
+    pub shear: Option<Sheared>,
 }
 
 /// The memory's part in a press.
@@ -75,7 +78,7 @@ impl Skin {
         }
         let mut seconds = Seconds::new();
         let posed = self.posed(press.posed)?;
-        let (offset, direction, pressed) = match press.force {
+        let (offset, direction, mut pressed) = match press.force {
             None => {
                 let pressed = self.press_at(
                     &posed,
@@ -95,6 +98,13 @@ impl Skin {
                 (control, &mut seconds),
             )?,
         };
+        if let Some(drag) = press.drag {
+            let started = Instant::now();
+            let from_rest = (drag, &Grasp::default());
+            friction::drag(self, &mut pressed, from_rest, control)?;
+            friction::move_skin(self, press.product, &mut pressed);
+            add_time(&mut seconds, "friction", started);
+        }
         control.step("fields", 0.0)?;
         let started = Instant::now();
         let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
@@ -170,6 +180,7 @@ impl Skin {
             shear_modulus,
             modulus_at,
             recalled,
+            shear: None,
         })
     }
 

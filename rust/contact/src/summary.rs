@@ -5,6 +5,7 @@ use thenar_surface::{Gap, Mesh, Product, Vec3, vertex_areas};
 use crate::fields::contact_area::{EdgeData, contact_areas};
 use crate::fields::patch_peak::{Field, patch_peak};
 use crate::fields::product_side::product_pressure;
+use crate::interface::shear_fields::{shear_fields, shear_load};
 use crate::press::{Contact, RegionResult, Residual};
 use crate::remarks::remarks;
 use crate::simulate::Pressed;
@@ -33,6 +34,7 @@ pub fn summarize(
     let normal_force: f64 = touches.iter().map(|t| t.0).sum();
     let shift = direction * offset;
     let total_force: Vec3 = touches.iter().map(|(f, g)| -g.normal * *f).sum();
+    let (shear_force, shear_moment) = shear_load(pressed, shift);
     let moment = |(f, g): &(f64, Gap)| (g.closest + shift).cross(&(-g.normal * *f));
     let center: Vec3 = touches.iter().map(|(f, g)| (g.closest + shift) * *f).sum();
     let contact_area: f64 = fields.contact_area.iter().sum();
@@ -62,8 +64,8 @@ pub fn summarize(
         pressure: spread(&fields.pressure),
         gap: spread(&fields.gap),
         normal: spread_vectors(&fields.normal),
-        total_force,
-        total_moment: touches.iter().map(moment).sum(),
+        total_force: total_force + shear_force,
+        total_moment: touches.iter().map(moment).sum::<Vec3>() + shear_moment,
         center_of_pressure: if normal_force > 0.0 {
             center / normal_force
         } else {
@@ -84,6 +86,7 @@ pub fn summarize(
         product_pressure,
         offset,
         direction,
+        shear: shear_fields(skin, pressed, &fields.area),
         residual: Residual {
             complementarity: solved.complementarity,
             penetration_mm: solved.penetration,

@@ -8,7 +8,7 @@ use thenar_contact::effects::CATALOGUE;
 use thenar_contact::{
     ActiveEffect, Contact, Control, Course, Keep, Material, Model, Protocol, Run, Skin, SkinInput,
 };
-use thenar_surface::Product;
+use thenar_surface::{Product, Vec3};
 
 fn material() -> Material {
     Material {
@@ -51,7 +51,11 @@ fn cycle() -> Protocol {
         .iter()
         .map(|t| 1.2 * (2.5 * t).sin().abs() - 0.05)
         .collect();
-    Protocol::of_depth(&times, &depths)
+    let mut protocol = Protocol::of_depth(&times, &depths);
+    for row in &mut protocol.rows {
+        row.slide = Vec3::new(0.2 * row.time_s, 0.0, 0.0);
+    }
+    protocol
 }
 
 fn set(skin: &mut Skin, effects: Vec<ActiveEffect>) {
@@ -107,12 +111,9 @@ fn every_effect_changes_something() {
     for (effect, entry) in CATALOGUE {
         set(&mut skin, vec![ActiveEffect::new(effect, 0.9)]);
         let course = follow(&mut skin, &tool, &cycle());
-        let change = |(a, b): (f64, f64)| (a - b).abs();
-        let most = base
-            .forces()
-            .into_iter()
-            .zip(course.forces())
-            .map(change)
+        let steps = base.steps.iter().zip(&course.steps);
+        let most = steps
+            .map(|(a, b)| (a.total_force - b.total_force).norm())
             .fold(0.0, f64::max);
         assert!(most > 1e-3, "{}: {most}", entry.name);
     }

@@ -91,6 +91,7 @@ fn the_force_target_is_reached_and_the_offset_repeats_it() {
         product: &product,
         posed: None,
         force,
+        drag: None,
         start: Start::Fresh,
     };
     let found = skin.press(&request, &Control::none()).unwrap();
@@ -203,6 +204,7 @@ fn a_warm_start_follows_and_a_fresh_one_forgets() {
             product: &product,
             posed: Some(&posed),
             force: None,
+            drag: None,
             start: Start::Warm,
         };
         let warm = skin.press(&warm, &Control::none()).unwrap();
@@ -255,6 +257,7 @@ fn bad_input_is_refused_in_words() {
             product: &deep,
             posed: None,
             force: None,
+            drag: None,
             start: Start::Fresh,
         },
         &Control::none(),
@@ -274,6 +277,7 @@ fn skin_too_coarse_for_its_tissue_is_refused_where_it_is_pressed() {
         product: &product,
         posed: None,
         force: None,
+        drag: None,
         start: Start::Fresh,
     };
     let refused = skin.press(&press, &Control::none());
@@ -318,6 +322,7 @@ fn a_cancelled_press_says_so_and_leaves_the_skin_usable() {
         product: &product,
         posed: None,
         force: None,
+        drag: None,
         start: Start::Fresh,
     };
     assert_eq!(skin.press(&request, &stop), Err(ContactError::Cancelled));

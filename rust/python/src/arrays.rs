@@ -155,6 +155,13 @@ impl<'a, 'py> Argument<'a, 'py> {
         self.numbers(&format!("a ({n},) array of numbers"), |shape| shape == [n])
     }
 
+    /// (n, 2) numbers, row by row.
+    pub fn pairs_of(&self, n: usize) -> PyResult<Vec<f64>> {
+        self.numbers(&format!("an ({n}, 2) array of numbers"), |shape| {
+            shape == [n, 2]
+        })
+    }
+
     fn numbers(&self, expected: &str, fits: impl Fn(&[usize]) -> bool) -> PyResult<Vec<f64>> {
         let array = self.array(expected, "fiu", fits)?;
         self.cast::<f64>(&array)

@@ -4,7 +4,8 @@ use crate::arrays::{column, rows, triple};
 use crate::record::record;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use thenar_contact::RegionResult;
+use thenar_contact::{RegionResult, Shear};
+use thenar_surface::Vec3;
 
 /// The result of a press. Arrays over vertices are in the order of the skin's vertices.
 #[pyclass(frozen, get_all, module = "thenar")]
@@ -40,6 +41,19 @@ pub struct Contact {
     offset_mm: f64,
     /// (3,), direction of travel, or of the mean normal force without force control.
     direction: Py<PyAny>,
+    /// (n, 3), N, shear force on the skin; zero without friction and drag.
+    tangential_force_n: Py<PyAny>,
+    /// (n,), MPa, its length over the vertex area.
+    tangential_traction_mpa: Py<PyAny>,
+    /// (n, 3), mm, slip of the skin over the product.
+    slip_mm: Py<PyAny>,
+    /// (n,), 1 - shear force / (coefficient x normal force); nan where no friction acts.
+    slip_margin: Py<PyAny>,
+    /// (n,), bool, in contact and not slipping.
+    is_sticking: Py<PyAny>,
+    /// A record of the drag, None without: total_force_n (3,) on the skin, slide_mm (3,), twist_rad (3,), dissipated_nmm,
+    /// stored_nmm, residual.
+    friction: Py<PyAny>,
     /// A record: complementarity, penetration_mm, load_balance.
     residual: Py<PyAny>,
     /// A record: has_converged, passes, pivots, cg_steps.
@@ -62,6 +76,8 @@ impl Contact {
             .iter()
             .map(|region| region_record(py, region, names))
             .collect::<PyResult<_>>()?;
+        let friction = friction_record(py, contact.shear.as_ref())?;
+        let shear = contact.shear.unwrap_or_else(|| no_shear(contact.gap.len()));
         let seconds = PyDict::new(py);
         for (stage, time) in &contact.seconds {
             seconds.set_item(stage, time)?;
@@ -91,6 +107,12 @@ impl Contact {
             product_pressure_mpa: column(py, contact.product_pressure),
             offset_mm: contact.offset,
             direction: triple(py, contact.direction),
+            tangential_force_n: rows(py, &shear.force)?,
+            tangential_traction_mpa: column(py, shear.traction),
+            slip_mm: rows(py, &shear.slip)?,
+            slip_margin: column(py, shear.margin),
+            is_sticking: column(py, shear.is_sticking),
+            friction,
             residual: residual_record(py, &contact.residual)?,
             convergence: convergence_record(py, &contact.convergence)?,
             warnings: PyList::new(py, contact.warnings)?.into_any().unbind(),
@@ -109,6 +131,37 @@ impl Contact {
             self.contact_area_mm2,
             1e3 * self.peak_pressure_mpa
         ))
+    }
+}
+
+fn friction_record(py: Python<'_>, shear: Option<&Shear>) -> PyResult<Py<PyAny>> {
+    let Some(shear) = shear else {
+        return Ok(py.None());
+    };
+    let entries = PyDict::new(py);
+    entries.set_item("total_force_n", triple(py, shear.total))?;
+    entries.set_item("slide_mm", triple(py, shear.travel))?;
+    entries.set_item("twist_rad", triple(py, shear.turn))?;
+    entries.set_item("dissipated_nmm", shear.dissipated)?;
+    entries.set_item("stored_nmm", shear.stored)?;
+    entries.set_item("residual", shear.residual)?;
+    record(entries)
+}
+
+/// What a press without friction or without a drag shows.
+fn no_shear(vertices: usize) -> Shear {
+    Shear {
+        force: vec![Vec3::zeros(); vertices],
+        traction: vec![0.0; vertices],
+        slip: vec![Vec3::zeros(); vertices],
+        margin: vec![f64::NAN; vertices],
+        is_sticking: vec![false; vertices],
+        total: Vec3::zeros(),
+        travel: Vec3::zeros(),
+        turn: Vec3::zeros(),
+        dissipated: 0.0,
+        stored: 0.0,
+        residual: 0.0,
     }
 }
 

@@ -29,6 +29,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
         complementarity::solve_complementarity,
         module
     )?)?;
+    module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
     module.add_function(wrap_pyfunction!(about::build_info, module)?)?;
     module.add_function(wrap_pyfunction!(running::_panic, module)?)?;

@@ -9,7 +9,7 @@ use crate::running::{Hooks, run};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
-use thenar_contact::{ContactError, Control, ForceTarget, Model, Press, SkinInput, Start};
+use thenar_contact::{ContactError, Control, Drag, ForceTarget, Model, Press, SkinInput, Start};
 use thenar_surface::{Mesh, Vec3};
 
 /// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
@@ -39,6 +39,7 @@ struct Request {
     target: Target,
     posed: Option<Vec<Vec3>>,
     force: Option<ForceTarget>,
+    drag: Option<Drag>,
     start: Start,
 }
 
@@ -109,9 +110,10 @@ impl Skin {
     /// `product_vertices_mm` (k, 3) and `product_triangles` (l, 3), or a `Product` and None; `posed_vertices_mm` (n, 3),
     /// None: the rest pose; `force_n`: move the product until the normal force along `direction` (3,) is that;
     /// `cancel`: a callable that returns a bool or an object with `is_set()`; `progress`: a callable of stage and
-    /// fraction; `warm_start`: begin at the last result of this skin, faster and equal within the tolerances, else the
+    /// fraction; with the effect friction, the product, where it stands, came there by `slide_mm` (3,) along the skin and
+    /// `twist_rad` (3,) about the center of the contact, or was dragged by the force `drag_n` (3,); `warm_start`: begin at the last result of this skin, faster and equal within the tolerances, else the
     /// result depends on the arguments alone, bit for bit. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
-    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, warm_start=false))]
+    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of the public interface"
@@ -126,6 +128,9 @@ impl Skin {
         direction: Option<&Bound<'_, PyAny>>,
         cancel: Option<Bound<'_, PyAny>>,
         progress: Option<Bound<'_, PyAny>>,
+        slide_mm: Option<&Bound<'_, PyAny>>,
+        twist_rad: Option<&Bound<'_, PyAny>>,
+        drag_n: Option<&Bound<'_, PyAny>>,
         warm_start: bool,
     ) -> PyResult<Contact> {
         let hooks = Hooks::new(cancel, progress)?;
@@ -134,6 +139,7 @@ impl Skin {
             .map(|posed| Argument::mesh("posed_vertices_mm", posed).points())
             .transpose()?;
         let force = force_of(force_n, direction)?;
+        let drag = drag_of(slide_mm, twist_rad, drag_n)?;
         let start = if warm_start {
             Start::Warm
         } else {
@@ -143,6 +149,7 @@ impl Skin {
             target,
             posed,
             force,
+            drag,
             start,
         };
         let inner = Arc::clone(&self.inner);
@@ -204,6 +211,7 @@ impl Inner {
             product: &product,
             posed,
             force: request.force,
+            drag: request.drag,
             start: request.start,
         };
         let mut contact = self.skin(control)?.press(&press, control)?;
@@ -315,5 +323,30 @@ fn force_of(
             "direction: it is used with force_n only; give a force or leave it out",
         )),
         (None, None) => Ok(None),
+    }
+}
+
+fn drag_of(
+    slide: Option<&Bound<'_, PyAny>>,
+    twist: Option<&Bound<'_, PyAny>>,
+    force: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Option<Drag>> {
+    let vector = |name: &str, value: Option<&Bound<'_, PyAny>>| {
+        value
+            .map(|value| Argument::solve(name, value).vector())
+            .transpose()
+    };
+    let travel = vector("slide_mm", slide)?;
+    let turn = vector("twist_rad", twist)?;
+    match (travel, turn, vector("drag_n", force)?) {
+        (None, None, None) => Ok(None),
+        (None, None, Some(force)) => Ok(Some(Drag::Force(force))),
+        (travel, turn, None) => Ok(Some(Drag::Motion {
+            travel: travel.unwrap_or_else(Vec3::zeros),
+            turn: turn.unwrap_or_else(Vec3::zeros),
+        })),
+        _ => Err(SolveError::new_err(
+            "drag_n: the product is dragged by a force or by slide_mm and twist_rad; leave one out",
+        )),
     }
 }

@@ -1,8 +1,8 @@
 //! The list of effects, by the names that scripts, files and findings use.
 
 use super::entry::Entry;
-use super::{bone, compressibility, cycle_softening, drainage, inclusion, rate_independent_loss};
-use super::{region_coupling, relaxation, stiffening_law};
+use super::{bone, compressibility, cycle_softening, drainage, friction, inclusion};
+use super::{rate_independent_loss, region_coupling, relaxation, stiffening_law};
 
 /// An effect of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -25,10 +25,12 @@ pub enum Effect {
     Drainage,
     /// Energy lost per cycle at any speed.
     RateIndependentLoss,
+    /// Skin that sticks to the product and slips over it.
+    Friction,
 }
 
 /// Every effect with what is known of it, in the order in which they compose.
-pub const CATALOGUE: [(Effect, &Entry); 9] = [
+pub const CATALOGUE: [(Effect, &Entry); 10] = [
     (Effect::Bone, &bone::ENTRY),
     (Effect::Compressibility, &compressibility::ENTRY),
     (Effect::RegionCoupling, &region_coupling::ENTRY),
@@ -38,6 +40,7 @@ pub const CATALOGUE: [(Effect, &Entry); 9] = [
     (Effect::Relaxation, &relaxation::ENTRY),
     (Effect::Drainage, &drainage::ENTRY),
     (Effect::RateIndependentLoss, &rate_independent_loss::ENTRY),
+    (Effect::Friction, &friction::ENTRY),
 ];
 
 impl Effect {

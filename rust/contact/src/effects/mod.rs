@@ -17,6 +17,7 @@ pub(crate) mod relaxation;
 pub(crate) mod drainage;
 pub(crate) mod cycle_softening;
 pub(crate) mod rate_independent_loss;
+pub(crate) mod friction;
 
 pub use active::ActiveEffect;
 pub use catalogue::{CATALOGUE, Effect};

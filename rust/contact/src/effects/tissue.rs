@@ -81,7 +81,9 @@ impl Tissue {
                 Effect::CycleSoftening
                 | Effect::Relaxation
                 | Effect::Drainage
-                | Effect::RateIndependentLoss => {}
+                | Effect::RateIndependentLoss
+                // And friction in `interface`.
+                | Effect::Friction => {}
             }
         }
         tissue.geometry.layers = layers(&tissue.materials);

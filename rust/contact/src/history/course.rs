@@ -22,8 +22,12 @@ pub struct Step {
     pub offset: f64,
     /// Normal force on the skin along the direction, N.
     pub force: f64,
-    /// Force on the product, N. The skin bears the opposite.
+    /// Force on the product, N, with that of friction. The skin bears the opposite.
     pub total_force: Vec3,
+    /// Shear force on the skin, N.
+    pub shear: Vec3,
+    /// Energy that slip has turned into heat since the first row, N mm.
+    pub slip_loss: f64,
     /// Contact area, mm2.
     pub area: f64,
     /// Largest vertex pressure, MPa.

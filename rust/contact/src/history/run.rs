@@ -6,8 +6,10 @@ use super::course::{Course, Keep, Step};
 use super::protocol::{Demand, Protocol};
 use super::state::History;
 use crate::force_control::{MOST_TRAVEL, find_offset, mean_normal};
+use crate::interface::friction::{self, Grasp};
+use crate::interface::stick_slip::Dragged;
 use crate::memory::Last;
-use crate::press::ForceTarget;
+use crate::press::{Drag, ForceTarget};
 use crate::simulate::{Pressed, Seconds};
 use crate::skin::Skin;
 use crate::summary::{summarize, totals};
@@ -83,6 +85,10 @@ impl Skin {
             direction,
             touch,
             control,
+            grasp: Grasp {
+                travel: run.protocol.rows[0].slide,
+                ..Grasp::default()
+            },
         };
         let mut steps: Vec<Step> = Vec::with_capacity(run.protocol.rows.len());
         let mut before: Option<(Vec3, Vec3)> = None;
@@ -92,15 +98,17 @@ impl Skin {
             let (offset, pressed) = walk.step(self, row)?;
             let mut step = walk.keep(self, row, (offset, &pressed));
             let place = direction * offset + run.protocol.rows[row].slide;
-            let push = pressed.force_on_skin();
+            let push = -step.total_force;
             if let (Some((force, at)), Some(previous)) = (before, steps.last()) {
                 step.work = previous.work + 0.5 * (force + push).dot(&(place - at));
+                step.slip_loss += previous.slip_loss;
             }
             before = Some((push, place));
             steps.push(step);
             last = Some((offset, pressed));
         }
-        let (offset, pressed) = last.ok_or(ContactError::EmptyProtocol)?;
+        let (offset, mut pressed) = last.ok_or(ContactError::EmptyProtocol)?;
+        friction::move_skin(self, run.product, &mut pressed);
         let slide = run.protocol.rows[run.protocol.rows.len() - 1].slide;
         let posed = slid(posed, slide)?;
         let mut contact = summarize(self, (&posed, run.product), &pressed, (offset, direction));
@@ -124,6 +132,8 @@ struct Walk<'a> {
     direction: Vec3,
     touch: Option<f64>,
     control: &'a Control<'a>,
+    /// What friction remembers.
+    grasp: Grasp,
 }
 
 impl Walk<'_> {
@@ -137,13 +147,24 @@ impl Walk<'_> {
                 0.0
             };
         }
-        let (offset, pressed) = self.press(skin, row).map_err(|error| match error {
+        let of_row = |error| match error {
             ContactError::Cancelled => error,
             other => ContactError::Protocol {
                 row,
                 problem: other.to_string(),
             },
-        })?;
+        };
+        let (offset, mut pressed) = self.press(skin, row).map_err(of_row)?;
+        let motion = Drag::Motion {
+            travel: rows[row].slide,
+            turn: Vec3::zeros(),
+        };
+        let quiet = Control {
+            cancelled: self.control.cancelled,
+            progress: &|_, _| {},
+        };
+        friction::drag(skin, &mut pressed, (motion, &self.grasp), &quiet).map_err(of_row)?;
+        self.grasp = friction::grasp(&pressed, rows[row].slide);
         skin.remember(&pressed, offset);
         Ok((offset, pressed))
     }
@@ -183,6 +204,8 @@ impl Walk<'_> {
     /// The totals of a step, and the memory of it.
     fn keep(&self, skin: &mut Skin, row: usize, (offset, pressed): (f64, &Pressed)) -> Step {
         let totals = totals(skin, self.posed, pressed);
+        let sheared = pressed.shear.as_ref().map(|shear| &shear.end);
+        let shear = sheared.map_or_else(Vec3::zeros, Dragged::force);
         if let (Some(history), Some(recalled)) = (skin.history.as_mut(), &pressed.recalled) {
             history.commit(
                 &recalled.recall,
@@ -194,7 +217,9 @@ impl Walk<'_> {
             time_s: self.run.protocol.rows[row].time_s,
             offset,
             force: pressed.force_along(&self.direction),
-            total_force: -pressed.force_on_skin(),
+            total_force: -pressed.force_on_skin() - shear,
+            shear,
+            slip_loss: sheared.map_or(0.0, |end| end.dissipated),
             area: totals.region_area.iter().sum(),
             peak_pressure: totals
                 .pressure

@@ -25,7 +25,7 @@ const EXACT_LAYERS: usize = 4;
 const LADDER_RATIO: f64 = 1.3;
 
 /// Two layers and the weight of the first.
-type Mix = (u16, u16, f64);
+pub type Mix = (u16, u16, f64);
 
 /// A cut between blocks of the skin.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +51,7 @@ pub struct Geometry {
 #[derive(Debug, Clone)]
 pub struct Response {
     model: Model,
+    layers: Vec<Layer>,
     tables: KernelTables,
     /// Range of the response around each site, mm.
     reach: Vec<f64>,
@@ -95,6 +96,7 @@ impl Response {
         let tables = KernelTables::new(&layers, extent(sites));
         Response {
             model,
+            layers,
             tables,
             reach,
             mix,
@@ -108,6 +110,23 @@ impl Response {
     /// Patches within range of `patch`, with the offset of their first site in its rows.
     pub fn near(&self, patch: u32) -> &[(u32, u32)] {
         &self.near[patch as usize]
+    }
+
+    /// The layers that sites are mixed of.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    /// Two layers and the first one's weight, of a site.
+    pub fn mix(&self, site: usize) -> Mix {
+        self.mix[site]
+    }
+
+    /// Lower bound of the skin distance between two patches, mm; None if they do not feel each other.
+    pub fn bound(&self, from: u32, to: u32) -> Option<f64> {
+        let near = &self.near[from as usize];
+        let place = near.binary_search_by_key(&to, |entry| entry.0).ok()?;
+        Some(self.at_least[from as usize][place])
     }
 
     /// Length of a row of `patch`.
@@ -177,7 +196,7 @@ impl Response {
 
     /// Share of the response that cuts leave between two sites.
     #[inline]
-    fn kept(&self, i: usize, j: usize) -> f64 {
+    pub fn kept(&self, i: usize, j: usize) -> f64 {
         let share = |cut: &Cut| {
             if cut.block[i] == cut.block[j] {
                 1.0
@@ -250,7 +269,8 @@ fn neighborhoods(sites: &Sites, metric: &SkinDistance, reach: &[f64]) -> Neighbo
     (0..patches).map(one).unzip()
 }
 
-fn extent(sites: &Sites) -> f64 {
+/// A length that no two sites are farther apart along the skin, mm.
+pub fn extent(sites: &Sites) -> f64 {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for site in &sites.rest {

@@ -100,6 +100,7 @@ pub fn press(skin: &mut Skin, product: &Product) -> Contact {
         product,
         posed: None,
         force: None,
+        drag: None,
         start: Start::Fresh,
     };
     skin.press(&press, &Control::none()).unwrap()
@@ -110,6 +111,7 @@ pub fn press_posed(skin: &mut Skin, product: &Product, posed: &[Vec3]) -> Contac
         product,
         posed: Some(posed),
         force: None,
+        drag: None,
         start: Start::Fresh,
     };
     skin.press(&press, &Control::none()).unwrap()

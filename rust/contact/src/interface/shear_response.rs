@@ -1,0 +1,102 @@
+//! What a shear force at one site of the skin does at another: the kernel along the skin, turned with its planes.
+//!
+//! The kernel acts on vectors in space and is seen in the tangent planes of both sites. For nu = 1/2 and straight chords it is
+//! twice Kelvin's tensor, so the matrix is definite for any arrangement of sites and planes, not only on flat skin.
+
+use thenar_surface::Vec3;
+
+use super::shear_kernel::{Held, LATTICE, ShearTables};
+use super::shear_matrix::ShearMatrix;
+use crate::response::rows::{Mix, Response};
+use crate::response::skin_metric::arc_length;
+use crate::sites::Sites;
+
+/// A site of the skin where it is now.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// The site.
+    pub site: u32,
+    /// Position, mm.
+    pub position: Vec3,
+    /// Response weight `sqrt(1 / (2 pi G))`.
+    pub weight: f64,
+}
+
+/// The response of a skin to shear.
+pub struct ShearResponse<'a> {
+    /// Kernels of its layers.
+    pub tables: &'a ShearTables,
+    /// Its response to pressure, which knows layers, distances and cuts.
+    pub response: &'a Response,
+    /// Its sites.
+    pub sites: &'a Sites,
+}
+
+impl ShearResponse<'_> {
+    /// Compliance of the places in their planes, mm/N.
+    pub fn matrix(&self, places: &[Place], tangents: &[[Vec3; 2]]) -> ShearMatrix<f32> {
+        let own: Vec<f64> = places.iter().map(|p| self.own(p)).collect();
+        ShearMatrix::from_blocks(&own, |i, j| {
+            let Some((alike, along, chord)) = self.pair(&places[i], &places[j]) else {
+                return [0.0; 4];
+            };
+            let block =
+                |a: &Vec3, b: &Vec3| alike * a.dot(b) + along * a.dot(&chord) * b.dot(&chord);
+            let ([ax, ay], [bx, by]) = (&tangents[i], &tangents[j]);
+            [block(ax, bx), block(ax, by), block(ay, bx), block(ay, by)]
+        })
+    }
+
+    /// Displacement of `place` under `forces` (N) at `loaded`, mm.
+    pub fn displacement(&self, place: &Place, loaded: &[Place], forces: &[Vec3]) -> Vec3 {
+        let mut sum = Vec3::zeros();
+        for (from, force) in loaded.iter().zip(forces) {
+            if let Some((alike, along, chord)) = self.pair(place, from) {
+                sum += force * alike + chord * (along * chord.dot(force));
+            }
+        }
+        sum
+    }
+
+    /// Compliance of a site for its own force, mm/N.
+    fn own(&self, place: &Place) -> f64 {
+        let i = place.site as usize;
+        let (a, b, w) = self.response.mix(i);
+        let soft = mixed((a, b, w), (a, b, w), |a, b| self.tables.softness(a, b));
+        let held = mixed((a, b, w), (a, b, w), |a, b| {
+            self.tables.held(a, b, 0.0).mean
+        });
+        let point = 0.5 * (1.0 + soft) * LATTICE / self.sites.area[i].sqrt();
+        place.weight * place.weight * (point - held)
+    }
+
+    /// Coefficients of the force itself and of its part along the unit chord, mm/N; None out of range.
+    fn pair(&self, a: &Place, b: &Place) -> Option<(f64, f64, Vec3)> {
+        let (i, j) = (a.site as usize, b.site as usize);
+        let (p, q) = (self.sites.patch[i], self.sites.patch[j]);
+        let at_least = self.response.bound(p.min(q), p.max(q))?;
+        let r = arc_length(&self.sites.rest[i], &self.sites.rest[j], at_least);
+        let chord = (b.position - a.position).try_normalize(0.0)?;
+        let (mine, other) = (self.response.mix(i), self.response.mix(j));
+        let soft = mixed(mine, other, |a, b| self.tables.softness(a, b));
+        let held = Held {
+            mean: mixed(mine, other, |a, b| self.tables.held(a, b, r).mean),
+            deviator: mixed(mine, other, |a, b| self.tables.held(a, b, r).deviator),
+        };
+        let mean = 0.5 * (1.0 + soft) / r - held.mean;
+        let deviator = 0.5 * (1.0 - soft) / r - held.deviator;
+        let scale = a.weight * b.weight * self.response.kept(i, j);
+        Some((scale * (mean - deviator), scale * 2.0 * deviator, chord))
+    }
+}
+
+/// `value` over the layers of two sites, mixed; the same when they trade places.
+fn mixed((a0, a1, wa): Mix, (b0, b1, wb): Mix, value: impl Fn(usize, usize) -> f64) -> f64 {
+    let value = |a: u16, b: u16| value(a as usize, b as usize);
+    if a0 == a1 && b0 == b1 {
+        return value(a0, b0);
+    }
+    let (va, vb) = (1.0 - wa, 1.0 - wb);
+    (wa * wb * value(a0, b0) + va * vb * value(a1, b1))
+        + (wa * vb * value(a0, b1) + va * wb * value(a1, b0))
+}
