@@ -130,6 +130,7 @@ class Skin:
         model: Literal["layer", "paper"] = "layer",
         *,
         region_names: Sequence[str] | None = None,
+        effects: Sequence[Effect] | None = None,
         cancel: _Cancel | None = None,
         progress: _Progress | None = None,
     ) -> Self: ...
@@ -173,6 +174,94 @@ class Skin:
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
     ) -> Contact: ...
+
+    @overload
+    def run(
+        self,
+        protocol: dict[str, ArrayLike],
+        product_vertices_mm: Product,
+        product_triangles: None = None,
+        posed_vertices_mm: ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        effects: Sequence[Effect] | None = None,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+        *,
+        keep: Literal["totals", "pressure"] = "totals",
+    ) -> Course: ...
+    @overload
+    def run(
+        self,
+        protocol: dict[str, ArrayLike],
+        product_vertices_mm: ArrayLike,
+        product_triangles: ArrayLike,
+        posed_vertices_mm: ArrayLike | None = None,
+        direction: ArrayLike | None = None,
+        effects: Sequence[Effect] | None = None,
+        cancel: _Cancel | None = None,
+        progress: _Progress | None = None,
+        *,
+        keep: Literal["totals", "pressure"] = "totals",
+    ) -> Course: ...
+    @property
+    def effects(self) -> list[Effect]: ...
+    def set_effects(self, effects: Sequence[Effect]) -> None: ...
+
+@final
+class Effect:
+    """Physics beyond the base model, by its name in `effects()`; amplitude 0 is the base model bit for bit."""
+
+    def __new__(
+        cls,
+        name: str,
+        amplitude: float = 1.0,
+        *,
+        regions: Sequence[int] | None = None,
+        painted: ArrayLike | None = None,
+        **numbers: float | str,
+    ) -> Self: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def amplitude(self) -> float: ...
+    @property
+    def regions(self) -> list[int] | None: ...
+    @property
+    def painted(self) -> _Floats | None: ...
+    @property
+    def numbers(self) -> dict[str, float | str]: ...
+    def with_amplitude(self, amplitude: float) -> Effect: ...
+
+@final
+class Course:
+    """The result of a protocol; arrays have one entry per row."""
+
+    @property
+    def time_s(self) -> _Floats: ...
+    @property
+    def offset_mm(self) -> _Floats: ...
+    @property
+    def depth_mm(self) -> _Floats: ...
+    @property
+    def force_n(self) -> _Floats: ...
+    @property
+    def total_force_n(self) -> _Floats: ...
+    @property
+    def contact_area_mm2(self) -> _Floats: ...
+    @property
+    def peak_pressure_mpa(self) -> _Floats: ...
+    @property
+    def region_force_n(self) -> _Floats: ...
+    @property
+    def work_mj(self) -> _Floats: ...
+    @property
+    def pressure_mpa(self) -> _Floats | None: ...
+    @property
+    def has_converged(self) -> NDArray[np.bool_]: ...
+    @property
+    def direction(self) -> _Floats: ...
+    @property
+    def last(self) -> Contact: ...
 
 @final
 class Contact:
@@ -247,6 +336,9 @@ def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float
 def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...
 def parameters() -> list[Record]:
     """The table of material numbers: name, symbol, unit, default, low, high, meaning, source."""
+
+def effects() -> list[Record]:
+    """The catalogue of effects, in the order in which they compose: meaning, shape numbers, consequences, source."""
 
 def build_info() -> Record:
     """Version, target, profile, abi and threads of the native module."""

@@ -6,6 +6,9 @@ mod record;
 mod running;
 mod material;
 mod product;
+mod effects;
+mod protocol;
+mod requests;
 mod skin;
 mod contact;
 mod hand;
@@ -22,6 +25,8 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     record::register(module)?;
     module.add_class::<material::Material>()?;
     module.add_class::<product::Product>()?;
+    module.add_class::<effects::Effect>()?;
+    module.add_class::<protocol::Course>()?;
     module.add_class::<skin::Skin>()?;
     module.add_class::<contact::Contact>()?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
@@ -31,6 +36,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     )?)?;
     module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
+    module.add_function(wrap_pyfunction!(effects::effects, module)?)?;
     module.add_function(wrap_pyfunction!(about::build_info, module)?)?;
     module.add_function(wrap_pyfunction!(running::_panic, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))

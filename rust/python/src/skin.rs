@@ -2,21 +2,27 @@
 
 use crate::arrays::Argument;
 use crate::contact::Contact;
-use crate::errors::{Failure, MeshError, SolveError};
-use crate::material::{Material, Regions};
-use crate::product::{Product, Surface};
+use crate::effects::{Effect, effects_of};
+use crate::errors::Failure;
+use crate::material::Material;
+use crate::product::Surface;
+use crate::protocol::{Course, protocol_of};
+use crate::requests::{
+    Request, Target, Walk, drag_of, force_of, keep_named, model_named, table_of, target_of,
+};
 use crate::running::{Hooks, run};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
-use thenar_contact::{ContactError, Control, Drag, ForceTarget, Model, Press, SkinInput, Start};
-use thenar_surface::{Mesh, Vec3};
+use thenar_contact::{ContactError, Control, Keep, Model, Press, Run, SkinInput, Start};
+use thenar_surface::Mesh;
 
 /// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
 ///
 /// `vertices_mm` (n, 3) rest positions; `triangles` (m, 3); `regions` (n,) with -1 for "no skin", None: all region 0;
 /// `materials`: one `Material`, a list by region, or a dict by number, name or "default", None: the model's preset;
-/// `model` "layer" or "paper"; `region_names`: texts for the result table.
+/// `model` "layer" or "paper"; `region_names`: texts for the result table; `effects`: a list of `Effect`, model layer only.
 ///
 /// Raises `MeshError`, `MaterialError`, `SolveError`, `Cancelled`.
 #[pyclass(frozen, module = "thenar")]
@@ -34,25 +40,10 @@ struct Inner {
     last_product: Mutex<Option<Arc<thenar_surface::Product>>>,
 }
 
-/// One press as it came from Python.
-struct Request {
-    target: Target,
-    posed: Option<Vec<Vec3>>,
-    force: Option<ForceTarget>,
-    drag: Option<Drag>,
-    start: Start,
-}
-
-/// What to press.
-enum Target {
-    Prepared(Arc<thenar_surface::Product>),
-    Surface(Surface),
-}
-
 #[pymethods]
 impl Skin {
     #[new]
-    #[pyo3(signature = (vertices_mm, triangles, regions=None, materials=None, model="layer", *, region_names=None, cancel=None, progress=None))]
+    #[pyo3(signature = (vertices_mm, triangles, regions=None, materials=None, model="layer", *, region_names=None, effects=None, cancel=None, progress=None))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of the public interface"
@@ -65,6 +56,7 @@ impl Skin {
         materials: Option<&Bound<'_, PyAny>>,
         model: &str,
         region_names: Option<Vec<String>>,
+        effects: Option<Vec<PyRef<'_, Effect>>>,
         cancel: Option<Bound<'_, PyAny>>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Skin> {
@@ -80,7 +72,7 @@ impl Skin {
         let model = model_named(model)?;
         let names = region_names.unwrap_or_default();
         let materials = table_of(&regions, &names, model)?.materials(materials)?;
-        let prepared = materials.clone();
+        let (prepared, effects) = (materials.clone(), effects_of(effects));
         let skin = run(py, &Hooks::new(cancel, progress)?, move |control| {
             let mesh =
                 Mesh::new(surface.vertices, surface.triangles).map_err(ContactError::Hand)?;
@@ -90,7 +82,11 @@ impl Skin {
                 materials: prepared,
                 model,
             };
-            Ok(thenar_contact::Skin::prepare(input, control)?)
+            let mut skin = thenar_contact::Skin::prepare(input, control)?;
+            if !effects.is_empty() {
+                skin.set_effects(effects, control)?;
+            }
+            Ok(skin)
         })?;
         let inner = Arc::new(Inner {
             skin: Mutex::new(skin),
@@ -111,7 +107,8 @@ impl Skin {
     /// None: the rest pose; `force_n`: move the product until the normal force along `direction` (3,) is that;
     /// `cancel`: a callable that returns a bool or an object with `is_set()`; `progress`: a callable of stage and
     /// fraction; with the effect friction, the product, where it stands, came there by `slide_mm` (3,) along the skin and
-    /// `twist_rad` (3,) about the center of the contact, or was dragged by the force `drag_n` (3,); `warm_start`: begin at the last result of this skin, faster and equal within the tolerances, else the
+    /// `twist_rad` (3,) about the center of the contact, or was dragged by the force `drag_n` (3,); `warm_start`: begin
+    /// at the last result of this skin, faster and equal within the tolerances, else the
     /// result depends on the arguments alone, bit for bit. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
     #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false))]
     #[expect(
@@ -155,6 +152,71 @@ impl Skin {
         let inner = Arc::clone(&self.inner);
         let contact = run(py, &hooks, move |control| inner.press(request, control))?;
         Contact::new(py, contact, &self.region_names)
+    }
+
+    /// Follows a protocol from rest; the tissue remembers from row to row what its effects let it.
+    ///
+    /// `protocol`: a dict of columns, `time_s` (s,) and one of `depth_mm` (beyond first touch), `offset_mm` (from where the
+    /// product was given) and `force_n` per row, NaN where another column counts, and `slide_mm` (s, 3) if the product
+    /// moves besides; product and posture as for `press`; `direction` (3,): where the product moves, None: mean normal;
+    /// `effects`: a list of `Effect` for this run in place of the skin's; `keep`: "totals", or "pressure" for the pressure of every vertex
+    /// at every row. Returns a `Course`. Raises `MeshError`, `SolveError`, `Cancelled`.
+    #[pyo3(signature = (protocol, product_vertices_mm, product_triangles=None, posed_vertices_mm=None, direction=None, effects=None, cancel=None, progress=None, *, keep="totals"))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keywords of the public interface"
+    )]
+    fn run(
+        &self,
+        py: Python<'_>,
+        protocol: &Bound<'_, PyDict>,
+        product_vertices_mm: &Bound<'_, PyAny>,
+        product_triangles: Option<&Bound<'_, PyAny>>,
+        posed_vertices_mm: Option<&Bound<'_, PyAny>>,
+        direction: Option<&Bound<'_, PyAny>>,
+        effects: Option<Vec<PyRef<'_, Effect>>>,
+        cancel: Option<Bound<'_, PyAny>>,
+        progress: Option<Bound<'_, PyAny>>,
+        keep: &str,
+    ) -> PyResult<Course> {
+        let hooks = Hooks::new(cancel, progress)?;
+        let direction = direction
+            .map(|direction| Argument::solve("direction", direction).vector())
+            .transpose()?;
+        let posed = posed_vertices_mm
+            .map(|posed| Argument::mesh("posed_vertices_mm", posed).points())
+            .transpose()?;
+        let request = Walk {
+            target: target_of(product_vertices_mm, product_triangles)?,
+            posed,
+            protocol: protocol_of(protocol, direction)?,
+            effects: effects.map(|effects| effects_of(Some(effects))),
+            keep: keep_named(keep)?,
+        };
+        let kept = (request.keep == Keep::Pressure).then_some(self.vertex_count);
+        let inner = Arc::clone(&self.inner);
+        let course = run(py, &hooks, move |control| inner.follow(request, control))?;
+        Course::new(py, course, (&self.region_names, kept))
+    }
+
+    /// Switches effects on, in place of those before; the skin is prepared again only where they change it.
+    ///
+    /// Raises `SolveError` for numbers that are not admissible; the skin then stays as it was.
+    fn set_effects(&self, py: Python<'_>, effects: Vec<PyRef<'_, Effect>>) -> PyResult<()> {
+        let (inner, effects) = (Arc::clone(&self.inner), effects_of(Some(effects)));
+        run(py, &Hooks::new(None, None)?, move |control| {
+            Ok(inner.skin(control)?.set_effects(effects, control)?)
+        })
+    }
+
+    /// Effects switched on.
+    #[getter]
+    fn effects(&self, py: Python<'_>) -> PyResult<Vec<Effect>> {
+        let inner = Arc::clone(&self.inner);
+        let effects = run(py, &Hooks::new(None, None)?, move |control| {
+            Ok(inner.skin(control)?.effects().to_vec())
+        })?;
+        Ok(effects.into_iter().map(Effect).collect())
     }
 
     /// "layer" or "paper".
@@ -219,6 +281,29 @@ impl Inner {
         Ok(contact)
     }
 
+    fn follow(&self, request: Walk, control: &Control) -> Result<thenar_contact::Course, Failure> {
+        (control.progress)("product", 0.0);
+        let product = match request.target {
+            Target::Prepared(product) => product,
+            Target::Surface(surface) => self.product_of(surface)?,
+        };
+        let walk = Run {
+            product: &product,
+            posed: request.posed.as_deref(),
+            protocol: &request.protocol,
+            keep: request.keep,
+        };
+        let mut skin = self.skin(control)?;
+        let Some(effects) = request.effects else {
+            return Ok(skin.run(&walk, control)?);
+        };
+        let before = skin.effects().to_vec();
+        skin.set_effects(effects, control)?;
+        let course = skin.run(&walk, control);
+        skin.set_effects(before, &Control::none())?;
+        Ok(course?)
+    }
+
     fn product_of(&self, surface: Surface) -> Result<Arc<thenar_surface::Product>, Failure> {
         let last = || {
             self.last_product
@@ -247,106 +332,5 @@ impl Inner {
             }
             std::thread::sleep(Duration::from_millis(1));
         }
-    }
-}
-
-fn model_named(name: &str) -> PyResult<Model> {
-    match name {
-        "layer" => Ok(Model::Layer),
-        "paper" => Ok(Model::Paper),
-        _ => Err(SolveError::new_err(format!(
-            "model: there is no {name:?}; choose \"layer\" or \"paper\""
-        ))),
-    }
-}
-
-fn table_of<'a>(regions: &[i32], names: &'a [String], model: Model) -> PyResult<Regions<'a>> {
-    let last = regions.iter().copied().max().unwrap_or(-1);
-    let used = usize::try_from(last + 1).unwrap_or(0);
-    if !names.is_empty() && names.len() < used {
-        let found = names.len();
-        return Err(MeshError::new_err(format!(
-            "region_names: {found} names for regions 0 to {last}; give one per region"
-        )));
-    }
-    let count = used.max(names.len()).max(1);
-    let mut is_used = vec![false; count];
-    for region in regions
-        .iter()
-        .filter_map(|region| usize::try_from(*region).ok())
-    {
-        is_used[region] = true;
-    }
-    Ok(Regions {
-        count,
-        is_used,
-        names,
-        model,
-    })
-}
-
-fn target_of(
-    vertices: &Bound<'_, PyAny>,
-    triangles: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Target> {
-    match (vertices.cast::<Product>(), triangles) {
-        (Ok(product), None) => Ok(Target::Prepared(Arc::clone(&product.get().0))),
-        (Ok(_), Some(_)) => Err(MeshError::new_err(
-            "product_triangles: a thenar.Product has its own; leave them out",
-        )),
-        (Err(_), None) => Err(MeshError::new_err(
-            "product_triangles: missing; give them, or a thenar.Product instead of vertices",
-        )),
-        (Err(_), Some(triangles)) => {
-            let vertices = Argument::mesh("product_vertices_mm", vertices);
-            Ok(Target::Surface(Surface::new(
-                vertices,
-                Argument::mesh("product_triangles", triangles),
-            )?))
-        }
-    }
-}
-
-fn force_of(
-    force: Option<&Bound<'_, PyAny>>,
-    direction: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Option<ForceTarget>> {
-    let direction = direction
-        .map(|direction| Argument::solve("direction", direction).vector())
-        .transpose()?;
-    let newton = force
-        .map(|force| Argument::solve("force_n", force).number())
-        .transpose()?;
-    match (newton, direction) {
-        (Some(newton), direction) => Ok(Some(ForceTarget { newton, direction })),
-        (None, Some(_)) => Err(SolveError::new_err(
-            "direction: it is used with force_n only; give a force or leave it out",
-        )),
-        (None, None) => Ok(None),
-    }
-}
-
-fn drag_of(
-    slide: Option<&Bound<'_, PyAny>>,
-    twist: Option<&Bound<'_, PyAny>>,
-    force: Option<&Bound<'_, PyAny>>,
-) -> PyResult<Option<Drag>> {
-    let vector = |name: &str, value: Option<&Bound<'_, PyAny>>| {
-        value
-            .map(|value| Argument::solve(name, value).vector())
-            .transpose()
-    };
-    let travel = vector("slide_mm", slide)?;
-    let turn = vector("twist_rad", twist)?;
-    match (travel, turn, vector("drag_n", force)?) {
-        (None, None, None) => Ok(None),
-        (None, None, Some(force)) => Ok(Some(Drag::Force(force))),
-        (travel, turn, None) => Ok(Some(Drag::Motion {
-            travel: travel.unwrap_or_else(Vec3::zeros),
-            turn: turn.unwrap_or_else(Vec3::zeros),
-        })),
-        _ => Err(SolveError::new_err(
-            "drag_n: the product is dragged by a force or by slide_mm and twist_rad; leave one out",
-        )),
     }
 }

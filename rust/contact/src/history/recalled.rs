@@ -73,7 +73,8 @@ pub fn moved(
 /// elastic tissue's terms, N.
 ///
 /// The gap beside the contact belongs to the elastic load, the pressure to what is left of it: `modulus` by site, which ties
-/// one to the other at the contact's edge, is scaled by their ratio.
+/// one to the other at the contact's edge, is scaled by their ratio. Not so where the product leaves: near an edge that
+/// moves inward only what happened last counts, and that is elastic.
 pub fn restore(
     skin: &Skin,
     solved: &mut Solved,
@@ -84,8 +85,9 @@ pub fn restore(
     for (k, &site) in solved.zone.iter().enumerate() {
         let fresh = solved.bearing[k] * solved.force[k];
         bearing.push((site, fresh));
-        solved.force[k] *= recall.at_once[skin.sites.home_region(site as usize) as usize];
-        if solved.force[k] > 0.0 {
+        let region = skin.sites.home_region(site as usize) as usize;
+        solved.force[k] *= recall.at_once[region];
+        if solved.force[k] > 0.0 && !recall.is_left[region] {
             let known = recall.loads.binary_search_by_key(&site, |load| load.0);
             let elastic = fresh + known.map_or_else(|_| Vec3::zeros(), |at| recall.loads[at].1);
             let share = solved.force[k] / elastic.norm();

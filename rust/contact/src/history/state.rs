@@ -50,6 +50,8 @@ pub struct Recall {
     pub softness: Vec<f64>,
     /// Load, in the elastic tissue's terms, that moves the posture before the step, by site.
     pub loads: Vec<(u32, Vec3)>,
+    /// True where the product leaves, by region.
+    pub is_left: Vec<bool>,
     /// Decay over the step and share of a load that is new, by branch and region.
     fade: Vec<Vec<(f64, f64)>>,
     used: Vec<Vec<f64>>,
@@ -145,7 +147,9 @@ impl History {
             .map(load)
             .filter(|l| l.1 != Vec3::zeros())
             .collect();
+        let is_left = |(now, last): (&f64, &f64)| now < last;
         Recall {
+            is_left: depth.iter().zip(&self.depth).map(is_left).collect(),
             loads,
             at_once,
             softness,

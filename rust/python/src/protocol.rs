@@ -1,0 +1,158 @@
+//! Protocols from Python, and `thenar.Course`: what comes out of them.
+
+use crate::arrays::{Argument, column, rows, table, triple};
+use crate::contact::Contact;
+use crate::errors::SolveError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use thenar_contact::{Demand, Protocol, Row};
+use thenar_surface::Vec3;
+
+const COLUMNS: [&str; 3] = ["offset_mm", "depth_mm", "force_n"];
+
+/// The result of a protocol: arrays with one entry per row.
+#[pyclass(frozen, get_all, module = "thenar")]
+pub struct Course {
+    /// (s,), s.
+    time_s: Py<PyAny>,
+    /// (s,), mm, travel of the product along `direction` from where it was given.
+    offset_mm: Py<PyAny>,
+    /// (s,), mm, beyond first touch; NaN where the protocol asked for neither depth nor release.
+    depth_mm: Py<PyAny>,
+    /// (s,), N, normal force on the skin along `direction`.
+    force_n: Py<PyAny>,
+    /// (s, 3), N, on the product.
+    total_force_n: Py<PyAny>,
+    /// (s,), mm2.
+    contact_area_mm2: Py<PyAny>,
+    /// (s,), MPa.
+    peak_pressure_mpa: Py<PyAny>,
+    /// (s, regions), N.
+    region_force_n: Py<PyAny>,
+    /// (s,), mJ, work done on the skin since the first row.
+    work_mj: Py<PyAny>,
+    /// (s, n), MPa, or None if only totals were to be kept.
+    pressure_mpa: Option<Py<PyAny>>,
+    /// (s,), bool.
+    has_converged: Py<PyAny>,
+    /// (3,), unit direction of travel.
+    direction: Py<PyAny>,
+    /// The contact at the last row, in full.
+    last: Py<Contact>,
+}
+
+impl Course {
+    /// Moves the result into Python; `vertices` is the number of the skin's, None keeps no pressures.
+    pub fn new(
+        py: Python<'_>,
+        course: thenar_contact::Course,
+        (names, vertices): (&[String], Option<usize>),
+    ) -> PyResult<Course> {
+        let steps = &course.steps;
+        let of = |value: &dyn Fn(&thenar_contact::Step) -> f64| {
+            column(py, steps.iter().map(value).collect())
+        };
+        let touch = course.touch_offset.unwrap_or(f64::NAN);
+        let forces: Vec<Vec3> = steps.iter().map(|step| step.total_force).collect();
+        let regions = steps.first().map_or(0, |step| step.region_force.len());
+        let by_region = steps
+            .iter()
+            .flat_map(|step| step.region_force.iter().copied())
+            .collect();
+        let pressure = vertices.map(|vertices| {
+            let mut values = vec![0.0; steps.len() * vertices];
+            for (step, row) in steps.iter().zip(values.chunks_mut(vertices.max(1))) {
+                step.pressure
+                    .iter()
+                    .for_each(|&(vertex, p)| row[vertex as usize] = p);
+            }
+            table(py, values, vertices)
+        });
+        Ok(Course {
+            time_s: of(&|step| step.time_s),
+            offset_mm: of(&|step| step.offset),
+            depth_mm: of(&|step| step.offset - touch),
+            force_n: of(&|step| step.force),
+            total_force_n: rows(py, &forces)?,
+            contact_area_mm2: of(&|step| step.area),
+            peak_pressure_mpa: of(&|step| step.peak_pressure),
+            region_force_n: table(py, by_region, regions)?,
+            work_mj: of(&|step| step.work),
+            pressure_mpa: pressure.transpose()?,
+            has_converged: column(py, steps.iter().map(|step| step.has_converged).collect()),
+            direction: triple(py, course.direction),
+            last: Py::new(py, Contact::new(py, course.last, names)?)?,
+        })
+    }
+}
+
+/// A protocol from a dict of columns: `time_s` and one or more of `offset_mm`, `depth_mm`, `force_n`, one of them given
+/// (not NaN) in each row; `slide_mm` (s, 3) if the product moves besides.
+pub fn protocol_of(given: &Bound<'_, PyDict>, direction: Option<Vec3>) -> PyResult<Protocol> {
+    for name in given.keys() {
+        let name: String = name.extract()?;
+        if name != "time_s" && name != "slide_mm" && !COLUMNS.contains(&name.as_str()) {
+            return Err(SolveError::new_err(format!(
+                "protocol: there is no column {name:?}; there are time_s, offset_mm, depth_mm, force_n and slide_mm"
+            )));
+        }
+    }
+    let Some(times) = given.get_item("time_s")? else {
+        return Err(SolveError::new_err(
+            "protocol: time_s is missing; give one time per row, s",
+        ));
+    };
+    let count = times.len()?;
+    let times = Argument::solve("time_s", &times).numbers_of(count)?;
+    let mut demands: Vec<Option<Demand>> = vec![None; count];
+    for name in COLUMNS {
+        let Some(values) = given.get_item(name)? else {
+            continue;
+        };
+        let values = Argument::solve(name, &values).numbers_of(count)?;
+        for (row, (demand, value)) in demands
+            .iter_mut()
+            .zip(values)
+            .enumerate()
+            .filter(|(_, (_, v))| !v.is_nan())
+        {
+            if demand.is_some() {
+                return Err(SolveError::new_err(format!(
+                    "protocol, row {row}: more than one of offset_mm, depth_mm and force_n is given; leave one"
+                )));
+            }
+            *demand = Some(match name {
+                "offset_mm" => Demand::Offset(value),
+                "depth_mm" => Demand::Depth(value),
+                _ => Demand::Force(value),
+            });
+        }
+    }
+    let slides = match given.get_item("slide_mm")? {
+        Some(slides) => Argument::solve("slide_mm", &slides).points()?,
+        None => vec![Vec3::zeros(); count],
+    };
+    if slides.len() != count {
+        let found = slides.len();
+        return Err(SolveError::new_err(format!(
+            "slide_mm: {found} rows for {count} times; give one per time"
+        )));
+    }
+    let row = |(row, ((time_s, demand), slide)): (usize, ((f64, Option<Demand>), Vec3))| {
+        let demand = demand.ok_or_else(|| {
+            SolveError::new_err(format!(
+                "protocol, row {row}: give one of offset_mm, depth_mm and force_n"
+            ))
+        })?;
+        Ok(Row {
+            time_s,
+            demand,
+            slide,
+        })
+    };
+    let rows = times.into_iter().zip(demands).zip(slides).enumerate();
+    Ok(Protocol {
+        rows: rows.map(row).collect::<PyResult<_>>()?,
+        direction,
+    })
+}
