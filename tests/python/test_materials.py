@@ -102,3 +102,20 @@ def test_regions_without_a_material_are_refused(given, sentence):
 def test_too_few_region_names_are_refused():
     with pytest.raises(thenar.MeshError, match="^region_names: 2 names for regions 0 to 2"):
         materials(SOFT, region_names=["a", "b"])
+
+
+def test_warnings_call_regions_by_their_names():
+    product = shapes.ball(3.0, (0.0, 0.0, 1.5), 8)  # 1.5 mm deep
+    thin = thenar.Material.finger_layer().replace(thickness_mm=2.0)
+    skin = thenar.Skin(VERTICES, TRIANGLES, np.zeros(49, int), [thin], region_names=["index fingertip"])
+    assert any(said.startswith("region index fingertip is pressed 1.") for said in skin.press(*product).warnings)
+
+
+@pytest.mark.parametrize(("model", "preset"), [("layer", "finger_layer"), ("paper", "finger")])
+def test_a_material_that_nobody_gave_is_said(model, preset):
+    product = shapes.ball(3.0, (0.0, 0.0, 2.7), 8)
+    told = thenar.Skin(VERTICES, TRIANGLES, model=model).press(*product).warnings
+    assert any(f"preset {preset})" in said for said in told)
+    given = getattr(thenar.Material, preset)()
+    told = thenar.Skin(VERTICES, TRIANGLES, materials=given, model=model).press(*product).warnings
+    assert not any("preset" in said for said in told)

@@ -29,7 +29,7 @@ pub struct PressArguments {
     /// CSV of vertex,region: numbers from 0, or names; -1, none or empty for no skin.
     #[arg(long, value_name = "R.csv")]
     pub regions: Option<PathBuf>,
-    /// TOML with a table of material numbers by region number, name, or `default`.
+    /// TOML with a table of material numbers by region number, name, or `default`; without it all skin is a fingertip's.
     #[arg(long, value_name = "M.toml")]
     pub materials: Option<PathBuf>,
     /// Moves the product until the normal force is this, N.

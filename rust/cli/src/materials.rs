@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 /// The preset of the model for every region.
 pub fn presets(model: Model, regions: &RegionTable) -> Vec<Material> {
-    vec![preset(model); regions.count()]
+    vec![model.preset(); regions.count()]
 }
 
 /// Reads one material per region. Numbers that a table leaves out take the parameter table's defaults.
@@ -57,15 +57,8 @@ pub fn read(file: &Path, model: Model, regions: &RegionTable) -> Result<Vec<Mate
     }
     Ok(found
         .into_iter()
-        .map(|material| material.or(default).unwrap_or_else(|| preset(model)))
+        .map(|material| material.or(default).unwrap_or_else(|| model.preset()))
         .collect())
-}
-
-fn preset(model: Model) -> Material {
-    match model {
-        Model::Layer => Material::finger_layer(),
-        Model::Paper => Material::finger(),
-    }
 }
 
 fn known(regions: &RegionTable) -> String {

@@ -67,7 +67,10 @@ fn press(arguments: &PressArguments, control: &Control) -> Result<(Contact, Regi
         materials,
         model,
     };
-    let mut skin = Skin::prepare(input, control)?;
+    let mut skin = Skin::prepare_named(input, regions.names.clone(), control)?;
+    if arguments.materials.is_none() {
+        skin.note(model.preset_note());
+    }
     let force = arguments.force.map(|newton| ForceTarget {
         newton,
         direction: arguments.direction.map(Vec3::from),

@@ -55,6 +55,8 @@ fn a_press_writes_three_files_that_agree() {
         column(&folder.read("out/deep/product.csv"), "pressure_kpa").len(),
         8
     );
+    let told = summary["warnings"].to_string();
+    assert!(told.contains("preset finger_layer"), "{told}");
     // Pressed down: the skin under the block moves to where the block is.
     let deepest = column(&vertices, "dz_mm").into_iter().fold(0.0, f64::min);
     assert!((-0.45..-0.35).contains(&deepest), "{deepest}");

@@ -21,9 +21,13 @@ pub enum ContactError {
     },
     /// There are regions without a material.
     #[error(
-        "region {region} has no material: {materials} materials were given; give one per region, numbered from 0"
+        "{title} has no material: {materials} materials were given; give one per region, numbered from 0"
     )]
-    MissingMaterial { region: i32, materials: usize },
+    MissingMaterial {
+        region: i32,
+        title: String,
+        materials: usize,
+    },
     /// One region number per vertex is needed.
     #[error(
         "regions has {found} entries for {expected} vertices; give one per vertex, -1 for no skin"
@@ -31,11 +35,12 @@ pub enum ContactError {
     RegionCount { found: usize, expected: usize },
     /// Vertices are too far apart for the tissue to be resolved.
     #[error(
-        "region {region}: around vertex {vertex} the vertices are {spacing_mm:.1} mm apart, but the soft tissue is only \
+        "{title}: around vertex {vertex} the vertices are {spacing_mm:.1} mm apart, but the soft tissue is only \
          {thickness_mm:.2} mm thick; subdivide the hand there or give it thicker tissue"
     )]
     TooCoarse {
         region: i32,
+        title: String,
         vertex: usize,
         spacing_mm: f64,
         thickness_mm: f64,

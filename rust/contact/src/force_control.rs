@@ -15,6 +15,10 @@ const FORCE_TOLERANCE: f64 = 1e-5;
 pub(crate) const MOST_TRAVEL: f64 = 120.0;
 /// First step of the search, mm.
 const FIRST_STEP: f64 = 0.4;
+/// Share of what is left that a press leaves in the progress told; a search takes about 8.
+const PRESS_SHARE: f64 = 0.85;
+/// Progress of a search when its force is found.
+const LAST_SHARE: f64 = 0.95;
 /// Most presses of one search.
 const MOST_PRESSES: usize = 60;
 
@@ -50,6 +54,8 @@ pub(crate) fn find_offset(
         seconds,
         target: target.newton,
         last: None,
+        presses: 0,
+        share: 0.0,
     };
     let offset = search.run(start)?;
     match search.last {
@@ -103,22 +109,41 @@ struct Search<'a, 'c> {
     seconds: &'a mut Seconds,
     target: f64,
     last: Option<(f64, Pressed)>,
+    presses: i32,
+    /// Share of the search done, as told.
+    share: f64,
 }
 
 impl Search<'_, '_> {
     fn press(&mut self, offset: f64) -> Result<(f64, Pressed), ContactError> {
         let shift = self.direction * offset;
-        let pressed = self.skin.press_at(
-            self.posed,
-            (self.product, shift),
-            (self.control, self.seconds),
-        )?;
+        let control = Control {
+            progress: &|_, _| {},
+            ..*self.control
+        };
+        let pressed =
+            self.skin
+                .press_at(self.posed, (self.product, shift), (&control, self.seconds));
+        self.tell(pressed.as_ref().ok())?;
+        let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
         self.skin.memory.last = Last {
             travel: Vec::new(),
             ..Last::of(&pressed.solved, self.skin.sites.len())
         };
         Ok((pressed.force_along(&self.direction), pressed))
+    }
+
+    /// Progress of the search: by the digits of the force found, and a little with every press.
+    fn tell(&mut self, pressed: Option<&Pressed>) -> Result<(), ContactError> {
+        self.presses += 1;
+        let miss = pressed.map_or(1.0, |pressed| {
+            (pressed.force_along(&self.direction) / self.target - 1.0).abs()
+        });
+        let digits = miss.clamp(FORCE_TOLERANCE, 1.0).ln() / FORCE_TOLERANCE.ln();
+        let by_presses = 1.0 - PRESS_SHARE.powi(self.presses);
+        self.share = self.share.max(LAST_SHARE * digits.max(by_presses));
+        self.control.step("force", self.share)
     }
 
     /// Excess of the force's 2/3 power: force grows about as travel^1.5, so this is nearly a straight line.
@@ -131,6 +156,7 @@ impl Search<'_, '_> {
 
     fn run(&mut self, start: f64) -> Result<f64, ContactError> {
         let [mut low, mut high] = self.bracket(start)?;
+        let mut last_low = None;
         for _ in 0..MOST_PRESSES {
             let mut middle = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
             let width = high.0 - low.0;
@@ -144,14 +170,18 @@ impl Search<'_, '_> {
             if (force - self.target).abs() <= FORCE_TOLERANCE * self.target {
                 return Ok(middle);
             }
-            // Illinois: an end that stays put counts for half, so that it cannot stall the secant.
-            if value < 0.0 {
-                low = (middle, value);
-                high.1 *= 0.5;
+            // Illinois: an end that stays put twice counts for half, so that it cannot stall the secant.
+            let is_low = value < 0.0;
+            let (moved, kept) = if is_low {
+                (&mut low, &mut high)
             } else {
-                high = (middle, value);
-                low.1 *= 0.5;
+                (&mut high, &mut low)
+            };
+            *moved = (middle, value);
+            if last_low == Some(is_low) {
+                kept.1 *= 0.5;
             }
+            last_low = Some(is_low);
         }
         Ok(self.last.as_ref().map_or(high.0, |last| last.0))
     }

@@ -13,6 +13,28 @@ pub enum Model {
     Paper,
 }
 
+impl Model {
+    /// The material taken where none is given: a fingertip's.
+    pub fn preset(self) -> Material {
+        match self {
+            Model::Layer => Material::finger_layer(),
+            Model::Paper => Material::finger(),
+        }
+    }
+
+    /// The sentence that says so.
+    pub fn preset_note(self) -> String {
+        let name = match self {
+            Model::Layer => "finger_layer",
+            Model::Paper => "finger",
+        };
+        format!(
+            "no materials were given: all skin is taken as a fingertip's (preset {name}); give regions and a material for \
+             each, since a palm is thicker and stiffer at first touch"
+        )
+    }
+}
+
 /// A hand to prepare.
 #[derive(Debug, Clone)]
 pub struct SkinInput {

@@ -40,24 +40,24 @@ pub fn remarks(skin: &Skin, posed: &Mesh, product: &Product, pressed: &Pressed) 
 
 fn region(skin: &Skin, index: usize, depth: f64) -> Vec<String> {
     let material = &skin.tissue.materials[index];
-    let mut said = Vec::new();
+    let (title, mut said) = (skin.region_title(index), Vec::new());
     let laws = &skin.tissue.laws;
     let is_line = !laws.iter().any(|law| law.acts_on(index as u32));
     if is_line && depth > material.d_lim_mm && material.g_lim_mpa != material.g0_mpa {
         said.push(format!(
-            "region {index} is pressed {depth:.2} mm deep, beyond its dlim of {:.2} mm: its modulus is held at Glim",
+            "{title} is pressed {depth:.2} mm deep, beyond its dlim of {:.2} mm: its modulus is held at Glim",
             material.d_lim_mm
         ));
     }
     if skin.model == Model::Layer && depth > material.thickness_mm {
         said.push(format!(
-            "region {index} is pressed {depth:.2} mm deep, more than its {:.2} mm of soft tissue: forces there are not \
+            "{title} is pressed {depth:.2} mm deep, more than its {:.2} mm of soft tissue: forces there are not \
              to be trusted",
             material.thickness_mm
         ));
     } else if skin.model == Model::Layer && depth > KERNEL_LIMIT * material.thickness_mm {
         said.push(format!(
-            "region {index} is pressed {depth:.2} mm deep, over half its {:.2} mm of soft tissue: its stiffness is taken \
+            "{title} is pressed {depth:.2} mm deep, over half its {:.2} mm of soft tissue: its stiffness is taken \
              as that of {:.2} mm, since small-strain theory ends there",
             material.thickness_mm,
             depth / KERNEL_LIMIT

@@ -24,6 +24,7 @@ pub struct Skin {
     /// What the effects make of the materials and the response.
     pub(crate) tissue: Tissue,
     pub(crate) regions: Vec<i32>,
+    region_names: Vec<String>,
     pub(crate) welded: Welded,
     pub(crate) adjacency: Adjacency,
     pub(crate) metric: SkinDistance,
@@ -46,6 +47,18 @@ impl Skin {
     /// # Errors
     /// [`ContactError`] naming the material, region or array that is wrong, or `Cancelled`.
     pub fn prepare(input: SkinInput, control: &Control) -> Result<Skin, ContactError> {
+        Skin::prepare_named(input, Vec::new(), control)
+    }
+
+    /// [`Skin::prepare`] with names of the regions, by number, that warnings and errors use; regions without one are numbered.
+    ///
+    /// # Errors
+    /// As [`Skin::prepare`].
+    pub fn prepare_named(
+        input: SkinInput,
+        region_names: Vec<String>,
+        control: &Control,
+    ) -> Result<Skin, ContactError> {
         let SkinInput {
             mesh,
             mut regions,
@@ -56,7 +69,7 @@ impl Skin {
         if regions.is_empty() {
             regions = vec![0; vertices];
         }
-        check_regions(&regions, &materials, vertices)?;
+        check_regions(&regions, (&materials, &region_names), vertices)?;
         control.step("preparing", 0.0)?;
         let (mesh, mut warnings) = audited(mesh)?;
         let welded = Welded::new(&mesh).map_err(ContactError::Hand)?;
@@ -92,6 +105,7 @@ impl Skin {
             tissue,
             range,
             regions,
+            region_names,
             welded,
             adjacency,
             metric,
@@ -108,6 +122,16 @@ impl Skin {
     /// Sentences about the hand mesh, found while preparing.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// Adds a sentence that every result repeats, such as what a caller assumed where nothing was given.
+    pub fn note(&mut self, sentence: String) {
+        self.warnings.push(sentence);
+    }
+
+    /// What sentences call a region: "region 3", or "region index fingertip" where it has a name.
+    pub fn region_title(&self, region: usize) -> String {
+        title(&self.region_names, region)
     }
 
     /// Number of vertices of the mesh as given.
@@ -221,7 +245,7 @@ fn range(model: Model, thickest: f64) -> f64 {
 
 fn check_regions(
     regions: &[i32],
-    materials: &[Material],
+    (materials, names): (&[Material], &[String]),
     vertices: usize,
 ) -> Result<(), ContactError> {
     if regions.len() != vertices {
@@ -231,15 +255,23 @@ fn check_regions(
         });
     }
     for (index, material) in materials.iter().enumerate() {
-        material.validate(&format!("of region {index}"))?;
+        material.validate(&format!("of {}", title(names, index)))?;
     }
     match regions.iter().copied().max() {
         Some(most) if most < 0 => Err(ContactError::NoSkin),
         Some(most) if most as usize >= materials.len() => Err(ContactError::MissingMaterial {
             region: most,
+            title: title(names, most as usize),
             materials: materials.len(),
         }),
         _ => Ok(()),
+    }
+}
+
+fn title(names: &[String], region: usize) -> String {
+    match names.get(region).filter(|name| !name.is_empty()) {
+        Some(name) => format!("region {name}"),
+        None => format!("region {region}"),
     }
 }
 

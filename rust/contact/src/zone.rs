@@ -157,6 +157,7 @@ pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
             let vertex = skin.welded.source[skin.sites.vertex[site as usize] as usize] as usize;
             return Err(ContactError::TooCoarse {
                 region,
+                title: skin.region_title(region as usize),
                 vertex,
                 spacing_mm,
                 thickness_mm,

@@ -216,10 +216,7 @@ impl Regions<'_> {
         &self,
         given: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Vec<thenar_contact::Material>> {
-        let preset = match self.model {
-            Model::Layer => thenar_contact::Material::finger_layer(),
-            Model::Paper => thenar_contact::Material::finger(),
-        };
+        let preset = self.model.preset();
         let Some(given) = given else {
             return Ok(vec![preset; self.count]);
         };

@@ -21,8 +21,9 @@ use thenar_surface::Mesh;
 /// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
 ///
 /// `vertices_mm` (n, 3) rest positions; `triangles` (m, 3); `regions` (n,) with -1 for "no skin", None: all region 0;
-/// `materials`: one `Material`, a list by region, or a dict by number, name or "default", None: the model's preset;
-/// `model` "layer" or "paper"; `region_names`: texts for the result table; `effects`: a list of `Effect`, model layer only.
+/// `materials`: one `Material`, a list by region, or a dict by number, name or "default", None: the model's preset for a
+/// fingertip, in every region, with a warning in every result; `model` "layer" or "paper"; `region_names`: one text per region,
+/// used in the result table, in warnings and in errors; `effects`: a list of `Effect`, model layer only.
 ///
 /// Raises `MeshError`, `MaterialError`, `SolveError`, `Cancelled`.
 #[pyclass(frozen, module = "thenar")]
@@ -71,8 +72,10 @@ impl Skin {
         };
         let model = model_named(model)?;
         let names = region_names.unwrap_or_default();
+        let assumed = materials.is_none().then(|| model.preset_note());
         let materials = table_of(&regions, &names, model)?.materials(materials)?;
-        let (prepared, effects) = (materials.clone(), effects_of(effects));
+        let (prepared, titles) = (materials.clone(), names.clone());
+        let effects = effects_of(effects);
         let skin = run(py, &Hooks::new(cancel, progress)?, move |control| {
             let mesh =
                 Mesh::new(surface.vertices, surface.triangles).map_err(ContactError::Hand)?;
@@ -82,7 +85,8 @@ impl Skin {
                 materials: prepared,
                 model,
             };
-            let mut skin = thenar_contact::Skin::prepare(input, control)?;
+            let mut skin = thenar_contact::Skin::prepare_named(input, titles, control)?;
+            assumed.into_iter().for_each(|note| skin.note(note));
             if !effects.is_empty() {
                 skin.set_effects(effects, control)?;
             }
