@@ -1,4 +1,4 @@
-"""The binding's input, over 100,000 times at random: a result or a ThenarError, never a panic, a hang or a wrong shape."""
+"""The binding's input, over 100,000 times at random: a result or a sentence, never a panic, a hang or a wrong shape."""
 
 from collections import Counter
 

@@ -59,6 +59,7 @@ fn warnings_and_errors_call_regions_by_their_names() {
         posed: None,
         force: None,
         start: Start::Fresh,
+        drag: None,
     };
     let refused = named(0.3, &["thumb", "index fingertip"]).press(&request, &Control::none());
     let sentence = refused.unwrap_err().to_string();
@@ -110,6 +111,7 @@ fn progress_advances_through_a_search_for_a_force() {
         posed: None,
         force,
         start: Start::Fresh,
+        drag: None,
     };
     named(7.0, &[]).press(&request, &control).unwrap();
     let told = told.into_inner().unwrap();
