@@ -1,6 +1,8 @@
 """Contact of soft skin with products: forces, pressures and shapes, in mm, N, MPa and s."""
 
 from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
 from typing import Any, Literal, Protocol, Self, TypeAlias, TypedDict, final, overload, type_check_only
 
 import numpy as np
@@ -321,6 +323,35 @@ class Contact:
     def warnings(self) -> list[str]: ...
     @property
     def seconds(self) -> Record: ...
+
+@final
+class Study:
+    """Recordings, and the skin, tools and places they were taken with, in mm, N, s, kPa for maps and MPa for moduli."""
+
+    @staticmethod
+    def load(folder: str | PathLike[str]) -> Study:
+        """Loads the study in `folder` with every file it names. Raises `RecordingError`."""
+
+    def recording(self, name: str) -> Record: ...
+    @property
+    def folder(self) -> Path: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def skin(self) -> Record: ...
+    @property
+    def indenters(self) -> Record: ...
+    @property
+    def sites(self) -> Record: ...
+    @property
+    def recordings(self) -> list[Record]: ...
+    @property
+    def instrument(self) -> Record | None: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+def read_recording(file: str | PathLike[str]) -> Record:
+    """Reads a measurement file of any maker: `format`, `maps` and `curves`. Raises `RecordingError`."""
 
 def hand(
     length_mm: float | None = None,

@@ -5,6 +5,7 @@ use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use thenar_contact::ContactError;
 use thenar_hand::HandError;
+use thenar_recordings::RecordingError as RecordingFault;
 use thenar_surface::MeshError as MeshFault;
 
 create_exception!(
@@ -64,6 +65,7 @@ pub enum Failure {
     Contact(ContactError),
     Mesh(MeshFault),
     Hand(HandError),
+    Recording(RecordingFault),
     Cancelled,
     /// An earlier panic left the prepared skin half changed.
     Spoiled,
@@ -87,6 +89,7 @@ impl From<Failure> for PyErr {
             Failure::Contact(error) => from_contact(error),
             Failure::Mesh(error) => MeshError::new_err(error.to_string()),
             Failure::Hand(error) => MeshError::new_err(error.to_string()),
+            Failure::Recording(error) => RecordingError::new_err(error.to_string()),
             Failure::Cancelled => {
                 Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
             }

@@ -13,6 +13,8 @@ mod skin;
 mod contact;
 mod hand;
 mod complementarity;
+mod recordings;
+mod study;
 mod about;
 
 use pyo3::prelude::*;
@@ -29,7 +31,9 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<protocol::Course>()?;
     module.add_class::<skin::Skin>()?;
     module.add_class::<contact::Contact>()?;
+    module.add_class::<study::Study>()?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::read_recording, module)?)?;
     module.add_function(wrap_pyfunction!(
         complementarity::solve_complementarity,
         module

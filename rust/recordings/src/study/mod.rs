@@ -6,12 +6,14 @@ mod skin;
 mod indenters;
 mod sites;
 mod sensels;
+mod seat;
 mod recordings;
 mod instrument;
 
 pub use indenters::{Indenter, Shape};
 pub use instrument::Instrument;
 pub use recordings::{Data, StudyRecording};
+pub use seat::Seat;
 pub use sensels::PlacedSensel;
 pub use sites::Site;
 pub use skin::{StudyMaterial, StudySkin};

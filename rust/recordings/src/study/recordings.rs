@@ -2,6 +2,7 @@
 
 use super::indenters::Indenter;
 use super::place::Folder;
+use super::seat;
 use super::sensels::{self, PlacedSensel};
 use super::sites::Site;
 use super::toml_tree::{Section, nearest};
@@ -249,11 +250,7 @@ fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data,
         map.warnings
             .push("not calibrated: only shape and relative size are used".into());
     }
-    let places = section
-        .get("sensels")
-        .map(|entry| folder.file(&entry))
-        .transpose()?;
-    let sensels = places.map(|file| sensels::read(&file, &map)).transpose()?;
+    let sensels = read_places(section, &map, folder)?;
     let motion = section
         .get("motion")
         .map(|entry| folder.file(&entry))
@@ -266,6 +263,32 @@ fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data,
         sensels,
         motion,
     })
+}
+
+/// Where the sensels lie: as a file lists them, or as the mat is laid on a plane or a cylinder.
+fn read_places(
+    section: &mut Section,
+    map: &PressureMap,
+    folder: &Folder,
+) -> Result<Option<Vec<Option<PlacedSensel>>>, RecordingError> {
+    let here = |fault: Fault| folder.fault(fault);
+    let file = section
+        .get("sensels")
+        .map(|entry| folder.file(&entry))
+        .transpose()?;
+    let Some(mut placing) = section.section("placing").map_err(here)? else {
+        return file.map(|file| sensels::read(&file, map)).transpose();
+    };
+    if file.is_some() {
+        let problem = format!("{} has both sensels and placing", section.name);
+        return Err(here(section.fault(problem, "leave one of them out")));
+    }
+    let seat = seat::read(&mut placing).map_err(here)?;
+    let placed = seat
+        .place(map)
+        .map_err(|(problem, remedy)| here(placing.fault(problem, remedy)))?;
+    placing.finish().map_err(here)?;
+    Ok(Some(placed))
 }
 
 /// The mat of a name; the only one needs none.

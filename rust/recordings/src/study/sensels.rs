@@ -21,6 +21,8 @@ const MOST: usize = 1 << 24;
 pub struct PlacedSensel {
     /// Center, mm, skin coordinates.
     pub center_mm: [f64; 3],
+    /// Unit normal out of the product, where it is known.
+    pub normal: Option<[f64; 3]>,
     /// Area, mm2.
     pub area_mm2: f64,
 }
@@ -86,6 +88,7 @@ fn parse(lines: &mut Lines) -> Result<Places, Fault> {
         let key = [row.map_err(fault)?, column.map_err(fault)?];
         let placed = PlacedSensel {
             center_mm: [cells[x], cells[y], cells[z]],
+            normal: None,
             area_mm2: cells[area],
         };
         if placed.area_mm2 <= 0.0 {
