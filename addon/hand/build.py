@@ -6,7 +6,7 @@ import numpy as np
 from .. import native
 from ..scene.checks import Refusal
 from ..scene.units import mm_per_unit
-from . import look, model, roles, shader
+from . import look, model, roles, shader, studio
 from .bonemap import set_map
 
 MESH_NAME = "Hand"
@@ -69,6 +69,7 @@ def _add_mesh(context, made, unit):
     mesh.update(calc_edges=True)
     mesh.shade_smooth()
     mesh.validate()
+    studio.forget_selection(mesh)
     hand = bpy.data.objects.new(MESH_NAME, mesh)
     context.scene.collection.objects.link(hand)
     _add_groups(hand, made)

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import pads as pads_of_hand
 from .poses import POSES
-from .roles import COLUMNS, FINGERS, WRIST, angle_bounds, flexion_axis, from_anatomical, pose_angles
+from .roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
 from .skinning import pose_matrices, skin, to_world
 
 STEP_DEG = 4.0
@@ -26,16 +26,16 @@ def hand_frame(rig, joints):
     bones = [joints.bones[f"{f}_proximal"] for f in present]
     heads = to_world(rig, rig.rest[bones, :3, 3])
     linear = rig.world_from_rig[:3, :3]
-    along = linear @ rig.rest[bones, :3, 1].mean(axis=0)
+    forward = linear @ np.mean([along(rig, bone) for bone in bones], axis=0)
     facing = linear @ np.mean([pads_of_hand.palmar(rig, joints, f"{f}_proximal") for f in present], axis=0)
     radial = heads[0] - heads[-1] if len(bones) > 1 else joints.side * (linear @ flexion_axis(rig, bones[0]))
     if WRIST in joints.bones:
-        along = heads.mean(axis=0) - to_world(rig, rig.rest[[joints.bones[WRIST]], :3, 3])[0]
+        forward = heads.mean(axis=0) - to_world(rig, rig.rest[[joints.bones[WRIST]], :3, 3])[0]
     facing = facing / np.linalg.norm(facing)
     radial = radial - facing * (radial @ facing)
     radial /= np.linalg.norm(radial)
     distal = np.cross(facing, radial)
-    distal *= np.sign(distal @ along) or 1.0
+    distal *= np.sign(distal @ forward) or 1.0
     return heads.mean(axis=0), radial, distal, facing
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .roles import FINGERS, WRIST, flexion_axis
+from .roles import FINGERS, WRIST, along, flexion_axis
 
 DEEPEST = 4
 """Vertices whose mean depth counts as the pad's, at 2.5 mm spacing about a sensel of a pressure mat."""
@@ -88,7 +88,7 @@ def palmar(rig, joints, role):
     bone = joints.bones[role]
     if role == WRIST:
         bone = next(joints.bones[f"{f}_proximal"] for f in FINGERS if f"{f}_proximal" in joints.bones)
-    facing = np.cross(flexion_axis(rig, bone), rig.rest[bone, :3, 1])
+    facing = np.cross(flexion_axis(rig, bone), along(rig, bone))
     return facing / np.linalg.norm(facing)
 
 

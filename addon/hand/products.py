@@ -84,10 +84,10 @@ def bottle():
 
 
 def grip():
-    """A handlebar grip of 32 mm at its thickest, 130 mm long, a collar at both ends; its axis along z, centered."""
+    """A handlebar grip of 35 mm at its thickest, 130 mm long, a collar at both ends; its axis along z, centered."""
     profile = [
-        (11.5, -66), (19.5, -66), (19.5, -61), (15.2, -59.5), (14.6, -40), (16.0, -5), (15.2, 35), (14.4, 56),
-        (17.6, 58.5), (17.6, 63), (11.5, 64),
+        (11.5, -66), (20.5, -66), (20.5, -61), (16.7, -59.5), (16.1, -40), (17.6, -5), (16.7, 35), (15.8, 56),
+        (19.4, 58.5), (19.4, 63), (11.5, 64),
     ]  # fmt: skip
     return turned(rounded(profile, 3.0, steps=5))
 

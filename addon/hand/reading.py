@@ -6,17 +6,13 @@ from mathutils import Matrix
 
 from .. import names
 from ..scene import mesh, units
-from ..scene.checks import Refusal
 from ..scene.regions import group_weights
-from . import bonemap, roles
-from .skinning import FLEXION, Rig, local_rotations
+from . import bonemap, rig_axes, roles
+from .rig_axes import RigError
+from .skinning import Rig, local_rotations
 
 FREE_CONSTRAINTS = {"LIMIT_ROTATION", "LIMIT_LOCATION", "LIMIT_SCALE", "LIMIT_DISTANCE"}
 """Constraints that may stand on a bone the fitter turns; any other would overrule it."""
-
-
-class RigError(Refusal):
-    """The hand's rig cannot be read; the message says why and what to do."""
 
 
 def armature_of(hand):
@@ -57,7 +53,7 @@ def read_rig(context, hand):
                 basis[bone_names.index(name)] = np.eye(4)
     axes = np.tile(np.eye(3), (len(bones), 1, 1))
     rig = Rig(bone_names, parents, rest, axes, basis, vertices, weights, world)
-    return _with_axes(rig, stored, armature.thenar_bones.axis), stored
+    return rig_axes.with_axes(rig, stored, armature.thenar_bones.axis), stored
 
 
 def own_limits(armature, rig):
@@ -76,8 +72,11 @@ def own_limits(armature, rig):
 
 
 def tails(rig, armature):
-    """Rest ends (b, 3) of the bones in rig space."""
-    return np.array([armature.data.bones[name].tail_local for name in rig.names], dtype=np.float64)
+    """Rest ends (b, 3) of the bones in rig space: as drawn, or where their segments end."""
+    out = np.array([armature.data.bones[name].tail_local for name in rig.names], dtype=np.float64)
+    for bone, length in rig_axes.odd_lengths(rig).items():
+        out[bone] = rig.rest[bone, :3, 3] + length * roles.along(rig, bone)
+    return out
 
 
 def write_angles(armature, rig, joints, angles):
@@ -167,61 +166,3 @@ def _check_constraints(armature, name):
             raise RigError(
                 f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
             )
-
-
-def _with_axes(rig, role_names, choice):
-    """Flexion axes by choice, or from the line of the knuckles; twist stays along the bone."""
-    axes = rig.axes.copy()
-    chosen = {"X": (0, 1.0), "NEG_X": (0, -1.0), "Z": (2, 1.0), "NEG_Z": (2, -1.0)}.get(choice)
-    guessed = None if chosen else _knuckle_axes(rig, role_names)
-    for role, name in role_names.items():
-        if name not in rig.names:
-            continue
-        bone = rig.names.index(name)
-        if chosen:
-            flexion = np.eye(3)[chosen[0]] * chosen[1]
-        elif role in guessed:
-            flexion = rig.rest[bone, :3, :3].T @ guessed[role]
-        else:
-            continue
-        flexion[1] = 0.0
-        flexion /= np.linalg.norm(flexion)
-        axes[bone, :, FLEXION] = flexion
-        axes[bone, :, 2] = np.cross(flexion, [0.0, 1.0, 0.0])
-    return Rig(rig.names, rig.parents, rig.rest, axes, rig.basis, rig.vertices, rig.weights, rig.world_from_rig)
-
-
-def _knuckle_axes(rig, role_names):
-    """Flexion axis in rig space per role: the knuckle line, signed so that the rest bend of the fingers is flexion.
-
-    The thumb bends about the axis that carries it towards the little finger's base.
-    """
-    index = {role: rig.names.index(name) for role, name in role_names.items() if name in rig.names}
-    present = [f for f in roles.FINGERS if f"{f}_proximal" in index]
-    if len(present) < 2:
-        raise RigError("the flexion axis needs two fingers; choose the axis in the bone settings instead")
-    heads = np.array([rig.rest[index[f"{f}_proximal"], :3, 3] for f in present])
-    across = (heads[0] - heads[-1]) / np.linalg.norm(heads[0] - heads[-1])
-    across = across * _bend_sign(rig, index, present, across)
-    out = {role: across for role in index if not role.startswith("thumb")}
-    if "thumb_metacarpal" in index:
-        start = rig.rest[index["thumb_metacarpal"], :3, 3]
-        for role in ("thumb_metacarpal", "thumb_proximal", "thumb_distal"):
-            if role in index:
-                along = rig.rest[index[role], :3, 1]
-                facing = np.cross(across, rig.rest[index[f"{present[0]}_proximal"], :3, 1])
-                goal = heads[-1] - start + 0.8 * np.linalg.norm(heads[-1] - start) * facing
-                out[role] = np.cross(along, goal) / np.linalg.norm(np.cross(along, goal))
-    return out
-
-
-def _bend_sign(rig, index, present, across):
-    bend = 0.0
-    for finger in present:
-        if f"{finger}_distal" in index:
-            first, last = (rig.rest[index[f"{finger}_{s}"], :3, 1] for s in ("proximal", "distal"))
-            bend += across @ np.cross(first, last)
-    if abs(bend) < 0.05 and "thumb_distal" in index:
-        tip = rig.rest[index["thumb_distal"], :3, 3] - rig.rest[index[f"{present[0]}_proximal"], :3, 3]
-        bend = np.cross(across, rig.rest[index[f"{present[0]}_proximal"], :3, 1]) @ tip
-    return 1.0 if bend >= 0.0 else -1.0

@@ -79,7 +79,7 @@ def guess(names, parents, has_weight):
     """Role -> bone name for a rig whose bones are named in any common way.
 
     Chains are read from the hierarchy: a digit's last three weighted bones are its phalanges (two for the thumb, with
-    its metacarpal), the bone before them its metacarpal if no other digit hangs on it.
+    its metacarpal), the weighted bone before them its metacarpal if no other digit hangs on it.
     """
     chains = {}
     for bone in range(len(names)):
@@ -91,7 +91,8 @@ def guess(names, parents, has_weight):
         chain = sorted(chain, key=lambda bone: _depth(bone, parents))[-4:]
         segments = SEGMENTS if digit != "thumb" else ("metacarpal", "proximal", "distal")
         first = parents[chain[0]]
-        if len(chain) == len(segments) - 1 and first >= 0 and list(parents).count(first) == 1 and digit != "thumb":
+        is_alone = first >= 0 and has_weight[first] and list(parents).count(first) == 1
+        if len(chain) == len(segments) - 1 and is_alone and digit != "thumb":
             chain = [first, *chain]
         for segment, bone in zip(reversed(segments), reversed(chain), strict=False):
             out[f"{digit}_{segment}"] = names[bone]
@@ -156,6 +157,11 @@ def flexion_axis(rig, bone):
     return axis / np.linalg.norm(axis)
 
 
+def along(rig, bone):
+    """Where the segment of `bone` points at rest, unit, in rig space."""
+    return rig.rest[bone, :3, :3] @ rig.axes[bone, :, TWIST]
+
+
 def _rest_flexion(rig, bones):
     """Angle of each phalanx to the bone before it, about its own flexion axis; zero for metacarpals and others."""
     out = np.zeros(len(rig.names))
@@ -167,7 +173,7 @@ def _rest_flexion(rig, bones):
         if before is None:
             continue
         axis = flexion_axis(rig, bone)
-        here, there = rig.rest[bone, :3, 1], rig.rest[before, :3, 1]
+        here, there = along(rig, bone), along(rig, before)
         here, there = here - axis * (axis @ here), there - axis * (axis @ there)
         out[bone] = np.arctan2(axis @ np.cross(there, here), there @ here)
     return out

@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ..scene import attributes
 from ..scene.units import mm_per_unit
 from .shader import Tree
 
@@ -19,11 +20,17 @@ def add_mesh(context, name, shape, material):
     unit = 1.0 / mm_per_unit(context.scene)
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata((vertices * unit).tolist(), [], faces)
+    forget_selection(mesh)
     mesh.shade_smooth()
     mesh.materials.append(material)
     obj = bpy.data.objects.new(name, mesh)
     context.scene.collection.objects.link(obj)
     return obj
+
+
+def forget_selection(mesh):
+    """Select nothing: Blender leaves the edges it finds selected by chance, and files shall hold the same each time."""
+    attributes.remove(mesh, (".select_vert", ".select_edge", ".select_poly"))
 
 
 def set_units(scene):

@@ -25,7 +25,7 @@ class THENAR_UL_regions(bpy.types.UIList):
         columns(split, item)
 
 
-SHARE = 0.6
+SHARE = 0.56
 """Of a row's width, what its name takes."""
 
 

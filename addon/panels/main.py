@@ -15,6 +15,19 @@ class Tab:
     bl_category = "Thenar"
 
 
+class Physics:
+    """The same panels once more, in the physics properties of a mesh, for those who hide the sidebar."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "physics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "MESH"
+
+
 class THENAR_PT_main(Tab, bpy.types.Panel):
     """What is to be pressed, and the button that presses."""
 
@@ -124,6 +137,22 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         button.restore = kept
 
 
+class THENAR_PT_physics(Physics, bpy.types.Panel):
+    """The sidebar's main panel in the physics properties."""
+
+    bl_label = "Thenar"
+    draw = THENAR_PT_main.draw
+
+
+class THENAR_PT_physics_display(Physics, bpy.types.Panel):
+    """The sidebar's display panel in the physics properties."""
+
+    bl_label = "Display"
+    bl_parent_id = "THENAR_PT_physics"
+    bl_order = 2
+    draw = THENAR_PT_display.draw
+
+
 class THENAR_PT_output(Tab, bpy.types.Panel):
     """Frames and files."""
 
@@ -147,4 +176,4 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
         column.label(text=f"Attribute: {names.PRESSURE_KPA}")
 
 
-CLASSES = (THENAR_PT_main, THENAR_PT_display, THENAR_PT_output)
+CLASSES = (THENAR_PT_main, THENAR_PT_display, THENAR_PT_output, THENAR_PT_physics, THENAR_PT_physics_display)

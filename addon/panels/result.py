@@ -4,7 +4,7 @@ import bpy
 
 from .. import status
 from .lists import SHARE, columns
-from .main import Tab
+from .main import Physics, Tab
 from .preferences import wrapped
 
 
@@ -47,6 +47,15 @@ def _warning(layout, text, context):
     column = layout.column(align=True)
     for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
         column.label(text=line, icon="ERROR" if number == 0 else "BLANK1")
+
+
+class THENAR_PT_physics_result(Physics, bpy.types.Panel):
+    """The totals in the physics properties."""
+
+    bl_label = "Result"
+    bl_parent_id = "THENAR_PT_physics"
+    bl_order = 1
+    draw = THENAR_PT_result.draw
 
 
 class THENAR_PT_regions(Tab, bpy.types.Panel):
@@ -121,4 +130,4 @@ class THENAR_PT_quality(Tab, bpy.types.Panel):
             _pair(box, stage.name.capitalize(), f"{stage.seconds * 1000:.0f} ms")
 
 
-CLASSES = (THENAR_PT_result, THENAR_PT_regions, THENAR_PT_notes, THENAR_PT_quality)
+CLASSES = (THENAR_PT_result, THENAR_PT_physics_result, THENAR_PT_regions, THENAR_PT_notes, THENAR_PT_quality)

@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+from thenar_blender.hand import fitting, grasp, pads, products, studio
 
 
 def evaluated_mm(obj):
@@ -21,3 +22,12 @@ def triangles_of(faces):
     for face in faces:
         out += [face[:3]] if len(face) == 3 else [face[:3], [face[0], face[2], face[3]]]
     return np.array(out, np.int32)
+
+
+def with_cylinder(context, hand, diameter=60.0, **wish):
+    """A cylinder in the scene and the grasp fitted to it."""
+    material = studio.plain("Any", (0.5, 0.5, 0.5, 1.0), 0.5)
+    product = studio.add_mesh(context, "Product", products.cylinder(diameter), material)
+    context.scene.thenar.product = product
+    context.view_layer.update()
+    return product, fitting.prepare(context, hand, [product], grasp.Wish(pads.LIGHT_MM, **wish))

@@ -2,22 +2,13 @@
 
 import numpy as np
 import pytest
-from hand_scenes import evaluated_mm
+from hand_scenes import evaluated_mm, with_cylinder
 from mathutils.bvhtree import BVHTree
-from thenar_blender.hand import bonemap, build, fitting, grasp, pads, products, reading, roles, samples, studio
+from thenar_blender.hand import build, fitting, grasp, pads, reading, samples
 
 SAMPLE_KINDS = (
     "fingertip_on_plate", "palm_on_plate", "cylinder_48", "cylinder_60", "cylinder_100", "handlebar", "bottle",
 )  # fmt: skip
-
-
-def with_cylinder(context, hand, diameter=60.0, **wish):
-    """A cylinder in the scene and the grasp fitted to it."""
-    material = studio.plain("Any", (0.5, 0.5, 0.5, 1.0), 0.5)
-    product = studio.add_mesh(context, "Product", products.cylinder(diameter), material)
-    context.scene.thenar.product = product
-    context.view_layer.update()
-    return product, fitting.prepare(context, hand, [product], grasp.Wish(pads.LIGHT_MM, **wish))
 
 
 def test_hand_has_groups_materials_and_a_rig(blender, hand, made):
@@ -84,40 +75,6 @@ def test_written_grasp_is_the_fitted_one(blender, hand):
         assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.01)
 
 
-def test_foreign_bone_names_and_axes(blender, hand):
-    """The made hand with other names and rolls is still found, posed and fitted."""
-    mesh, rig = hand
-    renamed = {"carpus": "hand.R", "thumb_metacarpal": "thumb.01.R", "thumb_proximal": "thumb.02.R"}
-    renamed["thumb_distal"] = "thumb.03.R"
-    for finger in roles.FINGERS:
-        renamed[f"{finger}_metacarpal"] = f"palm.{finger}.R"
-        for k, segment in enumerate(("proximal", "middle", "distal")):
-            renamed[f"{finger}_{segment}"] = f"f_{'pinky' if finger == 'little' else finger}.0{k + 1}.R"
-    for old, new in renamed.items():
-        rig.data.bones[old].name = new
-    blender.context.view_layer.objects.active = rig
-    blender.ops.object.mode_set(mode="EDIT")
-    for bone in rig.data.edit_bones:
-        bone.roll += 0.7
-    blender.ops.object.mode_set(mode="OBJECT")
-    for bone in rig.pose.bones:
-        bone.rotation_mode = "QUATERNION"
-        for constraint in list(bone.constraints):
-            bone.constraints.remove(constraint)
-    bonemap.set_map(rig, {}, "AUTO")
-    assert blender.ops.thenar.guess_bones() == {"FINISHED"}
-    assert bonemap.get_map(rig)["little_middle"] == "f_pinky.02.R"
-    assert len(bonemap.get_map(rig)) == len(roles.ROLES)
-    product, job = with_cylinder(blender.context, mesh)
-    found = fitting.compute(job)
-    fitting.finish(blender.context, job, found, "HAND")
-    misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
-    assert np.median(misses) < 0.6
-    gap = pads.gaps(job.product, evaluated_mm(mesh))
-    for pad in job.hand.pads:
-        assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.02)
-
-
 def test_missing_bone_is_named(blender, hand):
     mesh, rig = hand
     with_cylinder(blender.context, mesh)
@@ -163,7 +120,7 @@ def test_sample_is_complete_and_solves(blender, kind):
     assert sum(obj.type == "LIGHT" for obj in scene.objects) == 3
     posed = evaluated_mm(settings.hand)
     triangles = np.array([face.vertices for face in settings.hand.data.polygons])
-    assert self_crossing(posed, triangles) <= (0.02 if kind == "handlebar" else 0.01), "a fist on 32 mm folds more"
+    assert self_crossing(posed, triangles) <= 0.01
     assert blender.ops.thenar.solve() == {"FINISHED"}
     result = settings.result
     assert result.force_n > 0.5 and result.area_mm2 > 50.0 and result.penetration_mm < 0.021
