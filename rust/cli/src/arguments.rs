@@ -33,10 +33,21 @@ pub struct PressArguments {
     #[arg(long, value_name = "M.toml")]
     pub materials: Option<PathBuf>,
     /// Moves the product until the normal force is this, N.
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        group = "travel"
+    )]
     pub force: Option<f64>,
-    /// Where the product moves for --force; the mean normal of the contact if not given.
-    #[arg(long, value_name = "x,y,z", value_parser = direction, requires = "force", allow_hyphen_values = true)]
+    /// CSV of time_s and depth_mm, offset_mm or force_n: follows it from rest and writes protocol.csv too.
+    #[arg(long, value_name = "P.csv", group = "travel")]
+    pub protocol: Option<PathBuf>,
+    /// TOML with a table [[effect]] for each effect: name, amplitude, regions, numbers.
+    #[arg(long, value_name = "E.toml")]
+    pub effects: Option<PathBuf>,
+    /// Where the product moves for --force or --protocol; the mean normal of the contact if not given.
+    #[arg(long, value_name = "x,y,z", value_parser = direction, requires = "travel", allow_hyphen_values = true)]
     pub direction: Option<[f64; 3]>,
     /// Unit of all meshes.
     #[arg(long, value_enum, default_value_t = Unit::Mm)]

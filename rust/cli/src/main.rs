@@ -1,10 +1,12 @@
 //! The thenar binary: arguments, files, exit codes. Knows no algorithm.
 
 mod arguments;
+mod effects;
 mod fault;
 mod interrupt;
 mod materials;
 mod press;
+mod protocol;
 mod regions;
 mod results;
 

@@ -74,13 +74,14 @@ fn known(regions: &RegionTable) -> String {
 }
 
 /// A file for messages.
-struct Source<'a> {
-    file: &'a Path,
-    text: &'a str,
+pub struct Source<'a> {
+    pub file: &'a Path,
+    pub text: &'a str,
 }
 
 impl Source<'_> {
-    fn fault(&self, span: Range<usize>, problem: &str) -> Fault {
+    /// The sentence for a problem at a place of the file.
+    pub fn fault(&self, span: Range<usize>, problem: &str) -> Fault {
         let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
         let problem = problem.replace('\n', " ");
@@ -137,7 +138,7 @@ fn material<K: AsRef<str>>(
 }
 
 /// A TOML number, or the text "inf".
-fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
+pub fn number(value: &Spanned<DeValue<'_>>) -> Option<f64> {
     match value.get_ref() {
         DeValue::Integer(number) if number.radix() == 10 => {
             number.as_str().replace('_', "").parse().ok()

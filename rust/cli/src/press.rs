@@ -3,10 +3,13 @@
 use crate::arguments::{ModelName, PressArguments};
 use crate::fault::Fault;
 use crate::regions::RegionTable;
-use crate::{interrupt, materials, regions, results};
+use crate::results::Output;
+use crate::{effects, interrupt, materials, protocol, regions, results};
 use serde_json::{Value, json};
 use std::path::Path;
-use thenar_contact::{Contact, Control, ForceTarget, Model, Press, Skin, SkinInput, Start};
+use thenar_contact::{
+    Contact, Control, ForceTarget, Keep, Model, Press, Run, Skin, SkinInput, Start,
+};
 use thenar_recordings::meshes::{self, MeshFile};
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -30,15 +33,22 @@ pub fn run(arguments: &PressArguments) -> Result<(), Fault> {
         cancelled: &interrupt::is_cancelled,
         progress: &|_, _| {},
     };
-    let (contact, regions) = press(arguments, &control)?;
+    let (contact, regions, table) = press(arguments, &control)?;
     let [vertices, product] = results::tables(&contact);
     let summary = results::summary(&contact, &regions, said(arguments));
-    interrupt::writing(|| results::write(&arguments.out, &[vertices, product, summary]))?;
+    let mut outputs = vec![vertices, product];
+    outputs.extend(table);
+    outputs.push(summary);
+    interrupt::writing(|| results::write(&arguments.out, &outputs))?;
     crate::tell(&report(&contact, &regions, &arguments.out));
     Ok(())
 }
 
-fn press(arguments: &PressArguments, control: &Control) -> Result<(Contact, RegionTable), Fault> {
+/// The contact, at the last row of a protocol if there is one, and then the protocol's table.
+fn press(
+    arguments: &PressArguments,
+    control: &Control,
+) -> Result<(Contact, RegionTable, Option<Output>), Fault> {
     let model = match arguments.model {
         ModelName::Layer => Model::Layer,
         ModelName::Paper => Model::Paper,
@@ -71,22 +81,32 @@ fn press(arguments: &PressArguments, control: &Control) -> Result<(Contact, Regi
     if arguments.materials.is_none() {
         skin.note(model.preset_note());
     }
-    let force = arguments.force.map(|newton| ForceTarget {
-        newton,
-        direction: arguments.direction.map(Vec3::from),
-    });
+    if let Some(file) = &arguments.effects {
+        skin.set_effects(effects::read(file, &regions)?, control)?;
+    }
     let posed = posed.as_ref().map(|posed| posed.positions.as_slice());
-    let contact = skin.press(
-        &Press {
+    let direction = arguments.direction.map(Vec3::from);
+    if let Some(file) = &arguments.protocol {
+        let run = Run {
             product: &product,
             posed,
-            force,
-            drag: None,
-            start: Start::Fresh,
-        },
-        control,
-    )?;
-    Ok((contact, regions))
+            protocol: &protocol::read(file, direction)?,
+            keep: Keep::Totals,
+        };
+        let course = skin.run(&run, control)?;
+        let table = protocol::table(&course);
+        return Ok((course.last, regions, Some(table)));
+    }
+    let press = Press {
+        product: &product,
+        posed,
+        force: arguments
+            .force
+            .map(|newton| ForceTarget { newton, direction }),
+        drag: None,
+        start: Start::Fresh,
+    };
+    Ok((skin.press(&press, control)?, regions, None))
 }
 
 fn scaled(file: &Path, arguments: &PressArguments) -> Result<MeshFile, Fault> {
@@ -121,6 +141,8 @@ fn said(arguments: &PressArguments) -> Value {
         "model": match arguments.model { ModelName::Layer => "layer", ModelName::Paper => "paper" },
         "force_n": arguments.force,
         "direction": arguments.direction,
+        "protocol": arguments.protocol.as_deref().map(name),
+        "effects": arguments.effects.as_deref().map(name),
     })
 }
 

@@ -1,0 +1,168 @@
+//! `thenar press --protocol --effects`: the table it writes, and what it refuses.
+#![allow(clippy::unwrap_used)]
+
+mod sheets;
+
+use sheets::{refused, scene, stderr, thenar};
+
+const PROTOCOL: &str = "time_s,depth_mm,force_n\n0,0,\n0.5,0.4,\n1,0.4,\n10,0.4,\n11,,0.05\n";
+const EFFECTS: &str = "[[effect]]\nname = \"relaxation\"\namplitude = 0.5\ntime_3_s = 2\n\n\
+                       [[effect]]\nname = \"stiffening_law\"\nlaw = \"power\"\nregions = [0]\n";
+
+fn column(csv: &str, name: &str) -> Vec<f64> {
+    let mut lines = csv.lines();
+    let place = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|h| h == name)
+        .unwrap();
+    lines
+        .map(|line| line.split(',').nth(place).unwrap().parse().unwrap())
+        .collect()
+}
+
+#[test]
+fn a_protocol_writes_its_table_and_the_last_row_in_full() {
+    let (folder, hand, product) = scene("protocol");
+    let (protocol, effects) = (
+        folder.file("p.csv", PROTOCOL),
+        folder.file("e.toml", EFFECTS),
+    );
+    let run = |out: &str| {
+        let out = folder.path(out);
+        let words = [
+            "press",
+            &hand,
+            &product,
+            "--protocol",
+            &protocol,
+            "--effects",
+            &effects,
+            "--out",
+            &out,
+        ];
+        let output = thenar(&words);
+        assert!(output.status.success(), "{}", stderr(&output));
+    };
+    run("one");
+    run("two");
+    assert_eq!(
+        folder.names("one"),
+        [
+            "product.csv",
+            "protocol.csv",
+            "summary.json",
+            "vertices.csv"
+        ]
+    );
+    for name in folder.names("one") {
+        assert_eq!(
+            folder.read(&format!("one/{name}")),
+            folder.read(&format!("two/{name}")),
+            "{name}"
+        );
+    }
+    let table = folder.read("one/protocol.csv");
+    let force = column(&table, "force_n");
+    assert_eq!(column(&table, "time_s"), [0.0, 0.5, 1.0, 10.0, 11.0]);
+    // The hold relaxes; ten seconds later the amplitude's half of what would be borne at once is left, or a little less.
+    assert!(
+        force[1] > force[2] && force[2] > 1.01 * force[3],
+        "{force:?}"
+    );
+    assert!((force[4] - 0.05).abs() < 1e-4, "{force:?}");
+    let vertices: f64 = column(&folder.read("one/vertices.csv"), "force_n")
+        .iter()
+        .sum();
+    assert!((vertices - 0.05).abs() < 1e-4, "{vertices}");
+}
+
+#[test]
+fn bad_protocols_and_effects_are_refused_with_their_line() {
+    let (folder, hand, product) = scene("bad_protocols");
+    let out = folder.path("out");
+    let with = |option: &str, name: &str, text: &str, words: &str| {
+        let file = folder.file(name, text);
+        refused(
+            &["press", &hand, &product, option, &file, "--out", &out],
+            words,
+        );
+    };
+    with(
+        "--protocol",
+        "a.csv",
+        "time_s,depth\n0,1\n",
+        "line 1: there is no column \"depth\"",
+    );
+    with(
+        "--protocol",
+        "b.csv",
+        "time_s,depth_mm\n0,deep\n",
+        "line 2: depth_mm is \"deep\"",
+    );
+    with(
+        "--protocol",
+        "c.csv",
+        "time_s,depth_mm,force_n\n0,1,1\n",
+        "line 2: give one of",
+    );
+    with(
+        "--protocol",
+        "d.csv",
+        "time_s,depth_mm\n1,0\n1,1\n",
+        "row 1: time_s is 1",
+    );
+    with("--protocol", "e.csv", "time_s,depth_mm\n", "no rows");
+    with(
+        "--effects",
+        "a.toml",
+        "[[effect]]\nname = \"magic\"\n",
+        "there is no effect \"magic\"; there are bone",
+    );
+    with(
+        "--effects",
+        "b.toml",
+        "[[effect]]\nname = \"bone\"\nthick = 3\n",
+        "line 3: effect bone: there is no number",
+    );
+    with(
+        "--effects",
+        "c.toml",
+        "[[effect]]\nname = \"bone\"\nthickness_mm = -3\n",
+        "thickness_mm is -3, but must be from",
+    );
+    with(
+        "--effects",
+        "d.toml",
+        "[[effect]]\nname = \"bone\"\nregions = [7]\n",
+        "line 3: regions must be a list",
+    );
+    with(
+        "--effects",
+        "e.toml",
+        "[bone]\nthickness_mm = 3\n",
+        "line 1: each effect stands in a table",
+    );
+    with(
+        "--effects",
+        "f.toml",
+        "[[effect]]\nname = \"stiffening_law\"\nlaw = \"cubic\"\n",
+        "must be one of exponential",
+    );
+    let protocol = folder.file("p.csv", PROTOCOL);
+    refused(
+        &[
+            "press",
+            &hand,
+            &product,
+            "--protocol",
+            &protocol,
+            "--force",
+            "1",
+            "--out",
+            &out,
+        ],
+        "cannot be used with",
+    );
+}
