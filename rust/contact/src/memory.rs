@@ -1,5 +1,6 @@
 //! What one press leaves for the next, so that small moves are cheap.
 
+use crate::interface::attraction::Pull;
 use crate::interface::shear_kernel::ShearTables;
 use crate::linearize::Solved;
 use crate::solve::operator::Rows;
@@ -18,6 +19,8 @@ pub struct Memory {
     pub triangle: Vec<u32>,
     /// Travel found by force control, mm.
     pub offset: f64,
+    /// Attraction of the last row of a protocol.
+    pub pulls: Vec<Pull>,
     /// Kernels of shear, once friction has needed them.
     pub shear: Option<ShearTables>,
 }

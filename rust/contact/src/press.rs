@@ -195,6 +195,9 @@ pub struct Contact {
     pub offset: f64,
     /// Direction of travel, or of the mean normal force without force control; zero without contact.
     pub direction: Vec3,
+    /// Attraction towards the product, N, >= 0; zero without adhesion. Forces and pressures are those of contact alone; only
+    /// totals are less by it.
+    pub adhesion: Vec<f64>,
     /// Shear, where friction acts and the product is dragged.
     pub shear: Option<Shear>,
     /// What is left of the equations.

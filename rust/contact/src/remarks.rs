@@ -28,6 +28,12 @@ pub fn remarks(skin: &Skin, posed: &Mesh, product: &Product, pressed: &Pressed) 
     } else {
         said.extend(coarse(skin, product, pressed));
     }
+    if !pressed.clinging.is_settled {
+        said.push(
+            "adhesion is about to make the skin leap and did not settle: take smaller steps there"
+                .to_owned(),
+        );
+    }
     if !pressed.solved.convergence.has_converged {
         said.push(format!(
             "the written surface still penetrates the product by {:.3} mm after {} passes; the product may have folds \

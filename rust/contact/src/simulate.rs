@@ -6,8 +6,9 @@ use thenar_surface::{Mesh, Product, Vec3};
 
 use crate::effects::stiffening_law::shear_moduli;
 use crate::force_control::find_offset;
-use crate::history::recalled::{moved, restore};
+use crate::history::recalled::{Moved, moved, restore};
 use crate::history::state::Recall;
+use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull};
 use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
 use crate::memory::Last;
@@ -36,8 +37,19 @@ pub(crate) struct Pressed {
     pub modulus_at: Vec<f64>,
     /// What memory did to it, if the tissue remembers.
     pub recalled: Option<Recalled>,
+    /// What attracts skin and product.
+    pub clinging: Clinging,
     /// What friction made of a drag.
     pub shear: Option<Sheared>,
+}
+
+/// What a solve starts from.
+struct State<'a> {
+    product: &'a Product,
+    truth: &'a Detection,
+    recall: Option<&'a Recall>,
+    /// Response weight by site.
+    weight: &'a [f64],
 }
 
 /// The memory's part in a press.
@@ -53,14 +65,14 @@ impl Pressed {
         self.force_on_skin().dot(direction)
     }
 
-    /// Sum of the forces on the skin, N.
+    /// Sum of the normal forces on the skin, attraction taken off, N.
     pub fn force_on_skin(&self) -> Vec3 {
-        self.solved
-            .force
-            .iter()
-            .zip(&self.solved.touch)
-            .map(|(f, g)| g.normal * *f)
-            .sum()
+        let forces = self.solved.force.iter().zip(&self.solved.touch);
+        let pushed: Vec3 = forces.map(|(f, g)| g.normal * *f).sum();
+        if self.clinging.pulls.is_empty() {
+            return pushed;
+        }
+        pushed + self.clinging.force()
     }
 }
 
@@ -76,6 +88,7 @@ impl Skin {
             self.memory.triangle.clear();
             self.memory.offset = 0.0;
         }
+        self.memory.pulls.clear();
         let mut seconds = Seconds::new();
         let posed = self.posed(press.posed)?;
         let (offset, direction, mut pressed) = match press.force {
@@ -145,32 +158,21 @@ impl Skin {
         let effective = self.effective_moduli(&shear_modulus, &truth);
         let (mut weight, mut modulus_at) = self.weights(&effective);
         self.tissue.scale(&mut weight, &mut modulus_at);
-        let moved = recall
-            .as_ref()
-            .map(|recall| moved(self, product, (&truth, recall), &weight));
-        let detection = moved.as_ref().map_or(&truth, |moved| &moved.detection);
-        let zone = self.zone(detection);
-        check_resolution(self, &zone)?;
+        let attraction = Attraction::new(self, &weight);
         add_time(seconds, "response", started);
         let started = Instant::now();
-        let last = std::mem::take(&mut self.memory.last);
-        let elastic = recall.as_ref().map(|recall| Last {
-            force: recall.elastic(&last.force, &self.sites),
-            travel: Vec::new(),
-        });
-        let start = elastic.as_ref().unwrap_or(&last);
-        let setting = Setting {
+        let state = State {
             product,
-            detection,
+            truth: &truth,
+            recall: recall.as_ref(),
             weight: &weight,
-            start: (start.force.len() == self.sites.len()).then_some(start),
-            spacing: self.spacing,
         };
-        let solved = solve(self, zone, &setting, control);
-        self.memory.last = last;
-        let mut solved = solved?;
-        let recalled = moved.zip(recall).map(|(moved, recall)| {
-            let bearing = restore(self, &mut solved, &mut modulus_at, (&moved, &recall));
+        let (mut solved, clinging) = match &attraction {
+            None => (self.solve_moved(&state, &[], control)?, Clinging::none()),
+            Some(attraction) => self.solve_clinging(attraction, &state, control)?,
+        };
+        let recalled = recall.map(|recall| {
+            let bearing = restore(self, &mut solved, &mut modulus_at, &recall);
             Recalled { recall, bearing }
         });
         add_time(seconds, "solve", started);
@@ -180,8 +182,90 @@ impl Skin {
             shear_modulus,
             modulus_at,
             recalled,
+            clinging,
             shear: None,
         })
+    }
+
+    /// Solves in the posture that memory and attraction make of the true one.
+    fn solve_moved(
+        &mut self,
+        state: &State<'_>,
+        pulls: &[Pull],
+        control: &Control,
+    ) -> Result<Solved, ContactError> {
+        let moved = self.moved_posture(state, pulls);
+        let detection = moved.as_ref().map_or(state.truth, |moved| &moved.detection);
+        let zone = self.zone(detection);
+        check_resolution(self, &zone)?;
+        let last = std::mem::take(&mut self.memory.last);
+        let elastic = state.recall.map(|recall| Last {
+            force: recall.elastic(&last.force, &self.sites),
+            travel: Vec::new(),
+        });
+        let start = elastic.as_ref().unwrap_or(&last);
+        let setting = Setting {
+            product: state.product,
+            detection,
+            weight: state.weight,
+            start: (start.force.len() == self.sites.len()).then_some(start),
+            spacing: self.spacing,
+        };
+        let solved = solve(self, zone, &setting, control);
+        self.memory.last = last;
+        let mut solved = solved?;
+        if let Some(moved) = &moved {
+            moved.add_to(&mut solved);
+        }
+        Ok(solved)
+    }
+
+    fn moved_posture(&mut self, state: &State<'_>, pulls: &[Pull]) -> Option<Moved> {
+        if state.recall.is_none() && pulls.is_empty() {
+            return None;
+        }
+        let pulled: Vec<u32> = pulls.iter().map(|pull| pull.site).collect();
+        self.response.make_rows(&pulled, &self.sites);
+        let mut loads = state
+            .recall
+            .map_or_else(Vec::new, |recall| recall.loads.clone());
+        for pull in pulls {
+            // What pulls now counts in full, whatever the tissue then lets go of.
+            let region = self.sites.home_region(pull.site as usize) as usize;
+            let at_once = state.recall.map_or(1.0, |recall| recall.at_once[region]);
+            loads.push((pull.site, -pull.normal * (pull.newton / at_once)));
+        }
+        let mut moved = moved(self, state.product, (state.truth, &loads), state.weight);
+        if !pulls.is_empty() {
+            moved.detection.deepen(self);
+        }
+        Some(moved)
+    }
+
+    /// Finds attraction and contact together, from the attraction of the step before.
+    fn solve_clinging(
+        &mut self,
+        attraction: &Attraction,
+        state: &State<'_>,
+        control: &Control,
+    ) -> Result<(Solved, Clinging), ContactError> {
+        let mut pulls = self.memory.pulls.clone();
+        for solve in 1.. {
+            let solved = self.solve_moved(state, &pulls, control)?;
+            let next = attraction.pulls(self, state.truth, &solved);
+            let is_settled = attraction.is_settled(&pulls, &next);
+            if is_settled || solve == MOST_SOLVES {
+                return Ok((solved, Clinging { pulls, is_settled }));
+            }
+            pulls = next;
+            if state.recall.is_none() {
+                self.memory.last = Last {
+                    travel: Vec::new(),
+                    ..Last::of(&solved, self.sites.len())
+                };
+            }
+        }
+        Err(ContactError::Cancelled)
     }
 
     /// What the tissue remembers of the steps before, if a protocol is followed.
@@ -250,6 +334,7 @@ impl Skin {
             |gap: &Option<thenar_surface::Gap>| gap.as_ref().map_or(u32::MAX, |g| g.triangle);
         self.memory.triangle = pressed.detection.gaps.iter().map(triangle).collect();
         self.memory.offset = offset;
+        self.memory.pulls.clone_from(&pressed.clinging.pulls);
     }
 }
 

@@ -64,8 +64,10 @@ pub fn summarize(
         pressure: spread(&fields.pressure),
         gap: spread(&fields.gap),
         normal: spread_vectors(&fields.normal),
-        total_force: total_force + shear_force,
-        total_moment: touches.iter().map(moment).sum::<Vec3>() + shear_moment,
+        total_force: total_force + shear_force - pressed.clinging.force(),
+        total_moment: touches.iter().map(moment).sum::<Vec3>()
+            + shear_moment
+            + pressed.clinging.moment(shift),
         center_of_pressure: if normal_force > 0.0 {
             center / normal_force
         } else {
@@ -86,6 +88,7 @@ pub fn summarize(
         product_pressure,
         offset,
         direction,
+        adhesion: pressed.clinging.by_vertex(skin),
         shear: shear_fields(skin, pressed, &fields.area),
         residual: Residual {
             complementarity: solved.complementarity,
@@ -175,6 +178,10 @@ impl Fields {
             .zip(&displacement)
             .map(|(x, u)| x + u)
             .collect();
+        if !pressed.clinging.pulls.is_empty() {
+            // The law that places the edge between vertices is that of contact without attraction.
+            slack.fill(f64::NAN);
+        }
         let edge = EdgeData {
             positions: &deformed,
             pressure: &pressure,

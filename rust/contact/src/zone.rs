@@ -33,6 +33,16 @@ pub struct Detection {
 }
 
 impl Detection {
+    /// Takes over the penetrations of a moved posture where they are larger.
+    pub fn deepen(&mut self, skin: &Skin) {
+        for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+            if let (true, Some(gap)) = (skin.sites.is_skin(site), &self.gaps[vertex as usize]) {
+                let most = &mut self.max_penetration[skin.sites.region[site] as usize];
+                *most = most.max(-gap.distance);
+            }
+        }
+    }
+
     /// Largest penetration of any region, mm.
     pub fn deepest(&self) -> f64 {
         self.max_penetration

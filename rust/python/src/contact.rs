@@ -41,6 +41,8 @@ pub struct Contact {
     offset_mm: f64,
     /// (3,), direction of travel, or of the mean normal force without force control.
     direction: Py<PyAny>,
+    /// (n,), N, attraction towards the product, >= 0; zero without adhesion. Force and pressure are those of contact alone.
+    adhesion_force_n: Py<PyAny>,
     /// (n, 3), N, shear force on the skin; zero without friction and drag.
     tangential_force_n: Py<PyAny>,
     /// (n,), MPa, its length over the vertex area.
@@ -107,6 +109,7 @@ impl Contact {
             product_pressure_mpa: column(py, contact.product_pressure),
             offset_mm: contact.offset,
             direction: triple(py, contact.direction),
+            adhesion_force_n: column(py, contact.adhesion),
             tangential_force_n: rows(py, &shear.force)?,
             tangential_traction_mpa: column(py, shear.traction),
             slip_mm: rows(py, &shear.slip)?,

@@ -1,7 +1,7 @@
 //! The list of effects, by the names that scripts, files and findings use.
 
 use super::entry::Entry;
-use super::{bone, compressibility, cycle_softening, drainage, friction, inclusion};
+use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};
 use super::{rate_independent_loss, region_coupling, relaxation, stiffening_law};
 
 /// An effect of the catalogue.
@@ -27,10 +27,12 @@ pub enum Effect {
     RateIndependentLoss,
     /// Skin that sticks to the product and slips over it.
     Friction,
+    /// Skin that clings to the product.
+    Adhesion,
 }
 
 /// Every effect with what is known of it, in the order in which they compose.
-pub const CATALOGUE: [(Effect, &Entry); 10] = [
+pub const CATALOGUE: [(Effect, &Entry); 11] = [
     (Effect::Bone, &bone::ENTRY),
     (Effect::Compressibility, &compressibility::ENTRY),
     (Effect::RegionCoupling, &region_coupling::ENTRY),
@@ -41,6 +43,7 @@ pub const CATALOGUE: [(Effect, &Entry); 10] = [
     (Effect::Drainage, &drainage::ENTRY),
     (Effect::RateIndependentLoss, &rate_independent_loss::ENTRY),
     (Effect::Friction, &friction::ENTRY),
+    (Effect::Adhesion, &adhesion::ENTRY),
 ];
 
 impl Effect {

@@ -18,6 +18,7 @@ pub(crate) mod drainage;
 pub(crate) mod cycle_softening;
 pub(crate) mod rate_independent_loss;
 pub(crate) mod friction;
+pub(crate) mod adhesion;
 
 pub use active::ActiveEffect;
 pub use catalogue::{CATALOGUE, Effect};

@@ -82,8 +82,9 @@ impl Tissue {
                 | Effect::Relaxation
                 | Effect::Drainage
                 | Effect::RateIndependentLoss
-                // And friction in `interface`.
-                | Effect::Friction => {}
+                // And what acts between skin and product in `interface`.
+                | Effect::Friction
+                | Effect::Adhesion => {}
             }
         }
         tissue.geometry.layers = layers(&tissue.materials);

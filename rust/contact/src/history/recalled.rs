@@ -22,18 +22,27 @@ pub struct Moved {
     field: Vec<Vec3>,
 }
 
-/// Moves the posture of `truth` by the recalled loads.
+impl Moved {
+    /// Adds to a solution of the moved posture what moved it.
+    pub fn add_to(&self, solved: &mut Solved) {
+        for (u, moved) in solved.displacement.iter_mut().zip(&self.field) {
+            *u += moved;
+        }
+    }
+}
+
+/// Moves the posture of `truth` by loads (N) on sites that have their rows of the response.
 pub fn moved(
     skin: &Skin,
     product: &Product,
-    (truth, recall): (&Detection, &Recall),
+    (truth, loads): (&Detection, &[(u32, Vec3)]),
     weight: &[f64],
 ) -> Moved {
     let load = |&(site, load): &(u32, Vec3)| Load {
         site,
         load: load * weight[site as usize],
     };
-    let loads: Vec<Load> = recall.loads.iter().map(load).collect();
+    let loads: Vec<Load> = loads.iter().map(load).collect();
     let mut field = displacements(&skin.response, &loads, &skin.sites);
     for (site, u) in field.iter_mut().enumerate() {
         *u *= weight[site] * skin.sites.follow[site];
@@ -79,7 +88,7 @@ pub fn restore(
     skin: &Skin,
     solved: &mut Solved,
     modulus: &mut [f64],
-    (moved, recall): (&Moved, &Recall),
+    recall: &Recall,
 ) -> Vec<(u32, Vec3)> {
     let mut bearing = Vec::with_capacity(solved.zone.len());
     for (k, &site) in solved.zone.iter().enumerate() {
@@ -93,9 +102,6 @@ pub fn restore(
             let share = solved.force[k] / elastic.norm();
             modulus[site as usize] *= share.clamp(EDGE_SHARES.0, EDGE_SHARES.1);
         }
-    }
-    for (u, remembered) in solved.displacement.iter_mut().zip(&moved.field) {
-        *u += remembered;
     }
     bearing
 }

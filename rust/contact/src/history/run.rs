@@ -50,6 +50,7 @@ impl Skin {
         self.memory.last = Last::default();
         self.memory.triangle.clear();
         self.memory.offset = 0.0;
+        self.memory.pulls.clear();
         self.history = History::new(
             self.effects(),
             self.tissue.materials.len(),

@@ -7,6 +7,7 @@ pub mod discs;
 pub mod stick_slip;
 pub mod pull;
 
+pub(crate) mod attraction;
 pub(crate) mod friction;
 pub(crate) mod shear_fields;
 mod dense;

@@ -207,6 +207,11 @@ impl Response {
         self.cuts.iter().map(share).product()
     }
 
+    /// `K_ii` of the layer at a site, 1/mm.
+    pub fn own(&self, site: usize, sites: &Sites) -> f64 {
+        self.layer_entry((site, site), 0.0, self.psi(site, site, 0.0), sites)
+    }
+
     /// `K_ij` of the layer, 1/mm.
     #[inline]
     fn layer_entry(&self, (i, j): (usize, usize), r: f64, psi: f64, sites: &Sites) -> f64 {
