@@ -15,6 +15,14 @@ pub struct Thenar {
 pub enum Command {
     /// Presses a hand against a product and writes vertices.csv, product.csv and summary.json.
     Press(Box<PressArguments>),
+    /// Reads a measurement file of any maker, or a study's folder, and tells what it holds and what it does not say.
+    Read(ReadArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct ReadArguments {
+    /// Export of a pressure mat or indenter, or a folder with study.toml.
+    pub file: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -7,6 +7,7 @@ mod interrupt;
 mod materials;
 mod press;
 mod protocol;
+mod read;
 mod regions;
 mod results;
 
@@ -56,6 +57,10 @@ fn run() -> Result<(), Fault> {
     };
     match thenar.command {
         Command::Press(arguments) => press::run(&arguments),
+        Command::Read(arguments) => {
+            tell(&read::told(&arguments.file)?);
+            Ok(())
+        }
     }
 }
 

@@ -50,6 +50,9 @@ impl Check {
 
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Four digits at most: a tolerance that was converted from another unit has many.
+        let tolerance = format!("{:.4}", self.tolerance);
+        let tolerance = tolerance.trim_end_matches('0').trim_end_matches('.');
         let verdict = if self.agrees() { "agrees" } else { "disagrees" };
         write!(
             f,
@@ -59,7 +62,7 @@ impl fmt::Display for Check {
             self.largest_difference,
             self.unit,
             self.frame,
-            self.tolerance,
+            tolerance,
             self.unit
         )
     }

@@ -133,3 +133,15 @@ fn an_endless_line_is_refused() {
         "a.txt, line 3: the line is longer than 1048576 bytes; this is not an export as text; export it again"
     );
 }
+
+#[test]
+fn a_header_that_claims_a_huge_mat_is_refused() {
+    let text = TEKSCAN
+        .replace("ROWS 2", "ROWS 4096")
+        .replace("COLS 3", "COLS 4096");
+    let message = export(text.as_bytes()).unwrap_err();
+    assert!(
+        message.starts_with("a.txt, line 20: 4096 x 4096 cells, expected 1048576 at most; "),
+        "{message}"
+    );
+}

@@ -64,6 +64,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     }
     let area = platform.area_mm2;
     let (first, size) = window(&pages);
+    super::check_cells(size[0], size[1]).map_err(|problem| Fault::file(problem, DAMAGED))?;
     if pages.len().saturating_mul(size[0] * size[1]) > MOST_VALUES {
         return Err(Fault::file(
             "the pictures' windows lie too far apart".into(),

@@ -96,6 +96,7 @@ impl Foot {
         let (Some(columns), Some(rows)) = (rectangle.width, rectangle.height) else {
             return Err("a frame stands before the width and height of its rectangle".into());
         };
+        super::check_cells(rows, columns)?;
         let first = [
             rectangle.bottom.unwrap_or(0) as u32,
             rectangle.left.unwrap_or(0) as u32,

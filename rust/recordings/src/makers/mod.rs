@@ -24,6 +24,9 @@ use crate::recording::RecordingFile;
 /// Most rows or columns of a mat; the largest on the market have 256.
 const WIDEST: usize = 4096;
 
+/// Most cells of a mat, so that a damaged header cannot claim memory; the largest on the market have 65,536.
+const MOST_CELLS: usize = 1 << 20;
+
 /// Reads a text of a maker's format; tables are read elsewhere.
 pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFile, Fault> {
     let maps = |maps| RecordingFile::of_maps(format, maps);
@@ -76,6 +79,16 @@ fn count(text: &str, what: &str) -> Result<usize, String> {
         Err(_) => Err(format!(
             "{} is not a number of {what}",
             crate::fault::shown(text.trim().as_bytes())
+        )),
+    }
+}
+
+/// Refuses a mat of more cells than any has.
+fn check_cells(rows: usize, columns: usize) -> Result<(), String> {
+    match rows.saturating_mul(columns) <= MOST_CELLS {
+        true => Ok(()),
+        false => Err(format!(
+            "{rows} x {columns} cells, expected {MOST_CELLS} at most"
         )),
     }
 }

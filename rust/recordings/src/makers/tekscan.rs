@@ -28,6 +28,8 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     };
     let rows = header.rows.ok_or_else(|| needed("ROWS"))?;
     let columns = header.columns.ok_or_else(|| needed("COLS"))?;
+    super::check_cells(rows, columns)
+        .map_err(|problem| Fault::line(header_end, problem, DAMAGED))?;
     let (unit, factor) = header.unit.ok_or_else(|| needed("UNITS"))?;
     let sensels = grid_sensels([0, 0], [rows, columns], header.area_mm2);
     let mut map = PressureMap::new(header.source(), unit, sensels);

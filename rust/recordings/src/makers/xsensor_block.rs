@@ -56,6 +56,8 @@ impl Block {
             let problem = "the sensor above does not state its Rows and Columns".to_string();
             return Err(Fault::line(lines.number(), problem, DAMAGED));
         }
+        super::check_cells(block.rows, block.columns)
+            .map_err(|problem| Fault::line(lines.number(), problem, DAMAGED))?;
         let shape = Row {
             separator: Separator::Comma,
             columns: block.columns,

@@ -1,4 +1,17 @@
 //! A study: a folder with `study.toml`, the recordings it names and what they were taken from.
+//!
+//! A mat's sensels are placed by a table (`sensels = "sensels.csv"`: row, col or sensor, x_mm, y_mm, z_mm, area_mm2) or by how the
+//! flat mat lies:
+//!
+//! ```toml
+//! [recordings.placing]
+//! on = "cylinder"            # or "plane" with origin_mm, columns, rows: the corner, and the directions in which they count
+//! origin_mm = [0, 0, 0]      # point of the axis level with the edge before the first row
+//! axis = [0, 1, 0]           # rows count along it
+//! seam = [0, 0, 1]           # from the axis to the edge before the first column
+//! diameter_mm = 48           # on which the sensels lie
+//! turn = "right"             # columns go around by the right-hand rule; "left" against it
+//! ```
 
 mod toml_tree;
 mod place;

@@ -1,0 +1,162 @@
+//! `thenar read`: what a measurement file or a study holds, its totals checked, and what it does not say.
+
+use crate::fault::Fault;
+use std::fmt::{Error, Write};
+use std::path::Path;
+use thenar_recordings::study::{Data, Study};
+use thenar_recordings::{Check, Curve, PressureMap, PressureUnit, RecordingFile, Source};
+
+/// The report on a file or a study's folder.
+///
+/// # Errors
+/// What is wrong with it, in one sentence.
+pub fn told(file: &Path) -> Result<String, Fault> {
+    let mut text = String::new();
+    let written = if file.is_dir() {
+        write_study(&mut text, &Study::load(file)?)
+    } else {
+        write_file(&mut text, file, &thenar_recordings::read(file)?)
+    };
+    written.map_err(|_| Fault::Other("the report could not be written".into()))?;
+    Ok(text)
+}
+
+fn write_file(text: &mut String, file: &Path, read: &RecordingFile) -> Result<(), Error> {
+    writeln!(text, "{}: {}", file.display(), read.format.name())?;
+    read.maps.iter().try_for_each(|map| write_map(text, map))?;
+    read.curves
+        .iter()
+        .try_for_each(|curve| write_curve(text, curve))
+}
+
+fn write_study(text: &mut String, study: &Study) -> Result<(), Error> {
+    let (vertices, triangles) = (
+        study.skin.mesh.positions.len(),
+        study.skin.mesh.triangles.len(),
+    );
+    writeln!(text, "{}: {}", study.folder.display(), study.title)?;
+    writeln!(
+        text,
+        "skin: {vertices} vertices, {triangles} triangles, {} regions",
+        study.skin.region_names.len().max(1)
+    )?;
+    for recording in &study.recordings {
+        writeln!(
+            text,
+            "\n{} ({} at {})",
+            recording.name, recording.indenter, recording.site
+        )?;
+        match &recording.data {
+            Data::Indentation(curve) => write_curve(text, curve)?,
+            Data::PressureMap { map, sensels, .. } => {
+                write_map(text, map)?;
+                let placed = sensels.iter().flatten().flatten().count();
+                writeln!(text, "  {placed} sensels placed on the product")?;
+            }
+            Data::Scan { mesh, .. } => {
+                writeln!(text, "  scan of {} vertices", mesh.positions.len())?
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_map(text: &mut String, map: &PressureMap) -> Result<(), Error> {
+    let missing = (0..map.sensels.len())
+        .filter(|k| (0..map.frames()).all(|frame| map.frame(frame)[*k].is_nan()))
+        .count();
+    let unit = match map.unit {
+        PressureUnit::Kilopascal => "kPa",
+        PressureUnit::RawCounts => "raw counts",
+        PressureUnit::NotStated => "values without unit",
+    };
+    writeln!(text, "  mat{}{}", named(&map.name), source(&map.source))?;
+    write!(
+        text,
+        "  {} frames of {} sensels in {unit}",
+        map.frames(),
+        map.sensels.len() - missing
+    )?;
+    if let Some(grid) = map.grid() {
+        write!(
+            text,
+            ", a grid of {} x {} with {missing} cells missing",
+            grid.rows, grid.columns
+        )?;
+    }
+    if let Some(times) = map.time_s.as_ref().filter(|times| !times.is_empty()) {
+        write!(text, ", {:.3} to {:.3} s", times[0], times[times.len() - 1])?;
+    }
+    let peak = (0..map.frames())
+        .map(|frame| map.peak(frame))
+        .fold(0.0, f64::max);
+    write!(
+        text,
+        "\n  largest value {peak:.1}, {} clipped",
+        map.clipped_count()
+    )?;
+    let forces: Option<Vec<f64>> = (0..map.frames()).map(|frame| map.force_n(frame)).collect();
+    if let Some(largest) = forces.map(|forces| forces.into_iter().fold(0.0, f64::max)) {
+        write!(text, ", largest force {largest:.1} N")?;
+    }
+    writeln!(text)?;
+    write_notes(text, &map.checks, &map.unknown, &map.warnings)
+}
+
+fn write_curve(text: &mut String, curve: &Curve) -> Result<(), Error> {
+    writeln!(text, "  run{}{}", named(&curve.name), source(&curve.source))?;
+    writeln!(text, "  {} samples", curve.samples())?;
+    for channel in &curve.channels {
+        let finite = || {
+            channel
+                .values
+                .iter()
+                .copied()
+                .filter(|value| value.is_finite())
+        };
+        let (low, high) = (
+            finite().fold(f64::INFINITY, f64::min),
+            finite().fold(f64::NEG_INFINITY, f64::max),
+        );
+        writeln!(text, "    {}: {low:.6e} to {high:.6e}", channel.name)?;
+    }
+    for fact in &curve.facts {
+        writeln!(text, "    {} = {:.6e}", fact.name, fact.value)?;
+    }
+    write_notes(text, &curve.checks, &curve.unknown, &curve.warnings)
+}
+
+fn write_notes(
+    text: &mut String,
+    checks: &[Check],
+    unknown: &[String],
+    warnings: &[String],
+) -> Result<(), Error> {
+    checks
+        .iter()
+        .try_for_each(|check| writeln!(text, "  check: {check}"))?;
+    unknown
+        .iter()
+        .try_for_each(|note| writeln!(text, "  not known: {note}"))?;
+    warnings
+        .iter()
+        .try_for_each(|note| writeln!(text, "  warning: {note}"))
+}
+
+fn named(name: &str) -> String {
+    if name.is_empty() {
+        String::new()
+    } else {
+        format!(" {name:?}")
+    }
+}
+
+fn source(source: &Source) -> String {
+    let parts = [source.maker, &source.product, &source.sensor];
+    let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", parts.join(", "))
+    }
+}
