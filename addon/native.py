@@ -34,6 +34,11 @@ def parameters():
     return {row["name"]: row for row in module.parameters()} if module is not None else {}
 
 
+def effects():
+    """The library's catalogue of effects; empty where the native module is missing."""
+    return module.effects() if module is not None else []
+
+
 def published(preset):
     """Numbers by parameter name of a published material ("finger", "palm", "finger_layer", "palm_layer"), or None."""
     maker = getattr(module.Material, preset, None) if module is not None else None

@@ -14,6 +14,7 @@ def fill(result, job, contact, written, notes):
     result.schema, result.is_valid = names.SCHEMA, True
     result.hand_name, result.product_name = job.hand_name, ", ".join(job.part_names)
     result.model, result.vertices = job.model, len(job.reading.hand.rest_mm)
+    result.effects = ", ".join(f"{effect.name} {effect.amplitude:g}" for effect in job.effects)
     total = np.asarray(contact.total_force_n, dtype=np.float64)
     result.force_n = float(np.asarray(contact.force_n).sum())
     result.force_vector_n = total
@@ -55,6 +56,7 @@ def as_dict(result):
         "hand": result.hand_name,
         "product": result.product_name,
         "model": result.model,
+        "effects": result.effects,
         "vertices": result.vertices,
         "force_n": result.force_n,
         "force_vector_n": list(result.force_vector_n),

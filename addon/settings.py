@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import names, native, status
+from . import effect_settings, names, native, status
 from .scene.units import KPA_PER_MPA
 
 PRESETS = (
@@ -157,6 +157,7 @@ class ThenarResult(bpy.types.PropertyGroup):
     hand_name: StringProperty()
     product_name: StringProperty()
     model: StringProperty()
+    effects: StringProperty()
     vertices: IntProperty()
     force_n: FloatProperty()
     force_vector_n: FloatVectorProperty(size=3)
@@ -196,6 +197,8 @@ class ThenarObject(bpy.types.PropertyGroup):
     materials: CollectionProperty(type=ThenarMaterial)
     material_index: IntProperty()
     default_material: PointerProperty(type=ThenarMaterial)
+    effects: CollectionProperty(type=effect_settings.ThenarEffect)
+    effect_index: IntProperty()
     made_basis: BoolProperty()
     home: FloatVectorProperty(size=3, subtype="XYZ")
     is_moved: BoolProperty()
@@ -280,6 +283,7 @@ class ThenarScene(bpy.types.PropertyGroup):
 
 
 CLASSES = (
+    *effect_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
     ThenarStage,

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from . import cache, names, native, status
+from . import cache, effects, names, native, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
@@ -23,6 +23,7 @@ class Job:
     reading: read.Reading
     region_names: tuple
     materials: tuple
+    effects: tuple
     model: str
     force_n: float | None
     direction: tuple | None
@@ -64,6 +65,7 @@ def read_job(context, hand, parts):
     with own.without_own_output(context, hand, parts):
         skin = read.read_hand(context, hand, group_names)
         product = read.read_product(context, parts, skin.scale, skin.origin_mm)
+        used = effects.read(context, hand, group_names or (names.WHOLE_SKIN,))
     materials = tuple(_numbers(material) for material in (listed or (hand.thenar.default_material,)))
     force = settings.force_n if settings.use_force else None
     direction = tuple(settings.direction) if settings.use_force and settings.direction_mode == "OWN" else None
@@ -76,6 +78,7 @@ def read_job(context, hand, parts):
         reading=read.Reading(skin, product),
         region_names=group_names or (names.WHOLE_SKIN,),
         materials=materials,
+        effects=used,
         model=model,
         force_n=force,
         direction=direction,
@@ -87,6 +90,7 @@ def read_job(context, hand, parts):
             product.vertices_mm,
             product.triangles,
             materials,
+            *effects.hashed(used),
             model,
             force,
             direction,
@@ -125,6 +129,7 @@ def _compute(job, key, cancel, progress):
     if progress is not None:
         progress("prepare", 0.0)
     skin = cache.skin(key, lambda: _skin(thenar, job, cancel, progress))
+    skin.set_effects([effect.native(thenar) for effect in job.effects])
     job.seconds["prepare"] = time.perf_counter() - started
     started = time.perf_counter()
     contact = skin.press(
@@ -222,6 +227,7 @@ def state_hash(context):
     materials = tuple((material.name, _numbers(material)) for material in listed)
     choices = (settings.model, settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction))
     shapes = state.shapes(context, [hand, *parts])
+    choices += effects.shown(hand)
     return cache.content_hash(names.VERSION, materials, choices, units.mm_per_unit(context.scene), *shapes)
 
 

@@ -3,9 +3,9 @@
 import bpy
 
 from .. import status
-from . import bake, clear, display, export, regions, solve
+from . import bake, clear, display, effects, export, regions, solve
 
-_MODULES = (solve, clear, display, regions, export, bake)
+_MODULES = (solve, clear, display, regions, effects, export, bake)
 
 
 def register():

@@ -59,6 +59,17 @@ def no_groups(context):
     return "" if grouped else "the hand has no vertex groups; paint one for each region of the skin first"
 
 
+def no_module():
+    """The native module cannot be used."""
+    return status.native_problem
+
+
+def no_effects(context):
+    """No effect is listed on the hand."""
+    hand = context.scene.thenar.hand
+    return "" if hand is not None and len(hand.thenar.effects) > 0 else "no effect is listed"
+
+
 def no_regions(context):
     """No region is listed on the hand."""
     hand = context.scene.thenar.hand

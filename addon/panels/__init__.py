@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import lists, main, materials, preferences, result
+from . import effects, lists, main, materials, preferences, result
 
-_MODULES = (preferences, lists, main, materials, result)
+_MODULES = (preferences, lists, main, materials, effects, result)
 
 
 def register():

@@ -1,0 +1,79 @@
+"""Blender properties of the effects that are switched on for a hand; what each effect is stands in the library."""
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, StringProperty
+
+from . import native
+
+IN_A_PRESS = ("geometry", "stiffening")
+"""Stages of the catalogue that act in a single press; the others need time or sliding, and so a protocol."""
+
+_LAWS = {}
+"""Items of choices by their options: Blender needs the texts of a dynamic list kept."""
+
+
+def offered():
+    """Catalogue rows, by name, of the effects that act in a press, in the order in which they compose."""
+    return {row["name"]: row for row in native.effects() if row["stage"] in IN_A_PRESS}
+
+
+def can_be_painted(name):
+    """Whether a vertex group can stand for the effect's field."""
+    return bool(offered().get(name, {}).get("painted"))
+
+
+def title(name):
+    """An effect's or number's name for reading."""
+    return name.removesuffix("_mm").replace("_", " ").capitalize()
+
+
+def _options(self, _context):
+    return _LAWS.setdefault(self.options, [(word, title(word), "") for word in self.options.split()])
+
+
+class ThenarEffectNumber(bpy.types.PropertyGroup):
+    """One shape number of an effect; `name` is the library's."""
+
+    value: FloatProperty(name="Value", description="Shape number of the effect, in the unit beside it", precision=3)
+    unit: StringProperty()
+
+
+class ThenarEffectChoice(bpy.types.PropertyGroup):
+    """One choice of an effect among `options` (words with blanks between); `name` is the library's."""
+
+    options: StringProperty()
+    value: EnumProperty(name="Choice", description="Which law the effect follows", items=_options)
+
+
+class ThenarEffect(bpy.types.PropertyGroup):
+    """An effect of the catalogue, switched on for all skin or for one region; `name` is the library's."""
+
+    is_on: BoolProperty(name="On", description="Switch the effect on; off is the base model, bit for bit", default=True)
+    amplitude: FloatProperty(
+        name="Amplitude", description="How much of the effect acts; 0 is the base model", min=0.0, max=1.0, default=1.0
+    )
+    region: StringProperty(name="Region", description="Region the effect acts on; empty: all of the skin")
+    numbers: CollectionProperty(type=ThenarEffectNumber)
+    choices: CollectionProperty(type=ThenarEffectChoice)
+    painted: StringProperty(
+        name="Painted",
+        description="Vertex group that paints the effect's field; skin of weight 0 takes the number above",
+    )
+    painted_full: FloatProperty(
+        name="At Weight 1 (mm)", description="What the full weight of the painted group stands for", min=0.0, default=10
+    )
+
+
+def fill(effect, row):
+    """Set an effect to a row of the catalogue, with its default numbers."""
+    effect.name, effect.amplitude = row["name"], row["most"]
+    for shape in row["shape"]:
+        number = effect.numbers.add()
+        number.name, number.value, number.unit = shape["name"], shape["default"], shape["unit"]
+    for choice in row["choices"]:
+        made = effect.choices.add()
+        made.name, made.options = choice["name"], " ".join(choice["options"])
+        made.value = choice["options"][0]
+
+
+CLASSES = (ThenarEffectNumber, ThenarEffectChoice, ThenarEffect)

@@ -1,0 +1,75 @@
+"""The effects that are switched on for a hand, from its properties to plain values. Knows nothing of buttons."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .scene import checks, regions
+
+
+@dataclass(frozen=True)
+class UsedEffect:
+    """One effect as the library wants it; `painted` is a field (n,) in its unit, NaN where nothing is painted."""
+
+    name: str
+    amplitude: float
+    regions: tuple | None
+    numbers: tuple
+    painted: np.ndarray | None
+
+    def native(self, thenar):
+        """The library's effect."""
+        numbers, places = dict(self.numbers), None if self.regions is None else list(self.regions)
+        return thenar.Effect(self.name, self.amplitude, regions=places, painted=self.painted, **numbers)
+
+
+def shown(hand):
+    """Hashable values of every effect that is switched on, as the panel shows them."""
+    return tuple(
+        (effect.name, _number(effect.amplitude), effect.region, _numbers(effect), effect.painted, effect.painted_full)
+        for effect in hand.thenar.effects
+        if effect.is_on
+    )
+
+
+def read(context, hand, region_names):
+    """The effects that are switched on (tuple of `UsedEffect`). Raises `Refusal` for a region or group that is gone."""
+    return tuple(_read(context, hand, effect, region_names) for effect in hand.thenar.effects if effect.is_on)
+
+
+def hashed(used):
+    """What a result depends on of `used`, for `cache.content_hash`."""
+    for effect in used:
+        yield from (effect.name, effect.amplitude, effect.regions, effect.numbers)
+        yield effect.painted if effect.painted is not None else ""
+
+
+def _read(context, hand, effect, region_names):
+    places = None
+    if effect.region:
+        if effect.region not in region_names:
+            raise checks.Refusal(
+                f"effect '{effect.name}' acts on region '{effect.region}', which '{hand.name}' has no longer; "
+                "choose another region, or none, under Effects"
+            )
+        places = (region_names.index(effect.region),)
+    painted = None
+    if effect.painted:
+        if effect.painted not in hand.vertex_groups:
+            raise checks.Refusal(
+                f"effect '{effect.name}' is painted by vertex group '{effect.painted}', which '{hand.name}' has no "
+                "longer; choose another group, or none, under Effects"
+            )
+        weights = regions.group_weights(context, hand, (effect.painted,))[0].astype(np.float64)
+        painted = np.where(weights > regions.LEAST_WEIGHT, weights * effect.painted_full, np.nan)
+    return UsedEffect(effect.name, _number(effect.amplitude), places, _numbers(effect), painted)
+
+
+def _numbers(effect):
+    numbers = [(number.name, _number(number.value)) for number in effect.numbers]
+    return tuple(numbers + [(choice.name, choice.value) for choice in effect.choices])
+
+
+def _number(value):
+    """Six digits of Blender's single precision."""
+    return float(f"{value:.6g}")

@@ -1,0 +1,66 @@
+"""The panel of effects: physics beyond the base model."""
+
+import bpy
+
+from .. import effect_settings, status
+from .lists import title as region_title
+from .main import Tab
+
+
+class THENAR_UL_effects(bpy.types.UIList):
+    """Effects of the hand: switch, name, place, amplitude."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
+        row = layout.row(align=True)
+        row.prop(item, "is_on", text="")
+        words = row.row()
+        words.active = item.is_on
+        place = f", {region_title(item.region).lower()}" if item.region else ""
+        words.label(text=effect_settings.title(item.name) + place)
+        words.prop(item, "amplitude", text="", slider=True)
+
+
+class THENAR_PT_effects(Tab, bpy.types.Panel):
+    """What the skin does beyond the base model."""
+
+    bl_label = "Effects"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 4
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        return not status.native_problem and hand is not None and hand.type == "MESH"
+
+    def draw(self, context):
+        layout, hand = self.layout, context.scene.thenar.hand
+        state = hand.thenar
+        row = layout.row()
+        row.template_list("THENAR_UL_effects", "", state, "effects", state, "effect_index", rows=3)
+        side = row.column(align=True)
+        side.operator_menu_enum("thenar.effect_add", "kind", text="", icon="ADD")
+        side.operator("thenar.effect_remove", text="", icon="REMOVE")
+        if not state.effects:
+            return
+        _draw_effect(layout, state.effects[min(state.effect_index, len(state.effects) - 1)], hand)
+
+
+def _draw_effect(layout, effect, hand):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    column = layout.column(align=True)
+    if hand.thenar.materials:
+        column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")
+    for choice in effect.choices:
+        column.prop(choice, "value", text=effect_settings.title(choice.name))
+    for number in effect.numbers:
+        unit = "" if number.unit == "1" else f" ({number.unit})"
+        column.prop(number, "value", text=effect_settings.title(number.name) + unit)
+    if effect_settings.can_be_painted(effect.name):
+        column.prop_search(effect, "painted", hand, "vertex_groups", icon="BRUSH_DATA")
+        if effect.painted:
+            column.prop(effect, "painted_full")
+
+
+CLASSES = (THENAR_UL_effects, THENAR_PT_effects)

@@ -1,0 +1,96 @@
+"""Effects switched on in the panel: they act, they are kept in the file, and off is the base model."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+from thenar_blender import effect_settings, workflow
+
+
+def add(kind, **numbers):
+    """Switch an effect on by its button, and set its numbers."""
+    assert bpy.ops.thenar.effect_add(kind=kind) == {"FINISHED"}
+    effect = bpy.context.scene.thenar.hand.thenar.effects[-1]
+    for name, value in numbers.items():
+        effect.numbers[name].value = value
+    return effect
+
+
+def pressures(hand):
+    """Solve and read the pressures."""
+    stage.solve()
+    return stage.attribute(hand, "pressure_kpa").copy()
+
+
+@pytest.mark.parametrize("switch", ["is_on", "amplitude"])
+def test_an_effect_that_is_off_changes_nothing(switch):
+    hand, _ = stage.scene()
+    base = pressures(hand)
+    effect = add("bone", thickness_mm=2.0)
+    thin = pressures(hand)
+    setattr(effect, switch, 0)
+    assert (pressures(hand) == base).all()
+    assert thin.max() > 1.1 * base.max(), "2 mm over bone press harder than 7 mm"
+
+
+def test_every_effect_on_the_menu_can_be_solved_with():
+    stage.scene()
+    kinds = bpy.ops.thenar.effect_add.get_rna_type().properties["kind"].enum_items
+    offered = list(effect_settings.offered())
+    assert {"bone", "stiffening_law", "inclusion", "compressibility", "region_coupling"} <= set(offered), kinds
+    for kind in offered:
+        add(kind)
+        assert stage.solve().force_n > 0.0
+    assert bpy.context.scene.thenar.result.effects.startswith("bone 1, ")
+
+
+def test_an_effect_on_one_region_leaves_the_others():
+    hand, _ = stage.scene()
+    points = stage.evaluated(hand)
+    for name, inside in (("left", points[:, 0] < 0.0), ("right", points[:, 0] >= 0.0)):
+        hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(inside)], 1.0, "REPLACE")
+    bpy.ops.thenar.assign_regions()
+    before = [row.shear_modulus_kpa for row in stage.solve().regions]
+    add("stiffening_law").region = "right"
+    after = {row.name: row.shear_modulus_kpa for row in stage.solve().regions}
+    assert after["left"] == before[0]
+    assert after["right"] != before[1]
+    hand.thenar.effects[0].region = "gone"
+    with pytest.raises(RuntimeError, match="region 'gone'.*under Effects"):
+        bpy.ops.thenar.solve()
+
+
+def test_thickness_is_painted_by_a_vertex_group():
+    hand, _ = stage.scene()
+    every = [vertex.index for vertex in hand.data.vertices]
+    hand.vertex_groups.new(name="thickness").add(every, 0.25, "REPLACE")
+    effect = add("bone", thickness_mm=6.0)
+    effect.painted, effect.painted_full = "thickness", 12.0
+    painted = stage.solve().force_n
+    effect.painted, effect.numbers["thickness_mm"].value = "", 3.0
+    assert stage.solve().force_n == pytest.approx(painted, rel=0.02), "a quarter of 12 mm is 3 mm"
+    effect.painted = "gone"
+    with pytest.raises(RuntimeError, match="vertex group 'gone'"):
+        bpy.ops.thenar.solve()
+
+
+def test_a_number_that_cannot_be_is_told():
+    stage.scene()
+    add("bone", thickness_mm=-1.0)
+    with pytest.raises(RuntimeError, match="thickness_mm"):
+        bpy.ops.thenar.solve()
+
+
+def test_effects_are_kept_in_the_file_and_make_the_result_out_of_date(tmp_path):
+    stage.scene()
+    stage.solve()
+    assert not workflow.is_out_of_date(bpy.context)
+    add("stiffening_law", exponent=3.0).choices["law"].value = "power"
+    assert workflow.is_out_of_date(bpy.context)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "kept.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "kept.blend"))
+    effect = bpy.context.scene.thenar.hand.thenar.effects[0]
+    assert (effect.name, effect.choices["law"].value) == ("stiffening_law", "power")
+    assert effect.numbers["exponent"].value == pytest.approx(3.0)
+    assert bpy.ops.thenar.effect_remove() == {"FINISHED"}
+    assert len(bpy.context.scene.thenar.hand.thenar.effects) == 0
