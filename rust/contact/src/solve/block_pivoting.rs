@@ -25,7 +25,7 @@ pub enum Accuracy {
     Rough,
     /// To 1e-12 of it: the certificate.
     Full,
-    /// To 1e-12 of it, from forces that are already rough: the loose levels are left out.
+    /// To 1e-12 of it, from forces that are already rough: the looser levels are left out.
     Polish,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Run<'a> {
             TOLERANCES.len() - 1
         };
         let first = if accuracy == Accuracy::Polish {
-            ROUGH_LEVEL + 1
+            TOLERANCES.len() - 1
         } else {
             0
         };
@@ -155,11 +155,14 @@ impl<'a> Run<'a> {
             if !self.solve_set(matrix, gap, (level, scale)) {
                 return false;
             }
-            self.find_outer_slack(matrix, gap);
+            if level < finest {
+                self.find_outer_slack(matrix, gap);
+            } else {
+                self.find_slack(matrix, gap);
+            }
             let wrong = self.infeasible(TOLERANCES[level] * scale);
             if wrong.is_empty() {
                 if level >= finest {
-                    self.find_slack(matrix, gap);
                     return true;
                 }
                 level += 1;

@@ -5,6 +5,10 @@ use super::operator::Rows;
 use crate::{ContactError, Control};
 
 const TILE: usize = 32;
+/// Share of the deepest gap beyond which places start in contact; any share finds the same set. Hertz: the contact's edge is at 0.5.
+const FIRST_SHARE: f64 = 0.5;
+/// Largest difference of mirrored entries, relative.
+const SYMMETRY: f64 = 1e-12;
 
 fn tiles(n: usize) -> impl Iterator<Item = usize> + Clone {
     (0..n).step_by(TILE)
@@ -23,17 +27,11 @@ pub fn solve_dense(matrix: Vec<f64>, gap: &[f64]) -> Result<Solution, ContactErr
         });
     }
     // In tiles: a column of a large matrix read alone costs a cache line an entry.
-    for (first, row) in
-        tiles(n).flat_map(|a| tiles(n).filter(move |b| *b <= a).map(move |b| (b, a)))
+    for (above, left) in
+        tiles(n).flat_map(|a| tiles(n).filter(move |b| *b <= a).map(move |b| (a, b)))
     {
-        for row in row..(row + TILE).min(n) {
-            for column in first..(first + TILE).min(row + 1) {
-                let (found, other) = (matrix[row * n + column], matrix[column * n + row]);
-                let is_symmetric = (found - other).abs() <= 1e-12 * found.abs().max(other.abs());
-                if !found.is_finite() || !is_symmetric || (row == column && found <= 0.0) {
-                    return Err(ContactError::DenseEntry { row, column, found });
-                }
-            }
+        if !is_sound_tile(&matrix, n, (above, left)) {
+            check_entries(&matrix, n, (above, left))?;
         }
     }
     if let Some(row) = gap.iter().position(|d| !d.is_finite()) {
@@ -45,11 +43,68 @@ pub fn solve_dense(matrix: Vec<f64>, gap: &[f64]) -> Result<Solution, ContactErr
     }
     // Single precision finds the set at half the memory traffic; double precision gives the certificate.
     let (matrix, control) = (Rows::dense(matrix, n), Control::none());
-    let rough = solve_contact(&matrix.narrow(), gap, None, (Accuracy::Rough, &control));
+    let start = first_forces(&matrix, gap);
+    let rough = (Accuracy::Rough, &control);
+    let rough = solve_contact(&matrix.narrow(), gap, Some(&start), rough);
     Ok(solve_contact(
         &matrix,
         gap,
         Some(&rough.force),
         (Accuracy::Polish, &control),
     ))
+}
+
+/// Small forces that mark where contact is likely: of what a smooth indenter overlaps on a half space, the inner half touches.
+fn first_forces(matrix: &Rows<f64>, gap: &[f64]) -> Vec<f64> {
+    let deepest = gap.iter().fold(0.0, |least, d| f64::min(least, *d));
+    let alone = |(d, a): (&f64, &f64)| {
+        if *d < FIRST_SHARE * deepest {
+            -d / a
+        } else {
+            0.0
+        }
+    };
+    let forces = gap.iter().zip(matrix.diagonal()).map(alone);
+    forces.map(|p| p / gap.len() as f64).collect()
+}
+
+/// Whether a tile and its mirror image hold finite numbers that agree; says nothing of the diagonal's sign.
+fn is_sound_tile(matrix: &[f64], n: usize, (above, left): (usize, usize)) -> bool {
+    if above == left || above + TILE > n {
+        return false;
+    }
+    let mut mirror = [[0.0; TILE]; TILE];
+    for k in 0..TILE {
+        let column = &matrix[(left + k) * n + above..][..TILE];
+        for (row, value) in mirror.iter_mut().zip(column) {
+            row[k] = *value;
+        }
+    }
+    let mut is_sound = true;
+    for (k, mirrored) in mirror.iter().enumerate() {
+        let row = &matrix[(above + k) * n + left..][..TILE];
+        for (a, b) in row.iter().zip(mirrored) {
+            // False for what is not finite, too.
+            let most = SYMMETRY * a.abs();
+            is_sound &= (a - b).abs() <= most && most < f64::INFINITY;
+        }
+    }
+    is_sound
+}
+
+fn check_entries(
+    matrix: &[f64],
+    n: usize,
+    (above, left): (usize, usize),
+) -> Result<(), ContactError> {
+    for row in above..(above + TILE).min(n) {
+        for column in left..(left + TILE).min(row + 1) {
+            let (found, other) = (matrix[row * n + column], matrix[column * n + row]);
+            let is_symmetric = (found - other).abs() <= SYMMETRY * found.abs().max(other.abs());
+            if !found.is_finite() || !is_symmetric || (row == column && found <= 0.0) {
+                return Err(ContactError::DenseEntry { row, column, found });
+            }
+        }
+    }
+    Ok(())
 }
