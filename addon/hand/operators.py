@@ -153,7 +153,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         if self.strength == "CUSTOM":
             for name in ("distal_mm", "middle_mm", "proximal_mm", "palm_mm"):
                 layout.prop(self, name)
-        layout.row().prop(self, "digits")
+        layout.column(align=True).prop(self, "digits")
         layout.prop(self, "force_n")
 
     def steps(self, context):
