@@ -5,8 +5,8 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatPrope
 
 from . import native
 
-IN_A_PRESS = ("geometry", "stiffening")
-"""Stages of the catalogue that act in a single press; the others need time or sliding, and so a protocol."""
+IN_A_PRESS = ("geometry", "stiffening", "interface")
+"""Stages of the catalogue that act in a single press; the others need time, and so a protocol."""
 
 _LAWS = {}
 """Items of choices by their options: Blender needs the texts of a dynamic list kept."""
@@ -20,6 +20,11 @@ def offered():
 def can_be_painted(name):
     """Whether a vertex group can stand for the effect's field."""
     return bool(offered().get(name, {}).get("painted"))
+
+
+def is_on(hand, name):
+    """Whether the effect is switched on anywhere on the hand."""
+    return any(effect.is_on and effect.name == name for effect in hand.thenar.effects)
 
 
 def title(name):

@@ -11,11 +11,13 @@ DEPTH_MM = "contact_depth_mm"
 REGION = "contact_region"
 FORCE_N = "contact_force_n"
 DISPLACEMENT_MM = "contact_displacement_mm"
+SHEAR_KPA = "shear_kpa"
+SLIP_MARGIN = "slip_margin"
 COLOR = "Thenar Pressure"
 GLTF_PRESSURE = "_PRESSURE_KPA"
 """glTF keeps only attributes whose names begin with an underscore."""
 
-HAND_ATTRIBUTES = (PRESSURE_KPA, DEPTH_MM, REGION, FORCE_N, DISPLACEMENT_MM, COLOR)
+HAND_ATTRIBUTES = (PRESSURE_KPA, DEPTH_MM, REGION, FORCE_N, DISPLACEMENT_MM, SHEAR_KPA, SLIP_MARGIN, COLOR)
 PRODUCT_ATTRIBUTES = (PRESSURE_KPA, COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"
@@ -26,6 +28,9 @@ BAKE_MODIFIER = "Thenar Bake"
 BAKE_FOLDER = "thenar_cache"
 LEGEND_IMAGE = "Thenar Legend"
 LEGEND_NODES = ("Thenar Legend Image", "Thenar Legend Over")
+
+FRICTION = "friction"
+"""The effect that answers to a slide."""
 
 WHOLE_SKIN = "Whole skin"
 """Name of the one region of a hand on which no region was assigned."""

@@ -18,6 +18,7 @@ def fill(result, job, contact, written, notes):
     total = np.asarray(contact.total_force_n, dtype=np.float64)
     result.force_n = float(np.asarray(contact.force_n).sum())
     result.force_vector_n = total
+    result.shear_n = 0.0 if contact.friction is None else float(np.linalg.norm(contact.friction.total_force_n))
     result.moment_nmm = np.asarray(contact.total_moment_nmm) + np.cross(job.reading.hand.origin_mm, total)
     result.center_mm = _finite(np.asarray(contact.center_of_pressure_mm) + job.reading.hand.origin_mm)
     result.area_mm2 = contact.contact_area_mm2
@@ -60,6 +61,7 @@ def as_dict(result):
         "vertices": result.vertices,
         "force_n": result.force_n,
         "force_vector_n": list(result.force_vector_n),
+        "shear_force_n": result.shear_n,
         "moment_nmm": list(result.moment_nmm),
         "center_of_pressure_mm": list(result.center_mm),
         "contact_area_mm2": result.area_mm2,

@@ -161,6 +161,7 @@ class ThenarResult(bpy.types.PropertyGroup):
     vertices: IntProperty()
     force_n: FloatProperty()
     force_vector_n: FloatVectorProperty(size=3)
+    shear_n: FloatProperty()
     moment_nmm: FloatVectorProperty(size=3)
     center_mm: FloatVectorProperty(size=3)
     area_mm2: FloatProperty()
@@ -256,6 +257,12 @@ class ThenarScene(bpy.types.PropertyGroup):
         description="World direction in which the product moves",
         size=3,
         default=(0, 0, 1),
+        subtype="XYZ",
+    )
+    slide_mm: FloatVectorProperty(
+        name="Slide (mm)",
+        description="How far the product is dragged over the skin, world axes, mm; friction answers to it",
+        size=3,
         subtype="XYZ",
     )
     range_kpa: FloatProperty(

@@ -24,6 +24,7 @@ class Job:
     region_names: tuple
     materials: tuple
     effects: tuple
+    slide_mm: tuple | None
     model: str
     force_n: float | None
     direction: tuple | None
@@ -72,6 +73,7 @@ def read_job(context, hand, parts):
     if direction is not None and not np.any(direction):
         raise checks.Refusal("the direction of the force is zero; enter a direction or choose Found")
     model = settings.model.lower()
+    slide = tuple(settings.slide_mm) if any(effect.name == names.FRICTION for effect in used) else None
     return Job(
         hand_name=hand.name,
         part_names=tuple(part.name for part in parts),
@@ -79,6 +81,7 @@ def read_job(context, hand, parts):
         region_names=group_names or (names.WHOLE_SKIN,),
         materials=materials,
         effects=used,
+        slide_mm=slide,
         model=model,
         force_n=force,
         direction=direction,
@@ -91,6 +94,7 @@ def read_job(context, hand, parts):
             product.triangles,
             materials,
             *effects.hashed(used),
+            slide,
             model,
             force,
             direction,
@@ -138,6 +142,7 @@ def _compute(job, key, cancel, progress):
         posed_vertices_mm=hand.posed_mm,
         force_n=job.force_n,
         direction=None if job.direction is None else np.array(job.direction, dtype=np.float64),
+        slide_mm=None if job.slide_mm is None else np.array(job.slide_mm, dtype=np.float64),
         cancel=cancel,
         progress=progress,
     )
@@ -207,7 +212,13 @@ def fields_of(contact, job):
         regions=job.reading.hand.regions,
         product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
         offset_mm=offset_mm(contact, job),
+        shear=None if contact.friction is None else _shear(contact),
     )
+
+
+def _shear(contact):
+    margin = np.asarray(contact.slip_margin)
+    return np.asarray(contact.tangential_traction_mpa), np.where(np.isnan(margin), 1.0, margin)
 
 
 def offset_mm(contact, job):
@@ -227,7 +238,7 @@ def state_hash(context):
     materials = tuple((material.name, _numbers(material)) for material in listed)
     choices = (settings.model, settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction))
     shapes = state.shapes(context, [hand, *parts])
-    choices += effects.shown(hand)
+    choices += (*effects.shown(hand), *settings.slide_mm)
     return cache.content_hash(names.VERSION, materials, choices, units.mm_per_unit(context.scene), *shapes)
 
 

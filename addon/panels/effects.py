@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, status
+from .. import effect_settings, names, status
 from .lists import title as region_title
 from .main import Tab
 
@@ -43,6 +43,8 @@ class THENAR_PT_effects(Tab, bpy.types.Panel):
         side.operator("thenar.effect_remove", text="", icon="REMOVE")
         if not state.effects:
             return
+        if effect_settings.is_on(hand, names.FRICTION):
+            layout.prop(context.scene.thenar, "slide_mm")
         _draw_effect(layout, state.effects[min(state.effect_index, len(state.effects) - 1)], hand)
 
 

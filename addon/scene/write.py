@@ -22,6 +22,8 @@ class Fields:
     product_pressure_mpa: np.ndarray
     offset_mm: np.ndarray
     """(3) how far the product moved to reach its force."""
+    shear: tuple | None = None
+    """Shear traction (n), MPa, and slip margin (n), 0 where skin slips to 1, where the product was dragged."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,11 @@ def write_hand(hand, fields, look):
     attributes.write(mesh, names.REGION, "INT", fields.regions)
     attributes.write(mesh, names.FORCE_N, "FLOAT", fields.force_n)
     attributes.write(mesh, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
+    if fields.shear is None:
+        attributes.remove(mesh, (names.SHEAR_KPA, names.SLIP_MARGIN))
+    else:
+        attributes.write(mesh, names.SHEAR_KPA, "FLOAT", units.kpa(fields.shear[0]))
+        attributes.write(mesh, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
     mesh.update()
 

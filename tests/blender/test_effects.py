@@ -42,6 +42,7 @@ def test_every_effect_on_the_menu_can_be_solved_with():
         add(kind)
         assert stage.solve().force_n > 0.0
     assert bpy.context.scene.thenar.result.effects.startswith("bone 1, ")
+    assert {"friction", "adhesion"} <= set(offered)
 
 
 def test_an_effect_on_one_region_leaves_the_others():
@@ -94,3 +95,25 @@ def test_effects_are_kept_in_the_file_and_make_the_result_out_of_date(tmp_path):
     assert effect.numbers["exponent"].value == pytest.approx(3.0)
     assert bpy.ops.thenar.effect_remove() == {"FINISHED"}
     assert len(bpy.context.scene.thenar.hand.thenar.effects) == 0
+
+
+def test_a_product_that_is_dragged_shears_the_skin(tmp_path):
+    hand, _ = stage.scene()
+    assert stage.solve().shear_n == 0.0
+    assert "shear_kpa" not in hand.data.attributes
+    normal = add("friction", coefficient=0.4) and stage.solve().force_n
+    bpy.context.scene.thenar.slide_mm = (5.0, 0.0, 0.0)
+    result = stage.solve()
+    assert result.shear_n == pytest.approx(0.4 * result.force_n, rel=0.02), "5 mm is a full slip"
+    assert result.force_n == pytest.approx(normal, rel=1e-3)
+    margin, shear = stage.attribute(hand, "slip_margin"), stage.attribute(hand, "shear_kpa")
+    pressure = stage.attribute(hand, "pressure_kpa")
+    assert margin[pressure > 0].max() < 1e-3
+    assert margin[pressure == 0].min() == 1.0
+    assert shear == pytest.approx(0.4 * pressure, rel=1e-3, abs=1e-3)
+    assert bpy.ops.thenar.export(filepath=str(tmp_path / "dragged.csv")) == {"FINISHED"}
+    header = next(tmp_path.glob("dragged*.csv")).read_text().splitlines()[0]
+    assert header.endswith("in_contact,shear_kpa,slip_margin"), header
+    hand.thenar.effects.clear()
+    assert stage.solve().shear_n == 0.0
+    assert "shear_kpa" not in hand.data.attributes
