@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import thenar
-from bench import lemke, problems, siconos
+from bench import debian, lemke, problems, siconos
 from bench.timing import cpu_ms, once_ms
 
 TARGET = Path(__file__).parents[2] / "target"
@@ -78,6 +78,18 @@ def agree(theirs, ours):
         raise AssertionError(f"forces differ by {difference:.1e} of the largest")
 
 
+def load_open3d():
+    """The module Open3D, which asks for libusb even where no sensor is."""
+    try:
+        import open3d
+    except ModuleNotFoundError:
+        raise
+    except (ImportError, OSError):
+        debian.load(TARGET / "libusb", ["libusb-1.0-0"], "libusb-1.0.so.0")
+        import open3d
+    return open3d
+
+
 def distance_rows(hand):
     """Signed distance of the grasping hand's points to the handle, in full and with a cut."""
     (vertices, triangles), points = hand.handle, hand.posed
@@ -86,8 +98,8 @@ def distance_rows(hand):
     cut = cpu_ms(lambda: product.gap_mm(points, cut_off_mm=CUT_MM))
     what = f"signed distance, {len(points):,} points, {len(triangles):,} triangles"
     try:
-        import open3d
-    except (ImportError, OSError) as error:
+        open3d = load_open3d()
+    except (ImportError, OSError, debian.Unavailable) as error:
         return [left_out(what, "Open3D", str(error).splitlines()[0])]
     scene = open3d.t.geometry.RaycastingScene(nthreads=1)
     scene.add_triangles(vertices.astype(np.float32), triangles.astype(np.uint32))

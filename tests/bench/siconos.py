@@ -1,11 +1,11 @@
-"""Siconos' lexicographic Lemke, from the Debian packages unpacked beside the build: nothing is installed."""
+"""Siconos' lexicographic Lemke, from Debian packages."""
 
 import ctypes
-import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
+from bench import debian
+from bench.debian import Unavailable
 
 LEMKE = 200  # SICONOS_LCP_LEMKE
 DENSE = 0  # NM_DENSE
@@ -25,19 +25,13 @@ PACKAGES = [
 ]
 
 
-class Unavailable(Exception):
-    """Siconos cannot be had here; the message says why."""
-
-
 class _Problem(ctypes.Structure):
     _fields_ = (("size", ctypes.c_int), ("matrix", ctypes.c_void_p), ("q", ctypes.c_void_p))
 
 
 def load(folder):
     """Fetches (once) and loads the library below `folder`. Raises Unavailable."""
-    root = Path(folder) / "siconos"
-    if not root.is_dir():
-        _fetch(root)
+    root = debian.unpacked(Path(folder) / "siconos", PACKAGES)
     waiting = sorted(path for path in root.rglob("*.so*") if path.is_file() and "siconos_numerics" not in path.name)
     while waiting:
         refused = [path for path in waiting if not _opens(path)]
@@ -58,21 +52,6 @@ def _opens(path):
     except OSError:
         return False
     return True
-
-
-def _fetch(root):
-    if not (shutil.which("apt-get") and shutil.which("dpkg-deb")):
-        raise Unavailable("siconos comes from Debian packages, and this machine has no apt-get and dpkg-deb")
-    part = root.with_suffix(".part")
-    shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
-    got = subprocess.run(["apt-get", "download", *PACKAGES], cwd=part, capture_output=True, text=True)
-    if got.returncode != 0:
-        lines = got.stderr.strip().splitlines() or ["apt-get download failed"]
-        raise Unavailable(f"Debian's siconos packages cannot be downloaded: {lines[-1]}")
-    for package in sorted(part.glob("*.deb")):
-        subprocess.run(["dpkg-deb", "-x", package, part], check=True)
-    part.rename(root)
 
 
 def _declare(library):

@@ -48,7 +48,7 @@ pub fn samples(places: &Places) -> Result<ExitCode> {
 /// # Errors
 /// If the set-up or the benchmarks fail; a peer that cannot be installed is only reported.
 pub fn bench(places: &Places, arguments: &[String]) -> Result<ExitCode> {
-    setup::user_environment(places)?;
+    let wheel = setup::wheel(places)?;
     python::make(places, &BENCH)?;
     let python = places.python(BENCH.name);
     for peer in PEERS {
@@ -59,7 +59,7 @@ pub fn bench(places: &Places, arguments: &[String]) -> Result<ExitCode> {
             );
         }
     }
-    wheel::install(places, BENCH.name, &wheel::build(places)?)?;
+    wheel::install(places, BENCH.name, &wheel)?;
     let mut command = Command::new(python);
     command
         .current_dir(&places.root)

@@ -25,6 +25,16 @@ pub fn run(places: &Places) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The wheel alone, for what needs no Blender; returns its path.
+///
+/// # Errors
+/// If the tools cannot be installed or the wheel does not build.
+pub fn wheel(places: &Places) -> Result<PathBuf> {
+    let _alone = lock(places)?;
+    python::make(places, &TOOLS)?;
+    wheel::build(places)
+}
+
 /// Everything a user needs; returns the extension zip.
 pub fn user_environment(places: &Places) -> Result<PathBuf> {
     ensure!(
