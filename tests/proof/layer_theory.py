@@ -70,12 +70,17 @@ def wave_numbers(edges):
     return (start + (node + 1.0) * panel / 2.0).ravel(), np.tile(weight * panel / 2.0, panels)
 
 
-def ring_compliance(edges, shear_modulus, nu, thickness):
-    """Mean displacement (mm) of every ring under a unit force (N) on every other; rings between `edges` (n + 1)."""
+def ring_compliance(edges, shear_modulus, nu, thickness, skin=(0.0, 0.0)):
+    """Mean displacement (mm) of every ring under a unit force (N) on every other; rings between `edges` (n + 1).
+
+    `skin`: bending stiffness (N mm) and tension (N/mm) of a thin plate on top.
+    """
     k, weight = wave_numbers(edges)
     outer = edges[:, None] * j1(np.outer(edges, k))
     ring = np.diff(outer, axis=0)  # k times the transform of a unit pressure on the ring
     factor = np.ones_like(k) if np.isinf(thickness) else transform(k * thickness, nu)
+    plate = k * (skin[0] * k**2 + skin[1]) * (1.0 - nu) / shear_modulus
+    factor = factor / (1.0 + factor * plate)
     area = np.pi * np.diff(edges**2)
     spread = (ring * (weight * factor / k**2)) @ ring.T
     # Beyond the last k only K = 1 and the mean of r J1(k r)^2 r = r / (pi k) are left, on the shared edges.
@@ -84,6 +89,8 @@ def ring_compliance(edges, shear_modulus, nu, thickness):
     i = np.arange(len(edges) - 1)
     tail[i, i] = (edges[:-1] + edges[1:]) * rest
     tail[i[:-1], i[1:]] = tail[i[1:], i[:-1]] = -edges[1:-1] * rest
+    if any(skin):
+        tail[:] = 0.0  # a skin answers short waves with nothing
     return (1.0 - nu) / shear_modulus * 2.0 * np.pi * (spread + tail) / np.outer(area, area)
 
 
@@ -97,6 +104,12 @@ def press(profile, edges, shear_modulus, nu, thickness):
     pressed = np.flatnonzero(force > 0.0)
     area = np.pi * np.diff(edges**2)
     return force.sum(), force / area, float(edges[pressed[-1] + 1]) if len(pressed) else 0.0
+
+
+def force_through_skin(profile, edges, material, skin):
+    """Force (N) of such a press on a layer `material` (G, nu, h) under a plate `skin` (bending N mm, tension N/mm)."""
+    middle = np.sqrt((edges[1:] ** 2 + edges[:-1] ** 2) / 2.0)
+    return lemke(ring_compliance(edges, *material, skin), profile(middle))[0].sum()
 
 
 def surface_displacement(radius, edges, pressure, material):

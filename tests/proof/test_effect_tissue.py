@@ -60,6 +60,41 @@ def test_compressible_tissue_loses_the_volume_of_its_kernel():
     np.testing.assert_allclose(sink[0.3] / sink[0.5], 0.7 / 0.5, rtol=0.01)
 
 
+@pytest.mark.parametrize("thickness", [np.inf, 6.0])
+@pytest.mark.parametrize(("modulus", "skin_mm", "tension"), [(1.5, 0.5, 0.0), (1.5, 0.8, 0.0), (0.5, 0.5, 0.03)])
+def test_stiff_skin_is_the_layered_fourier_kernel(modulus, skin_mm, tension, thickness):
+    """Force of a sphere on plate, tissue and bone within 0.5 % of a Hankel solve; a bare one is far off."""
+    depth, bending = 0.5, modulus * skin_mm**3 / 9.0
+    edges = np.linspace(0.0, 4.5, 151)
+
+    def gap(r):
+        return RADIUS - np.sqrt(RADIUS**2 - r * r) - depth
+
+    expected = layer_theory.force_through_skin(gap, edges, (G, 0.5, thickness), (bending, tension))
+    bare, _, _ = layer_theory.press(gap, edges, G, 0.5, thickness)
+    effect = thenar.Effect("stiff_skin", 1.0, modulus_mpa=modulus, thickness_mm=skin_mm, tension_n_per_mm=tension)
+    skin, product = pressing.sphere_on_flat(RADIUS, depth, 0.25)
+    prepared = thenar.Skin(*skin, materials=[pressing.material(thickness=thickness)], effects=[effect])
+    assert prepared.press(*product).total_force_n[2] == pytest.approx(expected, rel=0.005)
+    assert expected > 1.05 * bare
+
+
+def test_a_stiff_skin_has_both_limits():
+    """Without stiffness it is the bonded layer; very stiff, a plate on a half space sinks P (1 - nu) / (27^0.5 G l)."""
+    skin, product = pressing.sphere_on_flat(RADIUS, 0.5, 0.3, extent=3.0)
+    layer = thenar.Skin(*skin, materials=[pressing.material(thickness=6.0)])
+    base = layer.press(*product).total_force_n[2]
+    layer.set_effects([thenar.Effect("stiff_skin", 1.0, modulus_mpa=1e-5, thickness_mm=0.3)])
+    assert layer.press(*product).total_force_n[2] == pytest.approx(base, rel=2e-3)
+    effect = thenar.Effect("stiff_skin", 1.0, modulus_mpa=500.0, thickness_mm=3.0)
+    plate = thenar.Skin(*skin, materials=[pressing.material()], effects=[effect])
+    contact = plate.press(*product)
+    length = np.cbrt(0.5 / G * 500.0 * 27.0 / 9.0)
+    sink = 0.5 / G / (np.sqrt(27.0) * length)
+    assert contact.total_force_n[2] * sink == pytest.approx(0.5, rel=0.01)
+    assert contact.in_contact.sum() < 20, "a stiff plate touches a sphere at its tip"
+
+
 def fung(x, _):
     return np.exp(x)
 

@@ -2,7 +2,7 @@
 
 use super::entry::Entry;
 use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};
-use super::{rate_independent_loss, region_coupling, relaxation, stiffening_law};
+use super::{rate_independent_loss, region_coupling, relaxation, stiff_skin, stiffening_law};
 
 /// An effect of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -11,6 +11,8 @@ pub enum Effect {
     Bone,
     /// Tissue that gives up volume.
     Compressibility,
+    /// A thin stiff skin over soft pulp.
+    StiffSkin,
     /// Regions that answer each other's forces only in part.
     RegionCoupling,
     /// Another growth of the modulus.
@@ -32,9 +34,10 @@ pub enum Effect {
 }
 
 /// Every effect with what is known of it, in the order in which they compose.
-pub const CATALOGUE: [(Effect, &Entry); 11] = [
+pub const CATALOGUE: [(Effect, &Entry); 12] = [
     (Effect::Bone, &bone::ENTRY),
     (Effect::Compressibility, &compressibility::ENTRY),
+    (Effect::StiffSkin, &stiff_skin::ENTRY),
     (Effect::RegionCoupling, &region_coupling::ENTRY),
     (Effect::StiffeningLaw, &stiffening_law::ENTRY),
     (Effect::Inclusion, &inclusion::ENTRY),

@@ -10,6 +10,7 @@ pub mod catalogue;
 pub(crate) mod tissue;
 mod bone;
 mod compressibility;
+mod stiff_skin;
 mod region_coupling;
 mod inclusion;
 pub(crate) mod stiffening_law;

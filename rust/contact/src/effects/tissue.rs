@@ -4,9 +4,10 @@ use thenar_surface::SkinDistance;
 
 use super::active::ActiveEffect;
 use super::catalogue::Effect;
-use super::{bone, compressibility, inclusion, region_coupling};
+use super::{bone, compressibility, inclusion, region_coupling, stiff_skin};
 use crate::response::bonded_layer::Layer;
 use crate::response::rows::Geometry;
+use crate::response::stiff_skin::Sheet;
 use crate::sites::Sites;
 use crate::{ContactError, Material};
 
@@ -42,6 +43,7 @@ impl Tissue {
             geometry: Geometry {
                 layers: layers(base),
                 curvature: None,
+                sheets: Vec::new(),
                 cuts: Vec::new(),
             },
             laws: Vec::new(),
@@ -71,6 +73,7 @@ impl Tissue {
                         );
                     }
                 }
+                Effect::StiffSkin => tissue.cover(effect),
                 Effect::RegionCoupling => tissue
                     .geometry
                     .cuts
@@ -120,6 +123,16 @@ impl Tissue {
             .fold(0.0, f64::max);
         let field = self.geometry.curvature.iter().flatten().map(|c| 1.0 / c);
         field.fold(thickest, f64::max)
+    }
+
+    fn cover(&mut self, effect: &ActiveEffect) {
+        let sheets = &mut self.geometry.sheets;
+        sheets.resize(self.materials.len(), Sheet::NONE);
+        for (region, (sheet, material)) in sheets.iter_mut().zip(&self.materials).enumerate() {
+            let more = stiff_skin::sheet(effect, region as u32, material);
+            sheet.bending += more.bending;
+            sheet.tension += more.tension;
+        }
     }
 
     fn include(&mut self, effect: &ActiveEffect, place: &Place<'_>) -> Result<(), ContactError> {

@@ -84,7 +84,7 @@ fn pair(a: usize, b: usize) -> usize {
 
 /// Catmull-Rom through the knots; the table holds one knot before zero (Psi is even) and two behind its end.
 #[inline]
-fn interpolate(table: &[f64], x: f64) -> f64 {
+pub(super) fn interpolate(table: &[f64], x: f64) -> f64 {
     let i = x as usize;
     if i + 3 >= table.len() {
         return 0.0;
@@ -187,15 +187,16 @@ fn close(table: &mut [f64], layers: [Layer; 2], grid: &Grid) {
     }
 }
 
+/// Nodes and weights of the 8-point rule on (-1, 1).
+pub(super) const RULE: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
+    (0.960_289_856_497_536_2, 0.101_228_536_290_376_3),
+];
+
 /// Gauss-Legendre panels, each no longer than one oscillation of J0 at the farthest knot.
 fn wave_numbers(grid: &Grid) -> Vec<(f64, f64)> {
-    // Nodes and weights of the 8-point rule on (-1, 1).
-    const RULE: [(f64, f64); 4] = [
-        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-        (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-        (0.960_289_856_497_536_2, 0.101_228_536_290_376_3),
-    ];
     let end = CUT_OFF_WAVE_NUMBER / grid.thinnest;
     let panels = ((end * grid.reach / std::f64::consts::TAU).ceil() as usize).max(12);
     let half = 0.5 * end / panels as f64;

@@ -3,5 +3,6 @@
 pub mod assembly;
 pub mod bonded_layer;
 pub mod kernel;
+pub mod stiff_skin;
 pub mod rows;
 pub mod skin_metric;

@@ -11,6 +11,7 @@ use thenar_surface::SkinDistance;
 use super::bonded_layer::Layer;
 use super::kernel::{KernelTables, RANGE_IN_THICKNESSES};
 use super::skin_metric::arc_lengths;
+use super::stiff_skin::{Sheet, StiffSkin};
 use crate::Model;
 use crate::sites::Sites;
 
@@ -43,6 +44,8 @@ pub struct Geometry {
     pub layers: Vec<Layer>,
     /// Inverse thickness at every site, 1/mm, where it does not follow from the regions.
     pub curvature: Option<Vec<f64>>,
+    /// Stiff skin of every region; empty where there is none.
+    pub sheets: Vec<Sheet>,
     /// Cuts, each a factor between 0 and 1 that keeps the response definite (Schur product).
     pub cuts: Vec<Cut>,
 }
@@ -62,6 +65,7 @@ pub struct Response {
     /// Lower bounds of skin distance to those patches, mm.
     at_least: Vec<Vec<f64>>,
     cuts: Vec<Cut>,
+    stiff: Option<StiffSkin>,
     rows: Vec<Option<Box<[f32]>>>,
 }
 
@@ -94,6 +98,7 @@ impl Response {
         let patch_reach: Vec<f64> = sites.patch_range.iter().map(most).collect();
         let (near, at_least) = neighborhoods(sites, metric, &patch_reach);
         let tables = KernelTables::new(&layers, extent(sites));
+        let stiff = StiffSkin::new(&layers, (&geometry.sheets, sites), extent(sites));
         Response {
             model,
             layers,
@@ -103,6 +108,7 @@ impl Response {
             near,
             at_least,
             cuts: geometry.cuts.clone(),
+            stiff,
             rows: vec![None; sites.len()],
         }
     }
@@ -215,6 +221,16 @@ impl Response {
     /// `K_ij` of the layer, 1/mm.
     #[inline]
     fn layer_entry(&self, (i, j): (usize, usize), r: f64, psi: f64, sites: &Sites) -> f64 {
+        if let Some(stiff) = &self.stiff {
+            let is_near = r < 0.5 * (self.reach[i] + self.reach[j]);
+            let distance = if i == j { None } else { Some(r) };
+            let entry = stiff.entry(
+                (i, self.mix[i]),
+                (j, self.mix[j]),
+                (distance, sites.area[i]),
+            );
+            return if is_near { entry } else { 0.0 };
+        }
         if i == j {
             LATTICE / sites.area[i].sqrt() - psi
         } else if r < 0.5 * (self.reach[i] + self.reach[j]) {

@@ -1,0 +1,79 @@
+//! Effect `stiff_skin`: a thin stiff skin over soft pulp, with its bending and, if it is stretched, its tension.
+//!
+//! The skin is a thin plate of bending stiffness `D = E t^3 / 9` (E modulus_mpa, t thickness_mm, Poisson's ratio 1/2) under
+//! `tension_n_per_mm`, without shear towards the pulp; amplitude multiplies both. Skin and pulp stiffen together: what counts is
+//! D / G0, so that the response does not depend on the depth. Needs vertices not much farther apart than the bending
+//! length `((1 - nu) D / G0)^(1/3)` to be seen.
+
+use super::active::ActiveEffect;
+use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::Material;
+use crate::response::stiff_skin::Sheet;
+
+const MODULUS: usize = 0;
+const THICKNESS: usize = 1;
+const TENSION: usize = 2;
+
+pub const ENTRY: Entry = Entry {
+    name: "stiff_skin",
+    stage: Stage::Geometry,
+    meaning: "a thin stiff skin over soft pulp",
+    amplitude: "factor of the skin's bending stiffness and tension",
+    most: 1.0,
+    shape: &[
+        ShapeNumber {
+            name: "modulus_mpa",
+            unit: "MPa",
+            default: 1.5,
+            admissible: [1e-6, 1e5],
+            physiological: [0.05, 10.0],
+            meaning: "Young's modulus of the stiff skin",
+            source: "epidermis and stratum corneum 1 to 2 MPa (Geerligs 2011); finger models use 0.1 to 2 MPa",
+        },
+        ShapeNumber {
+            name: "thickness_mm",
+            unit: "mm",
+            default: 0.5,
+            admissible: [1e-4, 10.0],
+            physiological: [0.1, 2.0],
+            meaning: "thickness of the stiff skin",
+            source: "stratum corneum of a finger pad about 0.3 mm (Adams 2013), palm 0.17 mm (Acta Derm Venereol 87:4), with living skin more",
+        },
+        ShapeNumber {
+            name: "tension_n_per_mm",
+            unit: "N/mm",
+            default: 0.0,
+            admissible: [0.0, 100.0],
+            physiological: [0.0, 0.1],
+            meaning: "tension in the skin",
+            source: "ours: a relaxed hand has little; no figure for palms was found",
+        },
+    ],
+    choices: &[],
+    painted: None,
+    consequences: &[
+        Consequence {
+            sign: Sign::SmallToolsFeelStiffer,
+            sentence: "small tools need more force against the base model than large ones",
+        },
+        Consequence {
+            sign: Sign::AreaChanges,
+            sentence: "the contact under a round tool is smaller at equal depth, and pressure gathers at its edge",
+        },
+        Consequence {
+            sign: Sign::SpeedDoesNotMatter,
+            sentence: "curves at different speeds lie on one another",
+        },
+    ],
+    source: "plate on an elastic layer: Timoshenko & Woinowsky-Krieger 1959, 8",
+};
+
+/// The skin over a tissue, in its terms.
+pub fn sheet(effect: &ActiveEffect, region: u32, tissue: &Material) -> Sheet {
+    let share = effect.amplitude_on(region) * (1.0 - tissue.poisson_ratio) / tissue.g0_mpa;
+    let bending = effect.shape[MODULUS] * effect.shape[THICKNESS].powi(3) / 9.0;
+    Sheet {
+        bending: share * bending,
+        tension: share * effect.shape[TENSION],
+    }
+}
