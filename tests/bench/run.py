@@ -11,7 +11,7 @@ ONE_THREAD = {name: "1" for name in ("RAYON_NUM_THREADS", "OMP_NUM_THREADS", "OP
 
 def main():
     """Measures, prints, writes. Returns the exit code: 0 unless a benchmark gave a wrong answer."""
-    from bench import grasp, rows
+    from bench import friction_rows, grasp, rows
 
     table, is_right = [], True
     hand = grasp.grasping()
@@ -19,6 +19,7 @@ def main():
         "dense problem": rows.dense_rows,
         "distances": lambda: rows.distance_rows(hand),
         "press": lambda: rows.press_rows(hand),
+        "friction": friction_rows.friction_rows,
     }
     for name, measure in measures.items():
         try:

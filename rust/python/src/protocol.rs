@@ -23,6 +23,10 @@ pub struct Course {
     force_n: Py<PyAny>,
     /// (s, 3), N, on the product.
     total_force_n: Py<PyAny>,
+    /// (s, 3), N, shear force on the skin; zero without friction.
+    tangential_force_n: Py<PyAny>,
+    /// (s,), mJ, energy lost to slip since the first row.
+    slip_loss_mj: Py<PyAny>,
     /// (s,), mm2.
     contact_area_mm2: Py<PyAny>,
     /// (s,), MPa.
@@ -54,6 +58,7 @@ impl Course {
         };
         let touch = course.touch_offset.unwrap_or(f64::NAN);
         let forces: Vec<Vec3> = steps.iter().map(|step| step.total_force).collect();
+        let shears: Vec<Vec3> = steps.iter().map(|step| step.shear).collect();
         let regions = steps.first().map_or(0, |step| step.region_force.len());
         let by_region = steps
             .iter()
@@ -74,6 +79,8 @@ impl Course {
             depth_mm: of(&|step| step.offset - touch),
             force_n: of(&|step| step.force),
             total_force_n: rows(py, &forces)?,
+            tangential_force_n: rows(py, &shears)?,
+            slip_loss_mj: of(&|step| step.slip_loss),
             contact_area_mm2: of(&|step| step.area),
             peak_pressure_mpa: of(&|step| step.peak_pressure),
             region_force_n: table(py, by_region, regions)?,

@@ -18,6 +18,8 @@ const GRADIENT_STEPS: usize = 12;
 const LOOSEST: f64 = 0.1;
 /// Finest: a system kept in single precision is not worth more.
 const FINEST: f64 = 1e-6;
+/// Share of the tolerance at which the last correction may end.
+const ENOUGH: f64 = 0.1;
 /// Share of its residual to which a Newton step must get to need no check of the energy.
 const CLEAR_GAIN: f64 = 0.7;
 
@@ -175,7 +177,9 @@ impl<T: Entry> Run<'_, T> {
                 *right -= image;
             }
         }
-        let wanted = (before / scale).clamp(FINEST, LOOSEST);
+        // As accurate as the step before promises, but no finer than the end asks for.
+        let finest = FINEST.max(ENOUGH * TOLERANCE * scale / before);
+        let wanted = (before / scale).clamp(finest.min(LOOSEST), LOOSEST);
         let correction = Correction {
             matrix: inner,
             freedom: &freedom,
