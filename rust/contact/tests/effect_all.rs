@@ -222,6 +222,17 @@ fn closed_cycles_never_give_energy() {
 }
 
 #[test]
+fn closed_cycles_of_a_skin_that_remembers_in_one_region_only_never_give_energy() {
+    let in_one = |dice: &mut Dice| {
+        let drawn = draw(dice).into_iter();
+        drawn.map(|effect| effect.in_regions(&[0])).collect()
+    };
+    let worst = most_gained(&mut two_regions(), 100, (&mut Dice(5), in_one));
+    println!("most energy gained with memory in one region of two: {worst:.2e}");
+    assert!(worst <= 1e-6, "{worst}");
+}
+
+#[test]
 #[ignore = "ten minutes: run it when memory or its effects change"]
 fn ten_thousand_closed_cycles_never_give_energy() {
     check_passivity(5_000);
