@@ -38,6 +38,7 @@ pub fn run(arguments: &PressArguments) -> Result<(), Fault> {
     let summary = results::summary(&contact, &regions, said(arguments));
     let mut outputs = vec![vertices, product];
     outputs.extend(table);
+    outputs.extend(results::shear_table(&contact));
     outputs.push(summary);
     interrupt::writing(|| results::write(&arguments.out, &outputs))?;
     crate::tell(&report(&contact, &regions, &arguments.out));

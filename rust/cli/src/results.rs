@@ -49,6 +49,31 @@ pub fn tables(contact: &Contact) -> [Output; 2] {
     ]
 }
 
+/// shear.csv, where friction acted.
+pub fn shear_table(contact: &Contact) -> Option<Output> {
+    let shear = contact.shear.as_ref()?;
+    let mut text =
+        "index,tx_n,ty_n,tz_n,traction_kpa,slip_x_mm,slip_y_mm,slip_z_mm,slip_margin,is_sticking\n"
+            .to_owned();
+    let touching = (0..shear.force.len()).filter(|&i| !shear.margin[i].is_nan());
+    for i in touching {
+        let (force, slip, margin) = (shear.force[i], shear.slip[i], shear.margin[i]);
+        let (traction, sticks) = (
+            shear.traction[i] * KPA_PER_MPA,
+            u8::from(shear.is_sticking[i]),
+        );
+        let _ = writeln!(
+            text,
+            "{i},{},{},{},{traction},{},{},{},{margin},{sticks}",
+            force.x, force.y, force.z, slip.x, slip.y, slip.z
+        );
+    }
+    Some(Output {
+        name: "shear.csv",
+        text,
+    })
+}
+
 /// summary.json; `run` says what was pressed. It holds no times, so that the same input gives the same bytes.
 pub fn summary(contact: &Contact, regions: &RegionTable, run: Value) -> Output {
     let row = |row: &RegionResult| {

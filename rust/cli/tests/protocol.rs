@@ -166,3 +166,42 @@ fn bad_protocols_and_effects_are_refused_with_their_line() {
         "cannot be used with",
     );
 }
+
+#[test]
+fn a_slide_with_friction_writes_the_shear_that_the_product_bears() {
+    let (folder, hand, product) = scene("slide");
+    let slide = "time_s,depth_mm,slide_x_mm\n0,0.4,0\n1,0.4,0.05\n2,0.4,0.1\n";
+    let effects = "[[effect]]\nname = \"friction\"\namplitude = 1\ncoefficient = 0.4\n";
+    let words = [
+        "press",
+        &hand,
+        &product,
+        "--protocol",
+        &folder.file("p.csv", slide),
+        "--effects",
+        &folder.file("e.toml", effects),
+        "--out",
+        &folder.path("out"),
+    ];
+    let output = thenar(&words);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let shear = folder.read("out/shear.csv");
+    let sum: f64 = column(&shear, "tx_n").iter().sum();
+    let vertices = folder.read("out/vertices.csv");
+    let normal: f64 = column(&vertices, "force_n").iter().sum();
+    assert!(
+        sum > 0.0 && sum <= 0.4 * normal * (1.0 + 1e-9),
+        "{sum} {normal}"
+    );
+    // The product is dragged along x, and the skin holds it back.
+    let on_product = column(&folder.read("out/protocol.csv"), "fx_n");
+    assert!(
+        on_product[2] < on_product[1] && on_product[1] < 0.0,
+        "{on_product:?}"
+    );
+    assert!(
+        column(&shear, "slip_margin")
+            .iter()
+            .all(|m| (0.0..=1.0).contains(m))
+    );
+}
