@@ -2,7 +2,7 @@
 //!
 //! An effect of amplitude 0 leaves the base model as it is, bit for bit. Effects compose in the fixed order of [`Stage`]:
 //! geometry, stiffening, history, interface, instrument; within a stage in the order of [`CATALOGUE`]. What acts on the
-//! tissue at all times is worked out once by [`tissue`]; what remembers is kept by the sibling folder `history`.
+//! tissue at all times is worked out once by `tissue`; what remembers is kept by the sibling folder `history`.
 
 pub mod entry;
 pub mod active;
