@@ -51,7 +51,7 @@ pub struct PressArguments {
     /// CSV of time_s and depth_mm, offset_mm or force_n: follows it from rest and writes protocol.csv too.
     #[arg(long, value_name = "P.csv", group = "travel")]
     pub protocol: Option<PathBuf>,
-    /// TOML with a table [[effect]] for each effect: name, amplitude, regions, numbers.
+    /// TOML with a table `[[effect]]` for each effect: name, amplitude, regions, numbers.
     #[arg(long, value_name = "E.toml")]
     pub effects: Option<PathBuf>,
     /// Where the product moves for --force or --protocol; the mean normal of the contact if not given.
