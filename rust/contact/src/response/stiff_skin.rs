@@ -6,6 +6,7 @@
 //! transfer functions their geometric mean counts, as in the sibling `kernel`, and the response stays definite.
 
 use libm::j0;
+use rayon::prelude::*;
 
 use super::bonded_layer::Layer;
 use super::kernel::{RANGE_IN_THICKNESSES, RULE, interpolate};
@@ -13,16 +14,16 @@ use super::rows::Mix;
 use crate::sites::Sites;
 
 /// Wave numbers reach to this over the bending length, at most to `MOST_WAVE_NUMBER` (1/mm).
-const END_IN_LENGTHS: f64 = 100.0;
-const MOST_WAVE_NUMBER: f64 = 200.0;
-/// The integrals fade as a Gaussian that is exp(-9) at the end.
-const FADE: f64 = 3.0;
+const END_IN_LENGTHS: f64 = 40.0;
+const MOST_WAVE_NUMBER: f64 = 100.0;
+/// The integrals fade towards the end, which lies at this many widths of their window.
+const FADE: f64 = 3.5;
 /// Knots per bending length and per thickness, and the most of one table.
-const KNOTS_PER_LENGTH: f64 = 20.0;
+const KNOTS_PER_LENGTH: f64 = 16.0;
 const KNOTS_PER_THICKNESS: f64 = 24.0;
 const MOST_KNOTS: usize = 2048;
 /// Root areas of a site for which its own term is tabulated, mm, in equal ratios.
-const ROOT_AREAS: (f64, f64, usize) = (0.05, 20.0, 96);
+const ROOT_AREAS: (f64, f64, usize) = (0.05, 20.0, 64);
 /// Lattice sums go this far, in reciprocal spacings.
 const LATTICE_REACH: i32 = 24;
 
@@ -108,12 +109,12 @@ impl StiffSkin {
 #[derive(Debug, Clone)]
 pub struct StiffTables {
     layers: usize,
+    step: f64,
     tables: Vec<Table>,
 }
 
 #[derive(Debug, Clone)]
 struct Table {
-    step: f64,
     /// r times the kernel, one knot before zero.
     moment: Vec<f64>,
     /// Root area times a site's own term, by `ROOT_AREAS`.
@@ -123,24 +124,54 @@ struct Table {
 impl StiffTables {
     /// Tabulates distances up to `size` (the extent of the skin, mm).
     pub fn new(layers: &[Layer], sheets: &[Sheet], size: f64) -> StiffTables {
-        let class = |i: usize| (layers[i % layers.len()], sheets[i / layers.len()]);
-        let count = layers.len() * sheets.len();
-        let mut tables = Vec::with_capacity(count * (count + 1) / 2);
-        for b in 0..count {
-            for a in 0..=b {
-                tables.push(Table::new([class(a), class(b)], size));
-            }
-        }
+        let classes: Vec<(Layer, Sheet)> = sheets
+            .iter()
+            .flat_map(|sheet| layers.iter().map(move |layer| (*layer, *sheet)))
+            .collect();
+        let grid = Grid::new(layers, sheets, size);
+        let nodes = grid.nodes();
+        let root = |(layer, sheet): &(Layer, Sheet)| {
+            let seen = |&(k, _): &(f64, f64)| sheet.transfer(layer, k).sqrt();
+            nodes.iter().map(seen).collect()
+        };
+        let roots: Vec<Vec<f64>> = classes.iter().map(root).collect();
+        let pairs: Vec<(usize, usize)> = (0..classes.len())
+            .flat_map(|b| (0..=b).map(move |a| (a, b)))
+            .collect();
+        let weight = |&(a, b): &(usize, usize)| {
+            let product = roots[a].iter().zip(&roots[b]);
+            nodes
+                .iter()
+                .zip(product)
+                .map(|(n, (x, y))| n.1 * x * y)
+                .collect()
+        };
+        let weights: Vec<Vec<f64>> = pairs.iter().map(weight).collect();
+        let knots: Vec<Vec<f64>> = (0..grid.knots)
+            .into_par_iter()
+            .map(|knot| {
+                let r = grid.place(knot);
+                let bessel: Vec<f64> = nodes.iter().map(|&(k, _)| j0(k * r)).collect();
+                let moment =
+                    |w: &Vec<f64>| r * w.iter().zip(&bessel).map(|(w, j)| w * j).sum::<f64>();
+                weights.iter().map(moment).collect()
+            })
+            .collect();
+        let table = |(pair, &(a, b)): (usize, &(usize, usize))| {
+            let moment = knots.iter().map(|of_pair| of_pair[pair]).collect();
+            Table::new([classes[a], classes[b]], (moment, &grid))
+        };
         StiffTables {
             layers: layers.len(),
-            tables,
+            step: grid.step,
+            tables: pairs.par_iter().enumerate().map(table).collect(),
         }
     }
 
     /// The kernel between two places at distance `r` (mm), 1/mm; each place is a layer and a sheet.
     pub fn kernel(&self, a: (usize, usize), b: (usize, usize), r: f64) -> f64 {
         let table = self.table(a, b);
-        interpolate(&table.moment, r / table.step) / r
+        interpolate(&table.moment, r / self.step) / r
     }
 
     /// A site's own term for its area (mm2), 1/mm: what a lattice of such sites lacks of the integral.
@@ -162,42 +193,14 @@ impl StiffTables {
 }
 
 impl Table {
-    fn new(pair: [(Layer, Sheet); 2], size: f64) -> Table {
+    fn new(pair: [(Layer, Sheet); 2], (mut moment, grid): (Vec<f64>, &Grid)) -> Table {
         let transfer = |k: f64| {
-            pair.map(|(layer, sheet)| sheet.transfer(&layer, k))
-                .iter()
-                .product::<f64>()
-                .sqrt()
+            let [a, b] = pair.map(|(layer, sheet)| sheet.transfer(&layer, k));
+            (a * b).sqrt()
         };
-        let thickness = pair.map(|(layer, _)| layer.thickness);
-        let thinnest = thickness[0].min(thickness[1]);
-        let range = RANGE_IN_THICKNESSES * 0.5 * (thickness[0] + thickness[1]);
-        let reach = range.min(size);
-        let length = pair
-            .map(|(_, sheet)| sheet.bending.cbrt())
-            .iter()
-            .fold(f64::INFINITY, |m, l| m.min(*l));
-        let end = (END_IN_LENGTHS / length).min(MOST_WAVE_NUMBER);
-        let fine = (thinnest / KNOTS_PER_THICKNESS).min((length / KNOTS_PER_LENGTH).max(0.02));
-        let step = fine.max(reach / MOST_KNOTS as f64);
-        let nodes = nodes(end, reach);
-        let weight: Vec<f64> = nodes
-            .iter()
-            .map(|&(k, w)| w * transfer(k) * (-(FADE * k / end).powi(2)).exp())
-            .collect();
-        let knots = (reach / step).ceil() as usize + 3;
-        let moment = |knot: usize| {
-            let r = (knot as f64 - 1.0) * step;
-            r * nodes
-                .iter()
-                .zip(&weight)
-                .map(|(&(k, _), w)| w * j0(k * r))
-                .sum::<f64>()
-        };
-        let mut moment: Vec<f64> = (0..=knots).map(moment).collect();
-        if range <= size {
-            let wanted = transfer(1e-6) / 1e-6;
-            close(&mut moment, step, (range, wanted));
+        let range = 0.5 * RANGE_IN_THICKNESSES * (pair[0].0.thickness + pair[1].0.thickness);
+        if range <= grid.reach {
+            close(&mut moment, grid.step, (range, transfer(1e-6) / 1e-6));
         }
         let (low, high, count) = ROOT_AREAS;
         let own = |i: usize| {
@@ -205,23 +208,66 @@ impl Table {
             root * own_term(&transfer, root)
         };
         Table {
-            step,
             moment,
             own: (0..count).map(own).collect(),
         }
     }
 }
 
-/// Gauss-Legendre panels up to `end`, each no longer than one oscillation of J0 at `reach`.
-fn nodes(end: f64, reach: f64) -> Vec<(f64, f64)> {
-    let panels = ((end * reach / std::f64::consts::TAU).ceil() as usize).max(60);
-    let half = 0.5 * end / panels as f64;
-    let panel = |panel: usize| {
-        let middle = (2 * panel + 1) as f64 * half;
-        RULE.into_iter()
-            .flat_map(move |(x, w)| [(middle - half * x, half * w), (middle + half * x, half * w)])
-    };
-    (0..panels).flat_map(panel).collect()
+/// Where all tables of a skin have their knots, and their integrals their nodes.
+struct Grid {
+    step: f64,
+    reach: f64,
+    knots: usize,
+    end: f64,
+}
+
+impl Grid {
+    fn new(layers: &[Layer], sheets: &[Sheet], size: f64) -> Grid {
+        let thickness = layers.iter().map(|layer| layer.thickness);
+        let (thinnest, thickest) = thickness.fold((f64::INFINITY, 0.0f64), |(low, high), h| {
+            (low.min(h), high.max(h))
+        });
+        let lengths = sheets.iter().map(|sheet| sheet.bending.cbrt());
+        let length = lengths.filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
+        let end = (END_IN_LENGTHS / length).clamp(1.0, MOST_WAVE_NUMBER);
+        let reach = (RANGE_IN_THICKNESSES * thickest).min(size);
+        let fine = (thinnest / KNOTS_PER_THICKNESS).min(length / KNOTS_PER_LENGTH);
+        let step = fine.max(reach / MOST_KNOTS as f64).min(reach);
+        let knots = (reach / step).ceil() as usize + 4;
+        Grid {
+            step,
+            reach,
+            knots,
+            end,
+        }
+    }
+
+    /// Distance of a knot, mm; the first lies before zero.
+    fn place(&self, knot: usize) -> f64 {
+        (knot as f64 - 1.0) * self.step
+    }
+
+    /// Gauss-Legendre panels, each no longer than one oscillation of J0 at the reach, with the window in their weights.
+    fn nodes(&self) -> Vec<(f64, f64)> {
+        let panels = ((self.end * self.reach / std::f64::consts::TAU).ceil() as usize).max(60);
+        let half = 0.5 * self.end / panels as f64;
+        let seen = |k: f64, w: f64| (k, half * w * window(FADE * k / self.end));
+        let panel = |panel: usize| {
+            let middle = (2 * panel + 1) as f64 * half;
+            let around = move |(x, w): (f64, f64)| [(middle - half * x, w), (middle + half * x, w)];
+            RULE.into_iter().flat_map(around)
+        };
+        (0..panels)
+            .flat_map(panel)
+            .map(|(k, w)| seen(k, w))
+            .collect()
+    }
+}
+
+/// A window that is 1 - x^4 / 2 near 0: what it cuts off adds nothing at distances that matter.
+fn window(x: f64) -> f64 {
+    (1.0 + x * x) * (-x * x).exp()
 }
 
 /// Ends the kernel at its range and gives back the volume beyond, as the bare layer's does.
@@ -253,9 +299,7 @@ fn close(moment: &mut [f64], step: f64, (range, wanted): (f64, f64)) {
 fn own_term(transfer: &impl Fn(f64) -> f64, root: f64) -> f64 {
     let unit = std::f64::consts::TAU / root;
     let cut = unit * f64::from(LATTICE_REACH) / 4.0;
-    // Flat to the fourth power at 0, so that the window itself adds nothing.
-    let window = |x2: f64| (1.0 + x2) * (-x2).exp();
-    let seen = |k: f64| transfer(k) * window((k / cut).powi(2));
+    let seen = |k: f64| transfer(k) * window(k / cut);
     let (low, high, steps) = (1e-6f64, 5.0 * cut, 1500);
     let ratio = (high / low).ln() / f64::from(steps);
     let whole: f64 = (0..=steps)
