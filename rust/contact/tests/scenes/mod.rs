@@ -60,6 +60,8 @@ pub fn flat_skin(size: f64, spacing: f64, material: Material, model: Model) -> S
 }
 
 /// A paraboloid z = r^2 / 2R - depth above the skin, capped, as a fine closed mesh of `extent` mm radius.
+///
+/// Keep `extent` beyond the skin's: the rim of a smaller one touches too.
 pub fn paraboloid(radius: f64, depth: f64, extent: f64) -> Product {
     revolve(|r| r * r / (2.0 * radius) - depth, extent, 160)
 }
