@@ -5,7 +5,7 @@ use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, ve
 use crate::effects::tissue::{Place, Tissue};
 use crate::history::state::History;
 use crate::memory::Memory;
-use crate::response::kernel::RANGE_IN_THICKNESSES;
+use crate::response::grid::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
 use crate::sites::Sites;
 use crate::weld::Welded;

@@ -9,15 +9,10 @@
 use libm::{j0, j1};
 
 use crate::response::bonded_layer::Layer;
+use crate::response::grid::{Grid, RANGE_IN_THICKNESSES, pair};
 
-/// Range of the kernel in thicknesses: the slowest wave falls as exp(-pi r / 2 h), to 1e-4 here.
-pub const SHEAR_RANGE: f64 = 6.0;
 /// Share of the range over which the kernel fades to zero.
 const FADE_SHARE: f64 = 0.25;
-/// Knots per smallest thickness.
-const KNOTS_PER_THICKNESS: f64 = 24.0;
-/// Where 1 - L and 1 - T are taken as zero, in k h: both fall as exp(-2 s).
-const CUT_OFF_WAVE_NUMBER: f64 = 18.0;
 /// Most knots of one table.
 const MOST_KNOTS: usize = 2048;
 /// Lattice self term of 1/r over sqrt(area), as for the normal response: -4 zeta(1/2) beta(1/2).
@@ -64,25 +59,15 @@ pub struct ShearTables {
 impl ShearTables {
     /// Tabulates all pairs of `layers` for distances up to `size` (mm).
     pub fn new(layers: &[Layer], size: f64) -> Self {
-        let finite = || layers.iter().map(|l| l.thickness).filter(|h| h.is_finite());
-        let thinnest = finite().fold(f64::INFINITY, f64::min);
-        let thickest = finite().fold(0.0, f64::max);
-        let has_half_space = layers.iter().any(|l| l.thickness.is_infinite());
-        let range = if has_half_space {
-            f64::INFINITY
-        } else {
-            SHEAR_RANGE * thickest
-        };
-        let reach = range.min(size.max(thickest));
-        let step = (thinnest / KNOTS_PER_THICKNESS).max(reach / MOST_KNOTS as f64);
+        let grid = Grid::new(layers, size, MOST_KNOTS);
         let mut tables = vec![None; layers.len() * (layers.len() + 1) / 2];
-        if thinnest.is_finite() {
-            let nodes = wave_numbers(thinnest, reach);
+        if !grid.is_half_space() {
+            let nodes = grid.wave_numbers();
             for b in 0..layers.len() {
                 for a in 0..=b {
                     let both = [layers[a], layers[b]];
                     if both.iter().any(|l| l.thickness.is_finite()) {
-                        tables[pair(a, b)] = Some(tabulate(both, &nodes, (step, reach)));
+                        tables[pair(a, b)] = Some(tabulate(both, &nodes, &grid));
                     }
                 }
             }
@@ -90,7 +75,7 @@ impl ShearTables {
         ShearTables {
             layers: layers.to_vec(),
             tables,
-            step,
+            step: grid.step,
         }
     }
 
@@ -139,17 +124,12 @@ impl ShearTables {
     }
 }
 
-fn pair(a: usize, b: usize) -> usize {
-    let (a, b) = if a <= b { (a, b) } else { (b, a) };
-    b * (b + 1) / 2 + a
-}
-
 fn softness(layers: [Layer; 2]) -> f64 {
     ((1.0 - layers[0].poisson_ratio) * (1.0 - layers[1].poisson_ratio)).sqrt()
 }
 
 /// The knots of one pair: one before zero (both parts are even), two behind the end.
-fn tabulate(layers: [Layer; 2], nodes: &[(f64, f64)], (step, reach): (f64, f64)) -> Vec<[f64; 2]> {
+fn tabulate(layers: [Layer; 2], nodes: &[(f64, f64)], grid: &Grid) -> Vec<[f64; 2]> {
     let soft = softness(layers);
     let weight = |&(k, w): &(f64, f64)| {
         let [(l0, t0), (l1, t1)] = layers.map(|layer| layer.shear_transfer(k));
@@ -160,10 +140,9 @@ fn tabulate(layers: [Layer; 2], nodes: &[(f64, f64)], (step, reach): (f64, f64))
         ]
     };
     let weights: Vec<[f64; 2]> = nodes.iter().map(weight).collect();
-    let range = SHEAR_RANGE * 0.5 * (layers[0].thickness + layers[1].thickness);
-    let knots = (reach / step).ceil() as usize + 3;
+    let range = RANGE_IN_THICKNESSES * 0.5 * (layers[0].thickness + layers[1].thickness);
     let at = |knot: usize| {
-        let r = (knot as f64 - 1.0).abs() * step;
+        let r = (knot as f64 - 1.0).abs() * grid.step;
         let mut sum = [0.0; 2];
         for (&(k, _), weight) in nodes.iter().zip(&weights) {
             let x = k * r;
@@ -186,7 +165,7 @@ fn tabulate(layers: [Layer; 2], nodes: &[(f64, f64)], (step, reach): (f64, f64))
             }
         })
     };
-    (0..=knots).map(at).collect()
+    (0..=grid.knots()).map(at).collect()
 }
 
 /// 1 near, 0 at the range and beyond, smooth between.
@@ -197,28 +176,6 @@ fn fade(r: f64, range: f64) -> f64 {
     let from = range * (1.0 - FADE_SHARE);
     let share = ((r - from) / (range - from)).clamp(0.0, 1.0);
     1.0 - share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
-}
-
-/// Gauss-Legendre panels of eight nodes, each no longer than one oscillation at the farthest knot.
-fn wave_numbers(thinnest: f64, reach: f64) -> Vec<(f64, f64)> {
-    const RULE: [(f64, f64); 4] = [
-        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-        (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-        (0.960_289_856_497_536_2, 0.101_228_536_290_376_3),
-    ];
-    let end = CUT_OFF_WAVE_NUMBER / thinnest;
-    let panels = ((end * reach / std::f64::consts::TAU).ceil() as usize).max(12);
-    let half = 0.5 * end / panels as f64;
-    let mut nodes = Vec::with_capacity(panels * 8);
-    for panel in 0..panels {
-        let middle = (2 * panel + 1) as f64 * half;
-        for (x, w) in RULE {
-            nodes.push((middle - half * x, half * w));
-            nodes.push((middle + half * x, half * w));
-        }
-    }
-    nodes
 }
 
 #[cfg(test)]

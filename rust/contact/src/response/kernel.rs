@@ -7,15 +7,10 @@
 use libm::j0;
 
 use super::bonded_layer::Layer;
+use super::grid::{Grid, RANGE_IN_THICKNESSES, pair};
 
-/// Range of the kernel in thicknesses. At 6 h the response has fallen to 0.8 % of the half space's.
-pub const RANGE_IN_THICKNESSES: f64 = 6.0;
 /// Share of the range over which the kernel fades to zero and gets back the volume that lies beyond it.
 const FADE_SHARE: f64 = 0.5;
-/// Knots per smallest thickness; cubic interpolation is then within 5e-7 of the integral.
-const KNOTS_PER_THICKNESS: f64 = 24.0;
-/// Where 1 - K is taken as zero, in k h: 1 - K falls as 4 s^2 exp(-2 s).
-const CUT_OFF_WAVE_NUMBER: f64 = 18.0;
 /// Most knots of one table.
 const MOST_KNOTS: usize = 4096;
 
@@ -30,30 +25,15 @@ pub struct KernelTables {
 impl KernelTables {
     /// Tabulates all pairs of `layers` for distances up to `size` (the extent of the skin, mm).
     pub fn new(layers: &[Layer], size: f64) -> Self {
-        let finite = || layers.iter().map(|l| l.thickness).filter(|h| h.is_finite());
-        let thinnest = finite().fold(f64::INFINITY, f64::min);
-        let thickest = finite().fold(0.0, f64::max);
-        let has_half_space = layers.iter().any(|l| l.thickness.is_infinite());
-        let range = if has_half_space {
-            f64::INFINITY
-        } else {
-            RANGE_IN_THICKNESSES * thickest
-        };
-        let reach = range.min(size.max(thickest));
-        let step = (thinnest / KNOTS_PER_THICKNESS).max(reach / MOST_KNOTS as f64);
+        let grid = Grid::new(layers, size, MOST_KNOTS);
         let mut tables = vec![None; layers.len() * (layers.len() + 1) / 2];
-        if thinnest.is_finite() {
-            fill(
-                layers,
-                &mut tables,
-                Grid {
-                    step,
-                    reach,
-                    thinnest,
-                },
-            );
+        if !grid.is_half_space() {
+            fill(layers, &mut tables, &grid);
         }
-        KernelTables { tables, step }
+        KernelTables {
+            tables,
+            step: grid.step,
+        }
     }
 
     /// Psi of the layers `a` and `b` at distance `r` (mm), 1/mm.
@@ -77,11 +57,6 @@ impl KernelTables {
     }
 }
 
-fn pair(a: usize, b: usize) -> usize {
-    let (a, b) = if a <= b { (a, b) } else { (b, a) };
-    b * (b + 1) / 2 + a
-}
-
 /// Catmull-Rom through the knots; the table holds one knot before zero (Psi is even) and two behind its end.
 #[inline]
 pub(super) fn interpolate(table: &[f64], x: f64) -> f64 {
@@ -96,15 +71,9 @@ pub(super) fn interpolate(table: &[f64], x: f64) -> f64 {
         * (p2 - p0 + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
 }
 
-struct Grid {
-    step: f64,
-    reach: f64,
-    thinnest: f64,
-}
-
-fn fill(layers: &[Layer], tables: &mut [Option<Vec<f64>>], grid: Grid) {
-    let nodes = wave_numbers(&grid);
-    let knots = (grid.reach / grid.step).ceil() as usize + 3;
+fn fill(layers: &[Layer], tables: &mut [Option<Vec<f64>>], grid: &Grid) {
+    let nodes = grid.wave_numbers();
+    let knots = grid.knots();
     let roots: Vec<Vec<f64>> = layers
         .iter()
         .map(|layer| {
@@ -141,7 +110,7 @@ fn fill(layers: &[Layer], tables: &mut [Option<Vec<f64>>], grid: Grid) {
     for b in 0..layers.len() {
         for a in 0..=b {
             if let Some(table) = &mut tables[pair(a, b)] {
-                close(table, [layers[a], layers[b]], &grid);
+                close(table, [layers[a], layers[b]], grid);
             }
         }
     }
@@ -185,30 +154,6 @@ fn close(table: &mut [f64], layers: [Layer; 2], grid: &Grid) {
             *psi -= (wanted - volume) / room * bump(r);
         }
     }
-}
-
-/// Nodes and weights of the 8-point rule on (-1, 1).
-pub(super) const RULE: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_5),
-    (0.960_289_856_497_536_2, 0.101_228_536_290_376_3),
-];
-
-/// Gauss-Legendre panels, each no longer than one oscillation of J0 at the farthest knot.
-fn wave_numbers(grid: &Grid) -> Vec<(f64, f64)> {
-    let end = CUT_OFF_WAVE_NUMBER / grid.thinnest;
-    let panels = ((end * grid.reach / std::f64::consts::TAU).ceil() as usize).max(12);
-    let half = 0.5 * end / panels as f64;
-    let mut nodes = Vec::with_capacity(panels * 8);
-    for panel in 0..panels {
-        let middle = (2 * panel + 1) as f64 * half;
-        for (x, w) in RULE {
-            nodes.push((middle - half * x, half * w));
-            nodes.push((middle + half * x, half * w));
-        }
-    }
-    nodes
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use thenar_surface::SkinDistance;
 
 use super::bonded_layer::Layer;
-use super::kernel::{KernelTables, RANGE_IN_THICKNESSES};
+use super::grid::RANGE_IN_THICKNESSES;
+use super::kernel::KernelTables;
 use super::skin_metric::arc_lengths;
 use super::stiff_skin::{Sheet, StiffSkin};
 use crate::Model;

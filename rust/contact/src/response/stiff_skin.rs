@@ -9,7 +9,8 @@ use libm::j0;
 use rayon::prelude::*;
 
 use super::bonded_layer::Layer;
-use super::kernel::{RANGE_IN_THICKNESSES, RULE, interpolate};
+use super::grid::{KNOTS_PER_THICKNESS, RANGE_IN_THICKNESSES, RULE};
+use super::kernel::interpolate;
 use super::rows::Mix;
 use crate::sites::Sites;
 
@@ -18,9 +19,8 @@ const END_IN_LENGTHS: f64 = 40.0;
 const MOST_WAVE_NUMBER: f64 = 100.0;
 /// The integrals fade towards the end, which lies at this many widths of their window.
 const FADE: f64 = 3.5;
-/// Knots per bending length and per thickness, and the most of one table.
+/// Knots per bending length, and the most of one table.
 const KNOTS_PER_LENGTH: f64 = 16.0;
-const KNOTS_PER_THICKNESS: f64 = 24.0;
 const MOST_KNOTS: usize = 2048;
 /// Root areas of a site for which its own term is tabulated, mm, in equal ratios.
 const ROOT_AREAS: (f64, f64, usize) = (0.05, 20.0, 64);
