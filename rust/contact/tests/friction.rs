@@ -4,38 +4,13 @@
 mod scenes;
 
 use nalgebra::{Rotation3, Vector3};
-use scenes::{lattice, paraboloid};
+use scenes::{SHEAR_MODULUS, lattice, paraboloid, rubbing_skin};
 use thenar_contact::{
-    ActiveEffect, Contact, ContactError, Control, Drag, Material, Model, Press, Shear, Skin,
-    SkinInput, Start,
+    ActiveEffect, Contact, ContactError, Control, Drag, Press, Shear, Skin, Start,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
-const SHEAR_MODULUS: f64 = 0.02;
 const MU: f64 = 0.4;
-
-fn material(thickness_mm: f64) -> Material {
-    Material {
-        g0_mpa: SHEAR_MODULUS,
-        g_lim_mpa: SHEAR_MODULUS,
-        thickness_mm,
-        ..Material::finger()
-    }
-}
-
-fn skin(mesh: &Mesh, thickness_mm: f64, mu: f64) -> Skin {
-    let input = SkinInput {
-        mesh: mesh.clone(),
-        regions: Vec::new(),
-        materials: vec![material(thickness_mm)],
-        model: Model::Layer,
-    };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
-    let friction = ActiveEffect::named("friction", 1.0).unwrap();
-    let friction = friction.with("coefficient", mu).unwrap();
-    skin.set_effects(vec![friction], &Control::none()).unwrap();
-    skin
-}
 
 fn drag(skin: &mut Skin, product: &Product, drag: Option<Drag>) -> Result<Contact, ContactError> {
     let press = Press {
@@ -88,7 +63,7 @@ fn stick_radius_by_traction(mesh: &Mesh, shear: &Shear) -> f64 {
 #[test]
 fn cattaneo_and_mindlin_hold_on_pressed_skin() {
     let (mesh, product) = hertz();
-    let mut skin = skin(&mesh, f64::INFINITY, MU);
+    let mut skin = rubbing_skin(&mesh, f64::INFINITY, MU);
     for share in [0.2, 0.5, 0.8] {
         let load = normal_force(&drag(&mut skin, &product, None).unwrap());
         let force = Vec3::new(0.8, 0.6, 0.0) * (share * MU * load);
@@ -117,7 +92,7 @@ fn cattaneo_and_mindlin_hold_on_pressed_skin() {
 #[test]
 fn slip_is_against_the_force_and_none_where_skin_sticks() {
     let (mesh, product) = hertz();
-    let mut skin = skin(&mesh, f64::INFINITY, MU);
+    let mut skin = rubbing_skin(&mesh, f64::INFINITY, MU);
     let contact = drag(&mut skin, &product, travel(0.007, -0.004)).unwrap();
     let shear = contact.shear.unwrap();
     let (mut stuck, mut slipped) = (0, 0);
@@ -147,7 +122,7 @@ fn a_contact_that_sticks_all_over_is_as_stiff_as_a_bonded_disc() {
     let mut errors = Vec::new();
     for spacing in [1.0 / 6.0, 1.0 / 12.0] {
         let mesh = lattice(1.5, spacing, 0.3);
-        let mut skin = skin(&mesh, f64::INFINITY, 9.0);
+        let mut skin = rubbing_skin(&mesh, f64::INFINITY, 9.0);
         let product = paraboloid(50.0, 0.02, 2.0);
         let (small, turn) = (1e-5, Vec3::new(0.0, 0.0, 1e-5));
         let pulled = drag(&mut skin, &product, travel(small, 0.0)).unwrap();
@@ -173,7 +148,7 @@ fn a_contact_that_sticks_all_over_is_as_stiff_as_a_bonded_disc() {
 #[test]
 fn torsion_ends_at_the_moment_of_full_slip() {
     let (mesh, product) = hertz();
-    let mut skin = skin(&mesh, f64::INFINITY, MU);
+    let mut skin = rubbing_skin(&mesh, f64::INFINITY, MU);
     let motion = Drag::Motion {
         travel: Vec3::zeros(),
         turn: Vec3::new(0.0, 0.0, 1.0),
@@ -198,7 +173,12 @@ fn torsion_ends_at_the_moment_of_full_slip() {
 #[test]
 fn a_turned_scene_gives_the_turned_result() {
     let (mesh, product) = (lattice(9.0, 1.1, 0.3), paraboloid(9.0, 1.5, 6.0));
-    let here = drag(&mut skin(&mesh, 7.0, MU), &product, travel(0.6, 0.3)).unwrap();
+    let here = drag(
+        &mut rubbing_skin(&mesh, 7.0, MU),
+        &product,
+        travel(0.6, 0.3),
+    )
+    .unwrap();
     let turn = Rotation3::from_euler_angles(0.3, -1.1, 2.0);
     let shift = Vector3::new(31.0, -20.0, 77.0);
     let moved = |m: &Mesh| {
@@ -210,7 +190,12 @@ fn a_turned_scene_gives_the_turned_result() {
         turn: Vec3::zeros(),
     };
     let product = Product::new(moved(product.mesh())).unwrap();
-    let there = drag(&mut skin(&moved(&mesh), 7.0, MU), &product, Some(motion)).unwrap();
+    let there = drag(
+        &mut rubbing_skin(&moved(&mesh), 7.0, MU),
+        &product,
+        Some(motion),
+    )
+    .unwrap();
     let (a, b) = (here.shear.unwrap(), there.shear.unwrap());
     assert!(a.total.norm() > 0.01);
     assert!((turn * a.total - b.total).norm() < 1e-6 * a.total.norm());
@@ -224,7 +209,7 @@ fn bone_makes_the_skin_stiffer_to_shear() {
     let (mesh, product) = (lattice(12.0, 1.1, 0.3), paraboloid(9.0, 1.0, 6.0));
     let stiffness = |thickness: f64| {
         let contact = drag(
-            &mut skin(&mesh, thickness, 5.0),
+            &mut rubbing_skin(&mesh, thickness, 5.0),
             &product,
             travel(0.05, 0.0),
         )
@@ -241,7 +226,7 @@ fn bone_makes_the_skin_stiffer_to_shear() {
 #[test]
 fn dragged_skin_moves_along_and_stays_on_the_product() {
     let (mesh, product) = (lattice(12.0, 1.1, 0.3), paraboloid(9.0, 1.5, 7.0));
-    let mut skin = skin(&mesh, 7.0, 0.6);
+    let mut skin = rubbing_skin(&mesh, 7.0, 0.6);
     let base = drag(&mut skin, &product, None).unwrap();
     let contact = drag(&mut skin, &product, travel(0.3, 0.0)).unwrap();
     let mut most = 0.0;
@@ -268,11 +253,11 @@ fn dragged_skin_moves_along_and_stays_on_the_product() {
 #[test]
 fn nothing_changes_without_friction_or_without_a_drag() {
     let (mesh, product) = (lattice(9.0, 1.1, 0.3), paraboloid(9.0, 1.5, 6.0));
-    let mut with = skin(&mesh, 7.0, MU);
-    let mut without = skin(&mesh, 7.0, MU);
+    let mut with = rubbing_skin(&mesh, 7.0, MU);
+    let mut without = rubbing_skin(&mesh, 7.0, MU);
     without.set_effects(Vec::new(), &Control::none()).unwrap();
-    let mut zero = skin(&mesh, 7.0, 0.0);
-    let mut off = skin(&mesh, 7.0, MU);
+    let mut zero = rubbing_skin(&mesh, 7.0, 0.0);
+    let mut off = rubbing_skin(&mesh, 7.0, MU);
     let friction = ActiveEffect::named("friction", 0.0).unwrap();
     off.set_effects(vec![friction], &Control::none()).unwrap();
     let base = drag(&mut without, &product, None).unwrap();
@@ -292,13 +277,24 @@ fn nothing_changes_without_friction_or_without_a_drag() {
 #[test]
 fn a_drag_twice_is_the_same_bits_on_any_number_of_threads() {
     let (mesh, product) = (lattice(9.0, 1.1, 0.3), paraboloid(9.0, 1.5, 6.0));
-    let once = drag(&mut skin(&mesh, 7.0, MU), &product, travel(0.4, 0.1)).unwrap();
+    let once = drag(
+        &mut rubbing_skin(&mesh, 7.0, MU),
+        &product,
+        travel(0.4, 0.1),
+    )
+    .unwrap();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
         .unwrap();
-    let alone =
-        pool.install(|| drag(&mut skin(&mesh, 7.0, MU), &product, travel(0.4, 0.1)).unwrap());
+    let alone = pool.install(|| {
+        drag(
+            &mut rubbing_skin(&mesh, 7.0, MU),
+            &product,
+            travel(0.4, 0.1),
+        )
+        .unwrap()
+    });
     assert_eq!(once.displacement, alone.displacement);
     assert_eq!(once.shear.unwrap().force, alone.shear.unwrap().force);
 }
@@ -306,7 +302,7 @@ fn a_drag_twice_is_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn bad_input_is_refused_in_a_sentence() {
     let (mesh, product) = (lattice(6.0, 1.1, 0.3), paraboloid(9.0, 1.0, 5.0));
-    let mut skin = skin(&mesh, 7.0, MU);
+    let mut skin = rubbing_skin(&mesh, 7.0, MU);
     let says = |result: Result<Contact, ContactError>, text: &str| {
         let message = result.unwrap_err().to_string();
         assert!(message.contains(text), "{message}");

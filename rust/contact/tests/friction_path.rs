@@ -3,38 +3,11 @@
 
 mod scenes;
 
-use scenes::lattice;
-use thenar_contact::{
-    ActiveEffect, Control, Course, Demand, Keep, Material, Model, Protocol, Row, Run, Skin,
-    SkinInput,
-};
+use scenes::{lattice, rubbing_skin};
+use thenar_contact::{Control, Course, Demand, Keep, Protocol, Row, Run, Skin};
 use thenar_surface::{Mesh, Product, Vec3};
 
-const SHEAR_MODULUS: f64 = 0.02;
 const MU: f64 = 0.4;
-
-fn material(thickness_mm: f64) -> Material {
-    Material {
-        g0_mpa: SHEAR_MODULUS,
-        g_lim_mpa: SHEAR_MODULUS,
-        thickness_mm,
-        ..Material::finger()
-    }
-}
-
-fn skin(mesh: &Mesh, thickness_mm: f64, mu: f64) -> Skin {
-    let input = SkinInput {
-        mesh: mesh.clone(),
-        regions: Vec::new(),
-        materials: vec![material(thickness_mm)],
-        model: Model::Layer,
-    };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
-    let friction = ActiveEffect::named("friction", 1.0).unwrap();
-    let friction = friction.with("coefficient", mu).unwrap();
-    skin.set_effects(vec![friction], &Control::none()).unwrap();
-    skin
-}
 
 fn row(time_s: f64, depth: f64, slide: f64) -> Row {
     Row {
@@ -82,7 +55,7 @@ fn a_protocol_that_slides_remembers_what_sticks() {
         .iter()
         .map(|p| p - Vec3::z() * (p.norm_squared() / 24.0));
     let mesh = Mesh::new(dome.collect(), mesh.triangles().to_vec()).unwrap();
-    let mut skin = skin(&mesh, 7.0, MU);
+    let mut skin = rubbing_skin(&mesh, 7.0, MU);
     let product = plate();
     let there = |k: i32| f64::from(k) * 0.04;
     let out = (0..=20).map(|k| row(f64::from(k), 0.8, there(k)));

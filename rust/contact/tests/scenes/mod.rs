@@ -1,7 +1,9 @@
 //! Small meshes that the integration tests press: jittered flat skin, paraboloids, plates.
 #![allow(dead_code, clippy::unwrap_used)]
 
-use thenar_contact::{Contact, Control, Material, Model, Press, Skin, SkinInput, Start};
+use thenar_contact::{
+    ActiveEffect, Contact, Control, Material, Model, Press, Skin, SkinInput, Start,
+};
 use thenar_surface::{Mesh, Product, Vec3};
 
 /// A reproducible sequence in [0, 1).
@@ -117,4 +119,32 @@ pub fn press_posed(skin: &mut Skin, product: &Product, posed: &[Vec3]) -> Contac
         start: Start::Fresh,
     };
     skin.press(&press, &Control::none()).unwrap()
+}
+
+/// Shear modulus of `material`, MPa.
+pub const SHEAR_MODULUS: f64 = 0.02;
+
+/// One modulus at every depth.
+pub fn material(thickness_mm: f64) -> Material {
+    Material {
+        g0_mpa: SHEAR_MODULUS,
+        g_lim_mpa: SHEAR_MODULUS,
+        thickness_mm,
+        ..Material::finger()
+    }
+}
+
+/// A skin of `material` with friction of coefficient `mu`.
+pub fn rubbing_skin(mesh: &Mesh, thickness_mm: f64, mu: f64) -> Skin {
+    let input = SkinInput {
+        mesh: mesh.clone(),
+        regions: Vec::new(),
+        materials: vec![material(thickness_mm)],
+        model: Model::Layer,
+    };
+    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
+    let friction = ActiveEffect::named("friction", 1.0).unwrap();
+    let friction = friction.with("coefficient", mu).unwrap();
+    skin.set_effects(vec![friction], &Control::none()).unwrap();
+    skin
 }
