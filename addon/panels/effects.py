@@ -6,18 +6,24 @@ from .. import effect_settings, names, status
 from .lists import title as region_title
 from .main import Tab
 
+NAME_SHARE = 0.72
+"""Of a row's width, what the effect's name takes."""
+
 
 class THENAR_UL_effects(bpy.types.UIList):
     """Effects of the hand: switch, name, place, amplitude."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
-        row = layout.row(align=True)
+        split = layout.split(factor=NAME_SHARE)
+        row = split.row(align=True)
         row.prop(item, "is_on", text="")
         words = row.row()
         words.active = item.is_on
         place = f", {region_title(item.region).lower()}" if item.region else ""
         words.label(text=effect_settings.title(item.name) + place)
-        words.prop(item, "amplitude", text="", slider=True)
+        number = split.row()
+        number.active = item.is_on
+        number.prop(item, "amplitude", text="", slider=True)
 
 
 class THENAR_PT_effects(Tab, bpy.types.Panel):
@@ -43,14 +49,14 @@ class THENAR_PT_effects(Tab, bpy.types.Panel):
         side.operator("thenar.effect_remove", text="", icon="REMOVE")
         if not state.effects:
             return
-        if effect_settings.is_on(hand, names.FRICTION):
-            layout.prop(context.scene.thenar, "slide_mm")
+        layout.use_property_split = True
+        layout.use_property_decorate = False
         _draw_effect(layout, state.effects[min(state.effect_index, len(state.effects) - 1)], hand)
+        if effect_settings.is_on(hand, names.FRICTION):
+            layout.column(align=True).prop(context.scene.thenar, "slide_mm")
 
 
 def _draw_effect(layout, effect, hand):
-    layout.use_property_split = True
-    layout.use_property_decorate = False
     column = layout.column(align=True)
     if hand.thenar.materials:
         column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")
