@@ -176,7 +176,6 @@ class Skin:
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
     ) -> Contact: ...
-
     @overload
     def run(
         self,
