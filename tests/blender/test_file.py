@@ -106,3 +106,15 @@ def test_notes_that_differ_by_region_are_told_once():
 
     notes = ["region 'a' is 1.5 mm deep", "region 'b' is 2.5 mm deep", "the hand is open"]
     assert list(workflow.joined(notes)) == ["region 'a' is 1.5 mm deep (1 more such)", "the hand is open"]
+
+
+def test_notes_of_a_solve_name_one_region_and_count_the_others():
+    hand, _ = stage.scene(top=-3.5)
+    points = stage.evaluated(hand)
+    for name, inside in (("left", points[:, 0] < 0.0), ("right", points[:, 0] >= 0.0)):
+        hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(inside)], 1.0, "REPLACE")
+    bpy.ops.thenar.assign_regions()
+    deep = [note.name for note in stage.solve().warnings if "over half its" in note.name]
+    assert len(deep) == 1, deep
+    assert deep[0].startswith("region 'left'")
+    assert deep[0].endswith("(1 more such)")

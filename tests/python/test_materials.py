@@ -108,7 +108,7 @@ def test_warnings_call_regions_by_their_names():
     product = shapes.ball(3.0, (0.0, 0.0, 1.5), 8)  # 1.5 mm deep
     thin = thenar.Material.finger_layer().replace(thickness_mm=2.0)
     skin = thenar.Skin(VERTICES, TRIANGLES, np.zeros(49, int), [thin], region_names=["index fingertip"])
-    assert any(said.startswith("region index fingertip is pressed 1.") for said in skin.press(*product).warnings)
+    assert any(said.startswith("region 'index fingertip' is pressed 1.") for said in skin.press(*product).warnings)
 
 
 @pytest.mark.parametrize(("model", "preset"), [("layer", "finger_layer"), ("paper", "finger")])

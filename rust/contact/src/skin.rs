@@ -129,7 +129,7 @@ impl Skin {
         self.warnings.push(sentence);
     }
 
-    /// What sentences call a region: "region 3", or "region index fingertip" where it has a name.
+    /// What sentences call a region: "region 3", or "region 'index fingertip'" where it has a name.
     pub fn region_title(&self, region: usize) -> String {
         title(&self.region_names, region)
     }
@@ -270,7 +270,7 @@ fn check_regions(
 
 fn title(names: &[String], region: usize) -> String {
     match names.get(region).filter(|name| !name.is_empty()) {
-        Some(name) => format!("region {name}"),
+        Some(name) => format!("region '{name}'"),
         None => format!("region {region}"),
     }
 }

@@ -37,8 +37,8 @@ fn warnings_and_errors_call_regions_by_their_names() {
         &paraboloid(9.0, 1.5, 8.0),
     );
     for name in [
-        "region thumb is pressed",
-        "region index fingertip is pressed",
+        "region 'thumb' is pressed",
+        "region 'index fingertip' is pressed",
     ] {
         assert!(
             said.warnings.iter().any(|w| w.starts_with(name)),
@@ -64,7 +64,7 @@ fn warnings_and_errors_call_regions_by_their_names() {
     let refused = named(0.3, &["thumb", "index fingertip"]).press(&request, &Control::none());
     let sentence = refused.unwrap_err().to_string();
     assert!(
-        sentence.starts_with("region index fingertip: around vertex"),
+        sentence.starts_with("region 'index fingertip': around vertex"),
         "{sentence}"
     );
     let input = SkinInput {
@@ -76,7 +76,7 @@ fn warnings_and_errors_call_regions_by_their_names() {
     let names = vec!["thumb".to_owned(), "web".to_owned()];
     let refused = Skin::prepare_named(input, names, &Control::none()).map(|_| ());
     assert!(
-        matches!(&refused, Err(ContactError::MissingMaterial { title, .. }) if title == "region web")
+        matches!(&refused, Err(ContactError::MissingMaterial { title, .. }) if title == "region 'web'")
     );
 }
 
