@@ -79,7 +79,12 @@ def ratios(bone, tool, poisson_ratio):
     depth, force, area = rows(bone, tool)
     held = (depth > LEAST_MM - 1e-6) & (depth < STRAIN * thickness(bone) + 1e-6)
     forces, areas = pressed(bone, tool, depth[held], poisson_ratio)
-    return forces / force[held], areas / area[held]
+    f, a = forces / force[held], areas / area[held]
+    print(
+        f"{bone} {tool} nu {poisson_ratio}: force {f.min():.3f} to {f.max():.3f}, "
+        f"area {a.min():.3f} to {a.max():.3f}, median {np.median(a):.3f} of the finite elements'"
+    )
+    return f, a
 
 
 @pytest.mark.parametrize("tool", ["plate", "rod"])

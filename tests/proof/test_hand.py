@@ -18,6 +18,11 @@ def test_half_the_spacing_gives_the_same_grasp():
             made["vertices_mm"], made["triangles"], regions=made["regions"], materials=grasp.materials(made)
         )
         presses.append(skin.press(product, posed_vertices_mm=grasp.curled(made, flexion)))
+    for what, (wide, close) in {
+        "force": [press.force_n.sum() for press in presses],
+        "patch peak": [press.patch_peak_mpa for press in presses],
+    }.items():
+        print(f"{what}: {100.0 * (wide / close - 1.0):+.2f} % at twice the spacing")
     assert len(fine["vertices_mm"]) > 3.5 * len(coarse["vertices_mm"])
     assert presses[0].in_contact.sum() > 300
     assert presses[0].force_n.sum() == pytest.approx(presses[1].force_n.sum(), rel=0.03)

@@ -20,6 +20,9 @@ def test_sphere_on_a_bonded_layer(thickness, share):
     )
     skin, product = pressing.sphere_on_flat(10.0, depth, radius / 6.0)
     contact = pressing.press(skin, product, [pressing.material(thickness=thickness)])
+    print(
+        f"{thickness} mm, {share} h deep: force {contact.total_force_n[2] / expected - 1.0:+.2%} of the Hankel solve's"
+    )
     assert contact.total_force_n[2] == pytest.approx(expected, rel=0.02)
     assert np.sqrt(contact.contact_area_mm2 / np.pi) == pytest.approx(radius, rel=0.04)
 

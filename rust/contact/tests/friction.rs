@@ -78,12 +78,15 @@ fn cattaneo_and_mindlin_hold_on_pressed_skin() {
         let unit = 3.0 * 1.5 * MU * load / (16.0 * SHEAR_MODULUS);
         let exact = unit * (1.0 - (1.0 - share).powf(2.0 / 3.0));
         let ratio = shear.travel.norm() / exact;
-        assert!((ratio - 1.0).abs() < 0.01, "{share}: travel {ratio}");
-        let exact = (1.0 - share).cbrt();
-        let ratio = stuck_radius(&shear) / exact;
-        assert!((ratio - 1.0).abs() < 0.05, "{share}: stick radius {ratio}");
-        let ratio = stick_radius_by_traction(&mesh, &shear) / exact;
-        assert!((ratio - 1.0).abs() < 0.03, "{share}: stick radius {ratio}");
+        let stick = (1.0 - share).cbrt();
+        let counted = stuck_radius(&shear) / stick;
+        let by_traction = stick_radius_by_traction(&mesh, &shear) / stick;
+        println!(
+            "{share} of full slip, over Mindlin's: travel {ratio:.4}, stick radius by traction {by_traction:.3}, counted {counted:.3}"
+        );
+        assert!((ratio - 1.0).abs() < 0.01);
+        assert!((counted - 1.0).abs() < 0.05);
+        assert!((by_traction - 1.0).abs() < 0.03);
         // The force on the product is the opposite of that on the skin.
         assert!((contact.total_force.x + shear.total.x).abs() < 0.02 * force.norm());
     }

@@ -21,8 +21,8 @@ const STEADY: f64 = 0.85;
 /// Share of the work of adhesion that is kept where the mesh, not the range, limits the attraction.
 ///
 /// Attraction that reaches as far as the mesh needs holds on longer than a short one: dense solves on lattices of six to ten
-/// spacings in JKR's contact at no load pull off at 1.61 to 1.57 instead of 1.5 pi w R with the whole work. At 6 spacings
-/// pull-off is still 11 % high; DMT's limit, a wide range, does not use this.
+/// spacings in JKR's contact at no load pull off at 1.61 to 1.57 instead of 1.5 pi w R with the whole work. On coarser
+/// meshes pull-off is higher still; DMT's limit, a wide range, does not use this.
 const MESH_SHARE: f64 = 0.95;
 /// Change of attraction over its largest value that ends the iteration.
 const TOLERANCE: f64 = 3e-4;
