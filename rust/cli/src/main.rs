@@ -10,6 +10,7 @@ mod protocol;
 mod read;
 mod regions;
 mod results;
+mod table;
 
 use arguments::{Command, Thenar};
 use clap::Parser;

@@ -2,6 +2,7 @@
 
 use crate::fault::Fault;
 use crate::results::Output;
+use crate::table::Table;
 use std::fmt::Write as _;
 use std::path::Path;
 use thenar_contact::{Course, Demand, Protocol, Row};
@@ -16,19 +17,8 @@ const KPA_PER_MPA: f64 = 1e3;
 /// # Errors
 /// Names file, line and remedy.
 pub fn read(file: &Path, direction: Option<Vec3>) -> Result<Protocol, Fault> {
-    let named = |error: csv::Error| {
-        Fault::Input(format!(
-            "{}: {error}; it must be a CSV of time_s and depth_mm",
-            file.display()
-        ))
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_path(file)
-        .map_err(named)?;
-    let headers = reader.headers().map_err(named)?.clone();
-    let clean = |header: &str| header.trim_start_matches('\u{feff}').to_owned();
-    let headers: Vec<String> = headers.iter().map(clean).collect();
+    let mut table = Table::open(file, "a CSV of time_s and depth_mm")?;
+    let headers = table.columns.clone();
     let is_known = |name: &&String| {
         name.as_str() == "time_s"
             || DEMANDS.contains(&name.as_str())
@@ -48,9 +38,8 @@ pub fn read(file: &Path, direction: Option<Vec3>) -> Result<Protocol, Fault> {
         return Err(at(1, "the column time_s is missing".to_owned()));
     }
     let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(named)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    for record in table.records() {
+        let (line, record) = record?;
         rows.push(row(&headers, &record).map_err(|problem| at(line, problem))?);
     }
     Ok(Protocol { rows, direction })

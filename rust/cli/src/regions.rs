@@ -1,6 +1,7 @@
 //! The region of every vertex from a CSV file of vertex,region.
 
 use crate::fault::Fault;
+use crate::table::Table;
 use std::path::Path;
 
 /// Largest region number; more would be a mistake that costs memory.
@@ -131,22 +132,8 @@ fn is_bare(region: &str) -> bool {
 }
 
 fn rows(file: &Path) -> Result<Vec<Row>, Fault> {
-    let named = |error: csv::Error| {
-        Fault::Input(format!(
-            "{}: {error}; it must be a CSV of vertex,region",
-            file.display()
-        ))
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_path(file)
-        .map_err(named)?;
-    let headers = reader.headers().map_err(named)?.clone();
-    let column = |name: &str| {
-        headers
-            .iter()
-            .position(|header| header.trim_start_matches('\u{feff}') == name)
-    };
+    let mut table = Table::open(file, "a CSV of vertex,region")?;
+    let column = |name: &str| table.columns.iter().position(|column| column == name);
     let (Some(vertex), Some(region)) = (column("vertex"), column("region")) else {
         let problem = "the first line must name the columns vertex,region";
         return Err(Fault::Input(format!(
@@ -155,9 +142,8 @@ fn rows(file: &Path) -> Result<Vec<Row>, Fault> {
         )));
     };
     let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(named)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    for record in table.records() {
+        let (line, record) = record?;
         let field = |column: usize| record.get(column).unwrap_or_default().to_owned();
         rows.push(Row {
             line,

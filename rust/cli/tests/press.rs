@@ -4,7 +4,7 @@
 mod sheets;
 
 use serde_json::Value;
-use sheets::{Folder, block, refused, scene, sheet, stderr, thenar};
+use sheets::{Folder, block, column, refused, scene, sheet, stderr, thenar};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -12,19 +12,6 @@ const OUTPUTS: [&str; 3] = ["product.csv", "summary.json", "vertices.csv"];
 
 fn summary(folder: &Folder, out: &str) -> Value {
     serde_json::from_str(&folder.read(&format!("{out}/summary.json"))).unwrap()
-}
-
-fn column(csv: &str, name: &str) -> Vec<f64> {
-    let mut lines = csv.lines();
-    let place = lines
-        .next()
-        .unwrap()
-        .split(',')
-        .position(|header| header == name)
-        .unwrap();
-    lines
-        .map(|line| line.split(',').nth(place).unwrap().parse().unwrap())
-        .collect()
 }
 
 #[test]

@@ -3,24 +3,11 @@
 
 mod sheets;
 
-use sheets::{refused, scene, stderr, thenar};
+use sheets::{column, refused, scene, stderr, thenar};
 
 const PROTOCOL: &str = "time_s,depth_mm,force_n\n0,0,\n0.5,0.4,\n1,0.4,\n10,0.4,\n11,,0.05\n";
 const EFFECTS: &str = "[[effect]]\nname = \"relaxation\"\namplitude = 0.5\ntime_3_s = 2\n\n\
                        [[effect]]\nname = \"stiffening_law\"\nlaw = \"power\"\nregions = [0]\n";
-
-fn column(csv: &str, name: &str) -> Vec<f64> {
-    let mut lines = csv.lines();
-    let place = lines
-        .next()
-        .unwrap()
-        .split(',')
-        .position(|h| h == name)
-        .unwrap();
-    lines
-        .map(|line| line.split(',').nth(place).unwrap().parse().unwrap())
-        .collect()
-}
 
 #[test]
 fn a_protocol_writes_its_table_and_the_last_row_in_full() {

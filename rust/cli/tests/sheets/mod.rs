@@ -134,3 +134,17 @@ pub fn refused(arguments: &[&str], words: &str) {
         "something was written"
     );
 }
+
+/// The numbers of one column of a CSV text.
+pub fn column(csv: &str, name: &str) -> Vec<f64> {
+    let mut lines = csv.lines();
+    let place = lines
+        .next()
+        .unwrap()
+        .split(',')
+        .position(|header| header == name)
+        .unwrap();
+    lines
+        .map(|line| line.split(',').nth(place).unwrap().parse().unwrap())
+        .collect()
+}
