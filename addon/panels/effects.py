@@ -2,9 +2,9 @@
 
 import bpy
 
-from .. import effect_settings, names, status
+from .. import effect_settings, names
 from .lists import title as region_title
-from .main import Tab
+from .main import OfHand
 
 NAME_SHARE = 0.72
 """Of a row's width, what the effect's name takes."""
@@ -26,18 +26,11 @@ class THENAR_UL_effects(bpy.types.UIList):
         number.prop(item, "amplitude", text="", slider=True)
 
 
-class THENAR_PT_effects(Tab, bpy.types.Panel):
+class THENAR_PT_effects(OfHand, bpy.types.Panel):
     """What the skin does beyond the base model."""
 
     bl_label = "Effects"
-    bl_parent_id = "THENAR_PT_main"
-    bl_options = {"DEFAULT_CLOSED"}
     bl_order = 4
-
-    @classmethod
-    def poll(cls, context):
-        hand = context.scene.thenar.hand
-        return not status.native_problem and hand is not None and hand.type == "MESH"
 
     def draw(self, context):
         layout, hand = self.layout, context.scene.thenar.hand

@@ -15,6 +15,18 @@ class Tab:
     bl_category = "Thenar"
 
 
+class OfHand(Tab):
+    """A closed part of the tab that is there once a hand is chosen."""
+
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        return not status.native_problem and hand is not None and hand.type == "MESH"
+
+
 class Physics:
     """The same panels once more, in the physics properties of a mesh, for those who hide the sidebar."""
 

@@ -2,23 +2,15 @@
 
 import bpy
 
-from .. import status
-from .main import Tab
+from .main import OfHand
 from .preferences import wrapped
 
 
-class THENAR_PT_materials(Tab, bpy.types.Panel):
+class THENAR_PT_materials(OfHand, bpy.types.Panel):
     """Materials of the skin by region."""
 
     bl_label = "Materials"
-    bl_parent_id = "THENAR_PT_main"
-    bl_options = {"DEFAULT_CLOSED"}
     bl_order = 3
-
-    @classmethod
-    def poll(cls, context):
-        hand = context.scene.thenar.hand
-        return not status.native_problem and hand is not None and hand.type == "MESH"
 
     def draw(self, context):
         layout = self.layout
