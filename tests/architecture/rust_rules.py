@@ -10,7 +10,7 @@ ALLOWED = {
     "contact": {"surface"},
     "hand": {"surface"},
     "recordings": {"surface"},
-    "diagnosis": {"surface", "contact"},
+    "diagnosis": {"surface", "contact", "recordings"},
     "python": {"surface", "contact", "hand", "recordings", "diagnosis"},
     "cli": {"surface", "contact", "hand", "recordings", "diagnosis"},
     "xtask": set(),

@@ -1,0 +1,12 @@
+//! Comparison of recordings with the simulation, and what explains the difference; reads no files and knows nothing of Blender.
+//!
+//! The order of work: a study's recordings become [`Measured`] samples; the protocol of each is replayed through the contact
+//! model in the recording's own terms; parameters are fitted within their bounds against the noise that repeats show
+//! ([`Fit`]); what is left is compared, and located. Units: mm, N, MPa, s; kPa for the readings of a mat, as makers export.
+//! A residual is measured minus simulated.
+
+mod measured;
+mod fit;
+
+pub use fit::{Estimate, Fit, Target};
+pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
