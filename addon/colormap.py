@@ -1,7 +1,7 @@
-"""The colour maps of the pressure: 32 stops of each, as a shader's ramp holds them.
+"""The colour maps: 32 stops of each, as a shader's ramp holds them.
 
-Cividis: Nunez, Anderton & Renslow 2018. Viridis: van der Walt & Smith 2015 (CC0). Between stops the ramps are at
-most 5.5 of 255 off the 256-step maps.
+Cividis: Nunez, Anderton & Renslow 2018. Viridis, Plasma: van der Walt & Smith 2015 (CC0). Warm to cool: Moreland 2009,
+his blue-white-red turned round. Between stops the ramps are at most 5.5 of 255 off the 256-step maps.
 """
 
 import numpy as np
@@ -14,6 +14,14 @@ _STOPS = {
     "VIRIDIS": (
         "440154470d6048186a482374472e7c4538824241863e4a893a548c365d8d32658e2e6d8e2b758e287d8e25848e228c8d"
         "1f948c1e9c8920a38625ab822eb37c3aba7648c16e58c7656ccd5a7fd34e93d741a8db34c0df25d5e21aeae51afde725"
+    ),
+    "PLASMA": (
+        "0d08872206903105973f049c4e02a25b01a56700a87401a88104a78d0ba59814a0a21d9aad2793b6308bbf3984c7427c"
+        "cf4c74d6556ddd5e66e3685fe97257ef7c51f3874af79143fa9e3bfca934fdb52efdc229fcd025f9dd25f5eb27f0f921"
+    ),
+    "WARMCOOL": (
+        "b40426c0292fcc3f39d65243df634ee67359ed8265f29071f59d7ef7a98bf7b498f6bfa5f3c8b2efcfbee9d6cbe1dbd7"
+        "d9dce2d0daeac6d7f1bcd2f7b1ccfba7c4fe9bbcff90b2fe85a8fc799cf86e90f26383eb5976e24e68d8455acd3b4cc0"
     ),
 }
 
@@ -38,11 +46,11 @@ def to_linear(color):
     return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
 
 
-def cover(fraction):
-    """How far pressure covers the surface (0 to 1) at `fraction` of the range: a soft edge where contact begins."""
-    edge = np.clip(np.asarray(fraction, dtype=np.float64) / EDGE, 0.0, 1.0)
+def cover(share):
+    """How far a map covers the surface (0 to 1) at `share` of its edge: a soft border where contact begins."""
+    edge = np.clip(np.nan_to_num(np.asarray(share, dtype=np.float64)), 0.0, 1.0)
     return edge * edge * (3.0 - 2.0 * edge)
 
 
 EDGE = 0.06
-"""Fraction of the range over which the colour fades in."""
+"""Fraction of the range over which a map fades in."""

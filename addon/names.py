@@ -13,11 +13,25 @@ FORCE_N = "contact_force_n"
 DISPLACEMENT_MM = "contact_displacement_mm"
 SHEAR_KPA = "shear_kpa"
 SLIP_MARGIN = "slip_margin"
+THICKNESS_MM = "tissue_thickness_mm"
 COLOR = "Thenar Pressure"
+MAP_COLOR = "Thenar Map"
+"""Colours of any other map than the pressure's."""
 GLTF_PRESSURE = "_PRESSURE_KPA"
 """glTF keeps only attributes whose names begin with an underscore."""
 
-HAND_ATTRIBUTES = (PRESSURE_KPA, DEPTH_MM, REGION, FORCE_N, DISPLACEMENT_MM, SHEAR_KPA, SLIP_MARGIN, COLOR)
+HAND_ATTRIBUTES = (
+    PRESSURE_KPA,
+    DEPTH_MM,
+    REGION,
+    FORCE_N,
+    DISPLACEMENT_MM,
+    SHEAR_KPA,
+    SLIP_MARGIN,
+    THICKNESS_MM,
+    COLOR,
+    MAP_COLOR,
+)
 PRODUCT_ATTRIBUTES = (PRESSURE_KPA, COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"

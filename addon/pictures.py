@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import names
+from . import maps, names
 from .operators import display
 from .scene import attributes, mesh, own
 from .views import compositor
@@ -21,7 +21,7 @@ _LEGEND_SHIFT = 0.1
 
 
 def render_scene(context, path):
-    """Render the scene as its camera sees it, with pressure and legend; a camera is made where there is none."""
+    """Render the scene as its camera sees it, with the map and legend; a camera is made where there is none."""
     scene = context.scene
     with ExitStack() as undo:
         _prepare(context, undo)
@@ -56,7 +56,7 @@ def render_product(context, path, turn):
     """Render the product alone, seen from where it is pressed most, turned by `turn` radians about its long axis."""
     shown = [obj for obj, is_skin in display.shown_objects(context) if not is_skin]
     with ExitStack() as undo:
-        _prepare(context, undo)
+        _prepare(context, undo, maps.PRESSURE)
         _show_only(context, undo, shown)
         points = np.concatenate([_world(obj) for obj in shown])
         away, up = _pressed_side(shown)
@@ -84,12 +84,12 @@ def beside(paths, target):
     bpy.data.images.remove(picture)
 
 
-def _prepare(context, undo):
+def _prepare(context, undo, kind=None):
+    """Show the map that is chosen, or `kind`, with true colours and legend."""
     scene = context.scene
-    was_shown = scene.thenar.hand.thenar.shows_pressure
-    display.show(context)
-    if not was_shown:
-        undo.callback(display.hide, context)
+    was_shown, chosen = scene.thenar.hand.thenar.shows_pressure, scene.thenar.maps.shown
+    display.show(context, kind or (chosen if was_shown else maps.PRESSURE))
+    undo.callback(*((display.show, context, chosen) if was_shown else (display.hide, context)))
     if not scene.thenar.preset_before:
         undo.callback(compositor.restore_preset, scene)
     for owner, name, value in (

@@ -19,6 +19,7 @@ def fill(result, job, contact, written, notes):
     result.force_n = float(np.asarray(contact.force_n).sum())
     result.force_vector_n = total
     result.shear_n = 0.0 if contact.friction is None else float(np.linalg.norm(contact.friction.total_force_n))
+    result.shear_peak_kpa, result.slipping = _slip(contact)
     result.moment_nmm = np.asarray(contact.total_moment_nmm) + np.cross(job.reading.hand.origin_mm, total)
     result.center_mm = _finite(np.asarray(contact.center_of_pressure_mm) + job.reading.hand.origin_mm)
     result.area_mm2 = contact.contact_area_mm2
@@ -62,6 +63,8 @@ def as_dict(result):
         "force_n": result.force_n,
         "force_vector_n": list(result.force_vector_n),
         "shear_force_n": result.shear_n,
+        "peak_shear_kpa": result.shear_peak_kpa,
+        "slipping_share": result.slipping,
         "moment_nmm": list(result.moment_nmm),
         "center_of_pressure_mm": list(result.center_mm),
         "contact_area_mm2": result.area_mm2,
@@ -138,6 +141,17 @@ def _items(record):
 def _row_dict(row):
     keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa")
     return {key: getattr(row, key) for key in keys}
+
+
+def _slip(contact):
+    """Largest shear traction, kPa, and the share of the contact's area on which skin slips; zeros without friction."""
+    if contact.friction is None:
+        return 0.0, 0.0
+    force, pressure = np.asarray(contact.force_n), np.asarray(contact.pressure_mpa)
+    area = np.divide(force, pressure, out=np.zeros_like(force), where=pressure > 0.0)
+    slips = (pressure > 0.0) & ~np.asarray(contact.is_sticking)
+    shear = float(np.asarray(contact.tangential_traction_mpa).max(initial=0.0)) * KPA_PER_MPA
+    return shear, float(area[slips].sum() / max(area.sum(), 1e-12))
 
 
 def _finite(values):

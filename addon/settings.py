@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import effect_settings, names, native, status
+from . import effect_settings, map_settings, names, native, status
 from .scene.units import KPA_PER_MPA
 
 PRESETS = (
@@ -166,6 +166,8 @@ class ThenarResult(bpy.types.PropertyGroup):
     center_mm: FloatVectorProperty(size=3)
     area_mm2: FloatProperty()
     peak_kpa: FloatProperty()
+    shear_peak_kpa: FloatProperty()
+    slipping: FloatProperty()
     patch_peak_kpa: FloatProperty()
     mean_kpa: FloatProperty()
     depth_mm: FloatProperty()
@@ -285,12 +287,14 @@ class ThenarScene(bpy.types.PropertyGroup):
     show_legend: BoolProperty(
         name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
     )
+    maps: PointerProperty(type=map_settings.ThenarMaps)
     preset_before: StringProperty()
     result: PointerProperty(type=ThenarResult)
 
 
 CLASSES = (
     *effect_settings.CLASSES,
+    *map_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
     ThenarStage,

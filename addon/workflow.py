@@ -2,6 +2,7 @@
 
 import re
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -31,6 +32,8 @@ class Job:
     input_hash: str
     state_hash: str = ""
     seconds: dict = field(default_factory=dict)
+    thickness_mm: np.ndarray | None = None
+    """(n), set by `compute`."""
 
 
 def prepare(context):
@@ -62,12 +65,12 @@ def read_job(context, hand, parts):
     settings = context.scene.thenar
     listed = tuple(hand.thenar.materials)
     group_names = tuple(material.name for material in listed)
-    _check_groups(hand, group_names)
+    check_groups(hand, group_names)
     with own.without_own_output(context, hand, parts):
         skin = read.read_hand(context, hand, group_names)
         product = read.read_product(context, parts, skin.scale, skin.origin_mm)
         used = effects.read(context, hand, group_names or (names.WHOLE_SKIN,))
-    materials = tuple(_numbers(material) for material in (listed or (hand.thenar.default_material,)))
+    materials = material_numbers(hand)
     force = settings.force_n if settings.use_force else None
     direction = tuple(settings.direction) if settings.use_force and settings.direction_mode == "OWN" else None
     if direction is not None and not np.any(direction):
@@ -103,6 +106,21 @@ def read_job(context, hand, parts):
     )
 
 
+def check_groups(hand, group_names):
+    """Refuse materials whose vertex group is gone. Raises `Refusal`."""
+    missing = [name for name in group_names if name not in hand.vertex_groups]
+    if missing:
+        raise checks.Refusal(
+            f"'{hand.name}' has no vertex group '{missing[0]}' that its materials name; "
+            "rename the group or remove it from the list under Materials"
+        )
+
+
+def material_numbers(hand):
+    """The library's numbers of every region's material; of the one material where no region is listed."""
+    return tuple(_numbers(material) for material in (tuple(hand.thenar.materials) or (hand.thenar.default_material,)))
+
+
 def product_parts(settings):
     """The objects that together are the product, in a fixed order, hand and Thenar's own copies left out."""
     parts = [settings.product] if settings.product is not None else []
@@ -117,24 +135,32 @@ def compute(job, cancel=None, progress=None):
 
     `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
     """
-    hand = job.reading.hand
+    with prepared(job, cancel, progress) as skin:
+        return _press(job, skin, cancel, progress)
+
+
+@contextmanager
+def prepared(job, cancel=None, progress=None):
+    """The job's prepared skin with its effects; errors of the native module leave with the objects' names."""
+    thenar, hand = native.module, job.reading.hand
     key = cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
+    started = time.perf_counter()
+    if progress is not None:
+        progress("prepare", 0.0)
     try:
-        return _compute(job, key, cancel, progress)
+        skin = cache.skin(key, lambda: _skin(thenar, job, cancel, progress))
+        skin.set_effects([effect.native(thenar) for effect in job.effects])
+        job.thickness_mm = np.asarray(skin.thickness_mm)
+        job.seconds["prepare"] = time.perf_counter() - started
+        yield skin
     except native.error_types() as error:
         if cancel is None or not cancel.is_set():
             cache.drop(key)
         raise type(error)(named(str(error), job)) from None
 
 
-def _compute(job, key, cancel, progress):
-    thenar, hand, product = native.module, job.reading.hand, job.reading.product
-    started = time.perf_counter()
-    if progress is not None:
-        progress("prepare", 0.0)
-    skin = cache.skin(key, lambda: _skin(thenar, job, cancel, progress))
-    skin.set_effects([effect.native(thenar) for effect in job.effects])
-    job.seconds["prepare"] = time.perf_counter() - started
+def _press(job, skin, cancel, progress):
+    hand, product = job.reading.hand, job.reading.product
     started = time.perf_counter()
     contact = skin.press(
         product.vertices_mm,
@@ -213,6 +239,7 @@ def fields_of(contact, job):
         product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
         offset_mm=offset_mm(contact, job),
         shear=None if contact.friction is None else _shear(contact),
+        thickness_mm=job.thickness_mm,
     )
 
 
@@ -259,15 +286,6 @@ def is_out_of_date(context):
 def _is_part(part, settings):
     drawn = part.type in checks.PRODUCT_TYPES or part.instance_type != "NONE"
     return drawn and part != settings.hand and not part.thenar.copy_of
-
-
-def _check_groups(hand, group_names):
-    missing = [name for name in group_names if name not in hand.vertex_groups]
-    if missing:
-        raise checks.Refusal(
-            f"'{hand.name}' has no vertex group '{missing[0]}' that its materials name; "
-            "rename the group or remove it from the list under Materials"
-        )
 
 
 def _numbers(material):

@@ -1,15 +1,15 @@
-"""Operators of looks only: pressure shown or hidden, range, render preset. They change no result."""
+"""Operators of looks only: maps shown or hidden, range, render preset. They change no result."""
 
 import bpy
 
-from .. import names, workflow
+from .. import map_settings, maps, names, tissue, workflow
 from ..scene import attributes, colors, copies, shading
 from ..views import compositor
 from . import polling, running
 
 
-def shown_objects(context):
-    """(object, is_skin) of everything that shows pressure: the hand, product parts that carry it, and copies."""
+def shown_objects(context, attribute=names.PRESSURE_KPA):
+    """(object, is_skin) of everything that carries `attribute`: the hand, product parts, and copies of those."""
     settings = context.scene.thenar
     hand = settings.hand
     found = [(hand, True)] if hand is not None and hand.type == "MESH" else []
@@ -19,14 +19,18 @@ def shown_objects(context):
             found.append((copy, False))
         elif part.type == "MESH":
             found.append((part, False))
-    return [(obj, is_skin) for obj, is_skin in found if names.PRESSURE_KPA in obj.data.attributes]
+    return [(obj, is_skin) for obj, is_skin in found if attribute in obj.data.attributes]
 
 
 def refresh(context):
-    """Bring colours, overlay and legend to the current range and colour map."""
+    """Bring colours, overlay and legend to the present map, range and colours; where a map went, to pressure."""
     if context is None or context.scene is None:
         return
     look = context.scene.thenar
+    is_on = look.hand is not None and look.hand.thenar.shows_pressure
+    if is_on and not shown_objects(context, maps.shown(look).attribute) and shown_objects(context):
+        show(context, maps.PRESSURE)
+        return
     shading.update_group(look)
     for obj, is_skin in shown_objects(context):
         if obj.data.is_editable and obj.mode != "EDIT":
@@ -35,40 +39,49 @@ def refresh(context):
     running.redraw(context)
 
 
-def show(context):
-    """Overlay pressure on hand and product; copies stand in for products that cannot carry it."""
+def show(context, kind=maps.PRESSURE):
+    """Overlay a map on what carries it; copies stand in for products that cannot carry pressure."""
     look = context.scene.thenar
-    objects = shown_objects(context)
+    look.maps.shown = kind
+    hide_overlays(context)
+    objects = shown_objects(context, maps.shown(look).attribute)
     for obj, is_skin in objects:
         shading.show(obj, look, is_skin)
         if obj.thenar.copy_of:
             _swap(obj, True)
-        index = obj.data.color_attributes.find(names.COLOR)
+    refresh(context)
+    for obj, _ in objects:
+        index = obj.data.color_attributes.find(names.COLOR if kind == maps.PRESSURE else names.MAP_COLOR)
         if index >= 0:
             obj.data.color_attributes.active_color_index = index
     _solid_colors(context, "VERTEX")
-    refresh(context)
     return objects
 
 
-def hide(context):
-    """Give materials and products back as they were before the pressure was shown."""
+def hide_overlays(context):
+    """Give materials and products back as they were before a map was shown."""
     for obj in context.scene.objects:
         if obj.thenar.shows_pressure:
             shading.hide(obj)
             if obj.thenar.copy_of:
                 _swap(obj, False)
+
+
+def hide(context):
+    """Show no map."""
+    hide_overlays(context)
     _solid_colors(context, "MATERIAL")
     refresh(context)
 
 
 def fitting_range(context):
-    """A round pressure, kPa, above the largest on hand and product; 1, 1.5, 2, 3, 5 or 7.5 times a power of ten."""
-    peaks = [attributes.read(obj.data, names.PRESSURE_KPA).max(initial=0.0) for obj, _ in shown_objects(context)]
+    """A round value above the largest of the map that is shown; 1, 1.5, 2, 3, 5 or 7.5 times a power of ten."""
+    name = maps.shown(context.scene.thenar).attribute
+    peaks = [attributes.read(obj.data, name).max(initial=0.0) for obj, _ in shown_objects(context, name)]
     peak = max(peaks, default=0.0)
-    if peak <= 0.0:
+    if not 0.0 < peak < 1e9:
         return None
-    steps = [factor * 10.0**power for power in range(-3, 6) for factor in (1.0, 1.5, 2.0, 3.0, 5.0, 7.5)]
+    steps = [factor * 10.0**power for power in range(-3, 10) for factor in (1.0, 1.5, 2.0, 3.0, 5.0, 7.5)]
     return next(step for step in steps if step >= peak)
 
 
@@ -99,7 +112,14 @@ def _solid_colors(context, kind):
 
 
 def _no_pressure(context):
-    return "" if shown_objects(context) else "there is no pressure yet; press Solve first"
+    return "" if shown_objects(context) else maps.MAPS[maps.PRESSURE].missing
+
+
+def _no_map(context):
+    view = maps.shown(context.scene.thenar)
+    if not view.limit:
+        return f"the range of {view.title.lower()} is fixed"
+    return "" if shown_objects(context, view.attribute) else view.missing
 
 
 class THENAR_OT_show_pressure(bpy.types.Operator):
@@ -123,8 +143,37 @@ class THENAR_OT_show_pressure(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class THENAR_OT_show_map(bpy.types.Operator):
+    """Colour the skin by a map, over its own material"""
+
+    bl_idname = "thenar.show_map"
+    bl_label = "Show Map"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: bpy.props.EnumProperty(name="Map", description="What the colours show", items=map_settings.KINDS)
+
+    @classmethod
+    def description(cls, context, properties):
+        """The map's own meaning as the tooltip."""
+        return maps.MAPS[properties.kind].meaning
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_hand(context), polling.busy())
+
+    def execute(self, context):
+        view = maps.MAPS[self.kind]
+        if self.kind == maps.THICKNESS and running.attempt(self, tissue.write_thickness, context) is None:
+            return {"CANCELLED"}
+        if not shown_objects(context, view.attribute):
+            self.report({"ERROR"}, running.sentence(view.missing))
+            return {"CANCELLED"}
+        show(context, self.kind)
+        return {"FINISHED"}
+
+
 class THENAR_OT_reset_range(bpy.types.Operator):
-    """Fit the range of the colours to the largest pressure on hand and product"""
+    """Fit the range of the colours to the largest value of the map"""
 
     bl_idname = "thenar.reset_range"
     bl_label = "Fit Range"
@@ -132,14 +181,15 @@ class THENAR_OT_reset_range(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return polling.allows(cls, _no_pressure(context))
+        return polling.allows(cls, _no_map(context))
 
     def execute(self, context):
-        fitting = fitting_range(context)
+        fitting, look = fitting_range(context), context.scene.thenar
         if fitting is None:
-            self.report({"ERROR"}, "No pressure is above zero; solve a contact that touches first")
+            name = maps.shown(look).title
+            self.report({"ERROR"}, f"No {name.lower()} is above zero; solve a contact that touches first")
             return {"CANCELLED"}
-        context.scene.thenar.range_kpa = fitting
+        setattr(*maps.setting(maps.shown(look), look), fitting)
         return {"FINISHED"}
 
 
@@ -160,4 +210,4 @@ class THENAR_OT_render_preset(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (THENAR_OT_show_pressure, THENAR_OT_reset_range, THENAR_OT_render_preset)
+CLASSES = (THENAR_OT_show_pressure, THENAR_OT_show_map, THENAR_OT_reset_range, THENAR_OT_render_preset)

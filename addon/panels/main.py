@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import names, status
+from .. import maps, names, status
 from ..scene.units import mm_per_unit
 from .preferences import draw_state
 
@@ -113,7 +113,7 @@ def _draw_solve(layout):
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):
-    """How the pressure looks."""
+    """How the map on the skin looks."""
 
     bl_label = "Display"
     bl_parent_id = "THENAR_PT_main"
@@ -128,16 +128,19 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         shown = settings.hand is not None and settings.hand.thenar.shows_pressure
+        view = maps.shown(settings)
         button = layout.operator(
             "thenar.show_pressure",
-            text="Hide Pressure" if shown else "Show Pressure",
+            text=f"Hide {view.title}" if shown else "Show Pressure",
             icon="HIDE_ON" if shown else "SHADING_RENDERED",
             depress=shown,
         )
         button.show = not shown
-        line = layout.row(align=True)
-        line.prop(settings, "range_kpa")
-        line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
+        place = maps.setting(view, settings)
+        if place is not None:
+            line = layout.row(align=True)
+            line.prop(*place)
+            line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
         layout.prop(settings, "palette")
         layout.prop(settings, "show_legend")
         kept = bool(settings.preset_before)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import status
+from .. import maps, status
 from .lists import SHARE, columns
 from .main import Physics, Tab
 from .preferences import wrapped
@@ -23,6 +23,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
         layout, result = self.layout, context.scene.thenar.result
         if not result.is_valid:
             layout.label(text="Solve to see forces and pressures", icon="INFO")
+            draw_maps(layout, context.scene.thenar)
             return
         box = layout.box().column(align=True)
         _pair(box, "Force", f"{result.force_n:.1f} N")
@@ -33,6 +34,24 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
         _pair(box, "Deepest before", f"{result.depth_mm:.2f} mm")
         if result.offset_mm:
             _pair(box, "Product moved", f"{result.offset_mm:+.2f} mm")
+        if result.shear_n:
+            _pair(box, "Shear force", f"{result.shear_n:.1f} N")
+            _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")
+            _pair(box, "Skin that slips", f"{result.slipping:.0%} of the area")
+        draw_maps(layout, context.scene.thenar)
+
+
+def draw_maps(layout, settings):
+    """A button for each map; faint where the hand does not carry it."""
+    hand = settings.hand
+    if hand is None or hand.type != "MESH":
+        return
+    flow = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for view in maps.MAPS.values():
+        cell = flow.row(align=True)
+        cell.active = view.attribute in hand.data.attributes or view.kind == maps.THICKNESS
+        is_shown = hand.thenar.shows_pressure and settings.maps.shown == view.kind
+        cell.operator("thenar.show_map", text=view.title, depress=is_shown).kind = view.kind
 
 
 def _pair(column, name, value):

@@ -93,8 +93,7 @@ def _show(mesh, pressure, look, bare):
     if len(pressure) != len(mesh.vertices):
         return
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
-    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, bare))
-    mesh.update()
+    colors.recolor(mesh, look, bare)
 
 
 def _load(hand):

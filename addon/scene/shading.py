@@ -1,15 +1,15 @@
-"""Materials that show pressure over the user's own, and the way back to them."""
+"""Materials that show a map over the user's own, and the way back to them."""
 
 import bpy
 
-from .. import colormap, names
+from .. import colormap, maps, names
 
 _SKIN = (0.80, 0.52, 0.40, 1.0)
 _BARE = (0.62, 0.62, 0.60, 1.0)
 
 
 def show(obj, look, is_skin):
-    """Overlay the pressure on every material slot of `obj`; the slots' own materials stay in the mesh, untouched."""
+    """Overlay the map on every material slot of `obj`; the slots' own materials stay in the mesh, untouched."""
     hide(obj)
     state = obj.thenar
     if not len(obj.data.materials):
@@ -47,11 +47,19 @@ def hide(obj):
 
 
 def update_group(look):
-    """Set range and colour map of the overlay that all pressure materials share."""
+    """Set map, range and colours of the overlay that all overlaid materials share."""
     tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
-    if tree is not None:
-        tree.nodes["Range"].inputs["From Max"].default_value = max(look.range_kpa, 1e-3)
-        _fill_ramp(tree.nodes["Ramp"].color_ramp, look.palette)
+    if tree is None:
+        return
+    if "Cover" not in tree.nodes:  # a file of an earlier version
+        _fill_group(tree)
+    view = maps.shown(look)
+    scale = maps.scale(view, look)
+    tree.nodes["Value"].attribute_name = view.attribute
+    tree.nodes["Cover"].attribute_name = maps.covering(view)
+    tree.nodes["Range"].inputs["From Max"].default_value = scale.high
+    tree.nodes["Edge"].inputs["From Max"].default_value = scale.edge
+    _fill_ramp(tree.nodes["Ramp"].color_ramp, scale.palette)
 
 
 def _overlaid(own, look, is_skin):
@@ -98,29 +106,33 @@ def _new_group():
     tree = bpy.data.node_groups.new(names.OVERLAY_GROUP, "ShaderNodeTree")
     tree.interface.new_socket("Surface", in_out="INPUT", socket_type="NodeSocketShader")
     tree.interface.new_socket("Surface", in_out="OUTPUT", socket_type="NodeSocketShader")
+    _fill_group(tree)
+    return tree
+
+
+def _fill_group(tree):
     nodes, links = tree.nodes, tree.links
+    nodes.clear()
     entry, leave = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
-    pressure = nodes.new("ShaderNodeAttribute")
-    pressure.attribute_type, pressure.attribute_name = "GEOMETRY", names.PRESSURE_KPA
-    fraction = nodes.new("ShaderNodeMapRange")
+    value, cover = nodes.new("ShaderNodeAttribute"), nodes.new("ShaderNodeAttribute")
+    value.name, cover.name = "Value", "Cover"
+    value.attribute_type = cover.attribute_type = "GEOMETRY"
+    fraction, edge = nodes.new("ShaderNodeMapRange"), nodes.new("ShaderNodeMapRange")
     fraction.name, fraction.clamp = "Range", True
-    edge = nodes.new("ShaderNodeMapRange")
-    edge.interpolation_type = "SMOOTHSTEP"
-    edge.inputs["From Max"].default_value = colormap.EDGE
+    edge.name, edge.interpolation_type = "Edge", "SMOOTHSTEP"
     ramp = nodes.new("ShaderNodeValToRGB")
     ramp.name = "Ramp"
     light, mix = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
-    for place, node in enumerate((entry, pressure, fraction, edge, ramp, light, mix, leave)):
+    for place, node in enumerate((entry, value, cover, fraction, edge, ramp, light, mix, leave)):
         node.location = (place * 220 - 900, 0)
-    links.new(pressure.outputs["Fac"], fraction.inputs["Value"])
-    links.new(fraction.outputs["Result"], edge.inputs["Value"])
+    links.new(value.outputs["Fac"], fraction.inputs["Value"])
+    links.new(cover.outputs["Fac"], edge.inputs["Value"])
     links.new(fraction.outputs["Result"], ramp.inputs["Fac"])
     links.new(ramp.outputs["Color"], light.inputs["Color"])
     links.new(edge.outputs["Result"], mix.inputs[0])
     links.new(entry.outputs["Surface"], mix.inputs[1])
     links.new(light.outputs["Emission"], mix.inputs[2])
     links.new(mix.outputs["Shader"], leave.inputs["Surface"])
-    return tree
 
 
 def _fill_ramp(ramp, palette):

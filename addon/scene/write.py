@@ -9,6 +9,9 @@ import numpy as np
 from .. import names
 from . import attributes, colors, copies, key, moving, own, units
 
+NO_BONE_MM = 1000.0
+"""What stands for tissue without bone in the thickness attribute: the thickest that the library admits."""
+
 
 @dataclass(frozen=True)
 class Fields:
@@ -24,6 +27,8 @@ class Fields:
     """(3) how far the product moved to reach its force."""
     shear: tuple | None = None
     """Shear traction (n), MPa, and slip margin (n), 0 where skin slips to 1, where the product was dragged."""
+    thickness_mm: np.ndarray | None = None
+    """(n), soft tissue over bone; infinite where there is no bone, NaN away from the skin."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +72,16 @@ def write_hand(hand, fields, look):
     else:
         attributes.write(mesh, names.SHEAR_KPA, "FLOAT", units.kpa(fields.shear[0]))
         attributes.write(mesh, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
+    if fields.thickness_mm is not None:
+        write_thickness(mesh, fields.thickness_mm)
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
     mesh.update()
+
+
+def write_thickness(mesh, thickness_mm):
+    """Soft tissue over bone (n), mm, as an attribute: 0 away from the skin, `NO_BONE_MM` where there is no bone."""
+    values = np.nan_to_num(thickness_mm, nan=0.0, posinf=NO_BONE_MM)
+    attributes.write(mesh, names.THICKNESS_MM, "FLOAT", np.minimum(values, NO_BONE_MM))
 
 
 def _keep_key(undo, hand):

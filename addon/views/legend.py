@@ -1,4 +1,4 @@
-"""The legend of the pressure colours: one layout, drawn by the viewport and painted into renders."""
+"""The legend of the map on the skin: one layout, drawn by the viewport and painted into renders."""
 
 import os
 import tempfile
@@ -8,7 +8,7 @@ import blf
 import bpy
 import numpy as np
 
-from .. import colormap
+from .. import colormap, maps
 from . import pixel_font
 
 TICKS = 5
@@ -29,24 +29,26 @@ class Layout:
 
 def layout(look, result, height, left):
     """The legend for an image or region of `height` pixels, its plate's left edge at `left`."""
+    view, scale = maps.shown(look), maps.scale(maps.shown(look), look)
     unit = max(height / 540.0, 0.6)
     size, bar_width, bar_height = 13 * unit, 16 * unit, 200 * unit
     x, y = left + 14 * unit, 22 * unit
     plate = (left, 10 * unit, 128 * unit, bar_height + 70 * unit)
     texts = [
-        (x, y + bar_height + 36 * unit, size * 1.15, "Pressure"),
-        (x, y + bar_height + 18 * unit, size * 0.85, "kPa"),
+        (x, y + bar_height + 36 * unit, size * 1.15, view.title),
+        (x, y + bar_height + 18 * unit, size * 0.85, view.unit),
     ]
     for tick in range(TICKS):
         fraction = tick / (TICKS - 1)
-        label = number(look.range_kpa * fraction) + (" +" if tick == TICKS - 1 and exceeds(look, result) else "")
+        label = number(scale.high * fraction) + (" +" if tick == TICKS - 1 and exceeds(look, result) else "")
         texts.append((x + bar_width + 9 * unit, y + fraction * bar_height - size * 0.35, size, label))
     return Layout(plate, (x, y, bar_width, bar_height), tuple(texts))
 
 
 def exceeds(look, result):
-    """Whether some pressure lies above the top of the colours."""
-    return result.is_valid and result.peak_kpa > look.range_kpa * 1.0005
+    """Whether something lies above the top of the colours."""
+    view = maps.shown(look)
+    return maps.peak(view, result) > maps.scale(view, look).high * 1.0005
 
 
 def number(value):
@@ -54,11 +56,13 @@ def number(value):
     return f"{value:.4g}"
 
 
-def column_on_plate(palette, steps):
+def column_on_plate(look, steps):
     """The bar's colours (steps, 3), sRGB, from zero upwards; they fade in from the bare surface as on the skin."""
+    view, scale = maps.shown(look), maps.scale(maps.shown(look), look)
     fraction = (np.arange(steps) + 0.5) / steps
-    cover = colormap.cover(fraction)[:, None]
-    return colormap.srgb(palette, fraction) * cover + np.array(_BARE) * (1.0 - cover)
+    fades = view.covers == "itself"
+    cover = (colormap.cover(fraction * scale.high / scale.edge) if fades else np.ones(steps))[:, None]
+    return colormap.srgb(scale.palette, fraction) * cover + np.array(_BARE) * (1.0 - cover)
 
 
 def pixels(look, result, width, height):
@@ -67,7 +71,7 @@ def pixels(look, result, width, height):
     plan = layout(look, result, height, left=width * 0.02)
     _fill(image, plan.plate, PLATE)
     rows, columns = _span(plan.bar, image)
-    image[rows, columns, :3] = column_on_plate(look.palette, rows.stop - rows.start)[:, None, :]
+    image[rows, columns, :3] = column_on_plate(look, rows.stop - rows.start)[:, None, :]
     image[rows, columns, 3] = 1.0
     ink = _ink(plan.texts, width, height)[..., None]
     image[..., :3] = image[..., :3] * (1.0 - ink) + 0.95 * ink

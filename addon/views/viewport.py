@@ -1,4 +1,4 @@
-"""The legend in the 3D view, while pressure is shown."""
+"""The legend in the 3D view, while a map is shown."""
 
 import blf
 import bpy
@@ -20,16 +20,16 @@ def _draw():
         return
     left = next((region.width for region in context.area.regions if region.type == "TOOLS"), 0)
     height = min(context.region.height, 620)
-    _draw_layout(legend.layout(settings, settings.result, height, left + 16), settings.palette)
+    _draw_layout(legend.layout(settings, settings.result, height, left + 16), settings)
 
 
-def _draw_layout(plan, palette):
+def _draw_layout(plan, look):
     shader = gpu.shader.from_builtin("SMOOTH_COLOR")
     gpu.state.blend_set("ALPHA")
     _quads(shader, [(plan.plate, legend.PLATE)])
     x, y, width, height = plan.bar
     step = height / _STEPS
-    colors = legend.column_on_plate(palette, _STEPS)
+    colors = legend.column_on_plate(look, _STEPS)
     _quads(shader, [((x, y + k * step, width, step), (*color, 1.0)) for k, color in enumerate(colors)])
     gpu.state.blend_set("NONE")
     for x, y, size, text in plan.texts:

@@ -119,3 +119,16 @@ def test_a_material_that_nobody_gave_is_said(model, preset):
     given = getattr(thenar.Material, preset)()
     told = thenar.Skin(VERTICES, TRIANGLES, materials=given, model=model).press(*product).warnings
     assert not any("preset" in said for said in told)
+
+
+def test_a_skin_tells_its_thickness_with_its_effects():
+    regions = np.where(VERTICES[:, 0] < 0, 0, np.where(VERTICES[:, 1] < 0, -1, 1))
+    materials = [thenar.Material(thickness_mm=6.0), thenar.Material(thickness_mm=math.inf)]
+    skin = thenar.Skin(VERTICES, TRIANGLES, regions, materials)
+    assert (skin.thickness_mm[regions == 0] == 6.0).all()
+    assert np.isinf(skin.thickness_mm[regions == 1]).all()
+    assert np.isnan(skin.thickness_mm[regions == -1]).all()
+    odd = np.arange(len(VERTICES)) % 2 == 1
+    one = thenar.Skin(VERTICES, TRIANGLES, materials=materials[0])  # one region: no crease over which materials blend
+    one.set_effects([thenar.Effect("bone", 0.5, painted=np.where(odd, 3.0, np.nan), thickness_mm=12.0)])
+    assert one.thickness_mm == pytest.approx(1.0 / (0.5 / 6.0 + 0.5 / np.where(odd, 3.0, 12.0)), rel=1e-12)

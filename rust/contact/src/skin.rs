@@ -154,6 +154,20 @@ impl Skin {
         &self.effects
     }
 
+    /// Soft tissue over bone under every vertex of the mesh as given, mm, with the effects that are switched on; infinite
+    /// where the material knows no bone, NaN away from the skin.
+    pub fn thickness(&self) -> Vec<f64> {
+        let at = |&vertex: &u32| match self.sites.of_vertex[vertex as usize] {
+            u32::MAX => f64::NAN,
+            site if !self.sites.is_skin(site as usize) => f64::NAN,
+            site => {
+                let region = self.sites.home_region(site as usize) as usize;
+                self.tissue.thickness(site as usize, region)
+            }
+        };
+        self.welded.welded.iter().map(at).collect()
+    }
+
     /// Switches effects on, in place of those before. The response is prepared again only where they change it.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! `thenar.Skin`: a hand prepared once and pressed in any posture, from any thread.
 
-use crate::arrays::Argument;
+use crate::arrays::{Argument, column};
 use crate::contact::Contact;
 use crate::effects::{Effect, effects_of};
 use crate::errors::Failure;
@@ -221,6 +221,17 @@ impl Skin {
             Ok(inner.skin(control)?.effects().to_vec())
         })?;
         Ok(effects.into_iter().map(Effect).collect())
+    }
+
+    /// (n,), mm, soft tissue over bone under every vertex, with the effects that are switched on; infinite where the
+    /// material knows no bone, NaN away from the skin.
+    #[getter]
+    fn thickness_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let inner = Arc::clone(&self.inner);
+        let values = run(py, &Hooks::new(None, None)?, move |control| {
+            Ok(inner.skin(control)?.thickness())
+        })?;
+        Ok(column(py, values))
     }
 
     /// "layer" or "paper".

@@ -1,0 +1,122 @@
+"""The maps that can be laid over the skin: what each shows, unit, colours and range. Knows nothing of Blender."""
+
+from dataclasses import dataclass
+
+from . import colormap, names
+
+PRESSURE = "PRESSURE"
+THICKNESS = "THICKNESS"
+_BARELY = 0.01
+"""Value from which a map covers all skin that carries one, in its unit."""
+
+
+@dataclass(frozen=True)
+class Map:
+    """One map: the point attribute it shows, what the legend says of it, and how it is coloured."""
+
+    kind: str
+    attribute: str
+    title: str
+    unit: str
+    meaning: str
+    missing: str
+    """Why the map may not be there, with the remedy."""
+    palette: str = ""
+    """Name of its colours; empty: the ones that the user chose."""
+    limit: str = ""
+    """Setting that holds the top of its range; empty: 0 to `fixed`."""
+    fixed: float = 1.0
+    covers: str = "itself"
+    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", or "skin"."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How values become colours: the top of the range (from 0), the palette, and the edge at which covering is full."""
+
+    high: float
+    palette: str
+    edge: float
+
+
+_NO_CONTACT = "there is no pressure yet; press Solve first"
+_NO_SHEAR = "nothing shears the skin; add the effect friction, set a slide under Effects, and solve"
+
+MAPS = {
+    row.kind: row
+    for row in (
+        Map(PRESSURE, names.PRESSURE_KPA, "Pressure", "kPa", "Normal force over area", _NO_CONTACT, limit="range_kpa"),
+        Map(
+            "SHEAR",
+            names.SHEAR_KPA,
+            "Shear",
+            "kPa",
+            "Tangential traction: shear force over area that friction passes to the skin",
+            _NO_SHEAR,
+            palette="PLASMA",
+            limit="shear_kpa",
+            covers="contact",
+        ),
+        Map(
+            "SLIP",
+            names.SLIP_MARGIN,
+            "Slip margin",
+            "0 slips, 1 rests",
+            "Share of the friction that is still unused: 0 where skin slips over the product, 1 where it only rests",
+            _NO_SHEAR,
+            palette="WARMCOOL",
+            covers="contact",
+        ),
+        Map(
+            "DEPTH",
+            names.DEPTH_MM,
+            "Depth",
+            "mm",
+            "How deep product and skin overlap before the skin yields",
+            _NO_CONTACT,
+            limit="depth_mm",
+        ),
+        Map(
+            THICKNESS,
+            names.THICKNESS_MM,
+            "Thickness",
+            "mm over bone",
+            "Soft tissue over bone, by material, effects and painted groups",
+            "the hand has no skin with a thickness; press Solve or Show again",
+            palette="CIVIDIS",
+            limit="thickness_mm",
+            covers="skin",
+        ),
+    )
+}
+
+
+def shown(look):
+    """The map that is chosen in `scene.thenar`."""
+    return MAPS[look.maps.shown]
+
+
+def setting(view, look):
+    """The property group and the name of the property that holds the top of the map's range; None where it is fixed."""
+    if not view.limit:
+        return None
+    return (look if view.kind == PRESSURE else look.maps), view.limit
+
+
+def scale(view, look):
+    """The map's `Scale` under the present settings."""
+    place = setting(view, look)
+    high = max(view.fixed if place is None else getattr(*place), 1e-6)
+    edges = {"itself": colormap.EDGE * high, "contact": colormap.EDGE * max(look.range_kpa, 1e-6), "skin": _BARELY}
+    return Scale(high, view.palette or look.palette, edges[view.covers])
+
+
+def covering(view):
+    """The attribute that decides where the map covers the surface."""
+    return names.PRESSURE_KPA if view.covers == "contact" else view.attribute
+
+
+def peak(view, result):
+    """The largest value that the scene's result holds of the map; 0 where it holds none."""
+    held = {PRESSURE: "peak_kpa", "SHEAR": "shear_peak_kpa", "DEPTH": "depth_mm"}.get(view.kind)
+    return getattr(result, held) if held and result.is_valid else 0.0
