@@ -28,6 +28,8 @@ _STOPS = {
 
 def stops(name):
     """The map's stops (32, 3), sRGB 0 to 1, from low to high."""
+    if name == "COOLWARM":
+        return stops("WARMCOOL")[::-1]
     return np.frombuffer(bytes.fromhex(_STOPS[name]), np.uint8).reshape(-1, 3) / 255.0
 
 

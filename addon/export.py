@@ -37,13 +37,14 @@ def write(context, filepath):
 
 def hand_table(context):
     """Columns (n,) by name of the hand: world positions with contact, displacement, pressure, force, depth, region;
-    shear and slip margin where the product was dragged."""
+    shear and slip margin where the product was dragged; pressure over its threshold where comfort is judged."""
     hand = context.scene.thenar.hand
     if hand is None or hand.type != "MESH" or names.DISPLACEMENT_MM not in hand.data.attributes:
         raise Refusal("the result is no longer on the hand; solve again")
     moved = attributes.read(hand.data, names.DISPLACEMENT_MM)
     force = attributes.read(hand.data, names.FORCE_N)
-    sheared = {name: attributes.read(hand.data, name) for name in (names.SHEAR_KPA, names.SLIP_MARGIN)}
+    besides = (names.SHEAR_KPA, names.SLIP_MARGIN, names.THRESHOLD_SHARE)
+    there = {name: attributes.read(hand.data, name) for name in besides}
     return {
         "index": np.arange(len(moved)),
         **_axes("{}_mm", _world_mm(context, hand, len(moved))),
@@ -53,7 +54,7 @@ def hand_table(context):
         "depth_mm": attributes.read(hand.data, names.DEPTH_MM),
         "region": attributes.read(hand.data, names.REGION),
         "in_contact": (force > 0.0).astype(np.int32),
-        **{name: values for name, values in sheared.items() if values is not None},
+        **{name: values for name, values in there.items() if values is not None},
     }
 
 

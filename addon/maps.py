@@ -87,6 +87,17 @@ MAPS = {
             limit="thickness_mm",
             covers="skin",
         ),
+        Map(
+            "COMFORT",
+            names.THRESHOLD_SHARE,
+            "Comfort",
+            "of threshold",
+            "Pressure over the threshold of its region: red lies over it",
+            "pressure is not judged; choose a threshold under Comfort, and solve",
+            palette="COOLWARM",
+            fixed=2.0,
+            covers="contact",
+        ),
     )
 }
 

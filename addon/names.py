@@ -14,6 +14,8 @@ DISPLACEMENT_MM = "contact_displacement_mm"
 SHEAR_KPA = "shear_kpa"
 SLIP_MARGIN = "slip_margin"
 THICKNESS_MM = "tissue_thickness_mm"
+THRESHOLD_SHARE = "threshold_share"
+"""Pressure over the threshold of its region."""
 COLOR = "Thenar Pressure"
 MAP_COLOR = "Thenar Map"
 """Colours of any other map than the pressure's."""
@@ -29,6 +31,7 @@ HAND_ATTRIBUTES = (
     SHEAR_KPA,
     SLIP_MARGIN,
     THICKNESS_MM,
+    THRESHOLD_SHARE,
     COLOR,
     MAP_COLOR,
 )

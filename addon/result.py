@@ -47,7 +47,7 @@ def clear(result):
     """Forget the result."""
     _clear_rows(result)
     result.is_valid = False
-    result.input_hash = result.state_hash = ""
+    result.input_hash = result.state_hash = result.comfort = result.comfort_source = ""
 
 
 def as_dict(result):
@@ -76,6 +76,9 @@ def as_dict(result):
         "write_back_error_mm": result.write_error_mm,
         "complementarity": result.complementarity,
         "load_balance": result.load_balance,
+        "over_threshold_mm2": result.over_mm2,
+        "comfort": result.comfort,
+        "comfort_source": result.comfort_source,
         "offset_mm": result.offset_mm,
         "direction": list(result.direction),
         "regions": rows,
@@ -139,8 +142,8 @@ def _items(record):
 
 
 def _row_dict(row):
-    keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa")
-    return {key: getattr(row, key) for key in keys}
+    keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa", "threshold_kpa")
+    return {key: getattr(row, key) for key in keys} | {"over_threshold_mm2": row.over_mm2}
 
 
 def _slip(contact):

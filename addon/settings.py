@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import effect_settings, map_settings, names, native, status
+from . import comfort_settings, effect_settings, map_settings, names, native, status
 from .scene.units import KPA_PER_MPA
 
 PRESETS = (
@@ -137,6 +137,8 @@ class ThenarRegionResult(bpy.types.PropertyGroup):
     mean_kpa: FloatProperty(name="Mean (kPa)")
     depth_mm: FloatProperty(name="Depth (mm)")
     shear_modulus_kpa: FloatProperty(name="G (kPa)")
+    threshold_kpa: FloatProperty(name="Threshold (kPa)")
+    over_mm2: FloatProperty(name="Over the Threshold (mm²)")
 
 
 class ThenarStage(bpy.types.PropertyGroup):
@@ -168,6 +170,9 @@ class ThenarResult(bpy.types.PropertyGroup):
     peak_kpa: FloatProperty()
     shear_peak_kpa: FloatProperty()
     slipping: FloatProperty()
+    over_mm2: FloatProperty()
+    comfort: StringProperty()
+    comfort_source: StringProperty()
     patch_peak_kpa: FloatProperty()
     mean_kpa: FloatProperty()
     depth_mm: FloatProperty()
@@ -288,6 +293,7 @@ class ThenarScene(bpy.types.PropertyGroup):
         name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
     )
     maps: PointerProperty(type=map_settings.ThenarMaps)
+    comfort: PointerProperty(type=comfort_settings.ThenarComfort)
     preset_before: StringProperty()
     result: PointerProperty(type=ThenarResult)
 
@@ -295,6 +301,7 @@ class ThenarScene(bpy.types.PropertyGroup):
 CLASSES = (
     *effect_settings.CLASSES,
     *map_settings.CLASSES,
+    *comfort_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
     ThenarStage,

@@ -17,6 +17,8 @@ native_problem = ""
 """Why the native module cannot be used, as one sentence; empty if it can."""
 look_changed = []
 """Called with the context after range, colours or legend were changed."""
+comfort_changed = []
+"""Called with the context after the threshold of comfort was changed."""
 _stale = {}
 
 

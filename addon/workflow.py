@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from . import cache, effects, names, native, status
+from . import cache, comfort, effects, names, native, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
@@ -211,6 +211,7 @@ def finish(context, job, contact):
     notes = joined([named(text, job) for text in contact.warnings])
     result = results.fill(settings.result, job, contact, written, notes)
     result.state_hash = state_hash(context)
+    comfort.judge(context)
     status.set_stale(context.scene.name, False)
     return result
 

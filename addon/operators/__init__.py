@@ -11,6 +11,7 @@ _MODULES = (solve, clear, display, regions, effects, export, bake)
 def register():
     """Register every operator."""
     status.look_changed.append(display.refresh)
+    status.comfort_changed.append(display.judge)
     for module in _MODULES:
         for cls in module.CLASSES:
             bpy.utils.register_class(cls)
@@ -19,6 +20,7 @@ def register():
 def unregister():
     """Unregister them again."""
     status.look_changed.remove(display.refresh)
+    status.comfort_changed.remove(display.judge)
     for module in reversed(_MODULES):
         for cls in reversed(module.CLASSES):
             bpy.utils.unregister_class(cls)

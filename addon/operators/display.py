@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import map_settings, maps, names, tissue, workflow
+from .. import comfort, map_settings, maps, names, tissue, workflow
 from ..scene import attributes, colors, copies, shading
 from ..views import compositor
 from . import polling, running
@@ -37,6 +37,13 @@ def refresh(context):
             colors.recolor(obj.data, look, colors.SKIN if is_skin else colors.BARE)
     compositor.update_legend(context.scene)
     running.redraw(context)
+
+
+def judge(context):
+    """Judge comfort anew, and colour the skin by the verdict."""
+    if context is not None and context.scene is not None:
+        comfort.judge(context)
+        refresh(context)
 
 
 def show(context, kind=maps.PRESSURE):

@@ -35,12 +35,13 @@ def title(name):
 
 
 def columns(split, item):
-    """The three numbers of a region or finger: force, area, peak; faint where nothing presses."""
+    """The numbers of a region or finger: force, area, peak; faint where nothing presses, red over the threshold."""
     row = split.row()
     row.active = item.force_n > 0.0
-    for text in (f"{item.force_n:.1f}", f"{item.area_mm2 / 100:.1f}", f"{item.peak_kpa:.0f}"):
+    for place, text in enumerate((f"{item.force_n:.1f}", f"{item.area_mm2 / 100:.1f}", f"{item.peak_kpa:.0f}")):
         cell = row.row()
         cell.alignment = "RIGHT"
+        cell.alert = place == 2 and item.over_mm2 > 0.0
         cell.label(text=text)
 
 

@@ -62,10 +62,11 @@ def _pair(column, name, value):
     right.label(text=value)
 
 
-def _warning(layout, text, context):
+def _lines(layout, text, about):
+    context, icon = about
     column = layout.column(align=True)
     for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
-        column.label(text=line, icon="ERROR" if number == 0 else "BLANK1")
+        column.label(text=line, icon=icon if number == 0 else "BLANK1")
 
 
 class THENAR_PT_physics_result(Physics, bpy.types.Panel):
@@ -106,6 +107,33 @@ class THENAR_PT_regions(Tab, bpy.types.Panel):
             columns(split, finger)
 
 
+class THENAR_PT_comfort(Tab, bpy.types.Panel):
+    """Pressure held against a threshold."""
+
+    bl_label = "Comfort"
+    bl_parent_id = "THENAR_PT_result"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.thenar.result.is_valid
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.thenar
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        given = settings.comfort
+        layout.prop(given, "rule")
+        if given.rule in {"DISCOMFORT", "OWN"}:
+            column = layout.column(align=True)
+            column.label(text="Your pain thresholds" if given.rule == "DISCOMFORT" else "Your thresholds")
+            for part in ("finger", "palm", "thenar"):
+                column.prop(given, f"{part}_kpa")
+        if settings.result.comfort:
+            icon = "ERROR" if settings.result.over_mm2 else "CHECKMARK"
+            _lines(layout, settings.result.comfort, (context, icon))
+
+
 class THENAR_PT_notes(Tab, bpy.types.Panel):
     """What to know about the result before it is used."""
 
@@ -123,7 +151,7 @@ class THENAR_PT_notes(Tab, bpy.types.Panel):
 
     def draw(self, context):
         for text in context.scene.thenar.result.warnings:
-            _warning(self.layout, text.name, context)
+            _lines(self.layout, text.name, (context, "ERROR"))
 
 
 class THENAR_PT_quality(Tab, bpy.types.Panel):
@@ -149,4 +177,11 @@ class THENAR_PT_quality(Tab, bpy.types.Panel):
             _pair(box, stage.name.capitalize(), f"{stage.seconds * 1000:.0f} ms")
 
 
-CLASSES = (THENAR_PT_result, THENAR_PT_physics_result, THENAR_PT_regions, THENAR_PT_notes, THENAR_PT_quality)
+CLASSES = (
+    THENAR_PT_result,
+    THENAR_PT_physics_result,
+    THENAR_PT_regions,
+    THENAR_PT_comfort,
+    THENAR_PT_notes,
+    THENAR_PT_quality,
+)
