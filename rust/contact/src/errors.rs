@@ -115,6 +115,12 @@ pub enum ContactError {
     /// There is no effect of that name.
     #[error("there is no effect {name:?}; there are {known}")]
     UnknownEffect { name: String, known: String },
+    /// A mat's sensels cannot be used.
+    #[error("mat: {problem}")]
+    Mat { problem: String },
+    /// The channels of a recording do not fit together.
+    #[error("signals: {problem}")]
+    Signals { problem: String },
     /// A row of a protocol cannot be followed.
     #[error("protocol, row {row}: {problem}")]
     Protocol { row: usize, problem: String },

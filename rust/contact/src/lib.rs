@@ -5,6 +5,7 @@
 
 pub mod parameters;
 pub mod effects;
+pub mod instrument;
 
 mod control;
 mod direction;

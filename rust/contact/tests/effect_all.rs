@@ -4,7 +4,7 @@
 mod scenes;
 
 use scenes::{Dice, flat_skin, lattice, paraboloid, press};
-use thenar_contact::effects::CATALOGUE;
+use thenar_contact::effects::{CATALOGUE, Effect, Entry};
 use thenar_contact::{
     ActiveEffect, Contact, Control, Course, Keep, Material, Model, Protocol, Run, Skin, SkinInput,
 };
@@ -17,6 +17,11 @@ fn material() -> Material {
         thickness_mm: 7.0,
         ..Material::default()
     }
+}
+
+/// The effects that a skin takes; instruments have their own tests.
+fn tissue() -> impl DoubleEndedIterator<Item = &'static (Effect, &'static Entry)> {
+    CATALOGUE.iter().filter(|(_, entry)| !entry.is_instrument())
 }
 
 fn two_regions() -> Skin {
@@ -78,7 +83,7 @@ fn amplitude_zero_is_the_base_model_bit_for_bit() {
     let mut skin = two_regions();
     let base = press(&mut skin, &tool);
     let course = follow(&mut skin, &tool, &cycle());
-    for (effect, entry) in CATALOGUE {
+    for &(effect, entry) in tissue() {
         let mut fresh = two_regions();
         set(&mut fresh, vec![ActiveEffect::new(effect, 0.0)]);
         assert_eq!(
@@ -108,7 +113,7 @@ fn every_effect_changes_something() {
     let tool = paraboloid(8.0, 1.0, 8.0);
     let mut skin = two_regions();
     let base = follow(&mut skin, &tool, &cycle());
-    for (effect, entry) in CATALOGUE {
+    for &(effect, entry) in tissue() {
         set(&mut skin, vec![ActiveEffect::new(effect, 0.9)]);
         let course = follow(&mut skin, &tool, &cycle());
         let steps = base.steps.iter().zip(&course.steps);
@@ -123,8 +128,8 @@ fn every_effect_changes_something() {
 fn every_pair_runs_together_and_in_one_order() {
     let tool = paraboloid(8.0, 1.0, 8.0);
     let mut skin = two_regions();
-    for (i, (first, a)) in CATALOGUE.iter().enumerate() {
-        for (second, b) in &CATALOGUE[..i] {
+    for (i, (first, a)) in tissue().enumerate() {
+        for (second, b) in tissue().take(i) {
             let pair = [
                 ActiveEffect::new(*first, 0.4),
                 ActiveEffect::new(*second, 0.4),

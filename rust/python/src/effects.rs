@@ -126,7 +126,7 @@ pub fn effects_of(effects: Option<Vec<PyRef<'_, Effect>>>) -> Vec<ActiveEffect> 
         .collect()
 }
 
-/// The catalogue: name, stage, meaning, amplitude, most, shape, choices, painted, consequences, source of each effect, in the
+/// The catalogue: name, kind ("tissue" acts on the skin, "instrument" on readings), stage, meaning, amplitude, most, shape, choices, painted, consequences, source of each effect, in the
 /// order in which they compose.
 #[pyfunction]
 pub fn effects(py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
@@ -167,6 +167,7 @@ fn about(py: Python<'_>, entry: &Entry) -> PyResult<Py<PyAny>> {
     };
     let entries = PyDict::new(py);
     entries.set_item("name", entry.name)?;
+    entries.set_item("kind", entry.kind())?;
     entries.set_item("stage", format!("{:?}", entry.stage).to_lowercase())?;
     entries.set_item("meaning", entry.meaning)?;
     entries.set_item("amplitude", entry.amplitude)?;

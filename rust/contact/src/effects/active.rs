@@ -148,6 +148,28 @@ impl ActiveEffect {
         model: Model,
         (regions, vertices): (usize, usize),
     ) -> Result<(), ContactError> {
+        if self.entry().is_instrument() {
+            return Err(self.refuse(
+                "it acts on readings, not on the skin; give it to what reads the contact"
+                    .to_owned(),
+            ));
+        }
+        if model == Model::Paper {
+            return Err(self
+                .refuse("it needs model layer; the paper's model stays as published".to_owned()));
+        }
+        self.check_numbers()?;
+        self.check_place(regions, vertices)?;
+        match self.effect {
+            Effect::Bone => bone::check(self),
+            Effect::Relaxation => relaxation::check(self),
+            _ => Ok(()),
+        }
+        .map_err(|problem| self.refuse(problem))
+    }
+
+    /// Checks amplitude and numbers.
+    pub(crate) fn check_numbers(&self) -> Result<(), ContactError> {
         let entry = self.entry();
         if !(self.amplitude >= 0.0 && self.amplitude <= entry.most) {
             let range = range([0.0, entry.most], "1");
@@ -155,10 +177,6 @@ impl ActiveEffect {
                 "amplitude is {}, but must be {range}",
                 self.amplitude
             )));
-        }
-        if model == Model::Paper {
-            return Err(self
-                .refuse("it needs model layer; the paper's model stays as published".to_owned()));
         }
         if self.shape.len() != entry.shape.len() || self.chosen.len() != entry.choices.len() {
             return Err(self.refuse(format!(
@@ -174,13 +192,7 @@ impl ActiveEffect {
                 return Err(self.refuse(format!("{} is {value}, but must be {range}", number.name)));
             }
         }
-        self.check_place(regions, vertices)?;
-        match self.effect {
-            Effect::Bone => bone::check(self),
-            Effect::Relaxation => relaxation::check(self),
-            _ => Ok(()),
-        }
-        .map_err(|problem| self.refuse(problem))
+        Ok(())
     }
 
     fn check_place(&self, regions: usize, vertices: usize) -> Result<(), ContactError> {

@@ -3,6 +3,8 @@
 use super::entry::Entry;
 use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};
 use super::{rate_independent_loss, region_coupling, relaxation, stiff_skin, stiffening_law};
+use crate::instrument::{crosstalk, dead_cells, drift, fixture_compliance, gain, misregistration};
+use crate::instrument::{offset, saturation, threshold, timing};
 
 /// An effect of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,10 +33,30 @@ pub enum Effect {
     Friction,
     /// Skin that clings to the product.
     Adhesion,
+    /// A fixture that yields in series with the skin.
+    FixtureCompliance,
+    /// A mat that lies beside where it is said to lie.
+    Misregistration,
+    /// Sensels that pass part of their reading on.
+    Crosstalk,
+    /// Readings too large or too small by a factor.
+    Gain,
+    /// A zero point that is not at zero.
+    Offset,
+    /// Readings that wander with time.
+    Drift,
+    /// Readings that stop at a ceiling.
+    Saturation,
+    /// Readings below a floor that are shown as nothing.
+    Threshold,
+    /// Sensels that show nothing.
+    DeadCells,
+    /// A channel whose clock is behind.
+    Timing,
 }
 
 /// Every effect with what is known of it, in the order in which they compose.
-pub const CATALOGUE: [(Effect, &Entry); 12] = [
+pub const CATALOGUE: [(Effect, &Entry); 22] = [
     (Effect::Bone, &bone::ENTRY),
     (Effect::Compressibility, &compressibility::ENTRY),
     (Effect::StiffSkin, &stiff_skin::ENTRY),
@@ -47,6 +69,16 @@ pub const CATALOGUE: [(Effect, &Entry); 12] = [
     (Effect::RateIndependentLoss, &rate_independent_loss::ENTRY),
     (Effect::Friction, &friction::ENTRY),
     (Effect::Adhesion, &adhesion::ENTRY),
+    (Effect::FixtureCompliance, &fixture_compliance::ENTRY),
+    (Effect::Misregistration, &misregistration::ENTRY),
+    (Effect::Crosstalk, &crosstalk::ENTRY),
+    (Effect::Gain, &gain::ENTRY),
+    (Effect::Offset, &offset::ENTRY),
+    (Effect::Drift, &drift::ENTRY),
+    (Effect::Saturation, &saturation::ENTRY),
+    (Effect::Threshold, &threshold::ENTRY),
+    (Effect::DeadCells, &dead_cells::ENTRY),
+    (Effect::Timing, &timing::ENTRY),
 ];
 
 impl Effect {

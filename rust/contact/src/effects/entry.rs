@@ -96,6 +96,28 @@ pub enum Sign {
     AreaAtZeroForce,
     /// Turns round with the direction of sliding.
     FollowsSliding,
+    /// Readings are off by one factor.
+    ScalesReadings,
+    /// Readings are off by one amount, without contact too.
+    ShiftsReadings,
+    /// Channels that should tell the same do not: the sum of the map and the load cell.
+    ChannelsDisagree,
+    /// Readings wander without contact, or under a dead weight.
+    TrendsWithoutContact,
+    /// No reading is above one ceiling, whatever presses.
+    ClipsAtCeiling,
+    /// No reading lies between nothing and a floor.
+    SilentBelowFloor,
+    /// The map is blurred under a rigid stamp too.
+    BlursTheMap,
+    /// Belongs to the same sensels at every pose: moves with the mat, not with the skin.
+    MovesWithTheMat,
+    /// The force on the mat is what it was.
+    ForceStays,
+    /// Travel is lost in proportion to force, whatever is pressed.
+    YieldsToForceOnly,
+    /// A channel shows later what another shows now, by one time at all speeds.
+    LagsBehind,
 }
 
 /// A sign that must hold in data if the effect is at work.
@@ -130,4 +152,20 @@ pub struct Entry {
     pub consequences: &'static [Consequence],
     /// Where the model comes from.
     pub source: &'static str,
+}
+
+impl Entry {
+    /// True if it acts on readings, false if it acts on the skin.
+    pub fn is_instrument(&self) -> bool {
+        self.stage == Stage::Instrument
+    }
+
+    /// "tissue" or "instrument", as in findings.
+    pub fn kind(&self) -> &'static str {
+        if self.is_instrument() {
+            "instrument"
+        } else {
+            "tissue"
+        }
+    }
 }

@@ -88,6 +88,17 @@ impl Tissue {
                 // And what acts between skin and product in `interface`.
                 | Effect::Friction
                 | Effect::Adhesion => {}
+                // Instruments act in `instrument`; a skin takes none.
+                Effect::FixtureCompliance
+                | Effect::Misregistration
+                | Effect::Crosstalk
+                | Effect::Gain
+                | Effect::Offset
+                | Effect::Drift
+                | Effect::Saturation
+                | Effect::Threshold
+                | Effect::DeadCells
+                | Effect::Timing => {}
             }
         }
         tissue.geometry.layers = layers(&tissue.materials);

@@ -3,6 +3,7 @@
 use thenar_surface::Vec3;
 
 use crate::Contact;
+use crate::instrument::PointLoad;
 
 /// What to keep of every step besides its totals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +12,8 @@ pub enum Keep {
     Totals,
     /// Pressure of the vertices in contact.
     Pressure,
+    /// Loads on the product, for a mat that lies on it.
+    Loads,
 }
 
 /// One step.
@@ -38,6 +41,8 @@ pub struct Step {
     pub work: f64,
     /// Pressure (MPa) by vertex where there is contact; empty unless it was to be kept.
     pub pressure: Vec<(u32, f64)>,
+    /// What presses on the product, in its own frame; empty unless it was to be kept.
+    pub loads: Vec<PointLoad>,
     /// True if the solve converged.
     pub has_converged: bool,
 }

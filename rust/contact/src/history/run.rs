@@ -6,6 +6,7 @@ use super::course::{Course, Keep, Step};
 use super::protocol::{Demand, Protocol};
 use super::state::History;
 use crate::force_control::{MOST_TRAVEL, find_offset, mean_normal};
+use crate::instrument::loads_of;
 use crate::interface::friction::{self, Grasp};
 use crate::interface::stick_slip::Dragged;
 use crate::memory::Last;
@@ -229,8 +230,12 @@ impl Walk<'_> {
             region_force: totals.region_force,
             work: 0.0,
             pressure: match self.run.keep {
-                Keep::Totals => Vec::new(),
                 Keep::Pressure => totals.pressure,
+                Keep::Totals | Keep::Loads => Vec::new(),
+            },
+            loads: match self.run.keep {
+                Keep::Loads => loads_of(skin, pressed),
+                Keep::Totals | Keep::Pressure => Vec::new(),
             },
             has_converged: pressed.solved.convergence.has_converged,
         }

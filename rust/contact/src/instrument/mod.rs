@@ -1,0 +1,30 @@
+//! What a measuring set-up makes of a contact: mats of sensels, and the faults of sensors, fixtures and clocks.
+//!
+//! Instrument effects act on predictions, never on the skin. [`observe`] applies them in a fixed order: `fixture_compliance`
+//! (on the motion), `misregistration`, averaging over each sensel ([`Mat`]), `crosstalk`, `gain`, `offset`, `drift`,
+//! `saturation`, `threshold`, `dead_cells`, and `timing` (between the channels). Units: mm, N, s, kPa for maps.
+
+mod layout;
+mod mat;
+mod walk;
+mod loads;
+mod channel;
+mod signals;
+mod observe;
+pub(crate) mod fixture_compliance;
+pub(crate) mod misregistration;
+pub(crate) mod crosstalk;
+pub(crate) mod gain;
+pub(crate) mod offset;
+pub(crate) mod drift;
+pub(crate) mod saturation;
+pub(crate) mod threshold;
+pub(crate) mod dead_cells;
+pub(crate) mod timing;
+
+pub use loads::loads;
+pub(crate) use loads::loads_of;
+pub use mat::{Mat, MatLayout, PointLoad};
+pub use observe::{check, observe};
+pub use signals::Signals;
+pub use walk::Placement;
