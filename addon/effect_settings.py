@@ -5,16 +5,23 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatPrope
 
 from . import native
 
-IN_A_PRESS = ("geometry", "stiffening", "interface")
-"""Stages of the catalogue that act in a single press; the others need time, and so a protocol."""
+_OVER_TIME = "history"
+"""The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
+_STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
+"""Amplitudes to start from where the most is out of reason. Relaxation: palms, Shojaeizadeh 2022; the others: ours."""
 
 _LAWS = {}
 """Items of choices by their options: Blender needs the texts of a dynamic list kept."""
 
 
 def offered():
-    """Catalogue rows, by name, of the effects that act in a press, in the order in which they compose."""
-    return {row["name"]: row for row in native.effects() if row["stage"] in IN_A_PRESS}
+    """Catalogue rows by name, in the order in which they compose."""
+    return {row["name"]: row for row in native.effects()}
+
+
+def acts_over_time(name):
+    """Whether the effect needs time: a press of one frame knows nothing of it, a bake follows it."""
+    return offered().get(name, {}).get("stage") == _OVER_TIME
 
 
 def can_be_painted(name):
@@ -71,7 +78,7 @@ class ThenarEffect(bpy.types.PropertyGroup):
 
 def fill(effect, row):
     """Set an effect to a row of the catalogue, with its default numbers."""
-    effect.name, effect.amplitude = row["name"], row["most"]
+    effect.name, effect.amplitude = row["name"], _STARTS.get(row["name"], row["most"])
     for shape in row["shape"]:
         number = effect.numbers.add()
         number.name, number.value, number.unit = shape["name"], shape["default"], shape["unit"]

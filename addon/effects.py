@@ -24,12 +24,13 @@ class UsedEffect:
 
 
 def shown(hand):
-    """Hashable values of every effect that is switched on, as the panel shows them."""
-    return tuple(
-        (effect.name, _number(effect.amplitude), effect.region, _numbers(effect), effect.painted, effect.painted_full)
-        for effect in hand.thenar.effects
-        if effect.is_on
-    )
+    """Values of every effect that is switched on, as the panel and the painted groups show them, for a digest."""
+    for effect in hand.thenar.effects:
+        if effect.is_on:
+            yield (effect.name, _number(effect.amplitude), effect.region, _numbers(effect), effect.painted)
+            if effect.painted in hand.vertex_groups:
+                yield effect.painted_full
+                yield regions.painted_weights(hand, effect.painted)
 
 
 def read(context, hand, region_names):

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from . import cache, comfort, effects, names, native, status
+from . import cache, comfort, effect_settings, effects, names, native, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
@@ -208,7 +208,7 @@ def finish(context, job, contact):
     fields = fields_of(contact, job)
     written = write.write_contact(context, hand, parts, job.reading, fields)
     job.seconds["write"] = time.perf_counter() - started
-    notes = joined([named(text, job) for text in contact.warnings])
+    notes = [*joined([named(text, job) for text in contact.warnings]), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
     result.state_hash = state_hash(context)
     comfort.judge(context)
@@ -242,6 +242,17 @@ def fields_of(contact, job):
         shear=None if contact.friction is None else _shear(contact),
         thickness_mm=job.thickness_mm,
     )
+
+
+def _left_out(job):
+    """What a press of one moment does not know."""
+    waiting = [effect_settings.title(used.name).lower() for used in job.effects if _waits(used)]
+    if waiting:
+        yield f"{' and '.join(waiting)} act{'s' if len(waiting) == 1 else ''} over time: bake to see it"
+
+
+def _waits(used):
+    return used.amplitude > 0.0 and effect_settings.acts_over_time(used.name)
 
 
 def _shear(contact):

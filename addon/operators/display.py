@@ -65,6 +65,12 @@ def show(context, kind=maps.PRESSURE):
     return objects
 
 
+def look_hides(context):
+    """Whether the hand is being painted, which hides materials."""
+    hand = context.scene.thenar.hand
+    return hand.mode == "WEIGHT_PAINT" and context.view_layer.objects.active == hand
+
+
 def hide_overlays(context):
     """Give materials and products back as they were before a map was shown."""
     for obj in context.scene.objects:
@@ -175,6 +181,8 @@ class THENAR_OT_show_map(bpy.types.Operator):
         if not shown_objects(context, view.attribute):
             self.report({"ERROR"}, running.sentence(view.missing))
             return {"CANCELLED"}
+        if look_hides(context):
+            bpy.ops.object.mode_set(mode="OBJECT")
         show(context, self.kind)
         return {"FINISHED"}
 

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import effect_settings
-from . import polling
+from .. import effect_settings, tissue
+from . import polling, running
 
 _ITEMS = []
 """The menu's items: Blender needs the texts of a dynamic list kept."""
@@ -55,4 +55,41 @@ class THENAR_OT_effect_remove(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (THENAR_OT_effect_add, THENAR_OT_effect_remove)
+class THENAR_OT_paint_thickness(bpy.types.Operator):
+    """Paint the thickness over bone: makes a vertex group from the thickness as it is, and enters Weight Paint"""
+
+    bl_idname = "thenar.paint_thickness"
+    bl_label = "Paint Thickness"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_module(), polling.no_effects(context), _cannot_be_painted(context))
+
+    def execute(self, context):
+        hand = context.scene.thenar.hand
+        effect = _selected(hand)
+        group = hand.vertex_groups.get(effect.painted)
+        if group is None:
+            group = running.attempt(self, tissue.paint, context, effect)
+        if group is None:
+            return {"CANCELLED"}
+        hand.vertex_groups.active_index = group.index
+        context.view_layer.objects.active = hand
+        if hand.mode != "WEIGHT_PAINT":
+            bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
+        self.report({"INFO"}, f"Weight 1 of '{group.name}' is {effect.painted_full:g} mm, weight 0.5 half of it")
+        return {"FINISHED"}
+
+
+def _selected(hand):
+    return hand.thenar.effects[min(hand.thenar.effect_index, len(hand.thenar.effects) - 1)]
+
+
+def _cannot_be_painted(context):
+    effect = _selected(context.scene.thenar.hand)
+    painted = effect_settings.can_be_painted(effect.name)
+    return "" if painted else f"{effect_settings.title(effect.name).lower()} has no field to paint; select bone"
+
+
+CLASSES = (THENAR_OT_effect_add, THENAR_OT_effect_remove, THENAR_OT_paint_thickness)

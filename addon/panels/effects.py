@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, names
+from .. import effect_settings, maps, names
 from .lists import title as region_title
 from .main import OfHand
 
@@ -51,6 +51,8 @@ class THENAR_PT_effects(OfHand, bpy.types.Panel):
 
 def _draw_effect(layout, effect, hand):
     column = layout.column(align=True)
+    if effect_settings.acts_over_time(effect.name):
+        column.label(text="Acts over time: bake", icon="TIME")
     if hand.thenar.materials:
         column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")
     for choice in effect.choices:
@@ -59,9 +61,17 @@ def _draw_effect(layout, effect, hand):
         unit = "" if number.unit == "1" else f" ({number.unit})"
         column.prop(number, "value", text=effect_settings.title(number.name) + unit)
     if effect_settings.can_be_painted(effect.name):
-        column.prop_search(effect, "painted", hand, "vertex_groups", icon="BRUSH_DATA")
+        row = column.row(align=True)
+        row.prop_search(effect, "painted", hand, "vertex_groups", icon="BRUSH_DATA")
+        row.operator("thenar.paint_thickness", text="", icon="BRUSHES_ALL")
         if effect.painted:
             column.prop(effect, "painted_full")
+            lines = column.column(align=True)
+            lines.active = False
+            lines.label(text=f"Weight 0.5 is {effect.painted_full / 2:.3g} mm")
+            lines.label(text="Weight 0 takes the number above")
+            row = column.row(align=True)
+            row.operator("thenar.show_map", text="Show Thickness", icon="SHADING_RENDERED").kind = maps.THICKNESS
 
 
 CLASSES = (THENAR_UL_effects, THENAR_PT_effects)

@@ -54,6 +54,32 @@ def group_weights(context, hand, group_names):
         bpy.data.node_groups.remove(tree)
 
 
+def painted_weights(hand, group_name):
+    """Weights (n,) float32 of one vertex group, 0 for vertices outside, read without touching the scene.
+
+    A loop over vertices, 25 ms for 10,000: for digests that must not set off another change; `group_weights` is faster.
+    """
+    index = hand.vertex_groups[group_name].index
+    weights = np.zeros(len(hand.data.vertices), np.float32)
+    for vertex in hand.data.vertices:
+        for element in vertex.groups:
+            if element.group == index:
+                weights[vertex.index] = element.weight
+    return weights
+
+
+def paint(hand, group_name, weights):
+    """Make the vertex group of that name anew with `weights` (n,), vertices of weight 0 left out; it becomes active."""
+    old = hand.vertex_groups.get(group_name)
+    if old is not None:
+        hand.vertex_groups.remove(old)
+    group = hand.vertex_groups.new(name=group_name)
+    for value in np.unique(weights[weights > 0.0]):
+        group.add(np.flatnonzero(weights == value).tolist(), float(value), "REPLACE")
+    hand.vertex_groups.active_index = group.index
+    return group
+
+
 def _reader(group_names):
     tree = bpy.data.node_groups.new(_WEIGHT, "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")

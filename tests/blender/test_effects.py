@@ -117,3 +117,17 @@ def test_a_product_that_is_dragged_shears_the_skin(tmp_path):
     hand.thenar.effects.clear()
     assert stage.solve().shear_n == 0.0
     assert "shear_kpa" not in hand.data.attributes
+
+
+def test_what_acts_over_time_is_said_after_a_press():
+    hand, _ = stage.scene()
+    base = pressures(hand)
+    add("relaxation")
+    add("drainage").is_on = False
+    assert (pressures(hand) == base).all()
+    told = [text.name for text in bpy.context.scene.thenar.result.warnings]
+    assert "relaxation acts over time: bake to see it" in told
+    hand.thenar.effects[1].is_on = True
+    stage.solve()
+    told = [text.name for text in bpy.context.scene.thenar.result.warnings]
+    assert "relaxation and drainage act over time: bake to see it" in told
