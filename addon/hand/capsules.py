@@ -14,6 +14,9 @@ RADIUS_QUANTILE = 0.85
 center line is about half the breadth. At 0.4 fingers cut into each other on thick products, at 0.7 in a fist on a
 thin one."""
 
+STEPS = 24
+"""Points on the center line of a phalanx: about 2 mm apart on the longest one."""
+
 
 @dataclass(frozen=True)
 class Capsules:
@@ -69,15 +72,27 @@ def overlaps(capsules, rig, posed):
     Returns `(overlap, points, direction)`: `points` (p, 2, 3) nearest points on the two center lines, world mm,
     `direction` (p, 3) unit from the second to the first.
     """
-    carried = posed[capsules.bones] @ rig.bone_from_rig[capsules.bones]
-    ends = np.einsum("cij,ckj->cki", carried[:, :3, :3], capsules.ends) + carried[:, None, :3, 3]
-    ends = ends @ rig.world_from_rig[:3, :3].T + rig.world_from_rig[:3, 3]
+    ends = world_ends(capsules, rig, posed)
     first, second = ends[capsules.pairs[:, 0]], ends[capsules.pairs[:, 1]]
     points = nearest_on_segments(first, second)
     apart = points[:, 0] - points[:, 1]
     length = np.maximum(np.linalg.norm(apart, axis=1), 1e-9)
     reach = capsules.radius[capsules.pairs].sum(axis=1)
     return reach - length - capsules.allowed, points, apart / length[:, None]
+
+
+def world_ends(capsules, rig, posed):
+    """End points (c, 2, 3) of the center lines, world mm."""
+    carried = posed[capsules.bones] @ rig.bone_from_rig[capsules.bones]
+    ends = np.einsum("cij,ckj->cki", carried[:, :3, :3], capsules.ends) + carried[:, None, :3, 3]
+    return ends @ rig.world_from_rig[:3, :3].T + rig.world_from_rig[:3, 3]
+
+
+def center_points(capsules, rig, posed):
+    """Points (k, 3) on the center lines, world mm, `STEPS` to a phalanx."""
+    ends = world_ends(capsules, rig, posed)
+    along = np.linspace(0.0, 1.0, STEPS)[None, :, None]
+    return (ends[:, :1] * (1.0 - along) + ends[:, 1:] * along).reshape(-1, 3)
 
 
 def nearest_on_segments(first, second):

@@ -5,10 +5,11 @@ Knows nothing of Blender. World mm, radians.
 
 import numpy as np
 
+from . import capsules as capsules_of_hand
 from . import pads as pads_of_hand
 from .poses import POSES
 from .roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
-from .skinning import pose_matrices, skin, to_world
+from .skinning import pose_matrices, skin, skin_normals, to_world
 
 STEP_DEG = 4.0
 """A closing joint turns in steps of this many degrees; the fit that follows does the rest."""
@@ -46,7 +47,7 @@ def product_axis(vertices):
     return center, axes[:, 2]
 
 
-def lay_into_palm(rig, joints, pads, product, placing):
+def lay_into_palm(rig, joints, pads, gauge, placing):
     """World transform (4, 4) that carries the hand to the product so that the product lies in the open palm.
 
     `placing`: (center, axis, oblique radians, offset mm along the fingers). The product's axis lies across the palm,
@@ -71,14 +72,20 @@ def lay_into_palm(rig, joints, pads, product, placing):
     place[:3, :3] = turn
     place[:3, 3] = center - turn @ (knuckles + distal * offset_mm) - turn @ facing * CLEAR_MM
     rows = np.concatenate([pad.rows for pad in pads if pad.kind == "palm"] or [pad.rows for pad in pads])
-    palm = skin(rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"])))
-    return approach(palm, product, place, turn @ facing)
+    part, posed = rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"]))
+    normals = skin_normals(part, posed) if gauge.is_thin else None
+    return approach((skin(part, posed), normals), gauge, place, turn @ facing)
 
 
-def approach(points, product, place, direction, depth_mm=2.0):
-    """`place` moved along `direction` until the deepest of `points` is `depth_mm` deep; sphere tracing."""
+def approach(palm, gauge, place, direction, depth_mm=2.0):
+    """`place` moved along `direction` until the deepest point of `palm` is `depth_mm` deep; sphere tracing.
+
+    `palm`: points (n, 3) and the skin's normals at them, None if the product has no thin walls.
+    """
+    points, normals = palm
     for _ in range(60):
-        gap = pads_of_hand.gaps(product, points @ place[:3, :3].T + place[:3, 3]).min() + depth_mm
+        turned = None if normals is None else normals @ place[:3, :3].T
+        gap = gauge.gaps(points @ place[:3, :3].T + place[:3, 3], turned).min() + depth_mm
         place = place.copy()
         place[:3, 3] += direction * gap
         if abs(gap) < 0.05:
@@ -86,11 +93,53 @@ def approach(points, product, place, direction, depth_mm=2.0):
     return place
 
 
+OPENINGS = 5
+"""Angles tried per joint to free a finger from a wall."""
+
+
+def clear_fingers(rig, joints, bodies, gauge, angles):
+    """Angles (b, 3) in which no finger stands in a thin wall; those that do are opened at the base, a little.
+
+    In a thick product a finger that stands too deep is pushed out by its depth; a thin one has no such depth.
+    `bodies`: `capsules.Capsules`.
+    """
+    for digit in (*FINGERS, "thumb"):
+        base = joints.bone("thumb_metacarpal" if digit == "thumb" else f"{digit}_proximal")
+        own = np.isin(bodies.bones, [bone for role, bone in joints.bones.items() if role.startswith(f"{digit}_")])
+        if base is not None and own.any():
+            angles = _cleared(
+                rig, joints, (digit, base, np.repeat(own, capsules_of_hand.STEPS)), (bodies, gauge), angles
+            )
+    return angles
+
+
+def _cleared(rig, joints, finger, around, angles):
+    digit, base, own = finger
+    bodies, gauge = around
+
+    def is_crossed(trial):
+        return gauge.is_crossed(capsules_of_hand.center_points(bodies, rig, pose_matrices(rig, trial))[own])
+
+    if not is_crossed(angles):
+        return angles
+    role = "thumb_metacarpal" if digit == "thumb" else f"{digit}_proximal"
+    columns = [COLUMNS["flexion"], COLUMNS["abduction"]]
+    bounds = [angle_bounds(joints, role, angle) for angle in ("flexion", "abduction")]
+    tries = np.stack(np.meshgrid(*[np.linspace(*bound, OPENINGS) for bound in bounds]), axis=-1).reshape(-1, 2)
+    far = np.abs(tries - angles[base, columns]).sum(axis=1)
+    for values in tries[np.argsort(far, kind="stable")]:
+        trial = angles.copy()
+        trial[base, columns] = values
+        if not is_crossed(trial):
+            return trial
+    return angles
+
+
 NEAR_MM = 6.0
 """A digit that has a pad this near the product is not closed further before the fit."""
 
 
-def close_fingers(rig, joints, pads, product, start):
+def close_fingers(rig, joints, pads, gauge, start):
     """Angles (b, 3): from `start`, each digit bends joint by joint until a pad beyond the joint touches.
 
     A digit that is near the product already stays as it is: a flat hand on a plate shall not make a fist.
@@ -101,21 +150,21 @@ def close_fingers(rig, joints, pads, product, start):
         roles = [f"{digit}_{segment}" for segment in chain if f"{digit}_{segment}" in joints.bones]
         own = [pad for pad in pads if pad.role in roles and pad.kind != "palm"]
         if own:
-            angles = _close_digit(rig, joints, (roles, own), product, angles)
+            angles = _close_digit(rig, joints, (roles, own), gauge, angles)
     return angles
 
 
-def _close_digit(rig, joints, digit, product, angles):
+def _close_digit(rig, joints, digit, gauge, angles):
     roles, own = digit
     rows = np.concatenate([pad.rows for pad in own])
     level = np.concatenate([np.full(len(pad.rows), roles.index(pad.role)) for pad in own])
     part = rig.subset(rows)
     free = 0
-    gap = pads_of_hand.gaps(product, skin(part, pose_matrices(part, angles)))
+    gap = _gaps(part, gauge, angles)
     if gap.min() < NEAR_MM and np.median(gap) < 3.0 * NEAR_MM:
         return angles
     for _ in range(60):
-        gap = pads_of_hand.gaps(product, skin(part, pose_matrices(part, angles)))
+        gap = _gaps(part, gauge, angles)
         touched = level[gap < -0.5]
         free = max(free, int(touched.max()) + 1 if len(touched) else 0)
         moved = False
@@ -124,6 +173,11 @@ def _close_digit(rig, joints, digit, product, angles):
         if not moved:
             break
     return angles
+
+
+def _gaps(part, gauge, angles):
+    posed = pose_matrices(part, angles)
+    return gauge.gaps(skin(part, posed), skin_normals(part, posed) if gauge.is_thin else None)
 
 
 def _bend(joints, role, angles):

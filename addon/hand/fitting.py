@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import native, workflow
 from ..scene import checks, mesh, read, regions, units
-from . import capsules, force, grasp, look, pads, reading, roles
+from . import capsules, force, grasp, normals, pads, reading, roles
 
 _PALM = re.compile("palm|thenar")
 MOVES = ("HAND", "PRODUCT", "FINGERS")
@@ -57,6 +57,7 @@ def read_hand(context, hand_object):
     rig, role_names = reading.read_rig(context, hand_object)
     armature = reading.armature_of(hand_object)
     joints = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
+    rig = replace(rig, normals=normals.outward_normals(rig.vertices, mesh.triangles(hand_object.data)))
     skin = read_skin(context, hand_object, rig, joints)
     bodies = capsules.build(rig, joints, reading.tails(rig, armature))
     return grasp.Hand(rig, joints, pads.pads_of(rig, joints, skin), bodies)
@@ -66,9 +67,9 @@ def read_skin(context, hand_object, rig, joints):
     """Regions of the hand: its listed vertex groups, else the palm side of every bone."""
     listed = [material for material in hand_object.thenar.materials if material.name in hand_object.vertex_groups]
     if not listed:
-        normals = look.vertex_normals(rig.vertices, mesh.triangles(hand_object.data))
+        facing = normals.vertex_normals(rig.vertices, mesh.triangles(hand_object.data))
         mirrored = np.linalg.det(rig.world_from_rig[:3, :3]) < 0.0
-        return pads.skin_from_bones(rig, joints, -normals if mirrored else normals)
+        return pads.skin_from_bones(rig, joints, -facing if mirrored else facing)
     names = tuple(material.name for material in listed)
     kinds = tuple("palm" if _PALM.search(name.lower()) else "finger" for name in names)
     thickness = tuple(material.thickness_mm or pads.DEEP_MM for material in listed)

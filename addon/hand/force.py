@@ -44,7 +44,7 @@ def reach(fit, first, watch=grasp.ALONE):
         step = (fit.force_n / max(force, 1e-3 * fit.force_n)) ** (1.0 / 1.5)
         scale = float(np.clip(scale * np.clip(step, 1.0 / LARGEST_STEP, LARGEST_STEP), *SCALES))
         targets = {kind: scale * value for kind, value in fit.wish.targets_mm.items()}
-        found = grasp.refit(fit.hand, fit.product, found, replace(fit.wish, targets_mm=targets), watch)
+        found = grasp.refit(fit.hand, found, replace(fit.wish, targets_mm=targets), watch)
         tried.append((force_of(fit, found, watch.cancel), found))
     if _is_bracketed(tried, fit.force_n):
         low = max((entry for entry in tried if entry[0] < fit.force_n), key=lambda entry: entry[0])[1]

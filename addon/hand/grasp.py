@@ -5,25 +5,26 @@ Knows nothing of Blender. What Xie et al. did by hand ("moving fingers until the
 """
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..scene.checks import Refusal
 from . import capsules as capsules_of_hand
-from . import closing, habits
+from . import closing, habits, walls
 from . import pads as pads_of_hand
 from .least_squares import Problem, minimize
 from .poses import OPEN
 from .roles import COLUMNS, FINGERS, angle_bounds, limits_of, pose_angles
+from .rotations import left_jacobian, rotation_of
 from .skinning import (
     ABDUCTION,
     FLEXION,
     descendants,
     joint_axes,
     pose_matrices,
-    rotation,
     skin,
+    skin_normals,
     to_world,
     vertex_jacobian,
 )
@@ -41,6 +42,12 @@ WEIGHT_BODY = 1.5
 """Residuals are mm: pads weigh 1 per mm; per degree for joints, per mm for the rest. ASIDE holds abduction and the
 thumb's first joint near the closing hand, or fingers splay and the thumb lies down along the product (seen at 0.012).
 TURN at 0.02 let the product lie along the fingers. Chosen by eye on the three cylinders; no range was measured."""
+
+CROSSED = 1e3
+"""Residual of a finger that stands in a thin wall: more than any other, so that no step leads there."""
+CROSSED_TEXT = (
+    "a finger stands in a thin wall of the product; pose each finger on the side it presses and keep the places"
+)
 
 PLACE = np.array([WEIGHT_SHIFT] * 3 + [WEIGHT_TURN] * 3)
 
@@ -66,7 +73,7 @@ class Hand:
 class Grasp:
     """A fitted grasp. `angles` (b, 3) turns from rest, radians; `place` (4, 4) carries the hand through the world, mm.
 
-    `depths_mm` and `targets_mm` by pad name; `seconds` the time taken; `warnings` texts.
+    `depths_mm` and `targets_mm` by pad name; `seconds` the time taken; `warnings` texts; `gauge` what read the depths.
     """
 
     angles: np.ndarray
@@ -77,6 +84,7 @@ class Grasp:
     evaluations: int
     seconds: float
     warnings: tuple
+    gauge: walls.Gauge
     force_n: float | None = None
 
 
@@ -118,12 +126,13 @@ def fit(hand, product, vertices, wish, watch=ALONE):
     """
     began = time.perf_counter()
     wanted = _wanted(hand.pads, wish)
+    gauge = walls.gauge_of(product, vertices, np.nanmax(wanted, initial=0.0))
     starts = []
     for count, placing in enumerate(_placings(hand, vertices, wish)):
         watch.report("Closing the fingers", 0.1 * count)
         _leave_if_cancelled(watch)
-        starts.append(_start(hand, product, wanted, (placing, wish.angles)))
-    tasks = [_Task(hand, product, wanted, start, wish) for start in starts]
+        starts.append(_start(hand, gauge, wanted, (placing, wish.angles)))
+    tasks = [_Task(hand, gauge, wanted, start, wish) for start in starts]
     tasks.sort(key=lambda task: task.first_cost)
     best, used = None, 0
     for count, task in enumerate(tasks[:2]):
@@ -141,10 +150,10 @@ def _leave_if_cancelled(watch):
         raise GraspError("the fit was cancelled")
 
 
-def refit(hand, product, found, wish, watch=ALONE):
+def refit(hand, found, wish, watch=ALONE):
     """The `Grasp` from an earlier one with other target depths; raises as `fit` does."""
     began = time.perf_counter()
-    task = _Task(hand, product, _wanted(hand.pads, wish), (found.place, found.angles), wish)
+    task = _Task(hand, found.gauge, _wanted(hand.pads, wish), (found.place, found.angles), wish)
     solved = minimize(task.problem(), task.start, wish.evaluations, cancelled=watch.cancelled)
     return _grasp(task, solved.x, found.evaluations + solved.evaluations, found.seconds + time.perf_counter() - began)
 
@@ -172,15 +181,17 @@ def _placings(hand, vertices, wish):
     return [(center, axis, np.radians(oblique), along * breadth) for oblique in (6.0, 18.0) for along in (-0.35, -0.1)]
 
 
-def _start(hand, product, wanted, begin):
+def _start(hand, gauge, wanted, begin):
     placing, angles = begin
     pads = [pad for pad, target in zip(hand.pads, wanted, strict=True) if np.isfinite(target)]
     place = np.eye(4)
     if placing is not None:
-        place = closing.lay_into_palm(hand.rig, hand.joints, hand.pads, product, placing)
+        place = closing.lay_into_palm(hand.rig, hand.joints, hand.pads, gauge, placing)
     moved = hand.rig.moved(place)
     opened = pose_angles(hand.rig, hand.joints, OPEN) if angles is None else angles
-    return place, closing.close_fingers(moved, hand.joints, pads, product, opened)
+    if gauge.is_thin:
+        opened = closing.clear_fingers(moved, hand.joints, hand.capsules, gauge, opened)
+    return place, closing.close_fingers(moved, hand.joints, pads, gauge, opened)
 
 
 def free_angles(joints):
@@ -197,14 +208,16 @@ def free_angles(joints):
 class _Task:
     """One start of the fit: residuals and their Jacobian in mm for the vector (angles, shift, turn)."""
 
-    def __init__(self, hand, product, wanted, start, wish):
+    def __init__(self, hand, gauge, wanted, start, wish):
         place, angles = start
-        self.hand, self.product, self.wanted = hand, product, wanted
+        self.hand, self.gauge, self.wanted = hand, gauge, wanted
         self.rig = hand.rig.moved(place)
         self.place, self.first = place, angles
         self.dofs = [dof for dof in free_angles(hand.joints) if _moves(dof[2], wish)]
         self.rows, self.groups, self.limits = _groups(hand, wanted)
         self.part = self.rig.subset(self.rows)
+        if gauge.is_thin:
+            self.part = _with_normals_on(self.part, sum(len(pad.rows) for pad in hand.pads))
         used = [pad.rows for pad, target in zip(hand.pads, wanted, strict=True) if np.isfinite(target)]
         self.pivot = skin(self.rig.subset(np.concatenate(used)), pose_matrices(self.rig, angles)).mean(axis=0)
         aside = [column != FLEXION or role == "thumb_metacarpal" for _, column, role in self.dofs]
@@ -231,7 +244,7 @@ class _Task:
         angles = self.first.copy()
         for value, (bone, column, _) in zip(x, self.dofs, strict=False):
             angles[bone, column] = value
-        return angles, _rotation_of(x[-3:] / ARM_MM), x[-6:-3]
+        return angles, rotation_of(x[-3:] / ARM_MM), x[-6:-3]
 
     def residuals(self, x):
         """Everything the fit wants to be zero, mm."""
@@ -239,11 +252,14 @@ class _Task:
         posed = pose_matrices(self.rig, angles)
         still = skin(self.part, posed)
         points = (still - self.pivot) @ turn.T + self.pivot + shift
-        gap = pads_of_hand.gaps(self.product, points)
+        normals = skin_normals(self.part, posed) @ turn.T if self.gauge.is_thin else None
+        gap, slopes = self.gauge.read(points, normals)
         overlap, contacts, direction = capsules_of_hand.overlaps(self.hand.capsules, self.rig, posed)
         chosen, values = self._chosen(gap)
-        self.state = (angles, posed, still, points, chosen, overlap, contacts, direction)
-        return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x)])
+        self.state = (angles, posed, points, slopes, chosen, (overlap, contacts, direction))
+        bones = (capsules_of_hand.center_points(self.hand.capsules, self.rig, posed) - self.pivot) @ turn.T
+        crossed = CROSSED * self.gauge.is_crossed(bones + self.pivot + shift)
+        return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x), [crossed]])
 
     def _chosen(self, gap):
         """Rows and slopes of the depth residuals: pads first, then too deep vertices of pads and body."""
@@ -270,10 +286,10 @@ class _Task:
 
     def jacobian(self, x):
         """Derivative (m, d) of the last residuals."""
-        angles, posed, still, points, chosen, overlap, contacts, direction = self.state
-        turn, spin = _rotation_of(x[-3:] / ARM_MM), _left_jacobian(x[-3:] / ARM_MM) / ARM_MM
+        angles, posed, points, slopes, chosen, apart = self.state
+        turn, spin = rotation_of(x[-3:] / ARM_MM), left_jacobian(x[-3:] / ARM_MM) / ARM_MM
         used = np.unique(np.concatenate([rows for rows, _ in chosen]).astype(int))
-        slopes = pads_of_hand.gap_gradients(self.product, points[used]) if len(used) else np.zeros((0, 3))
+        slopes = slopes[used]
         moves = vertex_jacobian(self.part.subset(used), posed, angles, [dof[:2] for dof in self.dofs])
         count = len(self.dofs)
         by_vertex = np.zeros((len(used), count + 6))
@@ -285,9 +301,10 @@ class _Task:
         for row, (rows, factor) in enumerate(chosen):
             if len(rows):
                 depth[row] = factor * by_vertex[np.searchsorted(used, rows)].sum(axis=0)
-        return np.vstack([depth, self._apart(posed, angles, overlap, contacts, direction), self._soft_slope()])
+        return np.vstack([depth, self._apart(posed, angles, apart), self._soft_slope()])
 
-    def _apart(self, posed, angles, overlap, contacts, direction):
+    def _apart(self, posed, angles, apart):
+        overlap, contacts, direction = apart
         out = np.zeros((len(overlap), len(self.dofs) + 6))
         hit = np.flatnonzero(overlap > 0.0)
         if not len(hit):
@@ -315,7 +332,9 @@ class _Task:
         start = np.eye(count, count + 6)
         place = np.eye(6, count + 6, k=count)
         degree = np.degrees(1.0)
-        return np.vstack([degree * coupled, degree * self.held[:, None] * start, PLACE[:, None] * place])
+        return np.vstack(
+            [degree * coupled, degree * self.held[:, None] * start, PLACE[:, None] * place, np.zeros((1, count + 6))]
+        )
 
 
 def _moves(role, wish):
@@ -343,19 +362,9 @@ def _groups(hand, wanted):
     return rows, [np.arange(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)], limits
 
 
-def _rotation_of(vector):
-    angle = float(np.linalg.norm(vector))
-    return rotation(vector / angle, angle) if angle > 1e-12 else np.eye(3)
-
-
-def _left_jacobian(vector):
-    """Derivative of a rotation vector's motion: d(R p) = (J dv) x (R p); Chirikjian 2012, section 10.8."""
-    angle = float(np.linalg.norm(vector))
-    x, y, z = vector
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    if angle < 1e-6:
-        return np.eye(3) + 0.5 * cross
-    return np.eye(3) + (1.0 - np.cos(angle)) / angle**2 * cross + (angle - np.sin(angle)) / angle**3 * (cross @ cross)
+def _with_normals_on(part, count):
+    """Normals on the first `count` vertices, the pads; the sparse rest is read from where it is, not through walls."""
+    return replace(part, normals=np.where(np.arange(len(part.normals))[:, None] < count, part.normals, 0.0))
 
 
 def _grasp(task, x, used, seconds):
@@ -365,7 +374,8 @@ def _grasp(task, x, used, seconds):
     motion[:3, 3] = task.pivot + shift - turn @ task.pivot
     place = motion @ task.place
     rig = task.hand.rig.moved(place)
-    gap = pads_of_hand.gaps(task.product, skin(rig, pose_matrices(rig, angles)))
+    posed = pose_matrices(rig, angles)
+    gap = task.gauge.gaps(skin(rig, posed), skin_normals(rig, posed) if task.gauge.is_thin else None)
     depths = {pad.name: pads_of_hand.pad_depth(gap[pad.rows]) for pad in task.hand.pads}
     wanted = zip(task.hand.pads, task.wanted, strict=True)
     targets = {pad.name: float(want) for pad, want in wanted if np.isfinite(want)}
@@ -376,4 +386,8 @@ def _grasp(task, x, used, seconds):
         body[pad.rows] = False
     missed = [name for name, want in targets.items() if depths[name] < 0.0 < want]
     warnings = (f"does not touch: {', '.join(missed)}",) if missed else ()
-    return Grasp(angles, place, depths, targets, float(-gap[body].min(initial=0.0)), used, seconds, warnings)
+    if task.gauge.is_crossed(capsules_of_hand.center_points(task.hand.capsules, rig, posed)):
+        warnings += (CROSSED_TEXT,)
+    return Grasp(
+        angles, place, depths, targets, float(-gap[body].min(initial=0.0)), used, seconds, warnings, task.gauge
+    )

@@ -7,6 +7,7 @@ on the finger and its signed distance to the lines of the palm, both smooth, so 
 import numpy as np
 
 from . import model
+from .normals import vertex_normals
 
 REST = "skin_rest_mm"
 """Rest position, mm: textures stick to the skin in every pose."""
@@ -66,17 +67,6 @@ def _smooth(values, edges, passes=1):
         total += np.bincount(edges[:, 1], values[edges[:, 0]], len(values))
         values = 0.4 * values + 0.6 * total / degree
     return values
-
-
-def vertex_normals(vertices, triangles):
-    """Area-weighted unit normals (n, 3)."""
-    sides = vertices[triangles]
-    faces = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
-    out = np.zeros_like(vertices)
-    for corner in range(3):
-        for axis in range(3):
-            out[:, axis] += np.bincount(triangles[:, corner], faces[:, axis], len(vertices))
-    return out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
 
 
 def _palmar_share(rig, joints, made):

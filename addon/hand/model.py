@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .normals import vertex_normals
 from .pads import Skin
 from .roles import guess, resolve
 from .skinning import ABDUCTION, FLEXION, Rig
@@ -24,6 +25,7 @@ def rig_of(made):
         np.asarray(made["vertices_mm"], float),
         weights / np.where(total > 0.0, total, 1.0),
         np.eye(4),
+        vertex_normals(np.asarray(made["vertices_mm"], float), np.asarray(made["triangles"])),
     )
 
 

@@ -16,9 +16,6 @@ LIGHT_MM = {"distal": 2.6, "middle": 2.2, "proximal": 2.5, "palm": 3.0}
 FIRM_MM = {"distal": 3.8, "middle": 3.2, "proximal": 4.0, "palm": 5.7}
 """Target depths by kind of pad: light is 2 to 3 mm, firm is what the contact areas of Xie Table 6 need."""
 
-FAR_MM = 80.0
-"""Gaps beyond this count as this much."""
-
 DEEP_MM = 12.0
 """Tissue taken as this thick where a region's material stands on no bone."""
 
@@ -90,16 +87,6 @@ def palmar(rig, joints, role):
         bone = next(joints.bones[f"{f}_proximal"] for f in FINGERS if f"{f}_proximal" in joints.bones)
     facing = np.cross(flexion_axis(rig, bone), along(rig, bone))
     return facing / np.linalg.norm(facing)
-
-
-def gaps(product, points):
-    """Signed gaps (n,) of world points to the product, mm, at most `FAR_MM`."""
-    return np.minimum(product.gap_mm(points, cut_off_mm=FAR_MM)["gap_mm"], FAR_MM)
-
-
-def gap_gradients(product, points):
-    """Gradient (n, 3) of the gap at world points: the product's outward direction at the nearest point."""
-    return np.nan_to_num(product.gap_mm(points)["normal"])
 
 
 def deepest(gap, count=DEEPEST):

@@ -18,6 +18,7 @@ class Rig:
     `rest` (b, 4, 4): rig_from_bone at rest, bone along local +Y. `axes` (b, 3, 3): columns are the flexion, twist and
     abduction axes in the bone's local space. `basis` (b, 4, 4): local transform of bones that no pose angle drives.
     `vertices` (n, 3) and `weights` (n, b), rows summing to one or zero. `world_from_rig` (4, 4) ends in world mm.
+    `normals` (n, 3): outward at rest, unit; a hand without them cannot be fitted to thin walls.
     """
 
     names: tuple
@@ -28,6 +29,7 @@ class Rig:
     vertices: np.ndarray
     weights: np.ndarray
     world_from_rig: np.ndarray
+    normals: np.ndarray | None = None
 
     @cached_property
     def from_parent(self):
@@ -42,7 +44,8 @@ class Rig:
 
     def subset(self, rows):
         """The same rig with only the vertices `rows`."""
-        return replace(self, vertices=self.vertices[rows], weights=self.weights[rows])
+        normals = None if self.normals is None else self.normals[rows]
+        return replace(self, vertices=self.vertices[rows], weights=self.weights[rows], normals=normals)
 
     def moved(self, world_from_world):
         """The same rig carried through the world by a (4, 4) transform."""
@@ -101,6 +104,17 @@ def skin(rig, posed):
     bare = ~rig.weights.any(axis=1)
     moved[bare] = rig.vertices[bare]
     return to_world(rig, moved)
+
+
+def skin_normals(rig, posed):
+    """Unit outward normals (n, 3) of the skinned vertices in the world: the rest normals turned as their bones turn."""
+    matrices = deform_matrices(rig, posed)[:, :3, :3].reshape(len(posed), 9)
+    blended = (rig.weights @ matrices).reshape(-1, 3, 3)
+    turned = np.einsum("nij,nj->ni", blended, rig.normals)
+    bare = ~rig.weights.any(axis=1)
+    turned[bare] = rig.normals[bare]
+    turned = turned @ rig.world_from_rig[:3, :3].T
+    return turned / np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-12)
 
 
 def to_world(rig, points):

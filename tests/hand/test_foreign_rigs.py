@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hand_scenes import evaluated_mm, with_cylinder
 from mathutils import Vector
-from thenar_blender.hand import bonemap, build, fitting, pads, reading, roles
+from thenar_blender.hand import bonemap, build, fitting, pads, reading, roles, walls
 
 MM = 1e-3
 
@@ -104,7 +104,7 @@ def check_grasp(context, hand):
     fitting.finish(context, job, found, "HAND")
     misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
     assert np.median(misses) < 0.6
-    gap = pads.gaps(job.product, evaluated_mm(hand))
+    gap = walls.Gauge(job.product, is_thin=False).gaps(evaluated_mm(hand))
     for pad in job.hand.pads:
         assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.02)
     return before, found

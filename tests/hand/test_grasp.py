@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.hand import capsules, grasp, least_squares, pads, products, roles, skinning
+from thenar_blender.hand import capsules, grasp, least_squares, pads, products, roles, skinning, walls
 
 
 def product_of(shape):
@@ -77,8 +77,9 @@ def test_jacobian_of_the_fit(arrays):
     product, vertices = product_of(products.cylinder(60))
     wish = grasp.Wish(pads.FIRM_MM, **UPRIGHT)
     wanted = grasp._wanted(arrays.pads, wish)
-    start = grasp._start(arrays, product, wanted, (grasp._placings(arrays, vertices, wish)[0], None))
-    task = grasp._Task(arrays, product, wanted, start, wish)
+    gauge = walls.Gauge(product, is_thin=False)
+    start = grasp._start(arrays, gauge, wanted, (grasp._placings(arrays, vertices, wish)[0], None))
+    task = grasp._Task(arrays, gauge, wanted, start, wish)
     rng = np.random.default_rng(0)
     x = task.start + 0.03 * rng.normal(size=len(task.start))
     x[-6:] *= 20.0

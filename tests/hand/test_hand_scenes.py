@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hand_scenes import evaluated_mm, with_cylinder
 from mathutils.bvhtree import BVHTree
-from thenar_blender.hand import build, fitting, grasp, pads, reading, samples
+from thenar_blender.hand import build, fitting, grasp, pads, reading, samples, walls
 
 SAMPLE_KINDS = (
     "fingertip_on_plate", "palm_on_plate", "cylinder_48", "cylinder_60", "cylinder_100", "handlebar", "bottle",
@@ -61,7 +61,10 @@ def test_fit_operator_can_move_the_product(blender, hand):
     assert blender.ops.thenar.fit_grasp(strength="LIGHT", moves="PRODUCT") == {"FINISHED"}
     assert rig.matrix_world == there
     fit = fitting.prepare(blender.context, mesh, [product], grasp.Wish(pads.LIGHT_MM, is_placed=True))
-    depths = [pads.pad_depth(pads.gaps(fit.product, evaluated_mm(mesh))[pad.rows]) for pad in fit.hand.pads]
+    depths = [
+        pads.pad_depth(walls.Gauge(fit.product, is_thin=False).gaps(evaluated_mm(mesh))[pad.rows])
+        for pad in fit.hand.pads
+    ]
     assert np.median(np.abs(np.array(depths) - 2.6)) < 0.8
 
 
@@ -70,7 +73,7 @@ def test_written_grasp_is_the_fitted_one(blender, hand):
     product, job = with_cylinder(blender.context, mesh)
     found = fitting.compute(job)
     fitting.finish(blender.context, job, found, "HAND")
-    gap = pads.gaps(job.product, evaluated_mm(mesh))
+    gap = walls.Gauge(job.product, is_thin=False).gaps(evaluated_mm(mesh))
     for pad in job.hand.pads:
         assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.01)
 
