@@ -61,6 +61,13 @@ def save_json(path, values):
 
 def press(options):
     """Set hand, product, force and frame as asked for, and solve. Returns the result as plain values."""
+    choose(options)
+    workflow.solve(bpy.context)
+    return results.as_dict(bpy.context.scene.thenar.result)
+
+
+def choose(options):
+    """Set hand, product, model, force and frame of the open file as asked for. Raises `Refusal`."""
     scene = bpy.context.scene
     settings = scene.thenar
     if options.frame is not None:
@@ -75,8 +82,6 @@ def press(options):
         if options.force <= 0.0:
             raise Refusal(f"a force of {options.force:g} N cannot be reached; give one above zero")
         settings.use_force, settings.force_n = True, options.force
-    workflow.solve(bpy.context)
-    return results.as_dict(settings.result)
 
 
 def _solve(options):
@@ -103,9 +108,14 @@ def _solve(options):
 def _batch(options):
     from . import batch
 
-    if options.scheduler:
-        raise Refusal("a scheduler is not supported yet; leave --scheduler out to use this machine")
-    batch.run(Path(options.jobs), Path(options.out), options.workers)
+    by = batch.By(options.workers, options.scheduler, options.part)
+    batch.run(Path(options.jobs), Path(options.out), by)
+
+
+def _worker(_options):
+    from .batch import worker
+
+    worker.serve()
 
 
 def _demo(options):
@@ -150,9 +160,12 @@ def _parser():
     batch = commands.add_parser("batch", help="solve many cases, each in a process of its own")
     batch.add_argument("jobs", metavar="JOBS.toml")
     batch.add_argument("--out", required=True, metavar="DIR")
-    batch.add_argument("--workers", type=int, default=0, help="processes at a time; 0: half the processors")
-    batch.add_argument("--scheduler", metavar="ADDRESS", help=argparse.SUPPRESS)
+    batch.add_argument("--workers", type=int, default=0, help="processes at a time; 0: as processors and memory allow")
+    batch.add_argument("--scheduler", metavar="ADDRESS", help="solve on the workers of this Dask scheduler")
+    batch.add_argument("--part", metavar="I/N", help="solve every N-th case from the I-th on, and write no tables")
     batch.set_defaults(run=_batch)
+    worker = commands.add_parser("worker", help="solve cases that come as lines of JSON; started by batch")
+    worker.set_defaults(run=_worker)
     demo = commands.add_parser("demo", help="solve and render the sample grasp")
     demo.add_argument("--sample", metavar="FILE.blend")
     demo.add_argument("--samples", metavar="DIR", default="blend-samples")

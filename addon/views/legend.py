@@ -73,9 +73,9 @@ def pixels(look, result, width, height):
     rows, columns = _span(plan.bar, image)
     image[rows, columns, :3] = column_on_plate(look, rows.stop - rows.start)[:, None, :]
     image[rows, columns, 3] = 1.0
-    ink = _ink(plan.texts, width, height)[..., None]
-    image[..., :3] = image[..., :3] * (1.0 - ink) + 0.95 * ink
-    image[..., 3:] = np.maximum(image[..., 3:], ink)
+    text = ink(plan.texts, width, height)[..., None]
+    image[..., :3] = image[..., :3] * (1.0 - text) + 0.95 * text
+    image[..., 3:] = np.maximum(image[..., 3:], text)
     return image
 
 
@@ -89,7 +89,7 @@ def _fill(image, box, color):
     image[rows, columns] = color
 
 
-def _ink(texts, width, height):
+def ink(texts, width, height):
     """How far text covers each pixel (height, width), by Blender's own font on a buffer of its own."""
     if not hasattr(blf, "bind_imbuf"):  # Blender before 4.4
         return pixel_font.ink(texts, width, height)

@@ -1,6 +1,5 @@
 """The command line: solve and batch, resumable, one bad case beside good ones."""
 
-import csv
 import json
 import os
 import subprocess
@@ -66,45 +65,6 @@ def test_bad_input_is_one_sentence(grip, tmp_path):
     assert "there is no object 'Paw' for the hand; meshes in the file: Pad, Plate" in done.stderr
     assert "Traceback" not in done.stderr
     assert command("solve", tmp_path / "none.blend").returncode == 2
-
-
-def test_batch_resumes_and_survives_a_bad_case(grip, tmp_path):
-    jobs, out = tmp_path / "jobs.toml", tmp_path / "out"
-    jobs.write_text(
-        'blend = "grip.blend"\nsave = false\n[[case]]\nname = "posed"\n'
-        '[[case]]\nname = "two newtons"\nforce_n = 2.0\n[[case]]\nname = "bad"\nhand = "Paw"\n'
-    )
-    done = command("batch", jobs, "--out", out)
-    assert done.returncode == 2 and "1 of 3 cases failed (bad)" in done.stderr
-    rows = {row["name"]: row for row in csv.DictReader((out / "results.csv").open())}
-    assert [row["status"] for row in rows.values()] == ["done", "done", "failed"]
-    assert float(rows["two newtons"]["force_n"]) == pytest.approx(2.0, rel=0.02)
-    assert "no object 'Paw'" in rows["bad"]["message"]
-    jobs.write_text(jobs.read_text().replace("2.0", "3.0").replace("Paw", "Pad"))
-    done = command("batch", jobs, "--out", out)
-    assert done.returncode == 0, done.stderr
-    rows = {row["name"]: row for row in csv.DictReader((out / "results.csv").open())}
-    assert [row["status"] for row in rows.values()] == ["kept", "done", "done"]
-    assert float(rows["two newtons"]["force_n"]) == pytest.approx(3.0, rel=0.02)
-
-
-@pytest.mark.parametrize(
-    ("text", "sentence"),
-    [
-        ("", "lists no case"),
-        ("[[case]]\nname = 1", "names no file"),
-        ('[[case]]\nblend = "a"\ncolour = 1', "unknown key 'colour'"),
-        ("[[case", "is not TOML"),
-    ],
-)
-def test_job_files_that_cannot_be_read(tmp_path, text, sentence):
-    from thenar_blender import batch
-    from thenar_blender.scene.checks import Refusal
-
-    path = tmp_path / "jobs.toml"
-    path.write_text(text)
-    with pytest.raises(Refusal, match=sentence):
-        batch.read_jobs(path)
 
 
 def test_demo_without_samples_says_so(tmp_path):

@@ -52,7 +52,7 @@ def test_manifest_follows_the_platform_rules(manifest):
     assert manifest["blender_version_min"] == "4.2.0" and "blender_version_max" not in manifest
     assert len(manifest["tagline"]) <= 64 and manifest["tagline"][-1].isalnum()
     assert "blender" not in manifest["name"].lower()
-    assert set(manifest["permissions"]) == {"files"}
+    assert set(manifest["permissions"]) == {"files", "network"}
     assert all(len(text) <= 64 and not text.endswith(".") for text in manifest["permissions"].values())
 
 

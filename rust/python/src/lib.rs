@@ -15,6 +15,7 @@ mod hand;
 mod complementarity;
 mod recordings;
 mod study;
+mod parquet_table;
 mod about;
 
 use pyo3::prelude::*;
@@ -41,6 +42,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
     module.add_function(wrap_pyfunction!(effects::effects, module)?)?;
+    module.add_function(wrap_pyfunction!(parquet_table::parquet, module)?)?;
     module.add_function(wrap_pyfunction!(about::build_info, module)?)?;
     module.add_function(wrap_pyfunction!(running::_panic, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))

@@ -34,6 +34,8 @@ pub const BLENDER_50: Environment = Environment {
         "scipy==1.17.1",
         "pytest==9.2.0",
         "hypothesis==6.170.15",
+        "distributed==2026.8.0",
+        "pyarrow==24.0.0",
     ],
 };
 

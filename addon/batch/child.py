@@ -1,0 +1,111 @@
+"""A process that solves cases, seen from outside. Stands alone: it is also sent to machines of a cluster."""
+
+import json
+import os
+import queue
+import shlex
+import subprocess
+import sys
+import tempfile
+import threading
+
+TIMES_TRIED = 2
+"""A case whose process dies is given to a fresh one once; then it counts as what killed it."""
+MOST_CASES = 200
+"""A process is replaced after so many cases: what Blender keeps of files that were open does not pile up."""
+
+
+class ChildDied(Exception):
+    """The process ended or was stopped before it answered; the text says how."""
+
+
+class Child:
+    """A worker process. `solve(task)` gives the answer to one task, in turn; `close()` ends it."""
+
+    def __init__(self, command, environment):
+        self._command, self._environment = command, environment
+        self._process = None
+        self._solved = 0
+
+    def solve(self, task, limit_s):
+        """The answer to `task`, both plain values. Raises `ChildDied` if the process died or took over `limit_s`."""
+        if self._process is None or self._process.poll() is not None or self._solved >= MOST_CASES:
+            self.close()
+            self._start()
+        try:
+            self._process.stdin.write(json.dumps(task) + "\n")
+            self._process.stdin.flush()
+            line = self._answers.get(timeout=limit_s)
+        except (OSError, queue.Empty) as error:
+            line, why = "", f"it took longer than {limit_s:g} s" if isinstance(error, queue.Empty) else ""
+        else:
+            why = ""
+        if not line:
+            raise ChildDied(self._end(why))
+        self._solved += 1
+        return json.loads(line)
+
+    def close(self):
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            self._process.stdin.close()
+            self._complaints.close()
+            self._process = None
+
+    def _start(self):
+        self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  (closed with the process)
+        self._process = subprocess.Popen(
+            self._command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._complaints,
+            text=True,
+            env={**os.environ, **self._environment},
+        )
+        self._answers, self._solved = queue.Queue(), 0
+        threading.Thread(target=_hear, args=(self._process.stdout, self._answers), daemon=True).start()
+
+    def _end(self, why):
+        if why:
+            self._process.kill()
+        code = self._process.wait()
+        self._complaints.seek(0)
+        lines = [line for line in self._complaints.read().decode(errors="replace").splitlines() if line.strip()]
+        self.close()
+        return why or f"the process ended with code {code}" + (f": {lines[-1].strip()}" if lines else "")
+
+
+def solve(children, start, task, limit_s):
+    """The answer to `task` by the child that `children` keeps for this thread; `start` is its command and environment.
+
+    A death is one more try; after `TIMES_TRIED` the answer is `{"error": ...}`.
+    """
+    told = ""
+    for _ in range(TIMES_TRIED):
+        child = children.setdefault(threading.get_ident(), Child(*start))
+        try:
+            return child.solve(task, limit_s)
+        except ChildDied as died:
+            told = str(died)
+            del children[threading.get_ident()]
+    return {"error": f"{told}, {TIMES_TRIED} times"}
+
+
+def solve_on_node(task, environment, limit_s):
+    """`solve` on a worker of a Dask cluster, by a process that stays with the worker."""
+    from distributed import get_worker
+
+    command = shlex.split(os.environ.get("THENAR_WORKER", "")) or [sys.executable, "-m", "thenar_blender", "worker"]
+    # This function comes anew with every task; the first one's stays, so that its errors are known to it.
+    answer, children = get_worker().__dict__.setdefault("thenar_children", (solve, {}))
+    return answer(children, (command, environment), task, limit_s)
+
+
+def _hear(stream, answers):
+    """Passes lines on as they come; an empty one says that the process is gone."""
+    with stream:
+        for line in stream:
+            answers.put(line)
+    answers.put("")

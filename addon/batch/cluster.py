@@ -1,0 +1,74 @@
+"""Cases on the workers of a Dask cluster. What was not answered when a connection broke is asked again.
+
+A worker machine needs the package `distributed` and a way to start Thenar: `python -m thenar_blender worker` with the
+Python that runs Dask, or what the variable THENAR_WORKER says there, such as `blender -b --command thenar worker`.
+"""
+
+import time
+from concurrent.futures import CancelledError
+
+from ..scene.checks import Refusal
+from . import child
+from .here import ONE_THREAD, SPAN_S
+
+PATIENCE_S = 300.0
+"""How long a scheduler may stay away before the batch gives up; a later run goes on from there."""
+CALM_S = 2.0
+"""Between attempts to connect, s."""
+
+
+def answers(tasks, address):
+    """Yield (name, answer) for every task, as they come.
+
+    Raises `Refusal` where Dask is missing, or the scheduler stays away for `PATIENCE_S`.
+    """
+    try:
+        import cloudpickle
+        import distributed
+    except ImportError:
+        raise Refusal(
+            "a scheduler needs the package 'distributed' in this Python; install it with "
+            "'python -m pip install distributed', or leave --scheduler out to use this machine"
+        ) from None
+    cloudpickle.register_pickle_by_value(child)
+    left = {task["case"]["name"]: task for task in tasks}
+    seen = time.monotonic()
+    while left:
+        try:
+            with distributed.Client(address, timeout=10, set_as_default=False, name="thenar batch") as client:
+                seen = time.monotonic()
+                for name, answer in _session(client, left):
+                    del left[name]
+                    seen = time.monotonic()
+                    yield name, answer
+        except (OSError, TimeoutError, RuntimeError) as error:
+            if time.monotonic() - seen > PATIENCE_S:
+                raise Refusal(
+                    f"no scheduler answers at {address} ({error}); {len(left)} cases are left, which the same "
+                    "command will run once it does"
+                ) from None
+        if left:
+            time.sleep(CALM_S)
+
+
+def _session(client, left):
+    """Answers until all are there or the connection breaks; a case that kills its workers is an error of its own."""
+    import distributed
+
+    futures = {
+        client.submit(child.solve_on_node, task, ONE_THREAD, SPAN_S, key=f"thenar-{task['hash']}", pure=True): name
+        for name, task in left.items()
+    }
+    for future in distributed.as_completed(futures, loop=client.loop):
+        if future.status == "finished":
+            try:
+                answer = future.result()
+            except CancelledError:  # the connection broke while the answer was on its way
+                return
+            yield futures[future], answer
+        elif future.status == "error" and "KilledWorker" in type(future.exception()).__name__:
+            yield futures[future], {"error": "every worker that took this case died"}
+        elif future.status == "error":
+            yield futures[future], {"error": " ".join(f"the worker failed: {future.exception()!r}".split())}
+        else:
+            return

@@ -1,0 +1,113 @@
+"""A worker process: takes a case a line as JSON from its input, solves it in Blender, answers a line."""
+
+import json
+import os
+import sys
+import traceback
+from argparse import Namespace
+from pathlib import Path
+
+import bpy
+
+from .. import headless, native, workflow
+from .. import result as results
+from ..hand import build, fitting, grasp, pads, posing
+from ..scene.checks import Refusal
+
+
+def serve():
+    """Answer tasks until the input ends. What Blender prints goes to the standard error output."""
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    for line in sys.stdin:
+        answers.write(json.dumps(_answer(json.loads(line))) + "\n")
+        answers.flush()
+
+
+def _answer(task):
+    try:
+        return {"summary": solve(task["case"], Path(task["stem"]))}
+    except (Refusal, *native.error_types()) as error:
+        return {"error": " ".join(str(error).split())}
+    except Exception as error:  # one bad case must not take the worker with it
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return {"error": f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"}
+
+
+def solve(case, stem):
+    """Solve one case from its file; pictures and files go to `stem` with their suffixes. Returns the result's values.
+
+    Raises `Refusal` or the native module's errors.
+    """
+    headless.open_file(case["blend"])
+    context = bpy.context
+    options = Namespace(
+        frame=case.get("frame"),
+        hand=case.get("hand"),
+        product=case.get("product"),
+        model=case.get("model"),
+        force=case.get("force_n"),
+    )
+    headless.choose(options)
+    if "hand_percentile" in case or "hand_sex" in case:
+        _change_hand(context, case)
+    if "pose" in case:
+        _pose(context, case["pose"])
+    if "fit" in case:
+        _fit(context, case["fit"])
+    if "stiffness" in case:
+        _stiffen(context.scene.thenar.hand, float(case["stiffness"]))
+    workflow.solve(context)
+    if case.get("save", True):
+        headless.save_file(stem.with_suffix(".blend"))
+    if case.get("render", False):
+        _render(context, stem.with_suffix(".png"))
+    return results.as_dict(context.scene.thenar.result)
+
+
+def _change_hand(context, case):
+    """A made hand of another size in the place of the file's own, which is taken out of the scene."""
+    settings = context.scene.thenar
+    old = settings.hand
+    shape = {"percentile": float(case.get("hand_percentile", 50.0)), "sex": case.get("hand_sex", "male")}
+    hand, rig = build.add_hand(context, build.make(**shape))
+    settings.hand = hand
+    if old is not None:
+        top = old.parent if old.parent is not None and old.parent.type == "ARMATURE" else None
+        if top is not None:
+            rig.matrix_world = top.matrix_world
+        for obj in {old, top} - {None}:
+            bpy.data.objects.remove(obj)
+    context.view_layer.update()
+
+
+def _pose(context, name):
+    from ..hand.poses import POSES
+
+    if name not in POSES:
+        raise Refusal(f"there is no pose '{name}'; known: {', '.join(POSES)}")
+    posing.apply_pose(context, context.scene.thenar.hand, name)
+
+
+def _fit(context, strength):
+    settings = context.scene.thenar
+    wish = grasp.Wish({"light": pads.LIGHT_MM, "firm": pads.FIRM_MM}[strength])
+    fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish)
+    fitting.finish(context, fit, fitting.compute(fit), "HAND")
+
+
+def _stiffen(hand, factor):
+    for material in tuple(hand.thenar.materials) or (hand.thenar.default_material,):
+        material.g0_kpa *= factor
+        material.g_lim_kpa *= factor
+
+
+def _render(context, path):
+    from .. import pictures
+
+    partial = path.with_name(f".{path.stem}.partial.png")
+    try:
+        pictures.render_scene(context, partial)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
