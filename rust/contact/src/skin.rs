@@ -149,6 +149,28 @@ impl Skin {
         &self.base
     }
 
+    /// Changes the materials, in place of those before. The response is prepared again only where they change it.
+    ///
+    /// # Errors
+    /// [`ContactError::Material`] naming the region and the number, or `Cancelled`; the skin then stays as it was.
+    pub fn set_materials(
+        &mut self,
+        materials: &[Material],
+        control: &Control,
+    ) -> Result<(), ContactError> {
+        check_regions(
+            &self.regions,
+            (materials, &self.region_names),
+            self.vertices(),
+        )?;
+        let before = std::mem::replace(&mut self.base, materials.to_vec());
+        let changed = self.set_effects(self.effects.clone(), control);
+        if changed.is_err() {
+            self.base = before;
+        }
+        changed
+    }
+
     /// The effects switched on.
     pub fn effects(&self) -> &[ActiveEffect] {
         &self.effects

@@ -5,8 +5,14 @@
 //! ([`Fit`]); what is left is compared, and located. Units: mm, N, MPa, s; kPa for the readings of a mat, as makers export.
 //! A residual is measured minus simulated.
 
-mod measured;
+mod errors;
+mod random;
+mod statistics;
+mod observe;
+mod replay;
+mod noise;
 mod fit;
 
-pub use fit::{Estimate, Fit, Target};
-pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
+pub use errors::DiagnosisError;
+pub use fit::{Estimate, Fit, Fitting, Options, Target, fit_study};
+pub use observe::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};

@@ -1,5 +1,14 @@
 //! What a fit of the parameters to several recordings gives: estimates with intervals, simulation, noise, and what is left.
 
+mod adequacy;
+mod conduct;
+mod descent;
+mod intervals;
+mod parameters;
+mod problem;
+
+pub use conduct::{Fitting, Options, fit_study};
+
 use nalgebra::DMatrix;
 
 use crate::Measured;

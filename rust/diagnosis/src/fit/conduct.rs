@@ -1,0 +1,356 @@
+//! Conducts a fit: observe, replay, noise, descent, intervals, and what is left.
+
+use thenar_contact::{ActiveEffect, Control};
+use thenar_recordings::Study;
+
+use super::Fit;
+use super::adequacy::{Left, absorbed, lack_of_fit, project};
+use super::descent::{Descent, System, descend};
+use super::intervals::estimates;
+use super::parameters::{Case, Kind, Parameter, parameters, setting, touches};
+use super::problem::{Point, Problem};
+use crate::DiagnosisError;
+use crate::noise::{Noise, Whitening, noise};
+use crate::observe::{Measured, observe};
+use crate::replay::{Nuisance, Replay};
+
+/// Samples up to which a test is drawn as often as asked for; beyond, in proportion less.
+const MANY_SAMPLES: usize = 4000;
+/// Fewest draws of a test.
+const LEAST_DRAWS: usize = 99;
+
+/// What a fit is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Seed of all that is drawn.
+    pub seed: u64,
+    /// Draws of the test for lack of fit.
+    pub draws: usize,
+    /// Effects that the model has.
+    pub effects: Vec<ActiveEffect>,
+    /// Recordings, by name, that are predicted and not fitted.
+    pub held_out: Vec<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options {
+            seed: 1,
+            draws: 999,
+            effects: Vec::new(),
+            held_out: Vec::new(),
+        }
+    }
+}
+
+/// A study made ready to be fitted again and again; presses are kept from fit to fit.
+pub struct Fitting {
+    replay: Replay,
+    instrument: Option<thenar_recordings::study::Instrument>,
+}
+
+/// Fits a study's parameters to its recordings.
+///
+/// # Errors
+/// [`DiagnosisError`]: skin, tools or mats that cannot be used, presses that fail, too few samples, or `Cancelled`.
+pub fn fit_study(
+    study: &Study,
+    options: &Options,
+    control: &Control<'_>,
+) -> Result<Fit, DiagnosisError> {
+    Fitting::new(study, control)?.fit(options, control)
+}
+
+impl Fitting {
+    /// Observes the recordings and prepares skin, tools and mats.
+    ///
+    /// # Errors
+    /// As [`fit_study`].
+    pub fn new(study: &Study, control: &Control<'_>) -> Result<Fitting, DiagnosisError> {
+        Ok(Fitting {
+            replay: Replay::new(study, observe(study), control)?,
+            instrument: study.instrument.clone(),
+        })
+    }
+
+    /// Fits with the model, and without the recordings, that the options name.
+    ///
+    /// # Errors
+    /// As [`fit_study`].
+    pub fn fit(&mut self, options: &Options, control: &Control<'_>) -> Result<Fit, DiagnosisError> {
+        self.replay.set_effects(&options.effects, control)?;
+        let measured = &self.replay.observed.measured;
+        let is_used: Vec<bool> = measured
+            .iter()
+            .map(|m| !options.held_out.contains(&m.name) && touches(m))
+            .collect();
+        self.check(&is_used)?;
+        let before = self.at_start(control)?;
+        let noise = self.noise((&before, &is_used), control)?;
+        let parameters = self.parameters((&noise, &is_used), control)?;
+        let whitening = Whitening::new(&self.replay.observed.measured, &noise, &is_used);
+        if whitening.used() <= parameters.len() {
+            return Err(DiagnosisError::TooFewSamples {
+                samples: whitening.used(),
+                parameters: parameters.len(),
+            });
+        }
+        let mut problem = Problem {
+            replay: &mut self.replay,
+            parameters: &parameters,
+            whitening: &whitening,
+            control,
+        };
+        let start = scaled_start(&mut problem, &before)?;
+        let descent = descend(&mut problem, &start)?;
+        let system = System::new(&problem, (&descent.point, &descent.jacobian));
+        let estimates = estimates(
+            &parameters,
+            (&descent.point, &system),
+            &noise,
+            whitening.used(),
+        );
+        let left = self.left((&whitening, &descent), &noise, options);
+        let notes = self.notes((&noise, &descent), &parameters);
+        Ok(Fit {
+            measured: self.replay.observed.measured.clone(),
+            simulated: descent.point.simulated,
+            before,
+            sigma: noise.sigma,
+            projected: left.projected,
+            absorbed: left.absorbed,
+            estimates,
+            lack_of_fit_p: left.p,
+            notes,
+        })
+    }
+
+    /// Predictions for every sample of every recording with the study's own parameters and these effects, in the samples' units.
+    ///
+    /// # Errors
+    /// As [`fit_study`].
+    pub fn simulate(
+        &mut self,
+        effects: &[ActiveEffect],
+        control: &Control<'_>,
+    ) -> Result<Vec<Vec<f64>>, DiagnosisError> {
+        self.replay.set_effects(effects, control)?;
+        self.at_start(control)
+    }
+
+    /// The recordings as they are compared.
+    pub fn measured(&self) -> &[Measured] {
+        &self.replay.observed.measured
+    }
+
+    fn check(&self, is_used: &[bool]) -> Result<(), DiagnosisError> {
+        let measured = &self.replay.observed.measured;
+        let has_any = measured
+            .iter()
+            .zip(is_used)
+            .any(|(m, used)| *used && !m.samples.is_empty());
+        if has_any {
+            return Ok(());
+        }
+        let reasons = measured
+            .iter()
+            .map(|m| format!("'{}': {}", m.name, m.unknown.join(", ")));
+        Err(DiagnosisError::NothingMeasured {
+            recordings: measured.len(),
+            reasons: reasons.collect::<Vec<String>>().join("; "),
+        })
+    }
+
+    /// Predictions with the parameters at which the fit begins.
+    fn at_start(&mut self, control: &Control<'_>) -> Result<Vec<Vec<f64>>, DiagnosisError> {
+        let materials = self.replay.tissue.materials.clone();
+        let none = Nuisance::none();
+        let recordings = self.replay.observed.measured.len();
+        let mut all = Vec::with_capacity(recordings);
+        for recording in 0..recordings {
+            control
+                .step("replaying", recording as f64 / recordings as f64)
+                .map_err(|_| DiagnosisError::Cancelled)?;
+            all.push(
+                self.replay
+                    .predict(recording, (&materials, &none), control)?,
+            );
+        }
+        Ok(all)
+    }
+
+    /// The noise, from repeats along what gain and contact zero do to them.
+    fn noise(
+        &mut self,
+        (before, is_used): (&[Vec<f64>], &[bool]),
+        control: &Control<'_>,
+    ) -> Result<Noise, DiagnosisError> {
+        let materials = self.replay.tissue.materials.clone();
+        let mut slopes = Vec::with_capacity(before.len());
+        for (recording, simulated) in before.iter().enumerate() {
+            let deepest = self.replay.deepest(recording);
+            let step = 5e-3 * deepest;
+            let moved = Nuisance {
+                zero_mm: -step,
+                ..Nuisance::none()
+            };
+            let moved = self
+                .replay
+                .predict(recording, (&materials, &moved), control)?;
+            slopes.push(
+                moved
+                    .iter()
+                    .zip(simulated)
+                    .map(|(b, a)| (b - a) / step)
+                    .collect(),
+            );
+        }
+        let noise_n = self.instrument.as_ref().and_then(|i| i.noise_n);
+        let measured = &self.replay.observed.measured;
+        Ok(noise(measured, (before, &slopes), is_used, noise_n))
+    }
+
+    /// What is fitted: regions that no tool touches are left as they are.
+    fn parameters(
+        &mut self,
+        (noise, is_used): (&Noise, &[bool]),
+        control: &Control<'_>,
+    ) -> Result<Vec<Parameter>, DiagnosisError> {
+        let touched = self.replay.touched(is_used, control)?;
+        let mut all = parameters(Case {
+            tissue: &self.replay.tissue,
+            measured: &self.replay.observed.measured,
+            is_touch_known: &self.replay.observed.is_touch_known,
+            is_used,
+            noise,
+            instrument: self.instrument.as_ref(),
+        });
+        all.retain(|p| !matches!(p.kind, Kind::Tissue(region, _) if !touched[region]));
+        Ok(all)
+    }
+
+    fn notes(&self, (noise, descent): (&Noise, &Descent), parameters: &[Parameter]) -> Vec<String> {
+        let mut notes = self.replay.tissue.notes.clone();
+        notes.extend(noise.notes.iter().cloned());
+        if !descent.has_converged {
+            notes
+                .push("the fit did not settle: what it gives is the best that it found".to_owned());
+        }
+        if !parameters.iter().any(|p| p.kind == Kind::InstrumentGain) {
+            notes.push(
+                "the instrument's gain is taken as true, since the data sheet gives no uncertainty: a gain that is off shows as a modulus that is off"
+                    .to_owned(),
+            );
+        }
+        notes
+    }
+
+    fn left(
+        &self,
+        (whitening, descent): (&Whitening, &Descent),
+        noise: &Noise,
+        options: &Options,
+    ) -> Remainder {
+        let point: &Point = &descent.point;
+        let simulated = point.simulated.concat();
+        let mut whitened = whitening.derivatives(&descent.jacobian, &point.whitened);
+        let mut residual = point.whitened.residual.clone();
+        let counts: Vec<bool> = (0..whitening.len())
+            .map(|k| whitening.uses(k) && !whitening.agrees(k, &simulated))
+            .collect();
+        for (k, counts) in counts.iter().enumerate() {
+            if !counts {
+                residual[k] = 0.0;
+                whitened.row_mut(k).fill(0.0);
+            }
+        }
+        let absorbed = absorbed(&whitened);
+        let projected = project(&absorbed, &residual);
+        let many = whitening.used().max(1);
+        let draws = (options.draws * MANY_SAMPLES / many)
+            .clamp(LEAST_DRAWS.min(options.draws), options.draws);
+        let left = Left {
+            projected: &projected,
+            counts: &counts,
+            absorbed: &absorbed,
+            noise,
+            whitening,
+        };
+        let p = lack_of_fit(&left, (draws, options.seed));
+        let mut rest = projected.into_iter();
+        let by_recording = point.simulated.iter();
+        Remainder {
+            projected: by_recording
+                .map(|one| rest.by_ref().take(one.len()).collect())
+                .collect(),
+            absorbed,
+            p,
+        }
+    }
+}
+
+/// What a fit leaves.
+struct Remainder {
+    projected: Vec<Vec<f64>>,
+    absorbed: nalgebra::DMatrix<f64>,
+    p: Option<f64>,
+}
+
+/// The start, with the moduli moved together to where forces and pressures have the right size.
+fn scaled_start(
+    problem: &mut Problem<'_>,
+    before: &[Vec<f64>],
+) -> Result<Vec<f64>, DiagnosisError> {
+    let mut start: Vec<f64> = problem.parameters.iter().map(|p| p.start).collect();
+    let (mut over, mut under) = (0.0, 0.0);
+    for (measured, simulated) in problem.replay.observed.measured.iter().zip(before) {
+        let scale = simulated
+            .iter()
+            .fold(0.0, |most, f| f64::max(most, *f))
+            .powi(2);
+        if !measured.is_calibrated || scale == 0.0 {
+            continue;
+        }
+        for (sample, f) in measured.samples.iter().zip(simulated) {
+            if super::problem::is_load(sample.quantity) {
+                (over, under) = (over + f * sample.value / scale, under + f * f / scale);
+            }
+        }
+    }
+    let factor = if under > 0.0 { over / under } else { 1.0 };
+    let shift = if factor > 0.0 { libm::log(factor) } else { 0.0 };
+    for (at, parameter) in start.iter_mut().zip(problem.parameters) {
+        if parameter.name.starts_with("g0") || parameter.name.starts_with("g_lim") {
+            *at = (*at + shift).clamp(parameter.bounds.0, parameter.bounds.1);
+        }
+    }
+    scale_counts(problem, &mut start)?;
+    Ok(start)
+}
+
+/// Counts per kPa of uncalibrated mats, so that simulated and measured sums agree.
+fn scale_counts(problem: &mut Problem<'_>, start: &mut [f64]) -> Result<(), DiagnosisError> {
+    let recordings = problem.replay.observed.measured.len();
+    for column in 0..start.len() {
+        let Kind::Counts(recording) = problem.parameters[column].kind else {
+            continue;
+        };
+        let (materials, nuisances) = setting(
+            &problem.replay.tissue,
+            (problem.parameters, start),
+            recordings,
+        );
+        let simulated = problem.replay.predict(
+            recording,
+            (&materials, &nuisances[recording]),
+            problem.control,
+        )?;
+        let samples = &problem.replay.observed.measured[recording].samples;
+        let ratio = samples.iter().map(|s| s.value).sum::<f64>() / simulated.iter().sum::<f64>();
+        if ratio.is_finite() && ratio > 0.0 {
+            let (low, high) = problem.parameters[column].bounds;
+            start[column] = libm::log(ratio).clamp(low, high);
+        }
+    }
+    Ok(())
+}

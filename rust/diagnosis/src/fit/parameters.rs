@@ -1,0 +1,313 @@
+//! The numbers that a fit may change, with their bounds, priors and sources.
+
+use thenar_contact::Material;
+use thenar_recordings::study::Instrument;
+
+use crate::noise::Noise;
+use crate::observe::{Measured, Quantity};
+use crate::replay::{Nuisance, Tissue};
+use crate::{Phase, Target};
+
+/// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
+/// (subcutaneous Young's modulus of 2.2 MPa at 30 N over 3, Isogai 2022).
+const MODULUS: (f64, f64) = (4e-4, 0.74);
+/// A study that starts outside of them is not of skin: its bounds reach this factor beyond the start.
+const BEYOND_START: f64 = 20.0;
+/// Credible depths at which the modulus stops growing, mm, about the published 4 and 7 (Xie Eq. 3).
+const LIMIT_DEPTH: (f64, f64) = (1.0, 15.0);
+/// Credible thickness of soft tissue over bone in a hand, mm.
+const THICKNESS: (f64, f64) = (1.0, 40.0);
+/// Standard deviation of the depth of first touch as an operator judges it, mm: a sphere-like pad of radius 8 mm and 8 kPa bears
+/// 5 mN, a common trigger, at 0.1 mm (Hertz); half of that is taken.
+const TOUCH: f64 = 0.05;
+/// Part of a recording's depth that first touch may be off by where it is read from the force.
+const UNKNOWN_TOUCH: f64 = 0.15;
+/// First touch may lie this many standard deviations off.
+const MOST_TOUCH: f64 = 6.0;
+/// Standard deviation of where a mat lies, mm, where the data sheet does not say.
+const POSITION: f64 = 1.0;
+/// A mat may lie this many standard deviations off.
+const MOST_POSITION: f64 = 4.0;
+/// Bounds of counts per kPa as logarithms.
+const COUNTS: f64 = 12.0;
+
+/// What a number is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Logarithm of a number of a region's material.
+    Tissue(usize, Number),
+    /// Depth of first touch of a recording.
+    Zero(usize),
+    /// Logarithm of a recording's gain.
+    Gain(usize),
+    /// Logarithm of the instrument's gain.
+    InstrumentGain,
+    /// Shift of a recording's mat along one of two axes.
+    Shift(usize, usize),
+    /// Logarithm of counts per kPa of a recording.
+    Counts(usize),
+}
+
+/// A number of a material that can be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Number {
+    /// `g0_mpa`
+    G0,
+    /// `g_lim_mpa`
+    GLim,
+    /// `d_lim_mm`
+    DLim,
+    /// `thickness_mm`
+    Thickness,
+}
+
+impl Number {
+    fn named(name: &str) -> Option<Number> {
+        match name {
+            "g0_mpa" => Some(Number::G0),
+            "g_lim_mpa" => Some(Number::GLim),
+            "d_lim_mm" => Some(Number::DLim),
+            "thickness_mm" => Some(Number::Thickness),
+            _ => None,
+        }
+    }
+
+    /// Its place in a material.
+    pub fn of(self, material: &mut Material) -> &mut f64 {
+        match self {
+            Number::G0 => &mut material.g0_mpa,
+            Number::GLim => &mut material.g_lim_mpa,
+            Number::DLim => &mut material.d_lim_mm,
+            Number::Thickness => &mut material.thickness_mm,
+        }
+    }
+
+    fn credible(self, start: f64) -> (f64, f64) {
+        match self {
+            Number::G0 | Number::GLim => (
+                MODULUS.0.min(start / BEYOND_START),
+                MODULUS.1.max(start * BEYOND_START),
+            ),
+            Number::DLim => (
+                LIMIT_DEPTH.0.min(start / 4.0),
+                LIMIT_DEPTH.1.max(start * 4.0),
+            ),
+            Number::Thickness => (THICKNESS.0.min(start / 4.0), THICKNESS.1.max(start * 4.0)),
+        }
+    }
+}
+
+/// A number that is fitted, in the coordinate in which the fit moves it (a logarithm where [`Kind`] says so).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// What it is.
+    pub kind: Kind,
+    /// Name with its unit.
+    pub name: &'static str,
+    /// What it belongs to.
+    pub target: Target,
+    /// Where the fit begins.
+    pub start: f64,
+    /// Smallest and largest admissible value.
+    pub bounds: (f64, f64),
+    /// Standard deviation about 0 before the data are seen; None: anything within the bounds.
+    pub prior: Option<f64>,
+    /// Step of a finite difference.
+    pub step: f64,
+}
+
+impl Parameter {
+    /// True if the coordinate is a logarithm.
+    pub fn is_log(&self) -> bool {
+        !matches!(self.kind, Kind::Zero(_) | Kind::Shift(..))
+    }
+
+    /// The number itself.
+    pub fn value(&self, coordinate: f64) -> f64 {
+        if self.is_log() {
+            libm::exp(coordinate)
+        } else {
+            coordinate
+        }
+    }
+
+    /// The one recording it matters to; None: all.
+    pub fn recording(&self) -> Option<usize> {
+        match self.kind {
+            Kind::Zero(r) | Kind::Gain(r) | Kind::Shift(r, _) | Kind::Counts(r) => Some(r),
+            Kind::Tissue(..) | Kind::InstrumentGain => None,
+        }
+    }
+}
+
+/// What the parameters are chosen for.
+#[derive(Clone, Copy)]
+pub struct Case<'a> {
+    /// The skin.
+    pub tissue: &'a Tissue,
+    /// The recordings.
+    pub measured: &'a [Measured],
+    /// By recording: whether first touch was judged by somebody.
+    pub is_touch_known: &'a [bool],
+    /// By recording: whether it is fitted.
+    pub is_used: &'a [bool],
+    /// Its noise.
+    pub noise: &'a Noise,
+    /// The data sheet.
+    pub instrument: Option<&'a Instrument>,
+}
+
+/// Everything that the recordings of a study call for.
+pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
+    let mut all = of_tissue(case.tissue);
+    let sheet = case.instrument;
+    if let Some(percent) = sheet.and_then(|s| s.gain_percent) {
+        all.push(gain(
+            Kind::InstrumentGain,
+            "gain",
+            Target::Instrument,
+            percent / 100.0,
+        ));
+    }
+    for (recording, measured) in case.measured.iter().enumerate() {
+        if !case.is_used[recording] || measured.samples.is_empty() {
+            continue;
+        }
+        let target = || Target::Recording(measured.name.clone());
+        let depths = measured.moments.iter().map(|m| m.depth_mm);
+        let deepest = depths.filter(|d| d.is_finite()).fold(0.0, f64::max);
+        if deepest > 0.0 {
+            let is_known = case.is_touch_known[recording];
+            let sd = zero_sd(case, (is_known, deepest));
+            all.push(Parameter {
+                kind: Kind::Zero(recording),
+                name: "contact_zero_mm",
+                target: target(),
+                start: 0.0,
+                bounds: (-MOST_TOUCH * sd, (MOST_TOUCH * sd).min(0.8 * deepest)),
+                prior: Some(sd),
+                step: 1e-3 * deepest,
+            });
+        }
+        let is_scaled = measured.is_calibrated && carries_force(measured);
+        if is_scaled && case.noise.gain > 0.0 {
+            all.push(gain(
+                Kind::Gain(recording),
+                "repeat_gain",
+                target(),
+                case.noise.gain,
+            ));
+        }
+        if !measured.is_calibrated {
+            all.push(Parameter {
+                kind: Kind::Counts(recording),
+                name: "counts_per_kpa",
+                target: target(),
+                start: 0.0,
+                bounds: (-COUNTS, COUNTS),
+                prior: None,
+                step: 1e-4,
+            });
+        }
+        if measured.mat.is_some() {
+            let sd = sheet.and_then(|s| s.position_mm).unwrap_or(POSITION);
+            for (axis, name) in ["pose_x_mm", "pose_y_mm"].into_iter().enumerate() {
+                all.push(Parameter {
+                    kind: Kind::Shift(recording, axis),
+                    name,
+                    target: target(),
+                    start: 0.0,
+                    bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
+                    prior: Some(sd),
+                    step: 0.05,
+                });
+            }
+        }
+    }
+    all
+}
+
+fn carries_force(measured: &Measured) -> bool {
+    let is_force = |q: Quantity| !matches!(q, Quantity::Area | Quantity::Scan(_));
+    measured.samples.iter().any(|s| is_force(s.quantity))
+}
+
+/// Standard deviation of first touch: what repeats show where they can, else what an operator does.
+fn zero_sd(case: Case<'_>, (is_known, deepest): (bool, f64)) -> f64 {
+    if !is_known {
+        return UNKNOWN_TOUCH * deepest;
+    }
+    let sheet = case.instrument.and_then(|s| s.position_mm);
+    let judged = sheet.unwrap_or(TOUCH).min(0.25 * deepest);
+    judged.max(case.noise.zero_mm.unwrap_or(0.0))
+}
+
+fn gain(kind: Kind, name: &'static str, target: Target, sd: f64) -> Parameter {
+    Parameter {
+        kind,
+        name,
+        target,
+        start: 0.0,
+        bounds: (-5.0 * sd, 5.0 * sd),
+        prior: Some(sd),
+        step: 1e-4,
+    }
+}
+
+fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
+    let mut all = Vec::new();
+    for (region, name) in tissue.regions.iter().enumerate() {
+        for fitted in &tissue.fitted[region] {
+            let Some(number) = Number::named(fitted) else {
+                continue;
+            };
+            let mut material = tissue.materials[region];
+            let start = *number.of(&mut material);
+            if !start.is_finite() {
+                continue;
+            }
+            let (low, high) = number.credible(start);
+            all.push(Parameter {
+                kind: Kind::Tissue(region, number),
+                name: match number {
+                    Number::G0 => "g0_mpa",
+                    Number::GLim => "g_lim_mpa",
+                    Number::DLim => "d_lim_mm",
+                    Number::Thickness => "thickness_mm",
+                },
+                target: Target::Region(name.clone()),
+                start: libm::log(start),
+                bounds: (libm::log(low), libm::log(high)),
+                prior: None,
+                step: 5e-3,
+            });
+        }
+    }
+    all
+}
+
+/// The model's own form of a vector of parameters: materials by region, and what belongs to each recording.
+pub fn setting(
+    tissue: &Tissue,
+    (parameters, at): (&[Parameter], &[f64]),
+    recordings: usize,
+) -> (Vec<Material>, Vec<Nuisance>) {
+    let mut materials = tissue.materials.clone();
+    let mut nuisances = vec![Nuisance::none(); recordings];
+    for (parameter, at) in parameters.iter().zip(at) {
+        match parameter.kind {
+            Kind::Tissue(region, number) => *number.of(&mut materials[region]) = libm::exp(*at),
+            Kind::Zero(r) => nuisances[r].zero_mm = *at,
+            Kind::Gain(r) => nuisances[r].log_gain += at,
+            Kind::InstrumentGain => nuisances.iter_mut().for_each(|n| n.log_gain += at),
+            Kind::Shift(r, axis) => nuisances[r].shift_mm[axis] = *at,
+            Kind::Counts(r) => nuisances[r].log_counts = *at,
+        }
+    }
+    (materials, nuisances)
+}
+
+/// True if some sample was taken with the tool on the skin.
+pub fn touches(measured: &Measured) -> bool {
+    measured.moments.iter().any(|m| m.phase != Phase::Apart)
+}

@@ -1,0 +1,167 @@
+//! The function that a fit makes small: whitened residuals of all recordings at given parameters, and their derivatives.
+
+use nalgebra::DMatrix;
+use thenar_contact::Control;
+
+use super::parameters::{Kind, Parameter, setting};
+use crate::DiagnosisError;
+use crate::noise::{Whitened, Whitening};
+use crate::observe::Quantity;
+use crate::replay::Replay;
+
+/// Residuals beyond this many standard deviations, or of the bulk's spread if that is wider, pull with a constant force (Huber).
+pub const HUBER: f64 = 3.0;
+
+/// A fit's data and model.
+pub struct Problem<'a> {
+    /// The model.
+    pub replay: &'a mut Replay,
+    /// What is fitted.
+    pub parameters: &'a [Parameter],
+    /// How residuals are whitened.
+    pub whitening: &'a Whitening,
+    /// The caller's.
+    pub control: &'a Control<'a>,
+}
+
+/// The model at one place.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Coordinates.
+    pub at: Vec<f64>,
+    /// Predictions by recording.
+    pub simulated: Vec<Vec<f64>>,
+    /// Whitened residuals, stacked.
+    pub whitened: Whitened,
+    /// What the fit makes small: sum of Huber's function over residuals and priors.
+    pub objective: f64,
+    /// Threshold of that function.
+    pub threshold: f64,
+}
+
+impl Problem<'_> {
+    /// The model at `at`; `threshold` as [`Point::threshold`], None: from its own residuals.
+    ///
+    /// # Errors
+    /// Those of a replay.
+    pub fn point(&mut self, at: &[f64], threshold: Option<f64>) -> Result<Point, DiagnosisError> {
+        let recordings = self.replay.observed.measured.len();
+        let (materials, nuisances) =
+            setting(&self.replay.tissue, (self.parameters, at), recordings);
+        let mut simulated = Vec::with_capacity(recordings);
+        for (recording, nuisance) in nuisances.iter().enumerate() {
+            simulated.push(
+                self.replay
+                    .predict(recording, (&materials, nuisance), self.control)?,
+            );
+        }
+        let whitened = self.whitening.residuals(&simulated.concat());
+        let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual));
+        let misfit: f64 = whitened.residual.iter().map(|r| huber(*r, threshold)).sum();
+        let prior = self.parameters.iter().zip(at);
+        let prior: f64 = prior
+            .filter_map(|(p, x)| p.prior.map(|sd| (x / sd).powi(2)))
+            .sum();
+        Ok(Point {
+            at: at.to_vec(),
+            simulated,
+            whitened,
+            objective: misfit + prior,
+            threshold,
+        })
+    }
+
+    /// Where a residual stands out from the bulk of them.
+    fn threshold(&self, residual: &[f64]) -> f64 {
+        let used = (0..residual.len()).filter(|&k| self.whitening.uses(k));
+        let mut sizes: Vec<f64> = used.map(|k| residual[k].abs()).collect();
+        let bulk = 1.4826 * crate::observe::scatter::median(&mut sizes);
+        HUBER * if bulk.is_finite() { bulk.max(1.0) } else { 1.0 }
+    }
+
+    /// Derivatives of all predictions by all parameters, not whitened; rows stacked as the samples.
+    ///
+    /// # Errors
+    /// Those of a replay.
+    pub fn jacobian(&mut self, point: &Point) -> Result<DMatrix<f64>, DiagnosisError> {
+        let starts: Vec<usize> = point
+            .simulated
+            .iter()
+            .scan(0, |next, one| {
+                *next += one.len();
+                Some(*next - one.len())
+            })
+            .collect();
+        let mut jacobian = DMatrix::zeros(self.whitening.len(), self.parameters.len());
+        for column in 0..self.parameters.len() {
+            let only = self.parameters[column].recording();
+            for (recording, start) in starts.iter().enumerate() {
+                if only.is_none_or(|only| only == recording) {
+                    let slopes = self.slopes(point, (column, recording))?;
+                    for (k, slope) in slopes.iter().enumerate() {
+                        jacobian[(start + k, column)] = *slope;
+                    }
+                }
+            }
+        }
+        Ok(jacobian)
+    }
+
+    /// Derivatives of one recording's predictions by one parameter.
+    fn slopes(
+        &mut self,
+        point: &Point,
+        (column, recording): (usize, usize),
+    ) -> Result<Vec<f64>, DiagnosisError> {
+        let parameter = &self.parameters[column];
+        let simulated = &point.simulated[recording];
+        let samples = &self.replay.observed.measured[recording].samples;
+        match parameter.kind {
+            Kind::Gain(_) | Kind::InstrumentGain | Kind::Counts(_) => {
+                let is_scaled = |q: Quantity| match parameter.kind {
+                    Kind::Counts(_) => matches!(q, Quantity::Pressure(_)),
+                    _ => !matches!(q, Quantity::Area | Quantity::Scan(_)),
+                };
+                let each = samples.iter().zip(simulated);
+                return Ok(each
+                    .map(|(s, f)| if is_scaled(s.quantity) { *f } else { 0.0 })
+                    .collect());
+            }
+            Kind::Tissue(..) | Kind::Zero(_) | Kind::Shift(..) => {}
+        }
+        // Away from the nearer bound.
+        let (low, high) = parameter.bounds;
+        let here = point.at[column];
+        let step = match high - here > here - low {
+            true => parameter.step,
+            false => -parameter.step,
+        };
+        let mut at = point.at.clone();
+        at[column] += step;
+        let recordings = self.replay.observed.measured.len();
+        let (materials, nuisances) =
+            setting(&self.replay.tissue, (self.parameters, &at), recordings);
+        let moved =
+            self.replay
+                .predict(recording, (&materials, &nuisances[recording]), self.control)?;
+        Ok(moved
+            .iter()
+            .zip(simulated)
+            .map(|(b, a)| (b - a) / step)
+            .collect())
+    }
+}
+
+/// Huber's function: the square, and beyond the threshold a straight line.
+pub fn huber(residual: f64, threshold: f64) -> f64 {
+    let size = residual.abs();
+    match size <= threshold {
+        true => size * size,
+        false => threshold * (2.0 * size - threshold),
+    }
+}
+
+/// True for what grows with the modulus.
+pub fn is_load(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::Force | Quantity::Pressure(_))
+}

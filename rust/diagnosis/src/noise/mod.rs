@@ -1,0 +1,153 @@
+//! Stage 6c: how large a difference noise alone makes, from repeats where there are any.
+
+mod alike;
+mod frames;
+mod repeats;
+mod whitening;
+
+pub use whitening::{Whitened, Whitening};
+
+use crate::observe::scatter::noise_of;
+use crate::observe::{Measured, Quantity};
+use repeats::{Repeats, Scatter};
+
+/// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
+const FLOOR: f64 = 2e-4;
+/// Standard deviation taken for a mat whose frames cannot tell it, as a part of the largest reading. A good film's
+/// coefficient of variation is 1.5 % (Yao 2019, Measurement 145:525), a common one's calibration error 2.7 % rms.
+const UNKNOWN_MAT: f64 = 0.03;
+/// Degrees of freedom that the pooled noise counts for beside a protocol's own.
+const POOLED_DEGREES: f64 = 10.0;
+
+/// A kind of sample that shares its noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Channel {
+    /// Normal force.
+    Force,
+    /// Force across.
+    Tangential,
+    /// Contact area.
+    Area,
+    /// Sensels.
+    Pressure,
+    /// Scanned points.
+    Scan,
+}
+
+impl Channel {
+    /// Of a quantity.
+    pub fn of(quantity: Quantity) -> Channel {
+        match quantity {
+            Quantity::Force => Channel::Force,
+            Quantity::TangentialForce => Channel::Tangential,
+            Quantity::Area => Channel::Area,
+            Quantity::Pressure(_) => Channel::Pressure,
+            Quantity::Scan(_) => Channel::Scan,
+        }
+    }
+}
+
+/// All channels.
+pub const CHANNELS: [Channel; 5] = [
+    Channel::Force,
+    Channel::Tangential,
+    Channel::Area,
+    Channel::Pressure,
+    Channel::Scan,
+];
+
+/// What is known of the noise of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of every sample, in its unit, by recording.
+    pub sigma: Vec<Vec<f64>>,
+    /// Time over which noise forgets itself, s, by [`CHANNELS`]; 0: at once.
+    pub memory_s: [f64; CHANNELS.len()],
+    /// Degrees of freedom of the standard deviation; None without repeats.
+    pub degrees: Option<f64>,
+    /// Standard deviation between repeats of the logarithm of the gain; 0 where it cannot be told.
+    pub gain: f64,
+    /// Standard deviation between repeats of the depth of first touch, mm; None where it cannot be told.
+    pub zero_mm: Option<f64>,
+    /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
+    pub drawn_from: [Vec<f64>; CHANNELS.len()],
+    /// What a reader should be told.
+    pub notes: Vec<String>,
+}
+
+/// Noise of a study's recordings.
+///
+/// `simulated` are predictions by recording, and `slopes` their derivatives by depth (per mm): along these the repeats of a protocol may
+/// differ as a whole (gain, contact zero) without being noisy. `is_used` says which recordings may be looked at; `noise_n` is the
+/// data sheet's noise of a force.
+pub fn noise(
+    measured: &[Measured],
+    (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
+    is_used: &[bool],
+    noise_n: Option<f64>,
+) -> Noise {
+    let groups = repeats::groups(measured, is_used);
+    let scatter = CHANNELS
+        .map(|channel| Repeats::new(channel, &groups).scatter(measured, (simulated, slopes)));
+    let degrees: f64 = scatter.iter().flatten().map(|s| s.degrees).sum();
+    let forces = scatter[0].as_ref();
+    let mut notes = Vec::new();
+    if groups.is_empty() {
+        notes.push(
+            "no protocol was repeated: noise is judged by how rough each recording is, and whether the misfit is more than noise cannot be tested"
+                .to_owned(),
+        );
+    }
+    let sigma = measured
+        .iter()
+        .enumerate()
+        .map(|(recording, one)| sigma(one, recording, &scatter, noise_n))
+        .collect();
+    Noise {
+        sigma,
+        memory_s: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(0.0, |s| s.memory_s)),
+        degrees: (degrees > 0.0).then_some(degrees),
+        gain: forces.or(scatter[3].as_ref()).map_or(0.0, |s| s.gain),
+        zero_mm: forces.and_then(|s| s.zero_mm),
+        drawn_from: [0, 1, 2, 3, 4].map(|c| {
+            scatter[c]
+                .as_ref()
+                .map_or_else(Vec::new, |s| s.drawn_from.clone())
+        }),
+        notes,
+    }
+}
+
+/// Standard deviation of every sample of a recording.
+fn sigma(
+    measured: &Measured,
+    recording: usize,
+    scatter: &[Option<Scatter>; CHANNELS.len()],
+    noise_n: Option<f64>,
+) -> Vec<f64> {
+    let of_channel = CHANNELS.map(|channel| {
+        let is_it = |q: Quantity| Channel::of(q) == channel;
+        let samples = measured.samples.iter().filter(|s| is_it(s.quantity));
+        let values: Vec<f64> = samples.map(|s| s.value).collect();
+        let most = values.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
+        let (share, proportional) = match &scatter[channel as usize] {
+            Some(scatter) => (scatter.share_of(recording), scatter.proportional),
+            None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),
+            None => (noise_of(&values) / most.max(f64::MIN_POSITIVE), 0.0),
+        };
+        let floor = match channel {
+            Channel::Force if scatter[0].is_none() => noise_n.unwrap_or(0.0),
+            _ => 0.0,
+        };
+        ((share.max(FLOOR) * most).max(floor), proportional)
+    });
+    let one = |quantity: Quantity, value: f64| {
+        let (constant, proportional) = of_channel[Channel::of(quantity) as usize];
+        constant.hypot(proportional * value).max(f64::MIN_POSITIVE)
+    };
+    measured
+        .samples
+        .iter()
+        .map(|s| one(s.quantity, s.value))
+        .collect()
+}

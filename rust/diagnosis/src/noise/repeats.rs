@@ -1,0 +1,366 @@
+//! What repeats of a protocol show: noise within a recording, and how recordings differ as a whole.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::alike::{Aligned, Told, aligned};
+use super::{Channel, POOLED_DEGREES};
+use crate::observe::scatter::median;
+use crate::observe::{Censoring, Measured, Quantity};
+
+/// Deviations beyond this many standard deviations are outliers, and not noise.
+const OUTLIER: f64 = 3.5;
+/// Variance that values within `OUTLIER` standard deviations of a normal law keep.
+const KEPT_VARIANCE: f64 = 0.9935;
+/// Fewest samples of a channel from which noise is told.
+const LEAST_SAMPLES: usize = 8;
+/// Ratios of memory to sampling interval that are tried.
+const MEMORIES: [f64; 12] = [0.0, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0];
+
+/// Recordings of one protocol with one tool at one place, by number; two or more.
+pub type Group = Vec<usize>;
+
+/// Recordings that repeat each other.
+pub fn groups(measured: &[Measured], is_used: &[bool]) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    let used = (0..measured.len()).filter(|&k| is_used[k] && !measured[k].samples.is_empty());
+    for recording in used {
+        let one = &measured[recording];
+        let key = |m: &Measured| (m.protocol.clone(), m.indenter.clone(), m.site.clone());
+        match groups.iter_mut().find(|g| key(&measured[g[0]]) == key(one)) {
+            Some(group) => group.push(recording),
+            None => groups.push(vec![recording]),
+        }
+    }
+    groups.retain(|group| group.len() > 1);
+    groups
+}
+
+/// What the repeats of a channel show.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scatter {
+    /// Recording, and its standard deviation as a part of its largest value.
+    shares: Vec<(usize, f64)>,
+    /// The same of all.
+    pooled: f64,
+    /// Part of the standard deviation that grows with the value (mats).
+    pub proportional: f64,
+    /// Degrees of freedom.
+    pub degrees: f64,
+    /// Time over which noise forgets itself, s.
+    pub memory_s: f64,
+    /// Standard deviation between repeats of the logarithm of the gain.
+    pub gain: f64,
+    /// Standard deviation between repeats of first touch, mm.
+    pub zero_mm: Option<f64>,
+    /// Whitened deviations, outliers among them, of variance 1 but for those.
+    pub drawn_from: Vec<f64>,
+}
+
+impl Scatter {
+    /// Of maps: shares of the peak that are constant and that grow with the reading.
+    pub fn of_map(members: &[usize], parts: (f64, f64), degrees: f64, gain: f64) -> Scatter {
+        Scatter {
+            shares: members.iter().map(|k| (*k, parts.0)).collect(),
+            pooled: parts.0,
+            proportional: parts.1,
+            degrees,
+            memory_s: 0.0,
+            gain,
+            zero_mm: None,
+            drawn_from: Vec::new(),
+        }
+    }
+
+    /// Standard deviation of a recording's channel as a part of its largest value.
+    pub fn share_of(&self, recording: usize) -> f64 {
+        let own = self.shares.iter().find(|(k, _)| *k == recording);
+        own.map_or(self.pooled, |(_, share)| *share)
+    }
+}
+
+/// The repeats of one channel.
+pub struct Repeats<'a> {
+    channel: Channel,
+    groups: &'a [Group],
+}
+
+/// Deviations within one group.
+struct Deviations {
+    group: Group,
+    /// s.
+    time: Vec<f64>,
+    /// Largest mean value.
+    most: f64,
+    /// Deviation by repeat and sample, with what differs as a whole taken out.
+    rest: Vec<Vec<f64>>,
+    /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and their variance for noise of variance 1.
+    whole: Vec<Vector2<f64>>,
+    unit_variance: Vector2<f64>,
+}
+
+impl<'a> Repeats<'a> {
+    /// Of a channel.
+    pub fn new(channel: Channel, groups: &'a [Group]) -> Repeats<'a> {
+        Repeats { channel, groups }
+    }
+
+    /// What they show; None without repeats of that channel.
+    pub fn scatter(
+        &self,
+        measured: &[Measured],
+        (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
+    ) -> Option<Scatter> {
+        if self.channel == Channel::Pressure {
+            return super::frames::scatter(self.groups, measured);
+        }
+        let told = |&k: &usize| Told {
+            measured: &measured[k],
+            simulated: &simulated[k],
+            slopes: &slopes[k],
+        };
+        let all: Vec<Deviations> = self
+            .groups
+            .iter()
+            .filter_map(|group| {
+                let repeats: Vec<Told<'_>> = group.iter().map(told).collect();
+                deviations(group, aligned(self.channel, &repeats))
+            })
+            .collect();
+        if all.is_empty() {
+            return None;
+        }
+        let memory_s = memory(&all);
+        let shares: Vec<(f64, f64)> = all.iter().map(|d| d.share(memory_s)).collect();
+        let degrees: f64 = shares.iter().map(|s| s.1).sum();
+        let pooled = (shares.iter().map(|(s, n)| s * s * n).sum::<f64>() / degrees).sqrt();
+        let shrunk = |(own, n): &(f64, f64)| {
+            ((own * own * n + pooled * pooled * POOLED_DEGREES) / (n + POOLED_DEGREES)).sqrt()
+        };
+        let between = between(&all, &shares, memory_s);
+        let of_group = all.iter().zip(&shares);
+        let each = of_group.flat_map(|(d, s)| d.group.iter().map(move |k| (*k, shrunk(s))));
+        Some(Scatter {
+            shares: each.collect(),
+            pooled,
+            proportional: 0.0,
+            degrees,
+            memory_s,
+            gain: between.x,
+            zero_mm: (self.channel == Channel::Force).then_some(between.y),
+            drawn_from: all.iter().flat_map(|d| d.whitened(memory_s)).collect(),
+        })
+    }
+}
+
+fn deviations(group: &Group, (time, repeats): (Vec<f64>, Vec<Aligned>)) -> Option<Deviations> {
+    let (n, m) = (time.len(), repeats.len() as f64);
+    if n < LEAST_SAMPLES || repeats.iter().any(|r| r.value.len() != n) {
+        return None;
+    }
+    let mean = |list: &dyn Fn(&Aligned) -> &Vec<f64>| -> Vec<f64> {
+        (0..n)
+            .map(|k| repeats.iter().map(|r| list(r)[k]).sum::<f64>() / m)
+            .collect()
+    };
+    let (value, depth) = (mean(&|r| &r.value), mean(&|r| &r.depth));
+    let (simulated, slope) = (mean(&|r| &r.simulated), mean(&|r| &r.slope));
+    // The measured value's own slope by depth: the model's relative slope is nearly that of any skin.
+    let own_slope: Vec<f64> = (0..n)
+        .map(|k| match simulated[k].abs() > 0.0 {
+            true => slope[k] * value[k] / simulated[k],
+            false => 0.0,
+        })
+        .map(|s| if s.is_finite() { s } else { 0.0 })
+        .collect();
+    let most = value.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
+    if most == 0.0 {
+        return None;
+    }
+    let mut gram = Matrix2::zeros();
+    for k in 0..n {
+        let along = Vector2::new(value[k], -own_slope[k]);
+        gram += along * along.transpose();
+    }
+    let inverse = gram.try_inverse()?;
+    let (mut rest, mut whole) = (Vec::new(), Vec::new());
+    for repeat in &repeats {
+        let off: Vec<f64> = (0..n)
+            .map(|k| {
+                let moved = repeat.depth[k] - depth[k];
+                let moved = if moved.is_finite() { moved } else { 0.0 };
+                repeat.value[k] - value[k] - own_slope[k] * moved
+            })
+            .collect();
+        let pull: Vector2<f64> = (0..n)
+            .map(|k| Vector2::new(value[k], -own_slope[k]) * off[k])
+            .sum();
+        let found = inverse * pull;
+        rest.push(
+            (0..n)
+                .map(|k| off[k] - value[k] * found.x + own_slope[k] * found.y)
+                .collect(),
+        );
+        whole.push(found);
+    }
+    Some(Deviations {
+        group: group.clone(),
+        time,
+        most,
+        rest,
+        whole,
+        unit_variance: Vector2::new(inverse[(0, 0)], inverse[(1, 1)]),
+    })
+}
+
+impl Deviations {
+    /// Standard deviation as a part of the largest value, and its degrees of freedom for noise with that memory.
+    fn share(&self, memory_s: f64) -> (f64, f64) {
+        let (m, n) = (self.rest.len() as f64, self.time.len() as f64);
+        let scale = (m / (m - 1.0)).sqrt();
+        let all = self.rest.iter().flatten().map(|u| u * scale);
+        let sigma = spread(&all.collect::<Vec<f64>>());
+        let sigma = sigma * (n / (n - 2.0)).sqrt();
+        let carry = self.carry(memory_s);
+        // Equivalent number of independent squares of an AR(1) series.
+        let worth = (1.0 - carry * carry) / (1.0 + carry * carry);
+        (sigma / self.most, ((m - 1.0) * (n - 2.0) * worth).max(1.0))
+    }
+
+    /// Deviations made independent, over their standard deviation.
+    fn whitened(&self, memory_s: f64) -> Vec<f64> {
+        let sigma = spread(&self.rest.iter().flatten().copied().collect::<Vec<f64>>());
+        let steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
+        let series = |rest: &Vec<f64>| -> Vec<f64> {
+            (0..rest.len())
+                .map(|k| match k {
+                    0 => rest[0] / sigma,
+                    _ => {
+                        let carry = carry(steps[k - 1], memory_s);
+                        (rest[k] - carry * rest[k - 1]) / sigma / (1.0 - carry * carry).sqrt()
+                    }
+                })
+                .collect()
+        };
+        let mut all: Vec<Vec<f64>> = self.rest.iter().map(series).collect();
+        let size = spread(&all.concat());
+        if size.is_nan() || size == 0.0 {
+            return Vec::new();
+        }
+        all.iter_mut().flatten().for_each(|w| *w /= size);
+        // An outlier moves the mean, and so shows in every repeat: it is counted where it is largest.
+        let mut kept = Vec::new();
+        for k in 0..self.time.len() {
+            let here = all.iter().map(|series| series[k]);
+            let most = here.clone().fold(
+                0.0,
+                |most: f64, w| if w.abs() > most.abs() { w } else { most },
+            );
+            match most.abs() > OUTLIER {
+                true => kept.push(most),
+                false => kept.extend(here),
+            }
+        }
+        kept
+    }
+
+    /// Correlation of neighboring samples.
+    fn carry(&self, memory_s: f64) -> f64 {
+        let mut steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
+        carry(median(&mut steps), memory_s)
+    }
+}
+
+/// Correlation of noise over `step`, s, if it forgets itself in `memory_s`.
+pub fn carry(step: f64, memory_s: f64) -> f64 {
+    match memory_s > 0.0 {
+        true => libm::exp(-step.max(0.0) / memory_s),
+        false => 0.0,
+    }
+}
+
+/// Standard deviation without outliers.
+pub fn spread(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    let rough = 1.4826 * median(&mut sizes);
+    let kept = values.iter().filter(|v| v.abs() <= OUTLIER * rough);
+    let (sum, count) = kept.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
+    if count == 0.0 || rough == 0.0 {
+        return rough;
+    }
+    (sum / count / KEPT_VARIANCE).sqrt()
+}
+
+/// The memory under which the deviations are likeliest, s.
+fn memory(all: &[Deviations]) -> f64 {
+    let mut steps: Vec<f64> = all
+        .iter()
+        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]))
+        .collect();
+    let step = median(&mut steps);
+    let unlikeliness = |memory_s: f64| -> f64 {
+        all.iter()
+            .map(|d| {
+                let sigma = spread(&d.rest.iter().flatten().copied().collect::<Vec<f64>>());
+                d.rest
+                    .iter()
+                    .map(|series| minus_log_likelihood(series, d, (memory_s, sigma)))
+                    .sum::<f64>()
+            })
+            .sum()
+    };
+    let mut best = (f64::INFINITY, 0.0);
+    for ratio in MEMORIES {
+        let memory_s = ratio * step;
+        let found = unlikeliness(memory_s);
+        if found < best.0 {
+            best = (found, memory_s);
+        }
+    }
+    best.1
+}
+
+fn minus_log_likelihood(series: &[f64], of: &Deviations, (memory_s, sigma): (f64, f64)) -> f64 {
+    if sigma == 0.0 {
+        return 0.0;
+    }
+    let scaled = |v: f64| (v / sigma).clamp(-OUTLIER, OUTLIER);
+    let mut sum = 0.5 * scaled(series[0]).powi(2);
+    for k in 1..series.len() {
+        let carry = carry(of.time[k] - of.time[k - 1], memory_s);
+        let left = 1.0 - carry * carry;
+        let step = scaled(series[k]) - carry * scaled(series[k - 1]);
+        sum += 0.5 * (step * step / left + left.ln());
+    }
+    sum
+}
+
+/// Standard deviations between repeats of gain and zero: what exceeds the error of finding them, with `(nu + 2) / nu` for few repeats.
+fn between(all: &[Deviations], shares: &[(f64, f64)], memory_s: f64) -> Vector2<f64> {
+    let (mut sum, mut own, mut degrees) = (Vector2::zeros(), Vector2::zeros(), 0.0);
+    for (d, (share, _)) in all.iter().zip(shares) {
+        let nu = d.whole.len() as f64 - 1.0;
+        let mean = d.whole.iter().sum::<Vector2<f64>>() / (nu + 1.0);
+        let squares: Vector2<f64> = d.whole.iter().map(|w| (w - mean).map(|x| x * x)).sum();
+        let carry = d.carry(memory_s);
+        let noise = (share * d.most).powi(2) * (1.0 + carry) / (1.0 - carry);
+        sum += squares;
+        own += d.unit_variance * (noise * nu);
+        degrees += nu;
+    }
+    let variance = (sum - own) / degrees;
+    let least = own / degrees * 0.25;
+    variance.zip_map(&least, |v, least| {
+        (v.max(least) * (degrees + 2.0) / degrees).sqrt()
+    })
+}
+
+/// Values of one quantity by moment; None where it is missing or censored.
+pub fn by_moment(measured: &Measured, quantity: Quantity) -> Vec<Option<f64>> {
+    let mut values = vec![None; measured.moments.len()];
+    for sample in &measured.samples {
+        if sample.quantity == quantity && sample.censoring == Censoring::Seen {
+            values[sample.moment as usize] = Some(sample.value);
+        }
+    }
+    values
+}

@@ -1,0 +1,151 @@
+//! Residuals turned into independent numbers of variance 1, censored samples among them.
+
+use nalgebra::DMatrix;
+
+use super::repeats::carry;
+use super::{CHANNELS, Channel, Noise};
+use crate::observe::{Censoring, Measured};
+use crate::statistics::{log_normal_cdf, normal_density};
+
+/// How each sample's residual is whitened: `w_k = (r_k / s_k - c r_j / s_j) / sqrt(1 - c^2)`, j the sample before it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Whitening {
+    /// Values and limits, all recordings stacked.
+    measured: Vec<f64>,
+    censoring: Vec<Censoring>,
+    channel: Vec<Channel>,
+    sigma: Vec<f64>,
+    /// Sample before it whose noise it remembers, and how much of it.
+    before: Vec<Option<(usize, f64)>>,
+    /// False for samples that are left out.
+    is_used: Vec<bool>,
+}
+
+/// Whitened residuals, and what makes their derivatives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Whitened {
+    /// Residual over its noise; of a censored sample the signed root of minus twice the logarithm of its probability.
+    pub residual: Vec<f64>,
+    /// Derivative of a censored sample's residual by the simulated value, times sigma; 0 for seen ones.
+    censored_slope: Vec<f64>,
+}
+
+impl Whitening {
+    /// For recordings with that noise; those not in use are left out.
+    pub fn new(measured: &[Measured], noise: &Noise, is_used: &[bool]) -> Whitening {
+        let mut whitening = Whitening {
+            measured: Vec::new(),
+            censoring: Vec::new(),
+            channel: Vec::new(),
+            sigma: Vec::new(),
+            before: Vec::new(),
+            is_used: Vec::new(),
+        };
+        for (recording, one) in measured.iter().enumerate() {
+            let mut last: [Option<usize>; CHANNELS.len()] = [None; CHANNELS.len()];
+            let first = whitening.measured.len();
+            for (k, sample) in one.samples.iter().enumerate() {
+                let channel = Channel::of(sample.quantity);
+                let is_seen = sample.censoring == Censoring::Seen;
+                let before = last[channel as usize].filter(|_| is_seen).map(|j: usize| {
+                    let time = |k: usize| one.moments[one.samples[k].moment as usize].time_s;
+                    let carried = carry(time(k) - time(j), noise.memory_s[channel as usize]);
+                    (first + j, carried)
+                });
+                // Sensels of one frame stand beside each other in the list, not after each other in time.
+                let is_series = !matches!(channel, Channel::Pressure | Channel::Scan);
+                if is_series && is_seen {
+                    last[channel as usize] = Some(k);
+                }
+                whitening.measured.push(sample.value);
+                whitening.censoring.push(sample.censoring);
+                whitening.channel.push(channel);
+                whitening.sigma.push(noise.sigma[recording][k]);
+                whitening.before.push(before);
+                whitening.is_used.push(is_used[recording]);
+            }
+        }
+        whitening
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.measured.len()
+    }
+
+    /// Number of samples in use.
+    pub fn used(&self) -> usize {
+        self.is_used.iter().filter(|used| **used).count()
+    }
+
+    /// Whitened residuals of stacked predictions.
+    pub fn residuals(&self, simulated: &[f64]) -> Whitened {
+        let n = self.len();
+        let (mut residual, mut censored_slope) = (vec![0.0; n], vec![0.0; n]);
+        let scaled = |k: usize| (self.measured[k] - simulated[k]) / self.sigma[k];
+        for k in (0..n).filter(|&k| self.is_used[k]) {
+            let sign = match self.censoring[k] {
+                Censoring::Seen => {
+                    residual[k] = self.differenced(k, &scaled);
+                    continue;
+                }
+                Censoring::AtMost => 1.0,
+                Censoring::AtLeast => -1.0,
+            };
+            // Probability that a sample at the simulated value reads beyond the limit (Tobin 1958).
+            let z = sign * scaled(k);
+            let log = log_normal_cdf(z);
+            let root = (-2.0 * log).sqrt();
+            residual[k] = -sign * root;
+            censored_slope[k] = match root > 1e-8 {
+                true => -normal_density(z) / (libm::exp(log) * root),
+                false => 0.0,
+            };
+        }
+        Whitened {
+            residual,
+            censored_slope,
+        }
+    }
+
+    /// Whitened derivatives of the residuals' simulated part: `L^-1 J`; columns by parameter.
+    pub fn derivatives(&self, jacobian: &DMatrix<f64>, at: &Whitened) -> DMatrix<f64> {
+        let mut whitened = DMatrix::zeros(jacobian.nrows(), jacobian.ncols());
+        for column in 0..jacobian.ncols() {
+            let scaled = |k: usize| jacobian[(k, column)] / self.sigma[k];
+            for k in (0..self.len()).filter(|&k| self.is_used[k]) {
+                whitened[(k, column)] = match self.censoring[k] {
+                    Censoring::Seen => self.differenced(k, &scaled),
+                    _ => -at.censored_slope[k] * scaled(k),
+                };
+            }
+        }
+        whitened
+    }
+
+    /// Whether a sample is censored and the simulation agrees with it.
+    pub fn agrees(&self, k: usize, simulated: &[f64]) -> bool {
+        match self.censoring[k] {
+            Censoring::Seen => false,
+            Censoring::AtMost => simulated[k] <= self.measured[k],
+            Censoring::AtLeast => simulated[k] >= self.measured[k],
+        }
+    }
+
+    /// The channel of a sample.
+    pub fn channel(&self, k: usize) -> Channel {
+        self.channel[k]
+    }
+
+    /// Whether a sample is in use.
+    pub fn uses(&self, k: usize) -> bool {
+        self.is_used[k]
+    }
+
+    fn differenced(&self, k: usize, scaled: &dyn Fn(usize) -> f64) -> f64 {
+        match self.before[k] {
+            Some((j, carry)) => (scaled(k) - carry * scaled(j)) / (1.0 - carry * carry).sqrt(),
+            None => scaled(k),
+        }
+    }
+}

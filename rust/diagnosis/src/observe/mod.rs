@@ -1,0 +1,108 @@
+//! Stage 6a: a study's recordings as moments of a protocol and samples in the recording's own terms.
+
+pub(crate) mod phases;
+pub(crate) mod scatter;
+mod curve;
+mod map;
+mod measured;
+mod thinning;
+mod touch;
+
+pub(crate) use map::interpolated;
+pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
+
+use nalgebra::Vector3;
+use thenar_recordings::Study;
+use thenar_recordings::study::{Data, StudyRecording};
+
+/// Most moments of an indentation that are compared.
+pub const MOST_MOMENTS: usize = 100;
+/// Most frames of a map that are compared.
+pub const MOST_FRAMES: usize = 40;
+
+/// A study's recordings, and what the fit must know of them besides.
+#[derive(Debug, Clone)]
+pub struct Observed {
+    /// The recordings, in the study's order.
+    pub measured: Vec<Measured>,
+    /// By recording: false where the depth of first touch is a guess from the force.
+    pub is_touch_known: Vec<bool>,
+}
+
+/// Turns every recording of a study into moments and samples; long ones are thinned to means ([`MOST_MOMENTS`], [`MOST_FRAMES`]).
+pub fn observe(study: &Study) -> Observed {
+    let mut observed = Observed {
+        measured: Vec::new(),
+        is_touch_known: Vec::new(),
+    };
+    for recording in &study.recordings {
+        let (measured, is_touch_known) = observe_one(study, recording);
+        observed.measured.push(measured);
+        observed.is_touch_known.push(is_touch_known);
+    }
+    observed
+}
+
+fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
+    let mut measured = Measured {
+        name: recording.name.clone(),
+        protocol: match recording.protocol.as_str() {
+            "" => recording.name.clone(),
+            named => named.to_owned(),
+        },
+        indenter: recording.indenter.clone(),
+        site: recording.site.clone(),
+        moments: Vec::new(),
+        samples: Vec::new(),
+        mat: None,
+        is_calibrated: true,
+        unknown: Vec::new(),
+    };
+    let site = study.sites.iter().find(|site| site.name == recording.site);
+    let direction = site.map_or(-Vector3::z(), |site| site.direction.into());
+    match &recording.data {
+        Data::Indentation(curve) => {
+            let seen = curve::observe(curve, across(direction), MOST_MOMENTS);
+            measured.moments = seen.moments;
+            measured.samples = seen.samples;
+            measured.unknown = seen.unknown;
+            (measured, seen.is_touch_known)
+        }
+        Data::PressureMap {
+            map,
+            sensels,
+            motion,
+        } => {
+            let seen = map::Seen {
+                map,
+                sensels: sensels.as_deref(),
+                motion: motion.as_deref(),
+                saturation: study.instrument.as_ref().and_then(|i| i.saturation_kpa),
+                threshold: study.instrument.as_ref().and_then(|i| i.threshold_kpa),
+                across: across(direction),
+                direction,
+            };
+            let is_touch_known = map::observe(&seen, &mut measured, MOST_FRAMES);
+            (measured, is_touch_known)
+        }
+        Data::Scan { .. } => {
+            measured.unknown.push(
+                "scans are read and shown, but not compared: a scan's own pose against the skin is not known"
+                    .to_owned(),
+            );
+            (measured, true)
+        }
+    }
+}
+
+/// The direction in which a slide counts: the skin's x, laid across the travel; y where x is the travel.
+///
+/// The study gives a slide's length only, and friction on an even skin does not ask for more.
+pub(crate) fn across(direction: Vector3<f64>) -> Vector3<f64> {
+    let lay = |axis: Vector3<f64>| axis - direction * direction.dot(&axis);
+    let along_x = lay(Vector3::x());
+    match along_x.norm() > 0.1 {
+        true => along_x.normalize(),
+        false => lay(Vector3::y()).normalize(),
+    }
+}

@@ -1,0 +1,373 @@
+//! Stage 6b: every recording's protocol run through the contact model, with predictions in the recording's own terms.
+
+mod interpolation;
+mod followed;
+mod press_table;
+mod reading;
+mod tissue;
+mod tool;
+
+use std::sync::Arc;
+
+use thenar_contact::effects::{Effect, Stage};
+use thenar_contact::{ActiveEffect, Control, Material};
+use thenar_recordings::Study;
+use thenar_surface::{Product, Vec3};
+
+use crate::DiagnosisError;
+use crate::observe::{Measured, Observed, Quantity};
+use press_table::{Basis, press_table};
+use reading::{Reader, Readings};
+pub use tissue::Tissue;
+
+/// Depth that is added to the deepest of a ladder for a contact zero that moves, mm and share.
+const DEPTH_MARGIN: (f64, f64) = (0.1, 0.05);
+/// Ladders kept for each tool and place.
+const MOST_KEPT: usize = 12;
+/// Plates and rods reach this much beyond the skin, at most this far from the site, mm: other fingers are not in the way.
+const REACH: (f64, f64) = (1.2, 60.0);
+
+/// What belongs to one recording alone, besides the model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nuisance {
+    /// Depth of the true first touch in the recording's own depth, mm: the true depth is that much less.
+    pub zero_mm: f64,
+    /// Natural logarithm of the factor on force and pressure.
+    pub log_gain: f64,
+    /// Shift of the mat across the travel, mm.
+    pub shift_mm: [f64; 2],
+    /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
+    pub log_counts: f64,
+}
+
+impl Nuisance {
+    /// None.
+    pub fn none() -> Nuisance {
+        Nuisance {
+            zero_mm: 0.0,
+            log_gain: 0.0,
+            shift_mm: [0.0; 2],
+            log_counts: 0.0,
+        }
+    }
+}
+
+/// A tool at a place.
+struct Place {
+    title: String,
+    indenter: String,
+    site: String,
+    tool: Product,
+    direction: Vec3,
+    /// mm; of all its recordings.
+    deepest: f64,
+    kept: Vec<(Key, Arc<Basis>)>,
+}
+
+/// What a ladder depends on.
+#[derive(Debug, Clone, PartialEq)]
+struct Key {
+    materials: Vec<Material>,
+    effects: Vec<ActiveEffect>,
+}
+
+/// A study made ready to be simulated again and again.
+pub struct Replay {
+    /// The skin.
+    pub tissue: Tissue,
+    /// The recordings.
+    pub observed: Observed,
+    places: Vec<Place>,
+    place_of: Vec<usize>,
+    readers: Vec<Option<Reader>>,
+    effects: Vec<ActiveEffect>,
+}
+
+impl Replay {
+    /// Prepares skin, tools and mats.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] naming the skin, the region or the tool that cannot be used, or `Cancelled`.
+    pub fn new(
+        study: &Study,
+        observed: Observed,
+        control: &Control<'_>,
+    ) -> Result<Replay, DiagnosisError> {
+        let tissue = tissue::tissue(&study.skin, control)?;
+        let (mut places, mut place_of) = (Vec::<Place>::new(), Vec::new());
+        for measured in &observed.measured {
+            let at = places
+                .iter()
+                .position(|p| p.indenter == measured.indenter && p.site == measured.site);
+            let at = match at {
+                Some(at) => at,
+                None => {
+                    places.push(place(study, measured, tissue.extent)?);
+                    places.len() - 1
+                }
+            };
+            let depths = measured.moments.iter().map(|m| m.depth_mm);
+            let deepest = depths.filter(|d| d.is_finite()).fold(0.0, f64::max);
+            places[at].deepest = places[at].deepest.max(deepest);
+            place_of.push(at);
+        }
+        let readers = observed
+            .measured
+            .iter()
+            .map(|measured| measured.mat.clone().map(Reader::new))
+            .collect();
+        for place in &mut places {
+            // Where no depth is known a force is sought; soft tissue yields half its thickness at most.
+            if place.deepest == 0.0 {
+                let thickness = tissue.materials.iter().map(|m| m.thickness_mm);
+                place.deepest = 0.5 * thickness.fold(f64::INFINITY, f64::min).min(8.0);
+            }
+            place.deepest =
+                place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
+        }
+        Ok(Replay {
+            tissue,
+            observed,
+            places,
+            place_of,
+            readers,
+            effects: Vec::new(),
+        })
+    }
+
+    /// Effects switched on in every later prediction, in place of those before.
+    ///
+    /// # Errors
+    /// What the contact model says of an effect's numbers.
+    pub fn set_effects(
+        &mut self,
+        effects: &[ActiveEffect],
+        control: &Control<'_>,
+    ) -> Result<(), DiagnosisError> {
+        let changed = self.tissue.skin.set_effects(effects.to_vec(), control);
+        changed.map_err(DiagnosisError::of_contact("the effects"))?;
+        self.effects = effects.to_vec();
+        Ok(())
+    }
+
+    /// True if the model with its effects remembers, so that each protocol is followed as it was.
+    pub fn remembers(&self) -> bool {
+        let acts = |e: &&ActiveEffect| e.amplitude > 0.0;
+        let mut stages = self.effects.iter().filter(acts).map(|e| e.entry().stage);
+        stages.any(|stage| matches!(stage, Stage::History | Stage::Interface))
+    }
+
+    /// Depth that a recording's ladder reaches, mm.
+    pub fn deepest(&self, recording: usize) -> f64 {
+        self.places[self.place_of[recording]].deepest
+    }
+
+    /// Regions that bear force in some recording in use, at the deepest rung of its ladder.
+    ///
+    /// # Errors
+    /// Those of a prediction.
+    pub fn touched(
+        &mut self,
+        is_used: &[bool],
+        control: &Control<'_>,
+    ) -> Result<Vec<bool>, DiagnosisError> {
+        let regions = self.tissue.regions.len();
+        if regions == 1 {
+            return Ok(vec![true]);
+        }
+        let materials = self.tissue.materials.clone();
+        let mut touched = vec![false; regions];
+        for at in 0..self.places.len() {
+            let uses = |r: usize| is_used[r] && self.place_of[r] == at;
+            if (0..is_used.len()).any(uses) {
+                let (basis, _) = self.basis(at, &materials, control)?;
+                for (region, touches) in basis.touched.iter().enumerate() {
+                    touched[region] |= touches;
+                }
+            }
+        }
+        Ok(touched)
+    }
+
+    /// Predictions for every sample of a recording, in its units.
+    ///
+    /// # Errors
+    /// What the contact model says of a press, or `Cancelled`.
+    pub fn predict(
+        &mut self,
+        recording: usize,
+        (materials, nuisance): (&[Material], &Nuisance),
+        control: &Control<'_>,
+    ) -> Result<Vec<f64>, DiagnosisError> {
+        if self.observed.measured[recording].samples.is_empty() {
+            return Ok(Vec::new());
+        }
+        let raw = match self.remembers() {
+            true => self.follow(recording, (materials, nuisance), control)?,
+            false => self.look_up(recording, (materials, nuisance), control)?,
+        };
+        Ok(self.shown(recording, nuisance, raw))
+    }
+
+    /// What an instrument with that gain makes of the values.
+    fn shown(&self, recording: usize, nuisance: &Nuisance, mut values: Vec<f64>) -> Vec<f64> {
+        let samples = &self.observed.measured[recording].samples;
+        let gain = libm::exp(nuisance.log_gain);
+        let counts = libm::exp(nuisance.log_gain + nuisance.log_counts);
+        for (value, sample) in values.iter_mut().zip(samples) {
+            match sample.quantity {
+                Quantity::Force | Quantity::TangentialForce => *value *= gain,
+                Quantity::Pressure(_) => *value *= counts,
+                Quantity::Area | Quantity::Scan(_) => {}
+            }
+        }
+        values
+    }
+
+    /// Predictions from the ladder of the recording's tool and place.
+    fn look_up(
+        &mut self,
+        recording: usize,
+        (materials, nuisance): (&[Material], &Nuisance),
+        control: &Control<'_>,
+    ) -> Result<Vec<f64>, DiagnosisError> {
+        let (basis, weights) = self.basis(self.place_of[recording], materials, control)?;
+        let measured = &self.observed.measured[recording];
+        let place = &self.places[self.place_of[recording]];
+        let depths: Vec<f64> = measured
+            .moments
+            .iter()
+            .map(|moment| match moment.depth_mm.is_nan() {
+                false => moment.depth_mm - nuisance.zero_mm,
+                true => basis.depth_at(&weights, moment.demand_n),
+            })
+            .collect();
+        let readings = match &mut self.readers[recording] {
+            Some(reader) => Some(
+                reader.readings((&basis, &self.tissue), (place.direction, nuisance.shift_mm))?,
+            ),
+            None => None,
+        };
+        let value = |quantity: Quantity, depth: f64| match quantity {
+            Quantity::Force => basis.force_at(&weights, depth),
+            Quantity::Area => basis.area_at(depth),
+            Quantity::Pressure(sensel) => readings.as_ref().map_or(0.0, |r: &Arc<Readings>| {
+                r.at(sensel as usize, &weights, depth)
+            }),
+            Quantity::TangentialForce | Quantity::Scan(_) => 0.0,
+        };
+        let samples = measured.samples.iter();
+        Ok(samples
+            .map(|s| value(s.quantity, depths[s.moment as usize]))
+            .collect())
+    }
+
+    /// The ladder at a place and the weights of its parts at these materials.
+    fn basis(
+        &mut self,
+        at: usize,
+        materials: &[Material],
+        control: &Control<'_>,
+    ) -> Result<(Arc<Basis>, Vec<f64>), DiagnosisError> {
+        let is_linear = self.is_linear(materials);
+        let (key, weights) = match is_linear {
+            true => {
+                let start = self.tissue.materials[0].g0_mpa;
+                let unit = Material {
+                    g0_mpa: start,
+                    g_lim_mpa: start,
+                    ..materials[0]
+                };
+                (
+                    vec![unit],
+                    vec![materials[0].g0_mpa, materials[0].g_lim_mpa],
+                )
+            }
+            false => (materials.to_vec(), vec![1.0]),
+        };
+        let key = Key {
+            materials: key,
+            effects: self.effects.clone(),
+        };
+        if let Some((_, basis)) = self.places[at].kept.iter().find(|(kept, _)| *kept == key) {
+            return Ok((basis.clone(), weights));
+        }
+        let basis = match is_linear {
+            false => Basis::whole(self.press(at, &key.materials, control)?),
+            true => {
+                let unit = key.materials[0];
+                let twice = Material {
+                    g_lim_mpa: 2.0 * unit.g0_mpa,
+                    ..unit
+                };
+                let one = self.press(at, &[unit], control)?;
+                let two = self.press(at, &[twice], control)?;
+                Basis::linear(one, &two, unit.g0_mpa)
+            }
+        };
+        let (basis, kept) = (Arc::new(basis), &mut self.places[at].kept);
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, basis.clone()));
+        Ok((basis, weights))
+    }
+
+    /// True if force and pressure are linear in G0 and Glim: one region, and no effect with a stiffness of its own.
+    fn is_linear(&self, materials: &[Material]) -> bool {
+        let is_free = |e: &ActiveEffect| {
+            e.amplitude == 0.0
+                || matches!(
+                    e.effect,
+                    Effect::Bone | Effect::Compressibility | Effect::Inclusion
+                )
+        };
+        materials.len() == 1 && self.effects.iter().all(is_free)
+    }
+
+    fn press(
+        &mut self,
+        at: usize,
+        materials: &[Material],
+        control: &Control<'_>,
+    ) -> Result<press_table::PressTable, DiagnosisError> {
+        let place = &self.places[at];
+        if self.tissue.skin.materials() != materials {
+            let changed = self.tissue.skin.set_materials(materials, control);
+            changed.map_err(DiagnosisError::of_contact(place.title.clone()))?;
+        }
+        let quiet = Control {
+            cancelled: control.cancelled,
+            progress: &|_, _| {},
+        };
+        press_table(
+            &mut self.tissue.skin,
+            (&place.tool, place.direction),
+            place.deepest,
+            (&place.title, &quiet),
+        )
+    }
+}
+
+fn place(study: &Study, measured: &Measured, extent: f64) -> Result<Place, DiagnosisError> {
+    let (name, at) = (&measured.indenter, &measured.site);
+    let indenter = study.indenters.iter().find(|i| i.name == *name);
+    let site = study.sites.iter().find(|s| s.name == *at);
+    let (Some(indenter), Some(site)) = (indenter, site) else {
+        return Err(DiagnosisError::Placing {
+            indenter: name.clone(),
+            site: at.clone(),
+            problem: "one of them is not defined; add it to the study".into(),
+        });
+    };
+    let reach = (REACH.0 * extent).min(REACH.1);
+    Ok(Place {
+        title: format!("the indenter '{name}' at site '{at}'"),
+        indenter: name.clone(),
+        site: at.clone(),
+        tool: tool::tool(indenter, site, reach)?,
+        direction: site.direction.into(),
+        deepest: 0.0,
+        kept: Vec::new(),
+    })
+}
