@@ -85,7 +85,10 @@ struct Laboratory {
     noise: f64,
     memory_s: f64,
     gain: f64,
+    /// Of each repeat, mm.
     zero_mm: f64,
+    /// Of all recordings with one tool: the operator's habit, mm.
+    habit_mm: f64,
     outliers: f64,
 }
 
@@ -94,6 +97,7 @@ const USUAL: Laboratory = Laboratory {
     memory_s: 0.15,
     gain: 0.04,
     zero_mm: 0.02,
+    habit_mm: 0.05,
     outliers: 0.01,
 };
 
@@ -142,10 +146,12 @@ fn measured((study, forces): &(Study, Vec<Vec<f64>>), laboratory: &Laboratory, s
     for _ in 0..20 {
         dice.roll();
     }
+    let habits = [0, 1].map(|_| laboratory.habit_mm * dice.normal());
     for (recording, clean) in forces.iter().enumerate() {
         let most = clean.iter().fold(0.0f64, |most, f| most.max(*f));
         let gain = (laboratory.gain * dice.normal()).exp();
-        let zero = laboratory.zero_mm * dice.normal();
+        let habit = habits[usize::from(study.recordings[recording].indenter == "ball")];
+        let zero = habit + laboratory.zero_mm * dice.normal();
         let curve = curve_of(&mut study, recording);
         let times = curve.channels[0].values.clone();
         let mut colored = dice.normal();

@@ -104,12 +104,7 @@ impl Fitting {
         let start = scaled_start(&mut problem, &before)?;
         let descent = descend(&mut problem, &start)?;
         let system = System::new(&problem, (&descent.point, &descent.jacobian));
-        let estimates = estimates(
-            &parameters,
-            (&descent.point, &system),
-            &noise,
-            whitening.used(),
-        );
+        let estimates = estimates(&problem, (&descent.point, &system), &noise);
         let left = self.left((&whitening, &descent), &noise, options);
         let notes = self.notes((&noise, &descent), &parameters);
         Ok(Fit {
@@ -221,6 +216,7 @@ impl Fitting {
             tissue: &self.replay.tissue,
             measured: &self.replay.observed.measured,
             is_touch_known: &self.replay.observed.is_touch_known,
+            place_of: &self.replay.place_of,
             is_used,
             noise,
             instrument: self.instrument.as_ref(),
@@ -330,16 +326,11 @@ fn scaled_start(
 
 /// Counts per kPa of uncalibrated mats, so that simulated and measured sums agree.
 fn scale_counts(problem: &mut Problem<'_>, start: &mut [f64]) -> Result<(), DiagnosisError> {
-    let recordings = problem.replay.observed.measured.len();
     for column in 0..start.len() {
         let Kind::Counts(recording) = problem.parameters[column].kind else {
             continue;
         };
-        let (materials, nuisances) = setting(
-            &problem.replay.tissue,
-            (problem.parameters, start),
-            recordings,
-        );
+        let (materials, nuisances) = setting(problem.replay, (problem.parameters, start));
         let simulated = problem.replay.predict(
             recording,
             (&materials, &nuisances[recording]),

@@ -5,7 +5,7 @@ use thenar_recordings::study::Instrument;
 
 use crate::noise::Noise;
 use crate::observe::{Measured, Quantity};
-use crate::replay::{Nuisance, Tissue};
+use crate::replay::{Nuisance, Replay, Tissue};
 use crate::{Phase, Target};
 
 /// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
@@ -36,8 +36,10 @@ const COUNTS: f64 = 12.0;
 pub enum Kind {
     /// Logarithm of a number of a region's material.
     Tissue(usize, Number),
-    /// Depth of first touch of a recording.
+    /// Depth of first touch of a recording, about that of its tool at its site.
     Zero(usize),
+    /// Depth of first touch that a tool at a site (by number) has in all its recordings: an operator who judges late always does.
+    Touch(usize),
     /// Logarithm of a recording's gain.
     Gain(usize),
     /// Logarithm of the instrument's gain.
@@ -119,7 +121,7 @@ pub struct Parameter {
 impl Parameter {
     /// True if the coordinate is a logarithm.
     pub fn is_log(&self) -> bool {
-        !matches!(self.kind, Kind::Zero(_) | Kind::Shift(..))
+        !matches!(self.kind, Kind::Zero(_) | Kind::Touch(_) | Kind::Shift(..))
     }
 
     /// The number itself.
@@ -135,7 +137,7 @@ impl Parameter {
     pub fn recording(&self) -> Option<usize> {
         match self.kind {
             Kind::Zero(r) | Kind::Gain(r) | Kind::Shift(r, _) | Kind::Counts(r) => Some(r),
-            Kind::Tissue(..) | Kind::InstrumentGain => None,
+            Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) => None,
         }
     }
 }
@@ -149,6 +151,8 @@ pub struct Case<'a> {
     pub measured: &'a [Measured],
     /// By recording: whether first touch was judged by somebody.
     pub is_touch_known: &'a [bool],
+    /// By recording: number of its tool at its site.
+    pub place_of: &'a [usize],
     /// By recording: whether it is fitted.
     pub is_used: &'a [bool],
     /// Its noise.
@@ -174,21 +178,7 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
             continue;
         }
         let target = || Target::Recording(measured.name.clone());
-        let depths = measured.moments.iter().map(|m| m.depth_mm);
-        let deepest = depths.filter(|d| d.is_finite()).fold(0.0, f64::max);
-        if deepest > 0.0 {
-            let is_known = case.is_touch_known[recording];
-            let sd = zero_sd(case, (is_known, deepest));
-            all.push(Parameter {
-                kind: Kind::Zero(recording),
-                name: "contact_zero_mm",
-                target: target(),
-                start: 0.0,
-                bounds: (-MOST_TOUCH * sd, (MOST_TOUCH * sd).min(0.8 * deepest)),
-                prior: Some(sd),
-                step: 1e-3 * deepest,
-            });
-        }
+        all.extend(touch(case, recording));
         let is_scaled = measured.is_calibrated && carries_force(measured);
         if is_scaled && case.noise.gain > 0.0 {
             all.push(gain(
@@ -232,14 +222,51 @@ fn carries_force(measured: &Measured) -> bool {
     measured.samples.iter().any(|s| is_force(s.quantity))
 }
 
-/// Standard deviation of first touch: what repeats show where they can, else what an operator does.
-fn zero_sd(case: Case<'_>, (is_known, deepest): (bool, f64)) -> f64 {
-    if !is_known {
-        return UNKNOWN_TOUCH * deepest;
+/// First touch of a recording, and before it that of its tool at its site where this is the first of its recordings.
+///
+/// Repeats tell how first touch differs between them, but not by how much it is off in all of them.
+fn touch(case: Case<'_>, recording: usize) -> Vec<Parameter> {
+    let deepest = |r: usize| {
+        let depths = case.measured[r].moments.iter().map(|m| m.depth_mm);
+        depths.filter(|d| d.is_finite()).fold(0.0, f64::max)
+    };
+    let deep = deepest(recording);
+    if deep <= 0.0 {
+        return Vec::new();
     }
     let sheet = case.instrument.and_then(|s| s.position_mm);
-    let judged = sheet.unwrap_or(TOUCH).min(0.25 * deepest);
-    judged.max(case.noise.zero_mm.unwrap_or(0.0))
+    let judged = match case.is_touch_known[recording] {
+        true => sheet.unwrap_or(TOUCH).min(0.25 * deep),
+        false => UNKNOWN_TOUCH * deep,
+    };
+    let one = |kind: Kind, sd: f64| Parameter {
+        kind,
+        name: "contact_zero_mm",
+        target: Target::Recording(case.measured[recording].name.clone()),
+        start: 0.0,
+        bounds: (-MOST_TOUCH * sd, (MOST_TOUCH * sd).min(0.8 * deep)),
+        prior: Some(sd),
+        step: 1e-3 * deep,
+    };
+    let place = case.place_of[recording];
+    let shares = |r: usize| {
+        case.is_used[r] && case.is_touch_known[r] && case.place_of[r] == place && deepest(r) > 0.0
+    };
+    let sharing: Vec<usize> = (0..case.measured.len()).filter(|&r| shares(r)).collect();
+    let between = case
+        .noise
+        .zero_mm
+        .filter(|_| sharing.len() > 1 && sharing.contains(&recording));
+    match between {
+        None => vec![one(Kind::Zero(recording), judged)],
+        Some(between) if sharing[0] == recording => {
+            vec![
+                one(Kind::Touch(place), judged),
+                one(Kind::Zero(recording), between),
+            ]
+        }
+        Some(between) => vec![one(Kind::Zero(recording), between)],
+    }
 }
 
 fn gain(kind: Kind, name: &'static str, target: Target, sd: f64) -> Parameter {
@@ -288,16 +315,21 @@ fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
 
 /// The model's own form of a vector of parameters: materials by region, and what belongs to each recording.
 pub fn setting(
-    tissue: &Tissue,
+    replay: &Replay,
     (parameters, at): (&[Parameter], &[f64]),
-    recordings: usize,
 ) -> (Vec<Material>, Vec<Nuisance>) {
-    let mut materials = tissue.materials.clone();
-    let mut nuisances = vec![Nuisance::none(); recordings];
+    let mut materials = replay.tissue.materials.clone();
+    let mut nuisances = vec![Nuisance::none(); replay.place_of.len()];
     for (parameter, at) in parameters.iter().zip(at) {
         match parameter.kind {
             Kind::Tissue(region, number) => *number.of(&mut materials[region]) = libm::exp(*at),
-            Kind::Zero(r) => nuisances[r].zero_mm = *at,
+            Kind::Zero(r) => nuisances[r].zero_mm += at,
+            Kind::Touch(place) => {
+                let of_place = nuisances.iter_mut().zip(&replay.place_of);
+                of_place
+                    .filter(|(_, p)| **p == place)
+                    .for_each(|(n, _)| n.zero_mm += at);
+            }
             Kind::Gain(r) => nuisances[r].log_gain += at,
             Kind::InstrumentGain => nuisances.iter_mut().for_each(|n| n.log_gain += at),
             Kind::Shift(r, axis) => nuisances[r].shift_mm[axis] = *at,

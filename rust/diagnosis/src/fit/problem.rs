@@ -1,5 +1,7 @@
 //! The function that a fit makes small: whitened residuals of all recordings at given parameters, and their derivatives.
 
+use std::ops::AddAssign;
+
 use nalgebra::DMatrix;
 use thenar_contact::Control;
 
@@ -46,8 +48,7 @@ impl Problem<'_> {
     /// Those of a replay.
     pub fn point(&mut self, at: &[f64], threshold: Option<f64>) -> Result<Point, DiagnosisError> {
         let recordings = self.replay.observed.measured.len();
-        let (materials, nuisances) =
-            setting(&self.replay.tissue, (self.parameters, at), recordings);
+        let (materials, nuisances) = setting(self.replay, (self.parameters, at));
         let mut simulated = Vec::with_capacity(recordings);
         for (recording, nuisance) in nuisances.iter().enumerate() {
             simulated.push(
@@ -94,6 +95,9 @@ impl Problem<'_> {
             .collect();
         let mut jacobian = DMatrix::zeros(self.whitening.len(), self.parameters.len());
         for column in 0..self.parameters.len() {
+            if matches!(self.parameters[column].kind, Kind::Touch(_)) {
+                continue;
+            }
             let only = self.parameters[column].recording();
             for (recording, start) in starts.iter().enumerate() {
                 if only.is_none_or(|only| only == recording) {
@@ -104,7 +108,23 @@ impl Problem<'_> {
                 }
             }
         }
+        self.sum_touches(&mut jacobian);
         Ok(jacobian)
+    }
+
+    /// First touch of a tool moves that of all its recordings.
+    fn sum_touches(&self, jacobian: &mut DMatrix<f64>) {
+        for (column, parameter) in self.parameters.iter().enumerate() {
+            let Kind::Touch(place) = parameter.kind else {
+                continue;
+            };
+            for (other, of) in self.parameters.iter().enumerate() {
+                if matches!(of.kind, Kind::Zero(r) if self.replay.place_of[r] == place) {
+                    let slopes = jacobian.column(other).clone_owned();
+                    jacobian.column_mut(column).add_assign(slopes);
+                }
+            }
+        }
     }
 
     /// Derivatives of one recording's predictions by one parameter.
@@ -127,7 +147,7 @@ impl Problem<'_> {
                     .map(|(s, f)| if is_scaled(s.quantity) { *f } else { 0.0 })
                     .collect());
             }
-            Kind::Tissue(..) | Kind::Zero(_) | Kind::Shift(..) => {}
+            Kind::Tissue(..) | Kind::Zero(_) | Kind::Touch(_) | Kind::Shift(..) => {}
         }
         // Away from the nearer bound.
         let (low, high) = parameter.bounds;
@@ -138,9 +158,7 @@ impl Problem<'_> {
         };
         let mut at = point.at.clone();
         at[column] += step;
-        let recordings = self.replay.observed.measured.len();
-        let (materials, nuisances) =
-            setting(&self.replay.tissue, (self.parameters, &at), recordings);
+        let (materials, nuisances) = setting(self.replay, (self.parameters, &at));
         let moved =
             self.replay
                 .predict(recording, (&materials, &nuisances[recording]), self.control)?;

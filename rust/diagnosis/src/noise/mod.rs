@@ -69,6 +69,8 @@ pub struct Noise {
     pub gain: f64,
     /// Standard deviation between repeats of the depth of first touch, mm; None where it cannot be told.
     pub zero_mm: Option<f64>,
+    /// By [`CHANNELS`]: standard deviation of what noise adds from sample to sample, over what the memory says.
+    pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
     /// What a reader should be told.
@@ -109,6 +111,7 @@ pub fn noise(
         degrees: (degrees > 0.0).then_some(degrees),
         gain: forces.or(scatter[3].as_ref()).map_or(0.0, |s| s.gain),
         zero_mm: forces.and_then(|s| s.zero_mm),
+        step: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(1.0, |s| s.step)),
         drawn_from: [0, 1, 2, 3, 4].map(|c| {
             scatter[c]
                 .as_ref()

@@ -14,7 +14,9 @@ const KEPT_VARIANCE: f64 = 0.9935;
 /// Fewest samples of a channel from which noise is told.
 const LEAST_SAMPLES: usize = 8;
 /// Ratios of memory to sampling interval that are tried.
-const MEMORIES: [f64; 12] = [0.0, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0];
+const MEMORIES: [f64; 16] = [
+    0.0, 0.3, 0.5, 0.7, 0.9, 1.2, 1.5, 1.9, 2.4, 3.0, 3.8, 4.8, 6.0, 7.5, 9.5, 12.0,
+];
 
 /// Recordings of one protocol with one tool at one place, by number; two or more.
 pub type Group = Vec<usize>;
@@ -52,7 +54,9 @@ pub struct Scatter {
     pub gain: f64,
     /// Standard deviation between repeats of first touch, mm.
     pub zero_mm: Option<f64>,
-    /// Whitened deviations, outliers among them, of variance 1 but for those.
+    /// Standard deviation of whitened deviations: 1 if noise forgets itself as that memory says.
+    pub step: f64,
+    /// Whitened deviations over it, outliers among them.
     pub drawn_from: Vec<f64>,
 }
 
@@ -67,6 +71,7 @@ impl Scatter {
             memory_s: 0.0,
             gain,
             zero_mm: None,
+            step: 1.0,
             drawn_from: Vec::new(),
         }
     }
@@ -137,6 +142,7 @@ impl<'a> Repeats<'a> {
             ((own * own * n + pooled * pooled * POOLED_DEGREES) / (n + POOLED_DEGREES)).sqrt()
         };
         let between = between(&all, &shares, memory_s);
+        let (step, drawn_from) = pooled_steps(&all, memory_s);
         let of_group = all.iter().zip(&shares);
         let each = of_group.flat_map(|(d, s)| d.group.iter().map(move |k| (*k, shrunk(s))));
         Some(Scatter {
@@ -147,7 +153,8 @@ impl<'a> Repeats<'a> {
             memory_s,
             gain: between.x,
             zero_mm: (self.channel == Channel::Force).then_some(between.y),
-            drawn_from: all.iter().flat_map(|d| d.whitened(memory_s)).collect(),
+            step,
+            drawn_from,
         })
     }
 }
@@ -226,41 +233,22 @@ impl Deviations {
         (sigma / self.most, ((m - 1.0) * (n - 2.0) * worth).max(1.0))
     }
 
-    /// Deviations made independent, over their standard deviation.
-    fn whitened(&self, memory_s: f64) -> Vec<f64> {
-        let sigma = spread(&self.rest.iter().flatten().copied().collect::<Vec<f64>>());
+    /// Deviations made independent, over the standard deviation of the noise, by repeat.
+    fn whitened(&self, memory_s: f64) -> Vec<Vec<f64>> {
+        let sigma = spread(&self.rest.concat());
         let steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
         let series = |rest: &Vec<f64>| -> Vec<f64> {
-            (0..rest.len())
-                .map(|k| match k {
-                    0 => rest[0] / sigma,
-                    _ => {
-                        let carry = carry(steps[k - 1], memory_s);
-                        (rest[k] - carry * rest[k - 1]) / sigma / (1.0 - carry * carry).sqrt()
-                    }
+            (1..rest.len())
+                .map(|k| {
+                    let carry = carry(steps[k - 1], memory_s);
+                    (rest[k] - carry * rest[k - 1]) / sigma / (1.0 - carry * carry).sqrt()
                 })
                 .collect()
         };
-        let mut all: Vec<Vec<f64>> = self.rest.iter().map(series).collect();
-        let size = spread(&all.concat());
-        if size.is_nan() || size == 0.0 {
-            return Vec::new();
+        match sigma > 0.0 {
+            true => self.rest.iter().map(series).collect(),
+            false => Vec::new(),
         }
-        all.iter_mut().flatten().for_each(|w| *w /= size);
-        // An outlier moves the mean, and so shows in every repeat: it is counted where it is largest.
-        let mut kept = Vec::new();
-        for k in 0..self.time.len() {
-            let here = all.iter().map(|series| series[k]);
-            let most = here.clone().fold(
-                0.0,
-                |most: f64, w| if w.abs() > most.abs() { w } else { most },
-            );
-            match most.abs() > OUTLIER {
-                true => kept.push(most),
-                false => kept.extend(here),
-            }
-        }
-        kept
     }
 
     /// Correlation of neighboring samples.
@@ -268,6 +256,33 @@ impl Deviations {
         let mut steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
         carry(median(&mut steps), memory_s)
     }
+}
+
+/// Standard deviation of the whitened deviations of all groups, and those over it.
+fn pooled_steps(all: &[Deviations], memory_s: f64) -> (f64, Vec<f64>) {
+    let groups: Vec<Vec<Vec<f64>>> = all.iter().map(|d| d.whitened(memory_s)).collect();
+    let size = spread(&groups.concat().concat());
+    if size.is_nan() || size == 0.0 {
+        return (1.0, Vec::new());
+    }
+    let mut kept = Vec::new();
+    for group in groups.iter().filter(|group| !group.is_empty()) {
+        for k in 0..group[0].len() {
+            // An outlier moves the mean, and so shows in every repeat: it is counted where it is largest.
+            let here = group.iter().map(|series| series[k] / size);
+            let most = here
+                .clone()
+                .fold(0.0, |most: f64, w| match w.abs() > most.abs() {
+                    true => w,
+                    false => most,
+                });
+            match most.abs() > OUTLIER {
+                true => kept.push(most),
+                false => kept.extend(here),
+            }
+        }
+    }
+    (size, kept)
 }
 
 /// Correlation of noise over `step`, s, if it forgets itself in `memory_s`.
@@ -323,13 +338,16 @@ fn minus_log_likelihood(series: &[f64], of: &Deviations, (memory_s, sigma): (f64
     if sigma == 0.0 {
         return 0.0;
     }
-    let scaled = |v: f64| (v / sigma).clamp(-OUTLIER, OUTLIER);
-    let mut sum = 0.5 * scaled(series[0]).powi(2);
+    let (mut sum, is_outlier) = (0.0, |v: f64| v.abs() > OUTLIER * sigma);
     for k in 1..series.len() {
+        // An outlier is remembered by nothing.
+        if is_outlier(series[k]) || is_outlier(series[k - 1]) {
+            continue;
+        }
         let carry = carry(of.time[k] - of.time[k - 1], memory_s);
         let left = 1.0 - carry * carry;
-        let step = scaled(series[k]) - carry * scaled(series[k - 1]);
-        sum += 0.5 * (step * step / left + left.ln());
+        let step = (series[k] - carry * series[k - 1]) / sigma;
+        sum += 0.5 * (step * step / left + libm::log(left));
     }
     sum
 }

@@ -17,6 +17,8 @@ pub struct Whitening {
     sigma: Vec<f64>,
     /// Sample before it whose noise it remembers, and how much of it.
     before: Vec<Option<(usize, f64)>>,
+    /// By channel, what is left to divide by.
+    step: [f64; CHANNELS.len()],
     /// False for samples that are left out.
     is_used: Vec<bool>,
 }
@@ -39,6 +41,7 @@ impl Whitening {
             channel: Vec::new(),
             sigma: Vec::new(),
             before: Vec::new(),
+            step: noise.step,
             is_used: Vec::new(),
         };
         for (recording, one) in measured.iter().enumerate() {
@@ -144,7 +147,10 @@ impl Whitening {
 
     fn differenced(&self, k: usize, scaled: &dyn Fn(usize) -> f64) -> f64 {
         match self.before[k] {
-            Some((j, carry)) => (scaled(k) - carry * scaled(j)) / (1.0 - carry * carry).sqrt(),
+            Some((j, carry)) => {
+                let step = self.step[self.channel[k] as usize] * (1.0 - carry * carry).sqrt();
+                (scaled(k) - carry * scaled(j)) / step
+            }
             None => scaled(k),
         }
     }

@@ -78,7 +78,8 @@ pub struct Replay {
     /// The recordings.
     pub observed: Observed,
     places: Vec<Place>,
-    place_of: Vec<usize>,
+    /// By recording: number of its tool at its site.
+    pub place_of: Vec<usize>,
     readers: Vec<Option<Reader>>,
     effects: Vec<ActiveEffect>,
 }
