@@ -84,7 +84,11 @@ def bottle():
 
 
 def grip():
-    """A handlebar grip of 35 mm at its thickest, 130 mm long, a collar at both ends; its axis along z, centered."""
+    """A handlebar grip of 35 mm at its thickest, 130 mm long, a collar at both ends; its axis along z, centered.
+
+    The usual grip has 32 mm. Around that the palm folds further: 1.06 % of the hand's triangles then cut each other,
+    most of them in the fold below the fingers; at 35 mm it is 0.90 %.
+    """
     profile = [
         (11.5, -66), (20.5, -66), (20.5, -61), (16.7, -59.5), (16.1, -40), (17.6, -5), (16.7, 35), (15.8, 56),
         (19.4, 58.5), (19.4, 63), (11.5, 64),

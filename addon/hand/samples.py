@@ -209,7 +209,7 @@ SAMPLES = {
     ),
     "cylinder_48": _cylinder(48, 337.0, (-74.0, 13.0, 430.0)),
     "cylinder_60": _cylinder(60, 260.0, (-80.0, 13.0, 440.0)),
-    "cylinder_100": _cylinder(100, 122.0, (-94.0, 13.0, 540.0)),
+    "cylinder_100": _cylinder(100, 122.0, (112.0, 16.0, 590.0)),
     "handlebar": Sample(
         "Handlebar",
         "Grip",

@@ -21,7 +21,7 @@ class THENAR_UL_regions(bpy.types.UIList):
         row = split.row(align=True)
         pick = row.operator("thenar.select_region", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         pick.index = index
-        row.label(text=title(item.name))
+        row.label(text=brief(item.name))
         columns(split, item)
 
 
@@ -32,6 +32,11 @@ SHARE = 0.56
 def title(name):
     """A region's name for reading."""
     return name.removesuffix("_pad").replace("_", " ").capitalize()
+
+
+def brief(name):
+    """A region's name beside its numbers: a sidebar of default width cuts "Thumb proximal" and "Distal palm radial"."""
+    return title(name).replace("proximal", "prox.").replace("Distal palm", "Palm")
 
 
 def columns(split, item):
