@@ -7,6 +7,8 @@ from . import native
 
 _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
+_OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
+"""Stages that act on the skin; instruments act on readings, and have no place on a hand."""
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
 """Amplitudes to start from where the most is out of reason. Relaxation: palms, Shojaeizadeh 2022; the others: ours."""
 
@@ -15,8 +17,8 @@ _LAWS = {}
 
 
 def offered():
-    """Catalogue rows by name, in the order in which they compose."""
-    return {row["name"]: row for row in native.effects()}
+    """Catalogue rows of the skin's effects by name, in the order in which they compose."""
+    return {row["name"]: row for row in native.effects() if row["stage"] in _OF_THE_SKIN}
 
 
 def acts_over_time(name):

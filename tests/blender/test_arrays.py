@@ -7,6 +7,8 @@ import thenar_blender
 
 SOURCES = [path for path in Path(thenar_blender.__file__).parent.rglob("*.py") if "hand" not in path.parts[-2:-1]]
 ELEMENTS = {"vertices", "loops", "polygons", "edges", "points", "loop_triangles", "vertex_normals"}
+# Weights have no array access, and the nodes that read them whole touch the scene, which a digest of it must not.
+ALLOWED = {("regions.py", "vertices")}
 
 
 def walked(tree):
@@ -28,6 +30,6 @@ def test_no_loop_over_elements():
         f"{path.name}:{line} walks over {name}"
         for path in SOURCES
         for name, line in walked(ast.parse(path.read_text(encoding="utf-8")))
-        if name in ELEMENTS
+        if name in ELEMENTS and (path.name, name) not in ALLOWED
     ]
     assert len(SOURCES) > 30 and not found, found
