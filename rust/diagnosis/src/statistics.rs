@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-/// Density of the standard normal law.
-pub fn normal_density(z: f64) -> f64 {
-    libm::exp(-0.5 * z * z) / (2.0 * PI).sqrt()
+/// Logarithm of the density of the standard normal law.
+pub fn log_normal_density(z: f64) -> f64 {
+    -0.5 * (z * z + libm::log(2.0 * PI))
 }
 
 /// Logarithm of the standard normal distribution function; in the far lower tail by its asymptotic series.

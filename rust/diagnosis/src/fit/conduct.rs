@@ -252,7 +252,7 @@ impl Fitting {
         let mut whitened = whitening.derivatives(&descent.jacobian, &point.whitened);
         let mut residual = point.whitened.residual.clone();
         let counts: Vec<bool> = (0..whitening.len())
-            .map(|k| whitening.uses(k) && !whitening.agrees(k, &simulated))
+            .map(|k| whitening.counts(k, simulated[k]))
             .collect();
         for (k, counts) in counts.iter().enumerate() {
             if !counts {

@@ -24,9 +24,17 @@ pub fn estimates(
     noise: &Noise,
 ) -> Vec<Estimate> {
     let parameters = problem.parameters;
-    let own = (problem.whitening.used().saturating_sub(parameters.len())).max(1) as f64;
-    let misfit = point.whitened.residual.iter();
-    let misfit: f64 = misfit.map(|r| huber(*r, point.threshold)).sum();
+    let each = point
+        .whitened
+        .residual
+        .iter()
+        .zip(point.simulated.iter().flatten())
+        .enumerate();
+    let counting = each.filter(|(k, (_, f))| problem.whitening.counts(*k, **f));
+    let (misfit, count) = counting.fold((0.0, 0), |(sum, n), (_, (r, _))| {
+        (sum + huber(*r, point.threshold), n + 1)
+    });
+    let own = usize::saturating_sub(count, parameters.len()).max(1) as f64;
     let excess = (misfit / own).max(1.0).sqrt();
     let t = t_95(noise.degrees.unwrap_or(own));
     let covariance = Covariance::new(&system.normal);
@@ -82,6 +90,10 @@ impl Covariance {
         let n = normal.nrows();
         let scale: Vec<f64> = (0..n).map(|k| normal[(k, k)].max(0.0).sqrt()).collect();
         let known: Vec<usize> = (0..n).filter(|&k| scale[k] > 0.0).collect();
+        let mut matrix = DMatrix::from_diagonal_element(n, n, f64::INFINITY);
+        if known.is_empty() {
+            return Covariance { matrix };
+        }
         let scaled = DMatrix::from_fn(known.len(), known.len(), |a, b| {
             let (i, j) = (known[a], known[b]);
             normal[(i, j)] / (scale[i] * scale[j])

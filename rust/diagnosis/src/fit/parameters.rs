@@ -26,6 +26,8 @@ const UNKNOWN_TOUCH: f64 = 0.15;
 const MOST_TOUCH: f64 = 6.0;
 /// Standard deviation of where a mat lies, mm, where the data sheet does not say.
 const POSITION: f64 = 1.0;
+/// Standard deviation of how a mat is turned, rad: 2 degrees, as mats that are taped on by hand.
+const TURN: f64 = 0.035;
 /// A mat may lie this many standard deviations off.
 const MOST_POSITION: f64 = 4.0;
 /// Bounds of counts per kPa as logarithms.
@@ -44,8 +46,8 @@ pub enum Kind {
     Gain(usize),
     /// Logarithm of the instrument's gain.
     InstrumentGain,
-    /// Shift of a recording's mat along one of two axes.
-    Shift(usize, usize),
+    /// Shift of a recording's mat along its first (0) or second (1) direction, or its turn (2).
+    Pose(usize, usize),
     /// Logarithm of counts per kPa of a recording.
     Counts(usize),
 }
@@ -121,7 +123,7 @@ pub struct Parameter {
 impl Parameter {
     /// True if the coordinate is a logarithm.
     pub fn is_log(&self) -> bool {
-        !matches!(self.kind, Kind::Zero(_) | Kind::Touch(_) | Kind::Shift(..))
+        !matches!(self.kind, Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..))
     }
 
     /// The number itself.
@@ -136,7 +138,7 @@ impl Parameter {
     /// The one recording it matters to; None: all.
     pub fn recording(&self) -> Option<usize> {
         match self.kind {
-            Kind::Zero(r) | Kind::Gain(r) | Kind::Shift(r, _) | Kind::Counts(r) => Some(r),
+            Kind::Zero(r) | Kind::Gain(r) | Kind::Pose(r, _) | Kind::Counts(r) => Some(r),
             Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) => None,
         }
     }
@@ -201,20 +203,29 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
         }
         if measured.mat.is_some() {
             let sd = sheet.and_then(|s| s.position_mm).unwrap_or(POSITION);
-            for (axis, name) in ["pose_x_mm", "pose_y_mm"].into_iter().enumerate() {
-                all.push(Parameter {
-                    kind: Kind::Shift(recording, axis),
-                    name,
-                    target: target(),
-                    start: 0.0,
-                    bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
-                    prior: Some(sd),
-                    step: 0.05,
-                });
-            }
+            all.extend(pose(recording, target(), sd));
         }
     }
     all
+}
+
+/// Where a mat lies: two shifts, in mm about `sd`, and a turn.
+fn pose(recording: usize, target: Target, sd: f64) -> [Parameter; 3] {
+    let one = |(axis, name, sd, step): (usize, &'static str, f64, f64)| Parameter {
+        kind: Kind::Pose(recording, axis),
+        name,
+        target: target.clone(),
+        start: 0.0,
+        bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
+        prior: Some(sd),
+        step,
+    };
+    [
+        (0, "pose_x_mm", sd, 0.05),
+        (1, "pose_y_mm", sd, 0.05),
+        (2, "pose_turn_rad", TURN, 0.01),
+    ]
+    .map(one)
 }
 
 fn carries_force(measured: &Measured) -> bool {
@@ -332,7 +343,8 @@ pub fn setting(
             }
             Kind::Gain(r) => nuisances[r].log_gain += at,
             Kind::InstrumentGain => nuisances.iter_mut().for_each(|n| n.log_gain += at),
-            Kind::Shift(r, axis) => nuisances[r].shift_mm[axis] = *at,
+            Kind::Pose(r, 2) => nuisances[r].placement.turn_rad = *at,
+            Kind::Pose(r, axis) => nuisances[r].placement.shift_mm[axis] = *at,
             Kind::Counts(r) => nuisances[r].log_counts = *at,
         }
     }

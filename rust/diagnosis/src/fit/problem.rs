@@ -57,7 +57,7 @@ impl Problem<'_> {
             );
         }
         let whitened = self.whitening.residuals(&simulated.concat());
-        let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual));
+        let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual, &simulated));
         let misfit: f64 = whitened.residual.iter().map(|r| huber(*r, threshold)).sum();
         let prior = self.parameters.iter().zip(at);
         let prior: f64 = prior
@@ -73,9 +73,10 @@ impl Problem<'_> {
     }
 
     /// Where a residual stands out from the bulk of them.
-    fn threshold(&self, residual: &[f64]) -> f64 {
-        let used = (0..residual.len()).filter(|&k| self.whitening.uses(k));
-        let mut sizes: Vec<f64> = used.map(|k| residual[k].abs()).collect();
+    fn threshold(&self, residual: &[f64], simulated: &[Vec<f64>]) -> f64 {
+        let each = residual.iter().zip(simulated.iter().flatten()).enumerate();
+        let counting = each.filter(|(k, (_, f))| self.whitening.counts(*k, **f));
+        let mut sizes: Vec<f64> = counting.map(|(_, (r, _))| r.abs()).collect();
         let bulk = 1.4826 * crate::observe::scatter::median(&mut sizes);
         HUBER * if bulk.is_finite() { bulk.max(1.0) } else { 1.0 }
     }
@@ -147,7 +148,7 @@ impl Problem<'_> {
                     .map(|(s, f)| if is_scaled(s.quantity) { *f } else { 0.0 })
                     .collect());
             }
-            Kind::Tissue(..) | Kind::Zero(_) | Kind::Touch(_) | Kind::Shift(..) => {}
+            Kind::Tissue(..) | Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..) => {}
         }
         // Away from the nearer bound.
         let (low, high) = parameter.bounds;

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::repeats::carry;
 use super::{CHANNELS, Channel, Noise};
 use crate::observe::{Censoring, Measured};
-use crate::statistics::{log_normal_cdf, normal_density};
+use crate::statistics::{log_normal_cdf, log_normal_density};
 
 /// How each sample's residual is whitened: `w_k = (r_k / s_k - c r_j / s_j) / sqrt(1 - c^2)`, j the sample before it.
 #[derive(Debug, Clone, PartialEq)]
@@ -101,7 +101,8 @@ impl Whitening {
             let root = (-2.0 * log).sqrt();
             residual[k] = -sign * root;
             censored_slope[k] = match root > 1e-8 {
-                true => -normal_density(z) / (libm::exp(log) * root),
+                // The density over the probability, which both vanish far from the limit.
+                true => -libm::exp(log_normal_density(z) - log) / root,
                 false => 0.0,
             };
         }
@@ -126,23 +127,19 @@ impl Whitening {
         whitened
     }
 
-    /// Whether a sample is censored and the simulation agrees with it.
-    pub fn agrees(&self, k: usize, simulated: &[f64]) -> bool {
-        match self.censoring[k] {
+    /// Whether a sample says something: it is in use, and seen or censored against what the simulation says.
+    pub fn counts(&self, k: usize, simulated: f64) -> bool {
+        let agrees = match self.censoring[k] {
             Censoring::Seen => false,
-            Censoring::AtMost => simulated[k] <= self.measured[k],
-            Censoring::AtLeast => simulated[k] >= self.measured[k],
-        }
+            Censoring::AtMost => simulated <= self.measured[k],
+            Censoring::AtLeast => simulated >= self.measured[k],
+        };
+        self.is_used[k] && !agrees
     }
 
     /// The channel of a sample.
     pub fn channel(&self, k: usize) -> Channel {
         self.channel[k]
-    }
-
-    /// Whether a sample is in use.
-    pub fn uses(&self, k: usize) -> bool {
-        self.is_used[k]
     }
 
     fn differenced(&self, k: usize, scaled: &dyn Fn(usize) -> f64) -> f64 {

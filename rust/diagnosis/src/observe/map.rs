@@ -90,7 +90,7 @@ fn mat(kept: &[usize], placed: &[Option<PlacedSensel>], seen: &Seen<'_>) -> Mat 
 /// Where readings are censored, in the map's unit.
 struct Limits {
     clipped_from: f64,
-    /// Readings of this and less are not passed on; below zero where nothing is known.
+    /// Readings of this and less are not passed on; 0 where nothing is known, since no mat shows less.
     threshold: f64,
 }
 
@@ -105,9 +105,7 @@ impl Limits {
         let clips = [seen.map.clipped_from, sheet(seen.saturation)];
         Limits {
             clipped_from: clips.into_iter().flatten().fold(f64::INFINITY, f64::min),
-            threshold: stated
-                .or(sheet(seen.threshold))
-                .unwrap_or(f64::NEG_INFINITY),
+            threshold: stated.or(sheet(seen.threshold)).unwrap_or(0.0),
         }
     }
 

@@ -4,20 +4,23 @@ mod interpolation;
 mod followed;
 mod press_table;
 mod reading;
+mod shown;
 mod tissue;
 mod tool;
 
 use std::sync::Arc;
 
 use thenar_contact::effects::{Effect, Stage};
-use thenar_contact::{ActiveEffect, Control, Material};
+use thenar_contact::instrument::Placement;
+use thenar_contact::{ActiveEffect, Control, Keep, Material};
 use thenar_recordings::Study;
 use thenar_surface::{Product, Vec3};
 
 use crate::DiagnosisError;
-use crate::observe::{Measured, Observed, Quantity};
+use crate::observe::{Measured, Observed};
 use press_table::{Basis, press_table};
-use reading::{Reader, Readings};
+use reading::{Reader, misplaced};
+use shown::AtSkin;
 pub use tissue::Tissue;
 
 /// Depth that is added to the deepest of a ladder for a contact zero that moves, mm and share.
@@ -34,8 +37,8 @@ pub struct Nuisance {
     pub zero_mm: f64,
     /// Natural logarithm of the factor on force and pressure.
     pub log_gain: f64,
-    /// Shift of the mat across the travel, mm.
-    pub shift_mm: [f64; 2],
+    /// How the mat lies otherwise than the study says.
+    pub placement: Placement,
     /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
     pub log_counts: f64,
 }
@@ -46,7 +49,7 @@ impl Nuisance {
         Nuisance {
             zero_mm: 0.0,
             log_gain: 0.0,
-            shift_mm: [0.0; 2],
+            placement: Placement::default(),
             log_counts: 0.0,
         }
     }
@@ -81,7 +84,10 @@ pub struct Replay {
     /// By recording: number of its tool at its site.
     pub place_of: Vec<usize>,
     readers: Vec<Option<Reader>>,
+    /// Effects on the skin.
     effects: Vec<ActiveEffect>,
+    /// Effects of the instrument.
+    instrument: Vec<ActiveEffect>,
 }
 
 impl Replay {
@@ -115,8 +121,13 @@ impl Replay {
         let readers = observed
             .measured
             .iter()
-            .map(|measured| measured.mat.clone().map(Reader::new))
-            .collect();
+            .map(|m| {
+                m.mat
+                    .as_ref()
+                    .map(|mat| Reader::new(mat, &m.name))
+                    .transpose()
+            })
+            .collect::<Result<Vec<Option<Reader>>, DiagnosisError>>()?;
         for place in &mut places {
             // Where no depth is known a force is sought; soft tissue yields half its thickness at most.
             if place.deepest == 0.0 {
@@ -133,10 +144,11 @@ impl Replay {
             place_of,
             readers,
             effects: Vec::new(),
+            instrument: Vec::new(),
         })
     }
 
-    /// Effects switched on in every later prediction, in place of those before.
+    /// Effects switched on in every later prediction, in place of those before: those of the skin and those of the instrument.
     ///
     /// # Errors
     /// What the contact model says of an effect's numbers.
@@ -145,9 +157,16 @@ impl Replay {
         effects: &[ActiveEffect],
         control: &Control<'_>,
     ) -> Result<(), DiagnosisError> {
-        let changed = self.tissue.skin.set_effects(effects.to_vec(), control);
+        let is_instrument = |e: &&ActiveEffect| e.entry().is_instrument();
+        let of_skin: Vec<ActiveEffect> = effects
+            .iter()
+            .filter(|e| !is_instrument(e))
+            .cloned()
+            .collect();
+        let changed = self.tissue.skin.set_effects(of_skin.clone(), control);
         changed.map_err(DiagnosisError::of_contact("the effects"))?;
-        self.effects = effects.to_vec();
+        self.effects = of_skin;
+        self.instrument = effects.iter().filter(is_instrument).cloned().collect();
         Ok(())
     }
 
@@ -203,64 +222,53 @@ impl Replay {
         if self.observed.measured[recording].samples.is_empty() {
             return Ok(Vec::new());
         }
-        let raw = match self.remembers() {
+        let at_skin = match self.remembers() {
             true => self.follow(recording, (materials, nuisance), control)?,
             false => self.look_up(recording, (materials, nuisance), control)?,
         };
-        Ok(self.shown(recording, nuisance, raw))
+        self.shown(recording, nuisance, at_skin)
     }
 
-    /// What an instrument with that gain makes of the values.
-    fn shown(&self, recording: usize, nuisance: &Nuisance, mut values: Vec<f64>) -> Vec<f64> {
-        let samples = &self.observed.measured[recording].samples;
-        let gain = libm::exp(nuisance.log_gain);
-        let counts = libm::exp(nuisance.log_gain + nuisance.log_counts);
-        for (value, sample) in values.iter_mut().zip(samples) {
-            match sample.quantity {
-                Quantity::Force | Quantity::TangentialForce => *value *= gain,
-                Quantity::Pressure(_) => *value *= counts,
-                Quantity::Area | Quantity::Scan(_) => {}
-            }
-        }
-        values
-    }
-
-    /// Predictions from the ladder of the recording's tool and place.
+    /// What happens at the skin, from the ladder of the recording's tool and place.
     fn look_up(
         &mut self,
         recording: usize,
         (materials, nuisance): (&[Material], &Nuisance),
         control: &Control<'_>,
-    ) -> Result<Vec<f64>, DiagnosisError> {
+    ) -> Result<AtSkin, DiagnosisError> {
         let (basis, weights) = self.basis(self.place_of[recording], materials, control)?;
-        let measured = &self.observed.measured[recording];
-        let place = &self.places[self.place_of[recording]];
-        let depths: Vec<f64> = measured
-            .moments
-            .iter()
-            .map(|moment| match moment.depth_mm.is_nan() {
-                false => moment.depth_mm - nuisance.zero_mm,
+        let moments = self.observed.measured[recording].moments.iter();
+        let known = self.depths(recording, nuisance);
+        let depths: Vec<f64> = moments
+            .zip(&known)
+            .map(|(moment, depth)| match depth.is_nan() {
+                false => *depth,
                 true => basis.depth_at(&weights, moment.demand_n),
             })
             .collect();
-        let readings = match &mut self.readers[recording] {
-            Some(reader) => Some(
-                reader.readings((&basis, &self.tissue), (place.direction, nuisance.shift_mm))?,
-            ),
-            None => None,
+        let placement = misplaced(nuisance.placement, &self.instrument);
+        let frames = match &mut self.readers[recording] {
+            Some(reader) => {
+                let (readings, sensels) =
+                    (reader.readings(&basis, placement), reader.sensels().len());
+                let frame = |depth: &f64| {
+                    (0..sensels)
+                        .map(|s| readings.at(s, &weights, *depth))
+                        .collect()
+                };
+                depths.iter().map(frame).collect()
+            }
+            None => Vec::new(),
         };
-        let value = |quantity: Quantity, depth: f64| match quantity {
-            Quantity::Force => basis.force_at(&weights, depth),
-            Quantity::Area => basis.area_at(depth),
-            Quantity::Pressure(sensel) => readings.as_ref().map_or(0.0, |r: &Arc<Readings>| {
-                r.at(sensel as usize, &weights, depth)
-            }),
-            Quantity::TangentialForce | Quantity::Scan(_) => 0.0,
-        };
-        let samples = measured.samples.iter();
-        Ok(samples
-            .map(|s| value(s.quantity, depths[s.moment as usize]))
-            .collect())
+        Ok(AtSkin {
+            force: depths
+                .iter()
+                .map(|d| basis.force_at(&weights, *d))
+                .collect(),
+            tangential: vec![0.0; depths.len()],
+            area: depths.iter().map(|d| basis.area_at(*d)).collect(),
+            frames,
+        })
     }
 
     /// The ladder at a place and the weights of its parts at these materials.
@@ -303,7 +311,7 @@ impl Replay {
                 };
                 let one = self.press(at, &[unit], control)?;
                 let two = self.press(at, &[twice], control)?;
-                Basis::linear(one, &two, unit.g0_mpa)
+                Basis::linear(one, two, unit.g0_mpa)
             }
         };
         let (basis, kept) = (Arc::new(basis), &mut self.places[at].kept);
@@ -341,10 +349,15 @@ impl Replay {
             cancelled: control.cancelled,
             progress: &|_, _| {},
         };
+        let has_mat = |r: usize| self.place_of[r] == at && self.readers[r].is_some();
+        let keep = match (0..self.place_of.len()).any(has_mat) {
+            true => Keep::Loads,
+            false => Keep::Totals,
+        };
         press_table(
             &mut self.tissue.skin,
             (&place.tool, place.direction),
-            place.deepest,
+            (place.deepest, keep),
             (&place.title, &quiet),
         )
     }

@@ -1,5 +1,6 @@
 //! A tool pressed to a ladder of depths: what a model without memory needs to answer any protocol.
 
+use thenar_contact::instrument::PointLoad;
 use thenar_contact::{Control, Demand, Keep, Protocol, Row, Run, Skin};
 use thenar_surface::{Product, Vec3};
 
@@ -19,12 +20,10 @@ pub struct PressTable {
     pub force: Vec<f64>,
     /// Contact area, mm2.
     pub area: Vec<f64>,
-    /// Pressure (MPa) of the vertices in contact.
-    pub pressure: Vec<Vec<(u32, f64)>>,
+    /// What presses on the tool, in its own frame; empty unless a mat lies on it.
+    pub loads: Vec<Vec<PointLoad>>,
     /// By region, whether it bears force at the deepest rung.
     pub touched: Vec<bool>,
-    /// Travel of the tool from where it was given to first touch, mm.
-    pub touch_offset: f64,
 }
 
 /// Presses `tool` along `direction` to `deepest`, mm, in steps.
@@ -34,7 +33,7 @@ pub struct PressTable {
 pub fn press_table(
     skin: &mut Skin,
     (tool, direction): (&Product, Vec3),
-    deepest: f64,
+    (deepest, keep): (f64, Keep),
     (what, control): (&str, &Control<'_>),
 ) -> Result<PressTable, DiagnosisError> {
     let roots: Vec<f64> = (0..=RUNGS)
@@ -53,7 +52,7 @@ pub fn press_table(
         product: tool,
         posed: None,
         protocol: &protocol,
-        keep: Keep::Pressure,
+        keep,
     };
     let course = skin
         .run(&run, control)
@@ -65,8 +64,7 @@ pub fn press_table(
         touched: course.steps.last().map_or_else(Vec::new, |step| {
             step.region_force.iter().map(|f| *f > 0.0).collect()
         }),
-        touch_offset: course.touch_offset.unwrap_or(0.0),
-        pressure: course.steps.into_iter().map(|step| step.pressure).collect(),
+        loads: course.steps.into_iter().map(|step| step.loads).collect(),
     })
 }
 
@@ -82,12 +80,12 @@ pub struct Basis {
     pub force: Vec<Table>,
     /// Contact area.
     pub area: Table,
-    /// By part and rung: pressure of the vertices, MPa.
-    pub pressure: Vec<Vec<Vec<(u32, f64)>>>,
+    /// By press and rung: what presses on the tool.
+    pub loads: Vec<Vec<Vec<PointLoad>>>,
+    /// By part: how much of each press it takes.
+    pub mix: Vec<Vec<f64>>,
     /// By region, whether it bears force at the deepest rung.
     pub touched: Vec<bool>,
-    /// Travel to first touch, mm.
-    pub touch_offset: f64,
 }
 
 impl Basis {
@@ -96,31 +94,28 @@ impl Basis {
         Basis {
             force: vec![Table::new(&table.roots, table.force)],
             area: Table::new(&table.roots, table.area),
-            pressure: vec![table.pressure],
+            loads: vec![table.loads],
+            mix: vec![vec![1.0]],
             roots: table.roots,
             touched: table.touched,
-            touch_offset: table.touch_offset,
         }
     }
 
     /// Two parts, to be weighted with G0 and Glim: from the press with G0 = Glim = `unit` and that with Glim twice as large.
-    pub fn linear(one: PressTable, two: &PressTable, unit: f64) -> Basis {
-        let rest = |one: f64, two: f64| (2.0 * one - two) / unit;
-        let limit = |one: f64, two: f64| (two - one) / unit;
-        let split = |part: &dyn Fn(f64, f64) -> f64| {
-            let force = one.force.iter().zip(&two.force).map(|(a, b)| part(*a, *b));
-            let pressure = one.pressure.iter().zip(&two.pressure);
-            let pressure = pressure.map(|(a, b)| joined(a, b, part)).collect();
-            (Table::new(&one.roots, force.collect()), pressure)
+    pub fn linear(one: PressTable, two: PressTable, unit: f64) -> Basis {
+        let mix = vec![vec![2.0 / unit, -1.0 / unit], vec![-1.0 / unit, 1.0 / unit]];
+        let force = |part: &Vec<f64>| {
+            let both = one.force.iter().zip(&two.force);
+            let values = both.map(|(a, b)| part[0] * a + part[1] * b).collect();
+            Table::new(&one.roots, values)
         };
-        let ((force_0, pressure_0), (force_1, pressure_1)) = (split(&rest), split(&limit));
         Basis {
-            force: vec![force_0, force_1],
-            pressure: vec![pressure_0, pressure_1],
+            force: mix.iter().map(force).collect(),
+            loads: vec![one.loads, two.loads],
+            mix,
             area: Table::new(&one.roots, one.area),
             roots: one.roots,
             touched: one.touched,
-            touch_offset: one.touch_offset,
         }
     }
 
@@ -162,23 +157,4 @@ impl Basis {
         }
         0.5 * (low + high)
     }
-}
-
-/// Pressures of two presses put together vertex by vertex; a vertex that only one of them touches bears 0 in the other.
-fn joined(
-    one: &[(u32, f64)],
-    two: &[(u32, f64)],
-    part: &dyn Fn(f64, f64) -> f64,
-) -> Vec<(u32, f64)> {
-    let (mut i, mut j, mut sum) = (0, 0, Vec::with_capacity(one.len()));
-    while i < one.len() || j < two.len() {
-        let (a, b) = (one.get(i), two.get(j));
-        let vertex = u32::min(a.map_or(u32::MAX, |a| a.0), b.map_or(u32::MAX, |b| b.0));
-        let of = |entry: Option<&(u32, f64)>| entry.filter(|e| e.0 == vertex).map(|e| e.1);
-        let (first, second) = (of(a), of(b));
-        i += usize::from(first.is_some());
-        j += usize::from(second.is_some());
-        sum.push((vertex, part(first.unwrap_or(0.0), second.unwrap_or(0.0))));
-    }
-    sum
 }

@@ -2,7 +2,7 @@
 
 use thenar_contact::{Control, Material, Model, Skin, SkinInput};
 use thenar_recordings::study::{StudyMaterial, StudySkin};
-use thenar_surface::{Mesh, Vec3, vertex_areas};
+use thenar_surface::{Mesh, Vec3};
 
 use crate::DiagnosisError;
 
@@ -20,10 +20,6 @@ pub struct Tissue {
     pub materials: Vec<Material>,
     /// Parameters that a fit may change, by region.
     pub fitted: Vec<Vec<String>>,
-    /// Rest positions, mm.
-    pub positions: Vec<Vec3>,
-    /// Vertex areas, mm2.
-    pub areas: Vec<f64>,
     /// Diagonal of the skin's box, mm.
     pub extent: f64,
     /// What a reader should be told.
@@ -65,7 +61,6 @@ pub fn tissue(study: &StudySkin, control: &Control<'_>) -> Result<Tissue, Diagno
         (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
         |(low, high), p| (low.inf(p), high.sup(p)),
     );
-    let areas = vertex_areas(&mesh);
     let input = SkinInput {
         mesh,
         regions: study.regions.clone(),
@@ -79,8 +74,6 @@ pub fn tissue(study: &StudySkin, control: &Control<'_>) -> Result<Tissue, Diagno
         regions,
         materials,
         fitted,
-        positions,
-        areas,
         extent: (high - low).norm(),
         notes,
     })

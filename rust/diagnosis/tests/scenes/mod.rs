@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use thenar_recordings::meshes::MeshFile;
 use thenar_recordings::study::{
-    Data, Indenter, Shape, Site, StudyMaterial, StudyRecording, StudySkin,
+    Data, Indenter, PlacedSensel, Shape, Site, StudyMaterial, StudyRecording, StudySkin,
 };
-use thenar_recordings::{Channel, Curve, Study};
+use thenar_recordings::{Channel, Curve, PressureMap, PressureUnit, Sensel, Source, Study};
 use thenar_surface::Vec3;
 
 /// A reproducible stream of random numbers, apart from the library's.
@@ -153,5 +153,74 @@ pub fn curve_of(study: &mut Study, recording: usize) -> &mut Curve {
     match &mut study.recordings[recording].data {
         Data::Indentation(curve) => curve,
         _ => panic!("recording {recording} is no indentation"),
+    }
+}
+
+/// A flat mat of `size` x `size` sensels of `pitch` mm on a plate over the origin, its columns along x and rows along y.
+pub fn mat(size: usize, pitch: f64) -> (Vec<Sensel>, Vec<Option<PlacedSensel>>) {
+    let offset = (size as f64 - 1.0) / 2.0;
+    let each = (0..size * size).map(|k| (k / size, k % size));
+    let sensel = |(row, column): (usize, usize)| Sensel {
+        place: Some([row as u32, column as u32]),
+        area_mm2: Some(pitch * pitch),
+        ..Sensel::default()
+    };
+    let placed = |(row, column): (usize, usize)| {
+        let at = |k: usize| (k as f64 - offset) * pitch;
+        Some(PlacedSensel {
+            center_mm: [at(column), at(row), 0.0],
+            normal: Some([0.0, 0.0, -1.0]),
+            area_mm2: pitch * pitch,
+        })
+    };
+    (
+        each.clone().map(sensel).collect(),
+        each.map(placed).collect(),
+    )
+}
+
+/// Adds a map of frames at `times` and `depths` on such a mat; its values are 0.
+pub fn add_map(
+    study: &mut Study,
+    (name, protocol): (&str, &str),
+    (size, pitch): (usize, f64),
+    (times, depths): (&[f64], &[f64]),
+) {
+    let (sensels, placed) = mat(size, pitch);
+    let map = PressureMap {
+        name: String::new(),
+        source: Source::default(),
+        unit: PressureUnit::Kilopascal,
+        values: vec![0.0; sensels.len() * times.len()],
+        sensels,
+        time_s: Some(times.to_vec()),
+        clipped_from: None,
+        threshold: None,
+        pitch_mm: Some([pitch, pitch]),
+        is_mirrored: [None; 2],
+        channels: vec![Channel {
+            name: "depth_mm".into(),
+            unit: "mm".into(),
+            values: depths.to_vec(),
+        }],
+        phases: Vec::new(),
+        checks: Vec::new(),
+        unknown: Vec::new(),
+        warnings: Vec::new(),
+    };
+    add(study, (name, protocol, "plate"), Curve::default());
+    let last = study.recordings.len() - 1;
+    study.recordings[last].data = Data::PressureMap {
+        map: Box::new(map),
+        sensels: Some(placed),
+        motion: None,
+    };
+}
+
+/// The map of a recording, to be changed.
+pub fn map_of(study: &mut Study, recording: usize) -> &mut PressureMap {
+    match &mut study.recordings[recording].data {
+        Data::PressureMap { map, .. } => map,
+        _ => panic!("recording {recording} is no map"),
     }
 }
