@@ -19,6 +19,8 @@ const FIRST_STEP: f64 = 0.4;
 const PRESS_SHARE: f64 = 0.85;
 /// Progress of a search when its force is found.
 const LAST_SHARE: f64 = 0.95;
+/// Most steps from a known slope before the travel is bracketed.
+const MOST_SECANTS: usize = 5;
 /// Most presses of one search.
 const MOST_PRESSES: usize = 60;
 
@@ -44,7 +46,7 @@ pub(crate) fn find_offset(
         None => Some(mean_normal(skin, posed, product)?),
     };
     let direction = direction.ok_or(ContactError::Direction)?;
-    let start = skin.memory.offset;
+    let start = skin.memory.trail.offset;
     let mut search = Search {
         skin,
         posed,
@@ -54,10 +56,12 @@ pub(crate) fn find_offset(
         seconds,
         target: target.newton,
         last: None,
+        probes: Vec::new(),
         presses: 0,
         share: 0.0,
     };
     let offset = search.run(start)?;
+    search.skin.memory.trail.slope = search.slope();
     match search.last {
         Some((at, pressed)) if at == offset => Ok((offset, direction, pressed)),
         _ => {
@@ -100,6 +104,16 @@ pub(crate) fn mean_normal(
 /// A travel (mm) and the excess there.
 type Probe = (f64, f64);
 
+/// What a known slope leads to.
+enum Guess {
+    /// The travel that was looked for.
+    Found(f64),
+    /// Travels with too little and too much force.
+    Between([Probe; 2]),
+    /// Where to look for them.
+    Near(f64),
+}
+
 struct Search<'a, 'c> {
     skin: &'a mut Skin,
     posed: &'a Mesh,
@@ -109,6 +123,8 @@ struct Search<'a, 'c> {
     seconds: &'a mut Seconds,
     target: f64,
     last: Option<(f64, Pressed)>,
+    /// Every travel tried.
+    probes: Vec<Probe>,
     presses: i32,
     /// Share of the search done, as told.
     share: f64,
@@ -127,7 +143,7 @@ impl Search<'_, '_> {
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
-        self.skin.memory.last = Last {
+        self.skin.memory.trail.last = Last {
             travel: Vec::new(),
             ..Last::of(&pressed.solved, self.skin.sites.len())
         };
@@ -151,11 +167,70 @@ impl Search<'_, '_> {
         let (force, pressed) = self.press(offset)?;
         self.last = Some((offset, pressed));
         let power = |f: f64| f.abs().powf(2.0 / 3.0).copysign(f);
-        Ok((power(force) - power(self.target), force))
+        let value = power(force) - power(self.target);
+        self.probes.push((offset, value));
+        Ok((value, force))
+    }
+
+    /// Slope of the excess where the search ended; that of the search before if this one tried one travel only.
+    fn slope(&self) -> Option<f64> {
+        let tried = self.probes.windows(2).last();
+        let slope = tried.map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
+        slope
+            .or(self.skin.memory.trail.slope)
+            .filter(|s| s.is_finite() && *s > 0.0)
+    }
+
+    fn is_there(&self, force: f64) -> bool {
+        (force - self.target).abs() <= FORCE_TOLERANCE * self.target
+    }
+
+    /// A few steps of the secant from a slope that is known: most searches that follow another end here.
+    ///
+    /// Returns the travel found, or the two travels between which it lies if both signs were seen.
+    fn by_slope(&mut self, start: f64, mut slope: f64) -> Result<Guess, ContactError> {
+        let mut here = start;
+        let (mut low, mut high): (Option<Probe>, Option<Probe>) = (None, None);
+        for _ in 0..MOST_SECANTS {
+            let (value, force) = match self.excess(here) {
+                Err(ContactError::Swallowed { .. }) => break,
+                other => other?,
+            };
+            if self.is_there(force) {
+                return Ok(Guess::Found(here));
+            }
+            if force <= 0.0 {
+                break;
+            }
+            let end = if value < 0.0 { &mut low } else { &mut high };
+            *end = Some((here, value));
+            if let Some([a, b]) = self.probes.last_chunk() {
+                let secant = (b.1 - a.1) / (b.0 - a.0);
+                slope = if secant.is_finite() && secant > 0.0 {
+                    secant
+                } else {
+                    slope
+                };
+            }
+            here -= (value / slope).clamp(-FIRST_STEP, FIRST_STEP);
+        }
+        Ok(match (low, high) {
+            (Some(low), Some(high)) if low.0 < high.0 => Guess::Between([low, high]),
+            (Some(only), None) | (None, Some(only)) => Guess::Near(only.0),
+            _ => Guess::Near(start),
+        })
     }
 
     fn run(&mut self, start: f64) -> Result<f64, ContactError> {
-        let [mut low, mut high] = self.bracket(start)?;
+        let guess = match self.skin.memory.trail.slope {
+            Some(slope) => self.by_slope(start, slope)?,
+            None => Guess::Near(start),
+        };
+        let [mut low, mut high] = match guess {
+            Guess::Found(offset) => return Ok(offset),
+            Guess::Between(ends) => ends,
+            Guess::Near(start) => self.bracket(start)?,
+        };
         let mut last_low = None;
         for _ in 0..MOST_PRESSES {
             let mut middle = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
@@ -167,7 +242,7 @@ impl Search<'_, '_> {
                 return Ok(middle);
             }
             let (value, force) = self.excess(middle)?;
-            if (force - self.target).abs() <= FORCE_TOLERANCE * self.target {
+            if self.is_there(force) {
                 return Ok(middle);
             }
             // Illinois: an end that stays put twice counts for half, so that it cannot stall the secant.

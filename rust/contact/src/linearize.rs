@@ -23,6 +23,7 @@ const MOST_PASSES: usize = 14;
 const MOST_ROUNDS: usize = 4;
 
 /// The solved contact, in the product's frame.
+#[derive(Clone)]
 pub struct Solved {
     /// Sites that could touch, ascending.
     pub zone: Vec<u32>,

@@ -13,16 +13,25 @@ pub struct Memory {
     pub coupling: Rows<f32>,
     /// The compliance of that zone, kept for its storage.
     pub compliance: Rows<f32>,
+    /// Where the last solve ended.
+    pub trail: Trail,
+    /// Kernels of shear, once friction has needed them.
+    pub shear: Option<ShearTables>,
+}
+
+/// Where one solve ended, for the next to start from; a walk through a protocol keeps its own.
+#[derive(Debug, Clone, Default)]
+pub struct Trail {
     /// What the last solve found.
     pub last: Last,
     /// Nearest product triangle by welded vertex.
     pub triangle: Vec<u32>,
     /// Travel found by force control, mm.
     pub offset: f64,
+    /// Slope there of the search for it, in its own terms per mm.
+    pub slope: Option<f64>,
     /// Attraction of the last row of a protocol.
     pub pulls: Vec<Pull>,
-    /// Kernels of shear, once friction has needed them.
-    pub shear: Option<ShearTables>,
 }
 
 /// A solved contact by site, for the next solve to start from; empty for none.

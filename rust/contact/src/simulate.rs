@@ -11,7 +11,7 @@ use crate::history::state::Recall;
 use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull};
 use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
-use crate::memory::Last;
+use crate::memory::{Last, Trail};
 use crate::press::{Contact, Press, Start};
 use crate::skin::Skin;
 use crate::summary::summarize;
@@ -28,6 +28,7 @@ const FORCE_MISS: f64 = 1e-3;
 pub(crate) type Seconds = Vec<(&'static str, f64)>;
 
 /// One solved position of the product.
+#[derive(Clone)]
 pub(crate) struct Pressed {
     pub detection: Detection,
     pub solved: Solved,
@@ -53,6 +54,7 @@ struct State<'a> {
 }
 
 /// The memory's part in a press.
+#[derive(Clone)]
 pub(crate) struct Recalled {
     pub recall: Recall,
     /// What each site of the zone bears in the elastic tissue's terms, N.
@@ -84,11 +86,9 @@ impl Skin {
     /// or `Cancelled`. The prepared skin stays usable after any of them.
     pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
         if press.start == Start::Fresh {
-            self.memory.last = Last::default();
-            self.memory.triangle.clear();
-            self.memory.offset = 0.0;
+            self.memory.trail = Trail::default();
         }
-        self.memory.pulls.clear();
+        self.memory.trail.pulls.clear();
         let mut seconds = Seconds::new();
         let posed = self.posed(press.posed)?;
         let (offset, direction, mut pressed) = match press.force {
@@ -198,7 +198,7 @@ impl Skin {
         let detection = moved.as_ref().map_or(state.truth, |moved| &moved.detection);
         let zone = self.zone(detection);
         check_resolution(self, &zone)?;
-        let last = std::mem::take(&mut self.memory.last);
+        let last = std::mem::take(&mut self.memory.trail.last);
         let elastic = state.recall.map(|recall| Last {
             force: recall.elastic(&last.force, &self.sites),
             travel: Vec::new(),
@@ -212,7 +212,7 @@ impl Skin {
             spacing: self.spacing,
         };
         let solved = solve(self, zone, &setting, control);
-        self.memory.last = last;
+        self.memory.trail.last = last;
         let mut solved = solved?;
         if let Some(moved) = &moved {
             moved.add_to(&mut solved);
@@ -249,7 +249,7 @@ impl Skin {
         state: &State<'_>,
         control: &Control,
     ) -> Result<(Solved, Clinging), ContactError> {
-        let mut pulls = self.memory.pulls.clone();
+        let mut pulls = self.memory.trail.pulls.clone();
         for solve in 1.. {
             let solved = self.solve_moved(state, &pulls, control)?;
             let next = attraction.pulls(self, state.truth, &solved);
@@ -259,7 +259,7 @@ impl Skin {
             }
             pulls = next;
             if state.recall.is_none() {
-                self.memory.last = Last {
+                self.memory.trail.last = Last {
                     travel: Vec::new(),
                     ..Last::of(&solved, self.sites.len())
                 };
@@ -278,7 +278,7 @@ impl Skin {
     fn zone(&self, detection: &Detection) -> Vec<u32> {
         let zone = candidates(self, detection);
         let last = &self.memory.zone;
-        let is_warm = !self.memory.last.force.is_empty();
+        let is_warm = !self.memory.trail.last.force.is_empty();
         let is_known = |&s: &u32| detection.gaps[self.sites.vertex[s as usize] as usize].is_some();
         let serves = is_warm
             && last.len() <= zone.len() + zone.len() / 4
@@ -329,12 +329,12 @@ impl Skin {
     }
 
     pub(crate) fn remember(&mut self, pressed: &Pressed, offset: f64) {
-        self.memory.last = Last::of(&pressed.solved, self.sites.len());
+        self.memory.trail.last = Last::of(&pressed.solved, self.sites.len());
         let triangle =
             |gap: &Option<thenar_surface::Gap>| gap.as_ref().map_or(u32::MAX, |g| g.triangle);
-        self.memory.triangle = pressed.detection.gaps.iter().map(triangle).collect();
-        self.memory.offset = offset;
-        self.memory.pulls.clone_from(&pressed.clinging.pulls);
+        self.memory.trail.triangle = pressed.detection.gaps.iter().map(triangle).collect();
+        self.memory.trail.offset = offset;
+        self.memory.trail.pulls.clone_from(&pressed.clinging.pulls);
     }
 }
 

@@ -21,6 +21,7 @@ const WARM_MARGIN: f64 = 0.3;
 pub const KERNEL_LIMIT: f64 = 0.5;
 
 /// The skin in one posture beside one product.
+#[derive(Clone)]
 pub struct Detection {
     /// Posed positions of the welded vertices, mm, in the product's frame.
     pub positions: Vec<Vec3>,
@@ -71,8 +72,13 @@ pub fn detect(
 ) -> Result<Detection, ContactError> {
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
     let normals = vertex_normals(posed);
-    let mut gaps = if skin.memory.triangle.len() == positions.len() {
-        product.gaps_near(&positions, Some(&normals), limits(), &skin.memory.triangle)
+    let mut gaps = if skin.memory.trail.triangle.len() == positions.len() {
+        product.gaps_near(
+            &positions,
+            Some(&normals),
+            limits(),
+            &skin.memory.trail.triangle,
+        )
     } else {
         product.gaps(&positions, Some(&normals), limits())
     };

@@ -10,6 +10,7 @@ mod effects;
 mod protocol;
 mod requests;
 mod skin;
+mod walk;
 mod contact;
 mod hand;
 mod complementarity;
@@ -31,6 +32,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<effects::Effect>()?;
     module.add_class::<protocol::Course>()?;
     module.add_class::<skin::Skin>()?;
+    module.add_class::<walk::Walk>()?;
     module.add_class::<contact::Contact>()?;
     module.add_class::<study::Study>()?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;

@@ -19,7 +19,7 @@ pub struct Request {
 }
 
 /// One protocol as it came from Python.
-pub struct Walk {
+pub struct Followed {
     pub target: Target,
     pub posed: Option<Vec<Vec3>>,
     pub protocol: Protocol,

@@ -8,9 +8,10 @@ use crate::material::Material;
 use crate::product::Surface;
 use crate::protocol::{Course, protocol_of};
 use crate::requests::{
-    Request, Target, Walk, drag_of, force_of, keep_named, model_named, table_of, target_of,
+    Followed, Request, Target, drag_of, force_of, keep_named, model_named, table_of, target_of,
 };
 use crate::running::{Hooks, run};
+use crate::walk::Walk;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -35,7 +36,7 @@ pub struct Skin {
     vertex_count: usize,
 }
 
-struct Inner {
+pub(crate) struct Inner {
     skin: Mutex<thenar_contact::Skin>,
     /// The product of the last press from arrays: pressing it again needs no new tree.
     last_product: Mutex<Option<Arc<thenar_surface::Product>>>,
@@ -190,7 +191,7 @@ impl Skin {
         let posed = posed_vertices_mm
             .map(|posed| Argument::mesh("posed_vertices_mm", posed).points())
             .transpose()?;
-        let request = Walk {
+        let request = Followed {
             target: target_of(product_vertices_mm, product_triangles)?,
             posed,
             protocol: protocol_of(protocol, direction)?,
@@ -201,6 +202,40 @@ impl Skin {
         let inner = Arc::clone(&self.inner);
         let course = run(py, &hooks, move |control| inner.follow(request, control))?;
         Course::new(py, course, (&self.region_names, kept))
+    }
+
+    /// Begins a protocol that is followed row by row: the posture may change from row to row, and the product may move.
+    ///
+    /// Product as for `press`; `direction` (3,), in the frame of the product's vertices as given: where the product moves to
+    /// press, None: mean normal of the first row's posture. The effects are those of the skin, which must not change on the
+    /// way. Returns a `Walk`, whose `advance` takes a row. Raises `MeshError`, `SolveError`.
+    #[pyo3(signature = (product_vertices_mm, product_triangles=None, direction=None))]
+    fn start(
+        &self,
+        py: Python<'_>,
+        product_vertices_mm: &Bound<'_, PyAny>,
+        product_triangles: Option<&Bound<'_, PyAny>>,
+        direction: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Walk> {
+        let target = target_of(product_vertices_mm, product_triangles)?;
+        let direction = direction
+            .map(|direction| Argument::solve("direction", direction).vector())
+            .transpose()?;
+        let inner = Arc::clone(&self.inner);
+        let (product, state) = run(py, &Hooks::none(), move |control| {
+            let product = match target {
+                Target::Prepared(product) => product,
+                Target::Surface(surface) => inner.product_of(surface)?,
+            };
+            let skin = inner.skin(control)?;
+            Ok((product, thenar_contact::Walk::new(&skin, direction)?))
+        })?;
+        Ok(Walk {
+            inner: Arc::clone(&self.inner),
+            region_names: Arc::clone(&self.region_names),
+            product,
+            state: Arc::new(Mutex::new(state)),
+        })
     }
 
     /// Switches effects on, in place of those before; the skin is prepared again only where they change it.
@@ -296,7 +331,11 @@ impl Inner {
         Ok(contact)
     }
 
-    fn follow(&self, request: Walk, control: &Control) -> Result<thenar_contact::Course, Failure> {
+    fn follow(
+        &self,
+        request: Followed,
+        control: &Control,
+    ) -> Result<thenar_contact::Course, Failure> {
         (control.progress)("product", 0.0);
         let product = match request.target {
             Target::Prepared(product) => product,
@@ -338,7 +377,10 @@ impl Inner {
     }
 
     /// The skin once no other press uses it; can be cancelled while waiting.
-    fn skin(&self, control: &Control) -> Result<MutexGuard<'_, thenar_contact::Skin>, Failure> {
+    pub(crate) fn skin(
+        &self,
+        control: &Control,
+    ) -> Result<MutexGuard<'_, thenar_contact::Skin>, Failure> {
         loop {
             match self.skin.try_lock() {
                 Ok(skin) => return Ok(skin),

@@ -10,8 +10,13 @@ pub(crate) mod state;
 pub(crate) mod recalled;
 mod protocol;
 mod course;
+mod approach;
+mod stand;
+mod walk;
 mod run;
 
 pub use course::{Course, Keep, Step};
 pub use protocol::{Demand, Protocol, Row};
 pub use run::Run;
+pub use stand::{Motion, Stand};
+pub use walk::Walk;

@@ -57,30 +57,41 @@ impl Protocol {
         if self.rows.is_empty() {
             return Err(ContactError::EmptyProtocol);
         }
-        let mut last = f64::NEG_INFINITY;
+        let mut last = None;
         for (row, moment) in self.rows.iter().enumerate() {
-            let refuse = |problem: String| Err(ContactError::Protocol { row, problem });
-            if !(moment.time_s.is_finite() && moment.time_s > last) {
-                return refuse(format!(
-                    "time_s is {}, but must be finite and larger than in the row before",
-                    moment.time_s
-                ));
+            moment.check((row, last))?;
+            last = Some(moment.time_s);
+        }
+        Ok(())
+    }
+}
+
+impl Row {
+    /// Checks this row, number `row` of its protocol, that follows one at the time `last` (s).
+    ///
+    /// # Errors
+    /// [`ContactError::Protocol`] naming the row, what is wrong and what is admissible.
+    pub fn check(&self, (row, last): (usize, Option<f64>)) -> Result<(), ContactError> {
+        let refuse = |problem: String| Err(ContactError::Protocol { row, problem });
+        if !(self.time_s.is_finite() && last.is_none_or(|last| self.time_s > last)) {
+            return refuse(format!(
+                "time_s is {}, but must be finite and larger than in the row before",
+                self.time_s
+            ));
+        }
+        let (name, value) = match self.demand {
+            Demand::Offset(value) => ("offset_mm", value),
+            Demand::Depth(value) => ("depth_mm", value),
+            Demand::Force(value) if value < 0.0 => {
+                return refuse(format!("force_n is {value}, but must be 0 or more"));
             }
-            last = moment.time_s;
-            let (name, value) = match moment.demand {
-                Demand::Offset(value) => ("offset_mm", value),
-                Demand::Depth(value) => ("depth_mm", value),
-                Demand::Force(value) if value < 0.0 => {
-                    return refuse(format!("force_n is {value}, but must be 0 or more"));
-                }
-                Demand::Force(value) => ("force_n", value),
-            };
-            if !value.is_finite() {
-                return refuse(format!("{name} is {value}, but must be finite"));
-            }
-            if !moment.slide.iter().all(|c| c.is_finite()) {
-                return refuse("its slide is not finite".to_owned());
-            }
+            Demand::Force(value) => ("force_n", value),
+        };
+        if !value.is_finite() {
+            return refuse(format!("{name} is {value}, but must be finite"));
+        }
+        if !self.slide.iter().all(|c| c.is_finite()) {
+            return refuse("its slide is not finite".to_owned());
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! The state of memory: elastic load and fading load of every branch, by site; softening, depth and contact radius by region.
 
+use nalgebra::Rotation3;
 use thenar_surface::Vec3;
 
 use super::branches::{Branch, Clock, branches};
@@ -205,6 +206,17 @@ impl History {
             .filter(|(_, area)| **area > 0.0)
         {
             *radius = (area / std::f64::consts::PI).sqrt();
+        }
+    }
+
+    /// Turns what each site remembers as its skin has turned; `turn` by site.
+    pub fn turn(&mut self, turn: impl Fn(u32) -> Rotation3<f64>) {
+        for &site in &self.touched {
+            let (turn, i) = (turn(site), site as usize);
+            self.elastic[i] = turn * self.elastic[i];
+            self.fading
+                .iter_mut()
+                .for_each(|branch| branch[i] = turn * branch[i]);
         }
     }
 

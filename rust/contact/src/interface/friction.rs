@@ -13,6 +13,7 @@ use super::shear_matrix::{ShearMatrix, tangents};
 use super::shear_response::{Place, ShearResponse};
 use super::stick_slip::{Dragged, Grip, Trace};
 use crate::effects::{ActiveEffect, Effect, friction};
+use crate::linearize::Solved;
 use crate::press::Drag;
 use crate::response::rows::extent;
 use crate::simulate::Pressed;
@@ -49,6 +50,8 @@ pub(crate) struct Grasp {
     pub travel: Vec3,
     /// Its turn about the center of the contact so far, rad.
     pub turn: Vec3,
+    /// Motion of the product against each site by a posture that has moved since, mm; empty if it has not.
+    pub strays: Vec<Vec3>,
 }
 
 /// True if friction acts anywhere.
@@ -75,6 +78,7 @@ pub(crate) fn grasp(pressed: &Pressed, travel: Vec3) -> Grasp {
         traces: traces.zip(sheared.end.traces.iter().copied()).collect(),
         travel,
         turn: sheared.turn,
+        strays: Vec::new(),
     }
 }
 
@@ -142,6 +146,8 @@ struct Scene {
     limit: Vec<f64>,
     /// Force-weighted mean of the contact, mm.
     center: Vec3,
+    /// Mean normal of the region's contact, at every site.
+    approach: Vec<Vec3>,
     matrix: ShearMatrix<f32>,
 }
 
@@ -160,12 +166,14 @@ impl Scene {
         let weighted = |&k: &usize| solved.touch[k].closest * (solved.force[k] / force);
         let center = at.iter().map(weighted).sum();
         let matrix = response(skin, tables).matrix(&places, &tangents);
+        let approach = approach(skin, &pressed.solved, &at);
         Scene {
             at,
             places,
             tangents,
             limit,
             center,
+            approach,
             matrix,
         }
     }
@@ -186,12 +194,20 @@ impl Scene {
             limit: &self.limit,
             before: &remembered,
         };
+        let strayed = self.strayed(&remembered, &before.strays);
+        let astray = |motion: Vec<Vec3>| -> Vec<Vec3> {
+            motion
+                .into_iter()
+                .zip(&strayed)
+                .map(|(m, s)| m + s)
+                .collect()
+        };
         let from = self.moved(before.travel, before.turn);
-        let (travel, turn, end) = match drag {
+        let (travel, turn, mut end) = match drag {
             Drag::Motion { travel, turn } => (
                 travel,
                 turn,
-                grip.drag(&from, &self.moved(travel, turn), control),
+                grip.drag(&from, &astray(self.moved(travel, turn)), control),
             ),
             Drag::Force(force) => {
                 let along = force.normalize();
@@ -203,6 +219,9 @@ impl Scene {
                 (before.travel + along * travel, before.turn, end)
             }
         };
+        for (trace, strayed) in end.traces.iter_mut().zip(&strayed) {
+            trace.strayed = *strayed;
+        }
         Ok(Sheared {
             at: self.at,
             places: self.places,
@@ -211,6 +230,20 @@ impl Scene {
             turn,
             end,
         })
+    }
+
+    /// How far the posture's own motion has taken the product over every site, mm.
+    ///
+    /// What brings a contact nearer as a whole is no travel over the skin: it is taken off along the region's
+    /// mean normal.
+    fn strayed(&self, remembered: &[Option<Trace>], strays: &[Vec3]) -> Vec<Vec3> {
+        let strayed = |((place, trace), mean): ((&Place, &Option<Trace>), &Vec3)| {
+            let so_far = trace.map_or_else(Vec3::zeros, |t| t.strayed);
+            let more = strays.get(place.site as usize);
+            so_far + more.map_or_else(Vec3::zeros, |m| m - mean * mean.dot(m))
+        };
+        let sites = self.places.iter().zip(remembered);
+        sites.zip(&self.approach).map(strayed).collect()
     }
 
     /// Motion of the product at every site, mm.
@@ -242,6 +275,19 @@ fn coefficient(skin: &Skin, site: u32) -> f64 {
     active(skin)
         .map(|effect| effect.amplitude_on(region) * friction::coefficient(effect))
         .fold(0.0, f64::max)
+}
+
+/// Mean normal of each region's contact by force, at every site in contact.
+fn approach(skin: &Skin, solved: &Solved, at: &[usize]) -> Vec<Vec3> {
+    let region = |k: usize| skin.sites.home_region(solved.zone[k] as usize) as usize;
+    let mut mean = vec![Vec3::zeros(); skin.tissue.materials.len()];
+    for &k in at {
+        mean[region(k)] += solved.touch[k].normal * solved.force[k];
+    }
+    let unit = |k: &usize| mean[region(*k)].try_normalize(0.0);
+    at.iter()
+        .map(|k| unit(k).unwrap_or_else(Vec3::zeros))
+        .collect()
 }
 
 fn place(skin: &Skin, pressed: &Pressed, site: u32) -> Place {

@@ -19,6 +19,8 @@ pub struct Trace {
     pub force: Vec3,
     /// Slip of the skin over the product so far, mm.
     pub slip: Vec3,
+    /// Travel of the product over this site by the posture's own motion, since the site came to touch, mm.
+    pub strayed: Vec3,
 }
 
 /// The contact of one step: sites with their compliance, planes and limits.
@@ -129,6 +131,7 @@ impl Grip<'_> {
         let trace = |i: usize| Trace {
             force: point(&force, i),
             slip: point(&slip, i) + point(before, i),
+            strayed: Vec3::zeros(),
         };
         let dissipated = -(0..2 * n).map(|k| force[k] * slip[k]).sum::<f64>();
         let moved: Vec<f64> = slip.iter().zip(offset).map(|(s, b)| s - b).collect();
