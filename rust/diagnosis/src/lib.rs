@@ -12,7 +12,9 @@ mod observe;
 mod replay;
 mod noise;
 mod fit;
+mod location;
 
 pub use errors::DiagnosisError;
 pub use fit::{Estimate, Fit, Fitting, Options, Target, fit_study};
+pub use location::{Carrier, Location, Mismatch, Place, Search, Shown, When, locate};
 pub use observe::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};

@@ -1,0 +1,313 @@
+//! Where, when and how large the mismatch is that parameters cannot absorb: scan statistics on the projected residual.
+//!
+//! A look is a disc on the sensor or the skin over a stretch of the protocols, or a stretch alone; its statistic is the mean of
+//! the projected residual `r = P L^-1 (measured - simulated)` along the whitened direction `w` in which one unit more on each
+//! of its samples would show, `w . r / |P w|`. The price of many looks is paid exactly: noise is drawn as `P n`, all looks are
+//! taken at it, and the largest is kept (Kulldorff 1997, Commun. Stat. 26:1481, with a Gaussian model and nuisances taken
+//! out). Where the residual is larger everywhere than its noise, the statistic is divided by that: then only what stands out
+//! from the rest is a place. What the simulation itself may be off by is allowed for (`allowance.rs`).
+
+mod cells;
+mod atoms;
+mod looks;
+mod allowance;
+mod scan;
+mod place;
+mod found;
+mod sentence;
+
+pub use found::{Carrier, Location, Mismatch, Place, Shown, When};
+
+use std::collections::BTreeSet;
+
+use thenar_contact::Control;
+use thenar_surface::Mesh;
+
+use crate::{DiagnosisError, Fit};
+use atoms::{Atoms, Channel};
+use cells::Cells;
+use looks::{Look, Looks};
+use place::Scored;
+use scan::Scan;
+
+/// What the simulation's pressures are off by under smooth factors, of the largest: 1.2 % rms at most in six pads of finite elements
+/// (see `allowance.rs`), a quarter more for the contact's edge.
+const MODEL_ERROR: f64 = 0.015;
+
+/// Part of the largest simulated pressure from which a sensel counts as pressed.
+const PRESSED: f64 = 0.02;
+
+/// How a mismatch is looked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Search<'a> {
+    /// The undeformed skin, to say where on it a place lies.
+    pub skin: Option<&'a Mesh>,
+    /// Sets of noise that are drawn for the law of the maximum.
+    pub draws: usize,
+    /// Where their stream begins: the same seed, the same bits.
+    pub seed: u64,
+    /// Probability of naming anything where nothing is amiss, for the whole study.
+    pub level: f64,
+    /// Most mismatches that are told.
+    pub most: usize,
+    /// What the simulation's pressures may be off by, of the largest, where nothing is missing; smooth factors come free with it.
+    /// None: the simulation is taken as exact.
+    pub model_error: Option<f64>,
+}
+
+impl Default for Search<'_> {
+    fn default() -> Self {
+        Search {
+            skin: None,
+            draws: 999,
+            seed: 1,
+            level: 0.01,
+            most: 5,
+            model_error: Some(MODEL_ERROR),
+        }
+    }
+}
+
+/// Finds the places and times whose mismatch neither parameters nor noise explain, paying for every look.
+///
+/// `fit` as [`Fit`] describes it. Returns the mismatches whose probability over all looks is at most `search.level`.
+///
+/// # Errors
+/// [`DiagnosisError::Cancelled`].
+pub fn locate(
+    fit: &Fit,
+    search: &Search<'_>,
+    control: &Control,
+) -> Result<Location, DiagnosisError> {
+    let step = |share| {
+        control
+            .step("locating", share)
+            .map_err(|_| DiagnosisError::Cancelled)
+    };
+    step(0.0)?;
+    let cells = cells::cut(&fit.measured);
+    let atoms = atoms::sum_up(fit, &cells);
+    let looks = looks::plan(&fit.measured, &cells, &atoms);
+    let data = (fit.measured.as_slice(), &cells);
+    let allowance = allowance::allow(data, (&atoms, &looks.sensors), search.model_error);
+    let scan = Scan::new((&atoms, &allowance), &looks);
+    step(0.1)?;
+    let maxima = scan.null_maxima(search.draws, search.seed);
+    step(0.9)?;
+    let told = Telling {
+        fit,
+        search,
+        cells: &cells,
+        atoms: &atoms,
+        looks: &looks,
+        scan: &scan,
+        maxima: &maxima,
+    };
+    let location = told.all();
+    step(1.0)?;
+    Ok(location)
+}
+
+struct Telling<'a> {
+    fit: &'a Fit,
+    search: &'a Search<'a>,
+    cells: &'a Cells,
+    atoms: &'a Atoms,
+    looks: &'a Looks,
+    scan: &'a Scan<'a>,
+    maxima: &'a [f64],
+}
+
+/// A look that stands out.
+struct Strongest {
+    look: usize,
+    /// How much larger than noise all else of its kind is, curves or maps.
+    scale: f64,
+    /// Its statistic over that.
+    score: f64,
+}
+
+impl Telling<'_> {
+    /// Takes the strongest look, takes it out, and looks again at what shares no sample with it.
+    fn all(&self) -> Location {
+        let mut values = self.scan.observed();
+        let mut taken: BTreeSet<u32> = BTreeSet::new();
+        let mut mismatches: Vec<Mismatch> = Vec::new();
+        let mut first = None;
+        while mismatches.len() < self.search.most.max(1) {
+            let scores = self.scan.scores(&values);
+            let Some(best) = self.strongest((&values, &scores), &taken) else {
+                break;
+            };
+            let p = self.p(best.score.abs());
+            first = first.or(Some(p));
+            if p > self.search.level {
+                break;
+            }
+            mismatches.push(self.tell(&best, &scores, p));
+            taken.extend(self.scan.atoms_of(&self.looks.list[best.look]));
+            values = self.scan.without(&values, best.look);
+        }
+        let looks = self.scan.count();
+        Location {
+            sentence: summary(&mismatches, first, looks),
+            mismatches,
+            p: first,
+            looks,
+            notes: self.notes(&values),
+        }
+    }
+
+    /// The strongest look of curves or of maps, each measured by what it leaves of its own kind.
+    fn strongest(
+        &self,
+        (values, scores): (&[f64], &[f64]),
+        taken: &BTreeSet<u32>,
+    ) -> Option<Strongest> {
+        let free = |look: &Look| {
+            let rows = look.rows.iter().map(|row| &self.looks.rows[*row as usize]);
+            taken.is_empty() || !rows.flatten().any(|atom| taken.contains(atom))
+        };
+        let of_kind = |is_map: bool| {
+            let look = (0..scores.len())
+                .filter(|at| scores[*at] != 0.0 && self.is_of_map(&self.looks.list[*at]) == is_map)
+                .filter(|at| free(&self.looks.list[*at]))
+                .max_by(|one, two| scores[*one].abs().total_cmp(&scores[*two].abs()))?;
+            let scale = self.excess(&self.scan.without(values, look), is_map);
+            Some(Strongest {
+                look,
+                scale,
+                score: scores[look] / scale,
+            })
+        };
+        let both = [false, true].into_iter().filter_map(of_kind);
+        both.max_by(|one, two| one.score.abs().total_cmp(&two.score.abs()))
+    }
+
+    fn is_of_map(&self, look: &Look) -> bool {
+        let atom = self.looks.rows[look.rows[0] as usize][0];
+        self.atoms.list[atom as usize].channel.is_of_map()
+    }
+
+    /// How much larger than noise and the simulation's own error values of maps, or of all else, are as a whole.
+    fn excess(&self, values: &[f64], is_map: bool) -> f64 {
+        let is_used = |at: usize| {
+            let atom = &self.atoms.list[at];
+            let is_pressed = atom.simulated > PRESSED * atom.peak;
+            atom.channel.is_of_map() == is_map && (is_pressed || !is_map)
+        };
+        self.scan.excess(values, &is_used)
+    }
+
+    /// Share of the draws, the recordings counted as one of them, whose largest look is as large.
+    fn p(&self, score: f64) -> f64 {
+        let larger = self.maxima.iter().filter(|most| **most >= score).count();
+        (larger + 1) as f64 / (self.maxima.len() + 1) as f64
+    }
+
+    fn tell(&self, strongest: &Strongest, scores: &[f64], p: f64) -> Mismatch {
+        let (best, scale) = (strongest.look, strongest.scale);
+        let atoms = self.scan.atoms_of(&self.looks.list[best]);
+        let scores: Vec<f64> = scores.iter().map(|score| score / scale).collect();
+        let spread = scale * self.scan.error(best);
+        let size = strongest.score * spread;
+        let half = 1.645 * spread;
+        let scored = Scored {
+            scan: self.scan,
+            looks: self.looks,
+            scores: &scores,
+        };
+        let mut found = Mismatch {
+            shown: self.shown(atoms[0] as usize),
+            place: place::place(scored, best, (&self.fit.measured, self.search.skin)),
+            when: self.when(&atoms),
+            size,
+            low: size - half,
+            high: size + half,
+            score: strongest.score,
+            p,
+            kept: self.scan.shares[best],
+            sentence: String::new(),
+        };
+        found.sentence = sentence::of_mismatch(&found);
+        found
+    }
+
+    fn shown(&self, atom: usize) -> Shown {
+        let atom = &self.atoms.list[atom];
+        let recording = self.cells.list[atom.cell].recording;
+        match atom.channel {
+            Channel::Force => Shown::Force,
+            Channel::TangentialForce => Shown::TangentialForce,
+            Channel::Area => Shown::Area,
+            Channel::Scan => Shown::Scan,
+            Channel::Pressure(_) if self.fit.measured[recording].is_calibrated => Shown::Pressure,
+            Channel::Pressure(_) => Shown::Counts,
+        }
+    }
+
+    fn when(&self, atoms: &[u32]) -> When {
+        let places: BTreeSet<usize> = atoms
+            .iter()
+            .map(|atom| self.atoms.list[*atom as usize].cell)
+            .collect();
+        let cells: Vec<&cells::Cell> = places.iter().map(|at| &self.cells.list[*at]).collect();
+        let recordings: BTreeSet<usize> = cells.iter().map(|cell| cell.recording).collect();
+        let phases: BTreeSet<_> = cells.iter().map(|cell| cell.phase).collect();
+        let span = |pairs: Vec<[f64; 2]>| {
+            let least = pairs
+                .iter()
+                .map(|pair| pair[0])
+                .fold(f64::INFINITY, f64::min);
+            let most = pairs
+                .iter()
+                .map(|pair| pair[1])
+                .fold(f64::NEG_INFINITY, f64::max);
+            (least.is_finite() && most.is_finite()).then_some([least, most])
+        };
+        let cycles = cells.iter().map(|cell| cell.cycle);
+        let times = span(cells.iter().map(|cell| cell.time).collect());
+        When {
+            recordings: recordings
+                .iter()
+                .map(|at| self.fit.measured[*at].name.clone())
+                .collect(),
+            phases: phases.into_iter().collect(),
+            time_s: times.filter(|_| recordings.len() == 1),
+            depth_mm: span(cells.iter().map(|cell| cell.depth).collect()),
+            cycles: [cycles.clone().min().unwrap_or(0), cycles.max().unwrap_or(0)],
+            rate_mm_s: span(cells.iter().filter_map(|cell| cell.speed).collect()),
+        }
+    }
+
+    fn notes(&self, values: &[f64]) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.atoms.censored > 0 {
+            notes.push(format!(
+                "{} values that the instrument's limits hide were not looked at.",
+                self.atoms.censored
+            ));
+        }
+        for (what, is_map) in [("curves", false), ("maps", true)] {
+            let factor = self.excess(values, is_map);
+            if factor > 1.1 {
+                notes.push(format!(
+                    "What is left of the {what} is {factor:.1} times what noise and the simulation's own error leave; only what stands \
+                     out from that was named."
+                ));
+            }
+        }
+        notes
+    }
+}
+
+fn summary(mismatches: &[Mismatch], p: Option<f64>, looks: usize) -> String {
+    match (mismatches.first(), p) {
+        (Some(first), _) => first.sentence.clone(),
+        (None, Some(p)) => format!(
+            "No place or time carries more than noise would: p = {} over {looks} looks.",
+            sentence::figure(p)
+        ),
+        (None, None) => "Nothing can be located: no recording has a sample that shows its value and that parameters do not absorb.".to_owned(),
+    }
+}
