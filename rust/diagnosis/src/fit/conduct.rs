@@ -99,10 +99,12 @@ impl Fitting {
             replay: &mut self.replay,
             parameters: &parameters,
             whitening: &whitening,
+            is_used: &is_used,
             control,
         };
         let start = scaled_start(&mut problem, &before)?;
-        let descent = descend(&mut problem, &start)?;
+        let mut descent = descend(&mut problem, &start)?;
+        foretell(&mut problem, &mut descent.point)?;
         let system = System::new(&problem, (&descent.point, &descent.jacobian));
         let estimates = estimates(&problem, (&descent.point, &system), &noise);
         let left = self.left((&whitening, &descent), &noise, options);
@@ -189,9 +191,9 @@ impl Fitting {
                 zero_mm: -step,
                 ..Nuisance::none()
             };
-            let moved = self
-                .replay
-                .predict(recording, (&materials, &moved), control)?;
+            let from = (&materials[..], &Nuisance::none());
+            let to = (&materials[..], &moved);
+            let moved = self.replay.predict_near(recording, (from, to), control)?;
             slopes.push(
                 moved
                     .iter()
@@ -283,6 +285,18 @@ impl Fitting {
             p,
         }
     }
+}
+
+/// Predicts the recordings that were held out: with the estimates, and what their tool shares with those that were not.
+fn foretell(problem: &mut Problem<'_>, point: &mut Point) -> Result<(), DiagnosisError> {
+    let (materials, nuisances) = setting(problem.replay, (problem.parameters, &point.at));
+    for recording in (0..nuisances.len()).filter(|&r| !problem.is_used[r]) {
+        let setting = (&materials[..], &nuisances[recording]);
+        point.simulated[recording] = problem
+            .replay
+            .predict(recording, setting, problem.control)?;
+    }
+    Ok(())
 }
 
 /// What a fit leaves.

@@ -30,7 +30,6 @@ pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, Diag
     let mut point = problem.point(start, None)?;
     let mut jacobian = problem.jacobian(&point)?;
     let (mut damping, mut small_gains) = (DAMPING.0, 0);
-    let mut is_fresh = true;
     for step in 0..MOST_STEPS {
         let share = step as f64 / MOST_STEPS as f64;
         problem
@@ -46,8 +45,6 @@ pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, Diag
         let gain = point.objective - next.objective;
         let predicted = system.gain(&point.at, &next.at);
         if gain > 0.0 {
-            // Far from what the derivatives promised: they are old.
-            let is_true = gain > 0.25 * predicted;
             small_gains = match gain <= SETTLED * (1.0 + next.objective) {
                 true => small_gains + 1,
                 false => 0,
@@ -55,22 +52,15 @@ pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, Diag
             damping = (damping * 0.2).max(DAMPING.1);
             // The threshold follows the residuals' bulk.
             point = problem.point(&next.at, None)?;
-            is_fresh = !(problem.replay.remembers() && is_true && small_gains == 0);
-            if is_fresh {
-                jacobian = problem.jacobian(&point)?;
-            }
+            jacobian = problem.jacobian(&point)?;
             if small_gains >= 2 {
-                return finish(problem, (point, jacobian), is_fresh);
+                return Ok(Descent::settled(point, jacobian));
             }
         } else {
             if predicted <= SETTLED * (1.0 + point.objective) || damping > DAMPING.2 {
-                return finish(problem, (point, jacobian), is_fresh);
+                return Ok(Descent::settled(point, jacobian));
             }
             damping *= 8.0;
-            if !is_fresh {
-                jacobian = problem.jacobian(&point)?;
-                (is_fresh, damping) = (true, DAMPING.0);
-            }
         }
     }
     Ok(Descent {
@@ -80,20 +70,14 @@ pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, Diag
     })
 }
 
-fn finish(
-    problem: &mut Problem<'_>,
-    (point, jacobian): (Point, DMatrix<f64>),
-    is_fresh: bool,
-) -> Result<Descent, DiagnosisError> {
-    let jacobian = match is_fresh {
-        true => jacobian,
-        false => problem.jacobian(&point)?,
-    };
-    Ok(Descent {
-        point,
-        jacobian,
-        has_converged: true,
-    })
+impl Descent {
+    fn settled(point: Point, jacobian: DMatrix<f64>) -> Descent {
+        Descent {
+            point,
+            jacobian,
+            has_converged: true,
+        }
+    }
 }
 
 /// The linear problem about a point.

@@ -91,7 +91,7 @@ impl Covariance {
         let scale: Vec<f64> = (0..n).map(|k| normal[(k, k)].max(0.0).sqrt()).collect();
         let known: Vec<usize> = (0..n).filter(|&k| scale[k] > 0.0).collect();
         let mut matrix = DMatrix::from_diagonal_element(n, n, f64::INFINITY);
-        if known.is_empty() {
+        if known.is_empty() || !normal.iter().all(|value| value.is_finite()) {
             return Covariance { matrix };
         }
         let scaled = DMatrix::from_fn(known.len(), known.len(), |a, b| {
@@ -105,7 +105,6 @@ impl Covariance {
             .map(|value| 1.0 / value.max(LEAST_INFORMATION));
         let inverse =
             &eigen.eigenvectors * DMatrix::from_diagonal(&inverse) * eigen.eigenvectors.transpose();
-        let mut matrix = DMatrix::from_diagonal_element(n, n, f64::INFINITY);
         for (a, i) in known.iter().enumerate() {
             for (b, j) in known.iter().enumerate() {
                 matrix[(*i, *j)] = inverse[(a, b)] / (scale[*i] * scale[*j]);

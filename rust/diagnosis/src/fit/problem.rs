@@ -22,6 +22,8 @@ pub struct Problem<'a> {
     pub parameters: &'a [Parameter],
     /// How residuals are whitened.
     pub whitening: &'a Whitening,
+    /// By recording: false if it is only predicted once the fit is done.
+    pub is_used: &'a [bool],
     /// The caller's.
     pub control: &'a Control<'a>,
 }
@@ -51,10 +53,12 @@ impl Problem<'_> {
         let (materials, nuisances) = setting(self.replay, (self.parameters, at));
         let mut simulated = Vec::with_capacity(recordings);
         for (recording, nuisance) in nuisances.iter().enumerate() {
-            simulated.push(
-                self.replay
+            simulated.push(match self.is_used[recording] {
+                true => self
+                    .replay
                     .predict(recording, (&materials, nuisance), self.control)?,
-            );
+                false => vec![0.0; self.replay.observed.measured[recording].samples.len()],
+            });
         }
         let whitened = self.whitening.residuals(&simulated.concat());
         let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual, &simulated));
@@ -101,7 +105,7 @@ impl Problem<'_> {
             }
             let only = self.parameters[column].recording();
             for (recording, start) in starts.iter().enumerate() {
-                if only.is_none_or(|only| only == recording) {
+                if only.is_none_or(|only| only == recording) && self.is_used[recording] {
                     let slopes = self.slopes(point, (column, recording))?;
                     for (k, slope) in slopes.iter().enumerate() {
                         jacobian[(start + k, column)] = *slope;
@@ -159,10 +163,15 @@ impl Problem<'_> {
         };
         let mut at = point.at.clone();
         at[column] += step;
-        let (materials, nuisances) = setting(self.replay, (self.parameters, &at));
-        let moved =
-            self.replay
-                .predict(recording, (&materials, &nuisances[recording]), self.control)?;
+        let (from, to) = (
+            setting(self.replay, (self.parameters, &point.at)),
+            setting(self.replay, (self.parameters, &at)),
+        );
+        let moved = self.replay.predict_near(
+            recording,
+            ((&from.0, &from.1[recording]), (&to.0, &to.1[recording])),
+            self.control,
+        )?;
         Ok(moved
             .iter()
             .zip(simulated)

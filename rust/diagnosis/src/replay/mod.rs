@@ -1,6 +1,7 @@
 //! Stage 6b: every recording's protocol run through the contact model, with predictions in the recording's own terms.
 
 mod interpolation;
+mod ladders;
 mod followed;
 mod press_table;
 mod reading;
@@ -10,23 +11,21 @@ mod tool;
 
 use std::sync::Arc;
 
-use thenar_contact::effects::{Effect, Stage};
+use thenar_contact::effects::Stage;
 use thenar_contact::instrument::Placement;
-use thenar_contact::{ActiveEffect, Control, Keep, Material};
+use thenar_contact::{ActiveEffect, Control, Material};
 use thenar_recordings::Study;
 use thenar_surface::{Product, Vec3};
 
 use crate::DiagnosisError;
 use crate::observe::{Measured, Observed};
-use press_table::{Basis, press_table};
-use reading::{Reader, misplaced};
+use press_table::Basis;
+use reading::Reader;
 use shown::AtSkin;
 pub use tissue::Tissue;
 
 /// Depth that is added to the deepest of a ladder for a contact zero that moves, mm and share.
 const DEPTH_MARGIN: (f64, f64) = (0.1, 0.05);
-/// Ladders kept for each tool and place.
-const MOST_KEPT: usize = 12;
 /// Plates and rods reach this much beyond the skin, at most this far from the site, mm: other fingers are not in the way.
 const REACH: (f64, f64) = (1.2, 60.0);
 
@@ -42,6 +41,9 @@ pub struct Nuisance {
     /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
     pub log_counts: f64,
 }
+
+/// Materials by region, and what belongs to one recording.
+pub type At<'a> = (&'a [Material], &'a Nuisance);
 
 impl Nuisance {
     /// None.
@@ -67,6 +69,14 @@ struct Place {
     kept: Vec<(Key, Arc<Basis>)>,
 }
 
+/// What a protocol was followed with, and what came of it.
+struct Followed {
+    key: Key,
+    depths: Vec<f64>,
+    placement: Placement,
+    at_skin: AtSkin,
+}
+
 /// What a ladder depends on.
 #[derive(Debug, Clone, PartialEq)]
 struct Key {
@@ -86,6 +96,8 @@ pub struct Replay {
     readers: Vec<Option<Reader>>,
     /// Effects on the skin.
     effects: Vec<ActiveEffect>,
+    /// By recording: protocols followed, the last ones last.
+    followed: Vec<Vec<Followed>>,
     /// Effects of the instrument.
     instrument: Vec<ActiveEffect>,
 }
@@ -137,8 +149,10 @@ impl Replay {
             place.deepest =
                 place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
         }
+        let followed = observed.measured.iter().map(|_| Vec::new()).collect();
         Ok(Replay {
             tissue,
+            followed,
             observed,
             places,
             place_of,
@@ -172,9 +186,34 @@ impl Replay {
 
     /// True if the model with its effects remembers, so that each protocol is followed as it was.
     pub fn remembers(&self) -> bool {
-        let acts = |e: &&ActiveEffect| e.amplitude > 0.0;
-        let mut stages = self.effects.iter().filter(acts).map(|e| e.entry().stage);
-        stages.any(|stage| matches!(stage, Stage::History | Stage::Interface))
+        self.effects.iter().any(remembers)
+    }
+
+    /// Effects that act the same at all times.
+    fn lasting(&self) -> Vec<ActiveEffect> {
+        self.effects
+            .iter()
+            .filter(|e| !remembers(e))
+            .cloned()
+            .collect()
+    }
+
+    /// Prepares the skin for these materials and effects, if it is not.
+    fn turn_skin(
+        &mut self,
+        key: &Key,
+        (what, control): (&str, &Control<'_>),
+    ) -> Result<(), DiagnosisError> {
+        let skin = &mut self.tissue.skin;
+        if skin.effects() != key.effects {
+            let changed = skin.set_effects(key.effects.clone(), control);
+            changed.map_err(DiagnosisError::of_contact(what))?;
+        }
+        if skin.materials() != key.materials {
+            let changed = skin.set_materials(&key.materials, control);
+            changed.map_err(DiagnosisError::of_contact(what))?;
+        }
+        Ok(())
     }
 
     /// Depth that a recording's ladder reaches, mm.
@@ -229,138 +268,30 @@ impl Replay {
         self.shown(recording, nuisance, at_skin)
     }
 
-    /// What happens at the skin, from the ladder of the recording's tool and place.
-    fn look_up(
+    /// Predictions near others that are known: of a model that remembers, as one without memory changes from `from` to `to`.
+    ///
+    /// A protocol is long to follow, and the derivatives that a fit takes steps by need not be exact.
+    ///
+    /// # Errors
+    /// As [`Replay::predict`].
+    pub fn predict_near(
         &mut self,
         recording: usize,
-        (materials, nuisance): (&[Material], &Nuisance),
+        (from, to): (At<'_>, At<'_>),
         control: &Control<'_>,
-    ) -> Result<AtSkin, DiagnosisError> {
-        let (basis, weights) = self.basis(self.place_of[recording], materials, control)?;
-        let moments = self.observed.measured[recording].moments.iter();
-        let known = self.depths(recording, nuisance);
-        let depths: Vec<f64> = moments
-            .zip(&known)
-            .map(|(moment, depth)| match depth.is_nan() {
-                false => *depth,
-                true => basis.depth_at(&weights, moment.demand_n),
-            })
-            .collect();
-        let placement = misplaced(nuisance.placement, &self.instrument);
-        let frames = match &mut self.readers[recording] {
-            Some(reader) => {
-                let (readings, sensels) =
-                    (reader.readings(&basis, placement), reader.sensels().len());
-                let frame = |depth: &f64| {
-                    (0..sensels)
-                        .map(|s| readings.at(s, &weights, *depth))
-                        .collect()
-                };
-                depths.iter().map(frame).collect()
-            }
-            None => Vec::new(),
-        };
-        Ok(AtSkin {
-            force: depths
-                .iter()
-                .map(|d| basis.force_at(&weights, *d))
-                .collect(),
-            tangential: vec![0.0; depths.len()],
-            area: depths.iter().map(|d| basis.area_at(*d)).collect(),
-            frames,
-        })
-    }
-
-    /// The ladder at a place and the weights of its parts at these materials.
-    fn basis(
-        &mut self,
-        at: usize,
-        materials: &[Material],
-        control: &Control<'_>,
-    ) -> Result<(Arc<Basis>, Vec<f64>), DiagnosisError> {
-        let is_linear = self.is_linear(materials);
-        let (key, weights) = match is_linear {
-            true => {
-                let start = self.tissue.materials[0].g0_mpa;
-                let unit = Material {
-                    g0_mpa: start,
-                    g_lim_mpa: start,
-                    ..materials[0]
-                };
-                (
-                    vec![unit],
-                    vec![materials[0].g0_mpa, materials[0].g_lim_mpa],
-                )
-            }
-            false => (materials.to_vec(), vec![1.0]),
-        };
-        let key = Key {
-            materials: key,
-            effects: self.effects.clone(),
-        };
-        if let Some((_, basis)) = self.places[at].kept.iter().find(|(kept, _)| *kept == key) {
-            return Ok((basis.clone(), weights));
+    ) -> Result<Vec<f64>, DiagnosisError> {
+        if !self.remembers() || self.observed.measured[recording].samples.is_empty() {
+            return self.predict(recording, to, control);
         }
-        let basis = match is_linear {
-            false => Basis::whole(self.press(at, &key.materials, control)?),
-            true => {
-                let unit = key.materials[0];
-                let twice = Material {
-                    g_lim_mpa: 2.0 * unit.g0_mpa,
-                    ..unit
-                };
-                let one = self.press(at, &[unit], control)?;
-                let two = self.press(at, &[twice], control)?;
-                Basis::linear(one, two, unit.g0_mpa)
-            }
-        };
-        let (basis, kept) = (Arc::new(basis), &mut self.places[at].kept);
-        if kept.len() == MOST_KEPT {
-            kept.remove(0);
-        }
-        kept.push((key, basis.clone()));
-        Ok((basis, weights))
+        let known = self.follow(recording, from, control)?;
+        let base = self.look_up(recording, from, control)?;
+        let moved = self.look_up(recording, to, control)?;
+        self.shown(recording, to.1, known.moved(&base, &moved))
     }
+}
 
-    /// True if force and pressure are linear in G0 and Glim: one region, and no effect with a stiffness of its own.
-    fn is_linear(&self, materials: &[Material]) -> bool {
-        let is_free = |e: &ActiveEffect| {
-            e.amplitude == 0.0
-                || matches!(
-                    e.effect,
-                    Effect::Bone | Effect::Compressibility | Effect::Inclusion
-                )
-        };
-        materials.len() == 1 && self.effects.iter().all(is_free)
-    }
-
-    fn press(
-        &mut self,
-        at: usize,
-        materials: &[Material],
-        control: &Control<'_>,
-    ) -> Result<press_table::PressTable, DiagnosisError> {
-        let place = &self.places[at];
-        if self.tissue.skin.materials() != materials {
-            let changed = self.tissue.skin.set_materials(materials, control);
-            changed.map_err(DiagnosisError::of_contact(place.title.clone()))?;
-        }
-        let quiet = Control {
-            cancelled: control.cancelled,
-            progress: &|_, _| {},
-        };
-        let has_mat = |r: usize| self.place_of[r] == at && self.readers[r].is_some();
-        let keep = match (0..self.place_of.len()).any(has_mat) {
-            true => Keep::Loads,
-            false => Keep::Totals,
-        };
-        press_table(
-            &mut self.tissue.skin,
-            (&place.tool, place.direction),
-            (place.deepest, keep),
-            (&place.title, &quiet),
-        )
-    }
+fn remembers(effect: &ActiveEffect) -> bool {
+    effect.amplitude > 0.0 && matches!(effect.entry().stage, Stage::History | Stage::Interface)
 }
 
 fn place(study: &Study, measured: &Measured, extent: f64) -> Result<Place, DiagnosisError> {

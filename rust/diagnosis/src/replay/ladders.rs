@@ -1,0 +1,152 @@
+//! Predictions of a model without memory, from ladders of presses that are kept.
+
+use std::sync::Arc;
+
+use thenar_contact::effects::Effect;
+use thenar_contact::{ActiveEffect, Control, Keep, Material};
+
+use super::press_table::{Basis, PressTable, press_table};
+use super::reading::misplaced;
+use super::shown::AtSkin;
+use super::{Key, Nuisance, Replay};
+use crate::DiagnosisError;
+
+/// Ladders kept for each tool and place.
+const MOST_KEPT: usize = 12;
+
+impl Replay {
+    /// What happens at the skin, from the ladder of the recording's tool and place.
+    pub(super) fn look_up(
+        &mut self,
+        recording: usize,
+        (materials, nuisance): (&[Material], &Nuisance),
+        control: &Control<'_>,
+    ) -> Result<AtSkin, DiagnosisError> {
+        let (basis, weights) = self.basis(self.place_of[recording], materials, control)?;
+        let moments = self.observed.measured[recording].moments.iter();
+        let known = self.depths(recording, nuisance);
+        let depths: Vec<f64> = moments
+            .zip(&known)
+            .map(|(moment, depth)| match depth.is_nan() {
+                false => *depth,
+                true => basis.depth_at(&weights, moment.demand_n),
+            })
+            .collect();
+        let placement = misplaced(nuisance.placement, &self.instrument);
+        let frames = match &mut self.readers[recording] {
+            Some(reader) => {
+                let (readings, sensels) =
+                    (reader.readings(&basis, placement), reader.sensels().len());
+                let frame = |depth: &f64| {
+                    (0..sensels)
+                        .map(|s| readings.at(s, &weights, *depth))
+                        .collect()
+                };
+                depths.iter().map(frame).collect()
+            }
+            None => Vec::new(),
+        };
+        Ok(AtSkin {
+            force: depths
+                .iter()
+                .map(|d| basis.force_at(&weights, *d))
+                .collect(),
+            tangential: vec![0.0; depths.len()],
+            area: depths.iter().map(|d| basis.area_at(*d)).collect(),
+            frames,
+        })
+    }
+
+    /// The ladder at a place and the weights of its parts at these materials.
+    pub(super) fn basis(
+        &mut self,
+        at: usize,
+        materials: &[Material],
+        control: &Control<'_>,
+    ) -> Result<(Arc<Basis>, Vec<f64>), DiagnosisError> {
+        let is_linear = self.is_linear(materials);
+        let (key, weights) = match is_linear {
+            true => {
+                let start = self.tissue.materials[0].g0_mpa;
+                let unit = Material {
+                    g0_mpa: start,
+                    g_lim_mpa: start,
+                    ..materials[0]
+                };
+                (
+                    vec![unit],
+                    vec![materials[0].g0_mpa, materials[0].g_lim_mpa],
+                )
+            }
+            false => (materials.to_vec(), vec![1.0]),
+        };
+        let key = Key {
+            materials: key,
+            effects: self.lasting(),
+        };
+        if let Some((_, basis)) = self.places[at].kept.iter().find(|(kept, _)| *kept == key) {
+            return Ok((basis.clone(), weights));
+        }
+        let basis = match is_linear {
+            false => Basis::whole(self.press(at, &key.materials, control)?),
+            true => {
+                let unit = key.materials[0];
+                let twice = Material {
+                    g_lim_mpa: 2.0 * unit.g0_mpa,
+                    ..unit
+                };
+                let one = self.press(at, &[unit], control)?;
+                let two = self.press(at, &[twice], control)?;
+                Basis::linear(one, two, unit.g0_mpa)
+            }
+        };
+        let (basis, kept) = (Arc::new(basis), &mut self.places[at].kept);
+        if kept.len() == MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, basis.clone()));
+        Ok((basis, weights))
+    }
+
+    /// True if force and pressure are linear in G0 and Glim: one region, and no effect with a stiffness of its own.
+    fn is_linear(&self, materials: &[Material]) -> bool {
+        let is_free = |e: &ActiveEffect| {
+            e.amplitude == 0.0
+                || matches!(
+                    e.effect,
+                    Effect::Bone | Effect::Compressibility | Effect::Inclusion
+                )
+        };
+        materials.len() == 1 && self.lasting().iter().all(is_free)
+    }
+
+    fn press(
+        &mut self,
+        at: usize,
+        materials: &[Material],
+        control: &Control<'_>,
+    ) -> Result<PressTable, DiagnosisError> {
+        let title = self.places[at].title.clone();
+        let key = Key {
+            materials: materials.to_vec(),
+            effects: self.lasting(),
+        };
+        self.turn_skin(&key, (&title, control))?;
+        let place = &self.places[at];
+        let quiet = Control {
+            cancelled: control.cancelled,
+            progress: &|_, _| {},
+        };
+        let has_mat = |r: usize| self.place_of[r] == at && self.readers[r].is_some();
+        let keep = match (0..self.place_of.len()).any(has_mat) {
+            true => Keep::Loads,
+            false => Keep::Totals,
+        };
+        press_table(
+            &mut self.tissue.skin,
+            (&place.tool, place.direction),
+            (place.deepest, keep),
+            (&title, &quiet),
+        )
+    }
+}
