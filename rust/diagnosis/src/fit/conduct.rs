@@ -163,6 +163,9 @@ impl Fitting {
         let materials = self.replay.tissue.materials.clone();
         let none = Nuisance::none();
         let recordings = self.replay.observed.measured.len();
+        let ahead = (&materials[..], &vec![none; recordings][..]);
+        self.replay
+            .follow_ahead(ahead, &vec![true; recordings], control)?;
         let mut all = Vec::with_capacity(recordings);
         for recording in 0..recordings {
             control

@@ -51,6 +51,9 @@ impl Problem<'_> {
     pub fn point(&mut self, at: &[f64], threshold: Option<f64>) -> Result<Point, DiagnosisError> {
         let recordings = self.replay.observed.measured.len();
         let (materials, nuisances) = setting(self.replay, (self.parameters, at));
+        let ahead = (&materials[..], &nuisances[..]);
+        self.replay
+            .follow_ahead(ahead, self.is_used, self.control)?;
         let mut simulated = Vec::with_capacity(recordings);
         for (recording, nuisance) in nuisances.iter().enumerate() {
             simulated.push(match self.is_used[recording] {

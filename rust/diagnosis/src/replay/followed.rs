@@ -1,13 +1,16 @@
 //! Protocols followed as they were, for models that remember.
 
+use rayon::prelude::*;
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::Placement;
-use thenar_contact::{ActiveEffect, Control, Demand, Keep, Material, Protocol, Row, Run, Step};
+use thenar_contact::{
+    ActiveEffect, Control, Demand, Keep, Material, Protocol, Row, Run, Skin, Step,
+};
 use thenar_surface::Vec3;
 
 use super::reading::misplaced;
 use super::shown::AtSkin;
-use super::{Followed, Key, Nuisance, Replay};
+use super::{At, Followed, Key, Nuisance, Replay};
 use crate::DiagnosisError;
 use crate::observe::{Moment, across};
 
@@ -16,6 +19,16 @@ const QUICKEST: f64 = 1e-3;
 /// Runs kept for each recording.
 const MOST_KEPT: usize = 6;
 
+/// A protocol that is to be followed.
+struct Task {
+    recording: usize,
+    key: Key,
+    depths: Vec<f64>,
+    placement: Placement,
+    /// Moduli over those of the key.
+    scale: f64,
+}
+
 impl Replay {
     /// What a model that remembers says: the recording's own protocol, moment by moment, from rest.
     ///
@@ -23,9 +36,45 @@ impl Replay {
     pub(super) fn follow(
         &mut self,
         recording: usize,
-        (materials, nuisance): (&[Material], &Nuisance),
+        at: At<'_>,
         control: &Control<'_>,
     ) -> Result<AtSkin, DiagnosisError> {
+        let task = self.task(recording, at);
+        let found = match self.known(&task) {
+            Some(found) => found,
+            None => {
+                self.run_all(vec![task], control)?;
+                let task = self.task(recording, at);
+                self.known(&task).ok_or(DiagnosisError::Cancelled)?
+            }
+        };
+        Ok(found)
+    }
+
+    /// Follows several protocols at once, those that are not known, so that later predictions find them; the same bits on any
+    /// number of threads.
+    ///
+    /// # Errors
+    /// What the contact model says of a press, or `Cancelled`.
+    pub fn follow_ahead(
+        &mut self,
+        (materials, nuisances): (&[Material], &[Nuisance]),
+        is_used: &[bool],
+        control: &Control<'_>,
+    ) -> Result<(), DiagnosisError> {
+        if !self.remembers() {
+            return Ok(());
+        }
+        let has_samples = |r: &usize| !self.observed.measured[*r].samples.is_empty();
+        let used = (0..is_used.len())
+            .filter(|&r| is_used[r])
+            .filter(has_samples);
+        let tasks = used.map(|r| self.task(r, (materials, &nuisances[r])));
+        let unknown = tasks.filter(|task| self.known(task).is_none()).collect();
+        self.run_all(unknown, control)
+    }
+
+    fn task(&self, recording: usize, (materials, nuisance): At<'_>) -> Task {
         let scale = match self.effects.iter().all(grows_with_modulus) {
             true => materials[0].g0_mpa / self.tissue.materials[0].g0_mpa,
             false => 1.0,
@@ -35,43 +84,72 @@ impl Replay {
             g_lim_mpa: material.g_lim_mpa / scale,
             ..*material
         });
-        let key = Key {
-            materials: materials.collect(),
-            effects: self.effects.clone(),
-        };
-        let depths = self.depths(recording, nuisance);
-        let placement = misplaced(nuisance.placement, &self.instrument);
-        let is_alike =
-            |f: &&Followed| f.key == key && f.placement == placement && same(&f.depths, &depths);
-        if let Some(found) = self.followed[recording].iter().find(is_alike) {
-            return Ok(found.at_skin.clone().scaled(scale));
+        Task {
+            recording,
+            key: Key {
+                materials: materials.collect(),
+                effects: self.effects.clone(),
+            },
+            depths: self.depths(recording, nuisance),
+            placement: misplaced(nuisance.placement, &self.instrument),
+            scale,
         }
-        let title = self.places[self.place_of[recording]].title.clone();
-        self.turn_skin(&key, (&title, control))?;
-        let at_skin = self.run(recording, (&depths, placement), control)?;
-        let kept = &mut self.followed[recording];
-        if kept.len() == MOST_KEPT {
-            kept.remove(0);
-        }
-        kept.push(Followed {
-            key,
-            depths,
-            placement,
-            at_skin: at_skin.clone(),
-        });
-        Ok(at_skin.scaled(scale))
     }
 
-    /// Follows the protocol with the skin as it is.
+    fn known(&self, task: &Task) -> Option<AtSkin> {
+        let is_alike = |f: &&Followed| {
+            f.key == task.key && f.placement == task.placement && same(&f.depths, &task.depths)
+        };
+        let found = self.followed[task.recording].iter().find(is_alike)?;
+        Some(found.at_skin.clone().scaled(task.scale))
+    }
+
+    /// Runs tasks with one skin, and keeps what comes of them.
+    fn run_all(&mut self, tasks: Vec<Task>, control: &Control<'_>) -> Result<(), DiagnosisError> {
+        let Some(first) = tasks.first() else {
+            return Ok(());
+        };
+        let title = self.places[self.place_of[first.recording]].title.clone();
+        self.turn_skin(&first.key, (&title, control))?;
+        let share = tasks.len().div_ceil(rayon::current_num_threads().max(1));
+        let of_share = |tasks: &[Task]| -> Result<Vec<AtSkin>, DiagnosisError> {
+            // A skin keeps only what saves time: a copy gives the same bits.
+            let mut skin = self.tissue.skin.clone();
+            tasks
+                .iter()
+                .map(|task| self.run(&mut skin, task, control))
+                .collect()
+        };
+        let found: Vec<Vec<AtSkin>> = tasks
+            .par_chunks(share)
+            .map(of_share)
+            .collect::<Result<_, DiagnosisError>>()?;
+        for (task, at_skin) in tasks.into_iter().zip(found.into_iter().flatten()) {
+            let kept = &mut self.followed[task.recording];
+            if kept.len() == MOST_KEPT {
+                kept.remove(0);
+            }
+            kept.push(Followed {
+                key: task.key,
+                depths: task.depths,
+                placement: task.placement,
+                at_skin,
+            });
+        }
+        Ok(())
+    }
+
+    /// Follows a protocol with the skin as it is.
     fn run(
-        &mut self,
-        recording: usize,
-        (depths, placement): (&[f64], Placement),
+        &self,
+        skin: &mut Skin,
+        task: &Task,
         control: &Control<'_>,
     ) -> Result<AtSkin, DiagnosisError> {
+        let recording = task.recording;
         let measured = &self.observed.measured[recording];
         let place = &self.places[self.place_of[recording]];
-        let rows = rows(&measured.moments, depths);
+        let rows = rows(&measured.moments, &task.depths);
         let added = rows.len() - measured.moments.len();
         let protocol = Protocol {
             rows,
@@ -91,13 +169,13 @@ impl Replay {
             progress: &|_, _| {},
         };
         let what = format!("recording '{}'", measured.name);
-        let course = self.tissue.skin.run(&run, &quiet);
+        let course = skin.run(&run, &quiet);
         let course = course.map_err(DiagnosisError::of_contact(what))?;
         let steps = &course.steps[added..];
         let x = across(place.direction);
         let frames = match &self.readers[recording] {
             Some(reader) => {
-                let read = |step: &Step| reader.sensels().read_at(&step.loads, &placement);
+                let read = |step: &Step| reader.sensels().read_at(&step.loads, &task.placement);
                 steps.iter().map(read).collect()
             }
             None => Vec::new(),

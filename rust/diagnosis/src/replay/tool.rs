@@ -8,8 +8,8 @@ use crate::DiagnosisError;
 
 /// Sectors around a round tool: a chord of a cylinder of radius R lies R (pi / 512)^2 / 2 = 2e-5 R under the arc.
 const SECTORS: u32 = 512;
-/// Rings of a sphere from pole to pole, and sectors around it.
-const SPHERE: (u32, u32) = (160, 192);
+/// Rings of a sphere's half that touches and of its other half, and sectors around it: an edge of R / 40 lies 8e-5 R under the arc.
+const SPHERE: (u32, u32, u32) = (64, 8, 160);
 /// Smallest angle between a cylinder's axis and the travel.
 const LEAST_ANGLE: f64 = 1e-3;
 
@@ -140,10 +140,14 @@ fn punch(frame: &Frame, radius: f64, reach: f64) -> Surface {
 }
 
 fn sphere(frame: &Frame, radius: f64) -> Surface {
-    let (rings, sectors) = SPHERE;
+    let (near, far, sectors) = SPHERE;
+    let (rings, right) = (near + far, std::f64::consts::FRAC_PI_2);
     let mut positions = vec![frame.touch];
     for ring in 1..rings {
-        let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
+        let polar = match ring <= near {
+            true => right * f64::from(ring) / f64::from(near),
+            false => right * (1.0 + f64::from(ring - near) / f64::from(far)),
+        };
         for k in 0..sectors {
             let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sectors);
             let across = radius * polar.sin();
