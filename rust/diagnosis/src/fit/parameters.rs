@@ -30,6 +30,8 @@ const POSITION: f64 = 1.0;
 const TURN: f64 = 0.035;
 /// A mat may lie this many standard deviations off.
 const MOST_POSITION: f64 = 4.0;
+/// Standard deviation of a load cell's zero as a part of the largest force, where the recording itself had to tell it.
+const FORCE_ZERO: f64 = 0.01;
 /// Bounds of counts per kPa as logarithms.
 const COUNTS: f64 = 12.0;
 
@@ -48,6 +50,8 @@ pub enum Kind {
     InstrumentGain,
     /// Shift of a recording's mat along its first (0) or second (1) direction, or its turn (2).
     Pose(usize, usize),
+    /// What a recording's load cell shows without load.
+    ForceZero(usize),
     /// Logarithm of counts per kPa of a recording.
     Counts(usize),
 }
@@ -123,7 +127,10 @@ pub struct Parameter {
 impl Parameter {
     /// True if the coordinate is a logarithm.
     pub fn is_log(&self) -> bool {
-        !matches!(self.kind, Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..))
+        !matches!(
+            self.kind,
+            Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..) | Kind::ForceZero(_)
+        )
     }
 
     /// The number itself.
@@ -138,7 +145,11 @@ impl Parameter {
     /// The one recording it matters to; None: all.
     pub fn recording(&self) -> Option<usize> {
         match self.kind {
-            Kind::Zero(r) | Kind::Gain(r) | Kind::Pose(r, _) | Kind::Counts(r) => Some(r),
+            Kind::Zero(r)
+            | Kind::Gain(r)
+            | Kind::Pose(r, _)
+            | Kind::ForceZero(r)
+            | Kind::Counts(r) => Some(r),
             Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) => None,
         }
     }
@@ -181,6 +192,9 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
         }
         let target = || Target::Recording(measured.name.clone());
         all.extend(touch(case, recording));
+        if !case.is_touch_known[recording] {
+            all.extend(force_zero(recording, measured));
+        }
         let is_scaled = measured.is_calibrated && carries_force(measured);
         if is_scaled && case.noise.gain > 0.0 {
             all.push(gain(
@@ -207,6 +221,25 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
         }
     }
     all
+}
+
+/// What the load cell shows without load, about what was taken off where the file gives no first touch.
+fn force_zero(recording: usize, measured: &Measured) -> Option<Parameter> {
+    let forces = measured
+        .samples
+        .iter()
+        .filter(|s| s.quantity == Quantity::Force);
+    let most = forces.fold(0.0, |most, s| f64::max(most, s.value.abs()));
+    let sd = FORCE_ZERO * most;
+    (sd > 0.0).then(|| Parameter {
+        kind: Kind::ForceZero(recording),
+        name: "force_zero_n",
+        target: Target::Recording(measured.name.clone()),
+        start: 0.0,
+        bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
+        prior: Some(sd),
+        step: sd,
+    })
 }
 
 /// Where a mat lies: two shifts, in mm about `sd`, and a turn.
@@ -346,6 +379,7 @@ pub fn setting(
             Kind::Pose(r, 2) => nuisances[r].placement.turn_rad = *at,
             Kind::Pose(r, axis) => nuisances[r].placement.shift_mm[axis] = *at,
             Kind::Counts(r) => nuisances[r].log_counts = *at,
+            Kind::ForceZero(r) => nuisances[r].force_zero_n = *at,
         }
     }
     (materials, nuisances)

@@ -155,6 +155,10 @@ impl Problem<'_> {
                     .map(|(s, f)| if is_scaled(s.quantity) { *f } else { 0.0 })
                     .collect());
             }
+            Kind::ForceZero(_) => {
+                let is_force = |q: Quantity| f64::from(q == Quantity::Force);
+                return Ok(samples.iter().map(|s| is_force(s.quantity)).collect());
+            }
             Kind::Tissue(..) | Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..) => {}
         }
         // Away from the nearer bound.

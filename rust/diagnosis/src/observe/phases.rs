@@ -12,6 +12,9 @@ const STANDS: f64 = 0.05;
 /// Force that the noise cannot explain where a tool seems apart: standard deviations, and part of the largest force.
 const TOUCHES: (f64, f64) = (4.0, 0.01);
 
+/// A stretch lasts at least this part of a recording.
+const MOST_STRETCHES: usize = 200;
+
 /// Samples of one phase, without a break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
@@ -38,11 +41,15 @@ pub struct Courses<'a> {
     pub slide_mm: &'a [f64],
 }
 
-/// Divides a course into stretches of one phase each.
+/// Divides a course into stretches of one phase each; in long recordings, what lasts less than a part of them is noise.
 pub fn stretches(courses: Courses<'_>) -> Vec<Stretch> {
     let mut phases = moves(courses.time_s, courses.depth_mm);
     mark_slides(courses, &mut phases);
     mark_apart(courses, &mut phases);
+    let shortest = courses.depth_mm.len() / MOST_STRETCHES;
+    while let Some((start, end, phase)) = flicker(&phases, shortest) {
+        phases[start..end].fill(phase);
+    }
     let mut found: Vec<Stretch> = Vec::new();
     let (mut cycle, mut has_left) = (0, false);
     for (k, phase) in phases.into_iter().enumerate() {
@@ -66,6 +73,26 @@ pub fn stretches(courses: Courses<'_>) -> Vec<Stretch> {
         }
     }
     found
+}
+
+/// The shortest run of one phase, if it is shorter than `shortest`, and the phase of the longer of its neighbors.
+fn flicker(phases: &[Phase], shortest: usize) -> Option<(usize, usize, Phase)> {
+    let mut runs: Vec<(usize, usize)> = Vec::new();
+    for (k, phase) in phases.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if phases[run.0] == *phase => run.1 = k + 1,
+            _ => runs.push((k, k + 1)),
+        }
+    }
+    let length = |run: &(usize, usize)| run.1 - run.0;
+    let (at, run) = runs.iter().enumerate().min_by_key(|(_, run)| length(run))?;
+    if runs.len() < 2 || length(run) >= shortest {
+        return None;
+    }
+    let before = at.checked_sub(1).map(|k| runs[k]);
+    let neighbors = [before, runs.get(at + 1).copied()];
+    let longer = neighbors.into_iter().flatten().max_by_key(length)?;
+    Some((run.0, run.1, phases[longer.0]))
 }
 
 /// Load, hold or unload by sample, from the depth alone.

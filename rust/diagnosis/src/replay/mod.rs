@@ -36,6 +36,8 @@ pub struct Nuisance {
     pub zero_mm: f64,
     /// Natural logarithm of the factor on force and pressure.
     pub log_gain: f64,
+    /// Force that the load cell shows without load, N.
+    pub force_zero_n: f64,
     /// How the mat lies otherwise than the study says.
     pub placement: Placement,
     /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
@@ -51,6 +53,7 @@ impl Nuisance {
         Nuisance {
             zero_mm: 0.0,
             log_gain: 0.0,
+            force_zero_n: 0.0,
             placement: Placement::default(),
             log_counts: 0.0,
         }

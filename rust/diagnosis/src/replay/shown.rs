@@ -74,7 +74,7 @@ impl Replay {
         let gain = libm::exp(nuisance.log_gain);
         let counts = libm::exp(nuisance.log_gain + nuisance.log_counts);
         let one = |moment: usize, quantity: Quantity| match quantity {
-            Quantity::Force => gain * shown.force[moment],
+            Quantity::Force => gain * shown.force[moment] + nuisance.force_zero_n,
             Quantity::TangentialForce => gain * shown.tangential[moment],
             Quantity::Area => shown.area[moment],
             Quantity::Pressure(sensel) => match shown.frames.get(moment) {
