@@ -14,7 +14,7 @@ _state = {"command": None}
 @persistent
 def _scene_changed(scene, depsgraph=None):
     result = scene.thenar.result if scene is not None and hasattr(scene, "thenar") else None
-    if result is None or not result.is_valid or bpy.app.background or status.run.stage:
+    if result is None or not result.is_valid or bpy.app.background or status.run.stage or scene.thenar.live:
         return
     if bpy.app.timers.is_registered(_check):
         bpy.app.timers.unregister(_check)

@@ -113,6 +113,11 @@ def _look_changed(_self, context):
         refresh(context)
 
 
+def _live_switched(_self, context):
+    for follow in status.live_switched:
+        follow(context)
+
+
 class ThenarMaterial(bpy.types.PropertyGroup):
     """Material of one region; `name` is the vertex group. Its numbers come from the library's table."""
 
@@ -291,6 +296,11 @@ class ThenarScene(bpy.types.PropertyGroup):
     )
     show_legend: BoolProperty(
         name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
+    )
+    live: BoolProperty(
+        name="Live",
+        description="The contact follows while hand, armature or product move; not in renders, for those bake",
+        update=_live_switched,
     )
     maps: PointerProperty(type=map_settings.ThenarMaps)
     comfort: PointerProperty(type=comfort_settings.ThenarComfort)

@@ -12,6 +12,14 @@ class Run:
     shown = ""
 
 
+class Following:
+    """How Live gets on in a scene: updates a second, milliseconds each, and why it does not follow, if so."""
+
+    rate = 0.0
+    ms = 0.0
+    problem = ""
+
+
 run = Run()
 native_problem = ""
 """Why the native module cannot be used, as one sentence; empty if it can."""
@@ -19,6 +27,10 @@ look_changed = []
 """Called with the context after range, colours or legend were changed."""
 comfort_changed = []
 """Called with the context after the threshold of comfort was changed."""
+live_switched = []
+"""Called with the context after Live was switched on or off."""
+live = {}
+"""What Live tells of each scene, by its name: a `Following`."""
 _stale = {}
 
 

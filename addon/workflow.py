@@ -148,7 +148,7 @@ def prepared(job, cancel=None, progress=None):
     if progress is not None:
         progress("prepare", 0.0)
     try:
-        skin = cache.skin(key, lambda: _skin(thenar, job, cancel, progress))
+        skin = cache.skin(key, lambda: new_skin(job, cancel, progress))
         skin.set_effects([effect.native(thenar) for effect in job.effects])
         job.thickness_mm = np.asarray(skin.thickness_mm)
         job.seconds["prepare"] = time.perf_counter() - started
@@ -310,8 +310,9 @@ def _numbers(material):
     return tuple(numbers.items())
 
 
-def _skin(thenar, job, cancel, progress):
-    hand = job.reading.hand
+def new_skin(job, cancel=None, progress=None):
+    """The job's skin, prepared, still without effects. Raises the native module's errors."""
+    thenar, hand = native.module, job.reading.hand
     materials = [_material(thenar, numbers) for numbers in job.materials]
     return thenar.Skin(
         hand.rest_mm,

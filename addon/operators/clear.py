@@ -15,7 +15,7 @@ class THENAR_OT_clear(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return polling.allows(cls, polling.no_output(context))
+        return polling.allows(cls, polling.no_output(context), polling.live(context))
 
     def execute(self, context):
         display.hide(context)
@@ -34,7 +34,7 @@ class THENAR_OT_apply(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return polling.allows(cls, polling.no_output(context))
+        return polling.allows(cls, polling.no_output(context), polling.live(context))
 
     def execute(self, context):
         if running.attempt(self, workflow.apply, context) is None:

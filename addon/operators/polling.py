@@ -14,12 +14,18 @@ def allows(cls, *problems):
 
 def can_compute(cls, context):
     """Whether a contact can be computed: module, hand and product are there, and nothing is under way."""
-    return allows(cls, status.native_problem, no_hand(context), no_product(context), busy())
+    return allows(cls, status.native_problem, no_hand(context), no_product(context), busy(), live(context))
 
 
 def busy():
     """Another computation runs."""
     return "a computation is under way; press Esc to cancel it" if status.run.stage else ""
+
+
+def live(context):
+    """Live computes by itself, and a solve or bake beside it would read what it shows."""
+    settings = getattr(context.scene, "thenar", None)
+    return "Live keeps the contact up to date; switch it off first" if settings is not None and settings.live else ""
 
 
 def no_hand(context):

@@ -4,7 +4,7 @@ import bpy
 
 from .. import maps, names, status
 from ..scene.units import mm_per_unit
-from .preferences import draw_state
+from .preferences import draw_state, wrapped
 
 
 class Tab:
@@ -63,6 +63,7 @@ class THENAR_PT_main(Tab, bpy.types.Panel):
         layout.prop(settings, "model")
         _draw_force(layout, settings)
         _draw_solve(layout)
+        _draw_live(layout, context)
         row = layout.row(align=True)
         row.operator("thenar.clear", text="Clear", icon="TRASH")
         row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
@@ -79,7 +80,9 @@ def _draw_state(layout, context):
         text=f"{len(hand.data.vertices):,} vertices, {count} modifier{'' if count == 1 else 's'}", icon="MESH_DATA"
     )
     column.label(text=f"1 unit = {mm_per_unit(context.scene):g} mm", icon="DRIVER_DISTANCE")
-    if not settings.result.is_valid:
+    if settings.live:
+        column.label(text="The contact is live", icon="CHECKMARK")
+    elif not settings.result.is_valid:
         column.label(text="Not solved yet", icon="DOT")
     elif status.is_stale(context.scene.name):
         row = column.row()
@@ -110,6 +113,22 @@ def _draw_solve(layout):
     row = layout.row()
     row.scale_y = 1.6
     row.operator("thenar.solve", text="Solve", icon="PLAY")
+
+
+def _draw_live(layout, context):
+    scene = context.scene
+    told = status.live.get(scene.name)
+    row = layout.row(align=True)
+    row.prop(scene.thenar, "live", text="Live", toggle=True, icon="PLAY_SOUND" if scene.thenar.live else "PAUSE")
+    if not scene.thenar.live or told is None:
+        return
+    if told.problem:
+        column = layout.column(align=True)
+        column.alert = True
+        for line in wrapped(told.problem, context):
+            column.label(text=line)
+    else:
+        layout.label(text=f"{told.rate:.0f} updates/s, {told.ms:.0f} ms each", icon="TIME")
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):

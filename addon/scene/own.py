@@ -16,6 +16,11 @@ def bake_modifiers(obj):
     return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.BAKE_MODIFIER)]
 
 
+def live_modifier(obj):
+    """The modifier that shows a live contact on this hand, or None."""
+    return next((modifier for modifier in obj.modifiers if modifier.name == names.LIVE_MODIFIER), None)
+
+
 def roots(parts):
     """Those of `parts` that no other part carries along as a parent."""
     chosen = set(parts)
@@ -31,7 +36,8 @@ def without_own_output(context, hand, parts):
         if key is not None and not key.mute:
             restore.callback(setattr, key, "mute", False)
             key.mute = True
-        for modifier in bake_modifiers(hand):
+        live = live_modifier(hand)
+        for modifier in (*bake_modifiers(hand), *([live] if live is not None else [])):
             restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
             modifier.show_viewport = False
         for part in parts:

@@ -1,0 +1,6 @@
+"""Live: contact follows while hand, armature or product move. Registration only."""
+
+from . import watch
+
+register = watch.register
+unregister = watch.unregister

@@ -1,0 +1,166 @@
+"""One hand on one product, followed: what is prepared once, and what one update reads, computes and writes.
+
+Holds arrays and names, no Blender object: undo and loading replace those.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from .. import cache, comfort, effects, maps, names, native, workflow
+from .. import result as results
+from ..scene import attributes, checks, colors, mesh, own, read, state, units, write
+from . import nodes
+
+
+@dataclass
+class Session:
+    """A followed hand: its `job`, what that depends on besides pose (`setup`), and what was solved last."""
+
+    job: workflow.Job
+    setup: str
+    seen: str = ""
+    """Digest of pose and product at the last solve; empty to solve whatever is there."""
+    surface: str = ""
+    """Digest of the product that is prepared."""
+    skin: object = None
+    """Prepared for this session alone: a solve of another scene must not change its effects or what it remembers."""
+    product: object = None
+    painted: dict = field(default_factory=dict)
+
+    def fits(self, hand, parts):
+        """Whether hand and product are still the ones it began with."""
+        return self.job.hand_name == hand.name and self.job.part_names == tuple(part.name for part in parts)
+
+
+def check(context):
+    """Refuse what Live cannot follow. Returns hand and product parts. Raises `Refusal`."""
+    hand, parts = workflow.check(context)
+    if own.bake_modifiers(hand):
+        raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then switch Live on")
+    if context.scene.thenar.use_force:
+        raise checks.Refusal("Live follows the pose and keeps the product where it is; switch Force Target off")
+    if any(modifier.type == "MIRROR" and modifier.show_viewport for modifier in hand.modifiers):
+        raise checks.Refusal(f"Live cannot follow the Mirror modifier of '{hand.name}'; apply it or press Solve")
+    return hand, parts
+
+
+def begin(context, hand, parts):
+    """A session for this hand: own earlier output is taken off, the modifier hung on. Raises `Refusal`."""
+    if own.contact_key(hand) is not None or any(part.thenar.is_moved for part in parts):
+        write.clear(context, hand, parts)
+    job = workflow.read_job(context, hand, parts)
+    nodes.attach(hand)
+    context.view_layer.update()
+    attributes.write(hand.data, names.REGION, "INT", job.reading.hand.regions)
+    try:
+        skin = workflow.new_skin(job)
+        skin.set_effects([effect.native(native.module) for effect in job.effects])
+    except native.error_types() as error:
+        raise type(error)(workflow.named(str(error), job)) from None
+    write.write_thickness(hand.data, np.asarray(skin.thickness_mm))
+    return Session(job, setup_of(context, hand), skin=skin)
+
+
+def setup_of(context, hand):
+    """Digest of what a session depends on besides pose and product."""
+    settings = context.scene.thenar
+    stack = tuple((modifier.name, modifier.type, modifier.show_viewport) for modifier in hand.modifiers)
+    groups = tuple(group.name for group in hand.vertex_groups)
+    choices = (settings.model, *settings.slide_mm, hand.mode == "WEIGHT_PAINT", units.mm_per_unit(context.scene))
+    rest = mesh.positions(hand.data)
+    return cache.content_hash(workflow.material_numbers(hand), *effects.shown(hand), stack, groups, choices, rest)
+
+
+def follow(context, session):
+    """Bring the contact to what the scene shows now. Returns whether anything had moved.
+
+    Raises `Refusal` or the native module's errors; then the last contact stays as it is.
+    """
+    hand, parts = check(context)
+    base = nodes.base_positions(hand, context.evaluated_depsgraph_get())
+    matrix = units.world_from_local(hand)
+    shapes = state.shapes(context, parts)
+    surface = cache.content_hash(*shapes)
+    seen = cache.content_hash(base, matrix, surface)
+    if seen == session.seen:
+        return False
+    job = session.job
+    skin = job.reading.hand
+    checks.check_finite(base, hand.name, "posed hand")
+    posed = units.to_world_mm(base, matrix, skin.scale, skin.origin_mm)
+    if surface != session.surface:
+        _take_product(context, session, parts)
+    skin = replace(skin, posed_mm=posed, matrix=matrix)
+    job = replace(session.job, reading=read.Reading(skin, session.job.reading.product), seconds={})
+    contact = _press(job, session)
+    _write(context, session, job, contact)
+    session.job, session.seen = job, seen
+    return True
+
+
+def _take_product(context, session, parts):
+    skin = session.job.reading.hand
+    product = read.read_product(context, parts, skin.scale, skin.origin_mm)
+    session.product = native.module.Product(product.vertices_mm, product.triangles)
+    session.job = replace(session.job, reading=read.Reading(skin, product))
+    session.surface = cache.content_hash(*state.shapes(context, parts))
+    session.painted.clear()
+
+
+def _press(job, session):
+    slide = None if job.slide_mm is None else np.array(job.slide_mm, dtype=np.float64)
+    posed = job.reading.hand.posed_mm
+    try:
+        return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, warm_start=True)
+    except native.error_types() as error:
+        raise type(error)(workflow.named(str(error), job)) from None
+
+
+def _write(context, session, job, contact):
+    """Shape and colors of the skin, pressure of the product, and the scene's numbers."""
+    settings, skin = context.scene.thenar, job.reading.hand
+    hand, parts = settings.hand, workflow.product_parts(settings)
+    fields = workflow.fields_of(contact, job)
+    nodes.put_offsets(hand, units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale))
+    pressure = units.kpa(fields.pressure_mpa)
+    attributes.write(hand.data, names.DEPTH_MM, "FLOAT", fields.depth_mm)
+    attributes.write(hand.data, names.FORCE_N, "FLOAT", fields.force_n)
+    attributes.write(hand.data, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
+    if fields.shear is not None:
+        attributes.write(hand.data, names.SHEAR_KPA, "FLOAT", units.kpa(fields.shear[0]))
+        attributes.write(hand.data, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
+    _paint(session, hand, pressure, (settings, colors.SKIN))
+    loads = units.kpa(fields.product_pressure_mpa)
+    by_name = {part.name: part for part in parts}
+    for record in job.reading.product.parts:
+        if not record.reason:
+            own_share = loads[record.first : record.first + record.count]
+            part = by_name[record.name]
+            _paint(session, part, own_share[: len(part.data.vertices)], (settings, colors.BARE))
+    notes = list(workflow.joined([workflow.named(text, job) for text in contact.warnings]))
+    results.fill(settings.result, job, contact, write.WriteReport(0.0, 0, ()), notes)
+    comfort.judge(context)
+    context.view_layer.update()
+
+
+def _paint(session, obj, pressure, look):
+    """Pressure and its colors, computed anew only where skin presses or pressed; nothing where nothing did."""
+    settings, bare = look
+    scale = maps.scale(maps.MAPS[maps.PRESSURE], settings)
+    before = session.painted.get(obj.name)
+    if before is None or before[2] != scale or len(before[0]) != len(pressure):
+        tinted = colors.linear(pressure, settings, bare)
+    else:
+        rows = np.flatnonzero((before[0] > 0.0) | (pressure > 0.0))
+        if not rows.size:
+            return
+        tinted = before[1]
+        tinted[rows] = colors.linear(pressure[rows], settings, bare)
+    session.painted[obj.name] = (pressure, tinted, scale)
+    attributes.write(obj.data, names.PRESSURE_KPA, "FLOAT", pressure)
+    attributes.write(obj.data, names.COLOR, "FLOAT_COLOR", tinted)
+    if maps.shown(settings).kind == maps.PRESSURE:
+        obj.data.update()
+    else:
+        colors.recolor(obj.data, settings, bare)

@@ -1,0 +1,224 @@
+"""Live: contact that follows hand, armature and product, and leaves no trace where it is not wanted."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+from thenar_blender import names, status
+from thenar_blender.live import watch
+
+MM = stage.MM
+
+
+def follow():
+    """What the timer does in a window; background has no timers."""
+    bpy.context.view_layer.update()
+    return watch.follow_now(bpy.context)
+
+
+def told():
+    return status.live[bpy.context.scene.name]
+
+
+def switch(on):
+    bpy.context.scene.thenar.live = on
+
+
+def force():
+    return bpy.context.scene.thenar.result.force_n
+
+
+def solved_apart(hand):
+    """Positions, mm, and force that Solve finds for the scene as it stands, and the scene as it was."""
+    switch(False)
+    bpy.ops.thenar.clear()
+    result = stage.solve()
+    return stage.evaluated(hand), result.force_n
+
+
+def test_contact_follows_the_product(scene):
+    hand, product = stage.scene()
+    switch(True)
+    forces = []
+    for _ in range(5):
+        product.location.z += 0.2 * MM
+        assert follow()
+        forces.append(force())
+    assert np.all(np.diff(forces) > 0.0)
+    shown = stage.evaluated(hand)
+    expected, wanted = solved_apart(hand)
+    assert forces[-1] == pytest.approx(wanted, rel=1e-4)
+    pressed = stage.attribute(hand, names.PRESSURE_KPA) > 0.0
+    assert np.abs(shown - expected)[pressed].max() < 2e-3
+
+
+def test_contact_follows_the_armature(scene):
+    hand, product = stage.scene()
+    stage.bend(hand)
+    stage.raise_under(hand, product)
+    switch(True)
+    before, bone = force(), bpy.data.objects["Rig"].pose.bones["tip"]
+    bone.rotation_euler.x += 0.02
+    assert follow()
+    assert force() != before
+    bone.rotation_euler.x -= 0.02
+    assert follow()
+    assert force() == pytest.approx(before, rel=1e-4)
+
+
+def test_own_output_is_not_read(scene):
+    hand, product = stage.scene()
+    switch(True)
+    first, pressed = force(), stage.evaluated(hand)
+    for _ in range(5):
+        assert not follow()
+        watch.forget()
+        assert follow(), "a session that begins anew on a hand that shows a contact"
+        assert force() == first
+        assert np.array_equal(stage.evaluated(hand), pressed)
+
+
+def test_what_did_not_move_is_skipped(scene):
+    hand, product = stage.scene()
+    switch(True)
+    bpy.ops.mesh.primitive_cube_add(location=(1.0, 0.0, 0.0))
+    assert not follow()
+    bpy.context.scene.thenar.hand.thenar.default_material.g0_kpa *= 2.0
+    before = force()
+    assert follow(), "a material is not a motion, but it counts"
+    assert force() > 1.2 * before
+
+
+def test_mistakes_keep_the_last_contact(scene):
+    hand, product = stage.scene()
+    switch(True)
+    pressed, before = stage.evaluated(hand), force()
+    product.hide_viewport = True
+    assert not follow()
+    assert "disabled in viewports" in told().problem
+    assert np.array_equal(stage.evaluated(hand), pressed) and force() == before
+    product.hide_viewport = False
+    product.location.z += 0.1 * MM
+    assert follow()
+    assert not told().problem and force() > before
+
+
+@pytest.mark.parametrize(
+    ("spoil", "reason"),
+    [
+        (lambda hand: setattr(bpy.context.scene.thenar, "use_force", True), "Force Target"),
+        (lambda hand: hand.modifiers.new("Mirror", "MIRROR"), "Mirror"),
+        (lambda hand: hand.modifiers.new(names.BAKE_MODIFIER, "MESH_CACHE"), "plays a bake"),
+        (lambda hand: setattr(bpy.context.scene.thenar, "product", None), "choose|product"),
+    ],
+    ids=["force", "mirror", "bake", "no product"],
+)
+def test_what_live_cannot_follow_is_told(scene, spoil, reason):
+    hand, product = stage.scene()
+    spoil(hand)
+    switch(True)
+    assert any(word in told().problem for word in reason.split("|"))
+    assert own_traces(hand) == []
+
+
+def own_traces(hand):
+    """Names of what Live leaves on a hand while it is on."""
+    return [
+        found.name for found in (*hand.modifiers, *hand.data.attributes) if found.name.lower().startswith("thenar_live")
+    ] + [modifier.name for modifier in hand.modifiers if modifier.name == names.LIVE_MODIFIER]
+
+
+def test_off_leaves_what_solve_leaves(scene):
+    hand, product = stage.scene()
+    wanted = stage.solve().force_n
+    key = np.array([point.co for point in hand.data.shape_keys.key_blocks[names.SHAPE_KEY].points])
+    switch(True)
+    assert hand.data.shape_keys is None and names.LIVE_MODIFIER in hand.modifiers
+    with pytest.raises(RuntimeError, match="Live keeps the contact up to date"):
+        bpy.ops.thenar.solve()
+    switch(False)
+    assert own_traces(hand) == [] and names.LIVE_MODIFIER not in bpy.data.node_groups
+    assert force() == wanted
+    assert np.array_equal([point.co for point in hand.data.shape_keys.key_blocks[names.SHAPE_KEY].points], key)
+
+
+def test_frames_move_it_and_renders_do_not(scene, tmp_path):
+    hand, product = stage.scene()
+    for frame, lift in ((1, 0.0), (9, 0.8)):
+        product.location.z += lift * MM
+        product.keyframe_insert("location", frame=frame)
+    scene.frame_set(1)
+    switch(True)
+    before = force()
+    seen = []
+    bpy.app.handlers.frame_change_post.append(lambda *_: seen.append(watch.follow_now(bpy.context)))
+    try:
+        scene.frame_set(5)
+        assert seen == [True] and force() > before
+        camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+        scene.render.engine, scene.cycles.samples = "CYCLES", 1
+        scene.render.resolution_x = scene.render.resolution_y = 4
+        scene.frame_start, scene.frame_end = 6, 8
+        scene.render.filepath = str(tmp_path / "frame")
+        del seen[:]
+        bpy.ops.render.render(animation=True)
+        assert len(seen) >= 3 and not any(seen)
+    finally:
+        bpy.app.handlers.frame_change_post.pop()
+    scene.frame_set(9)
+    assert follow()
+
+
+def test_it_goes_on_after_loading(scene, tmp_path):
+    hand, product = stage.scene()
+    switch(True)
+    before, pressed = force(), stage.evaluated(hand)
+    path = str(tmp_path / "live.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    settings = bpy.context.scene.thenar
+    assert settings.live and follow()
+    assert force() == before and np.array_equal(stage.evaluated(settings.hand), pressed)
+    settings.product.location.z += 0.2 * MM
+    assert follow() and force() > before
+
+
+def test_scenes_are_followed_apart(scene):
+    stage.scene()
+    switch(True)
+    first = force()
+    other = bpy.data.scenes.new("Other")
+    bpy.context.window.scene = other
+    _, product = stage.scene(top=-6.4)
+    switch(True)
+    deeper = force()
+    assert deeper > first and set(status.live) == {scene.name, other.name}
+    product.location.z += 0.1 * MM
+    assert follow() and force() > deeper
+    bpy.context.window.scene = scene
+    assert not follow() and force() == first
+
+
+def test_long_session_without_error_or_growth(scene, tmp_path):
+    """Updates with saving, loading and rendering between them; undo needs a window and is driven there."""
+    _, product = stage.scene()
+    switch(True)
+    path, sizes, heights = str(tmp_path / "long.blend"), [], np.random.default_rng(0).uniform(-0.5, 0.5, 500)
+    start = product.location.z
+    for count, height in enumerate(heights):
+        bpy.context.scene.thenar.product.location.z = start + height * MM
+        assert follow() and not told().problem
+        if count % 100 == 50:
+            bpy.ops.wm.save_as_mainfile(filepath=path)
+            bpy.ops.wm.open_mainfile(filepath=path)
+        if count % 100 == 99:
+            sizes.append(resident_mb())
+    assert sizes[-1] < sizes[0] + 10.0
+    assert len(bpy.data.node_groups) == 1 and len(bpy.context.scene.thenar.hand.modifiers) == 1
+
+
+def resident_mb():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * 4096 / 2**20
