@@ -1,0 +1,99 @@
+"""Live on the 48 mm sample: our share of a frame beside Blender's own evaluation, over one drag of a finger.
+
+Run where Blender and the add-on can be imported: `python tests/bench/live.py [FRAMES]`. One thread, CPU time, medians.
+"""
+
+import os
+import statistics
+import sys
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+ONE_THREAD = {name: "1" for name in ("RAYON_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+SAMPLE = Path(__file__).parents[2] / "blend-samples/cylinder_48.blend"
+WANTED_MS = 8.0
+SWING_RAD = 0.1
+"""How far the middle finger's base joint swings about its grasp: 6 degrees, lifted off and pressed in."""
+
+
+def main(frames):
+    """Drag with Live off and on; print medians and their ratio. Returns 0."""
+    import thenar_blender
+    from thenar_blender.live import session, watch
+
+    thenar_blender.register()
+    bpy.ops.wm.open_mainfile(filepath=str(SAMPLE))
+    context = bpy.context
+    settings, pressing = context.scene.thenar, []
+    session._press = timed(session._press, pressing)
+    angles = SWING_RAD * np.sin(2.0 * np.pi * (np.arange(frames) + 1) / 50.0 + 0.01)
+    plain = [spent(pose, settings.hand, angle)[1] for angle in angles]
+    settings.live = True
+    del pressing[:]
+    with_node, ours, forces = [], [], []
+    for angle in angles:
+        with_node.append(spent(pose, settings.hand, angle)[1])
+        is_new, seconds = spent(watch.follow_now, context)
+        assert is_new, "a frame was not followed"
+        ours.append(seconds)
+        forces.append(settings.result.force_n)
+    again = [spent(show, settings.hand)[1] for _ in angles]
+    report(plain, ours, (with_node, again, pressing), forces)
+    thenar_blender.unregister()
+    return 0
+
+
+def report(plain, ours, parts, forces):
+    """Print what was measured."""
+    with_node, again, pressing = parts
+    own, share = 1e3 * statistics.median(plain), 1e3 * statistics.median(ours)
+    print(f"{len(plain)} frames, {min(forces):.0f} to {max(forces):.0f} N, ms of CPU a frame, medians")
+    print(f"  Blender's evaluation of the pose, Live off   {own:8.2f}")
+    print(f"  the same with Live's modifier                {1e3 * statistics.median(with_node):8.2f}")
+    print(f"  Live's update                                {share:8.2f}   wanted <= {WANTED_MS:g}")
+    print(f"    of it the press                            {1e3 * statistics.median(pressing):8.2f}")
+    print(f"    of it Blender's evaluation to show it      {1e3 * statistics.median(again):8.2f}")
+    print(f"  ratio of update to Blender's evaluation      {share / own:8.2f}   wanted <= 1")
+
+
+def pose(hand, angle):
+    """Turn the finger to `angle` about where it was and let Blender evaluate the scene."""
+    bone = hand.parent.pose.bones["middle_proximal"]
+    start = bone.get("start")
+    if start is None:
+        bone["start"] = start = bone.rotation_euler.x
+    bone.rotation_euler.x = start + angle
+    bpy.context.view_layer.update()
+
+
+def show(hand):
+    """What Blender does after a contact was written."""
+    hand.data.update()
+    bpy.context.view_layer.update()
+
+
+def spent(call, *arguments):
+    """What `call` returns and the CPU seconds that it took."""
+    began = time.process_time()
+    value = call(*arguments)
+    return value, time.process_time() - began
+
+
+def timed(call, seconds):
+    """`call`, whose CPU seconds are added to the list `seconds`."""
+
+    def wrapped(*arguments):
+        value, took = spent(call, *arguments)
+        seconds.append(took)
+        return value
+
+    return wrapped
+
+
+if __name__ == "__main__":
+    if any(os.environ.get(name) != value for name, value in ONE_THREAD.items()):
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **ONE_THREAD})
+    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 100))
