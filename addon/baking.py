@@ -1,11 +1,14 @@
-"""The order of a bake: frame by frame read and press, then publish all frames at once."""
+"""The order of a bake: frame by frame read and press, then publish all frames at once.
+
+With friction, or effects that act over time, frames follow one another at the scene's rate; else each stands alone.
+"""
 
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
-from . import native, workflow
+from . import following, native, workflow
 from .scene import baked, checks, moving, own, units
 
 
@@ -17,6 +20,8 @@ class Bake:
     last: int
     stem: object
     frame_before: int
+    course: following.Course
+    follows: bool = False
     done: list = field(default_factory=list)
 
     @property
@@ -37,7 +42,9 @@ def begin(context, frame_start, frame_end):
     hand, parts = workflow.check(context)
     if context.scene.thenar.use_force:
         moving.check_movable(context, parts)
-    return Bake(frame_start, frame_end, baked.folder_of(hand), context.scene.frame_current)
+    render = context.scene.render
+    course = following.Course(render.fps_base / render.fps)
+    return Bake(frame_start, frame_end, baked.folder_of(hand), context.scene.frame_current, course)
 
 
 def read_frame(context, bake):
@@ -53,15 +60,17 @@ def keep_frame(bake, job, contact):
     skin, product = job.reading.hand, job.reading.product
     world = skin.posed_mm + np.asarray(contact.displacement_mm) + skin.origin_mm
     pressure = units.kpa(contact.product_pressure_mpa).astype(np.float32)
+    fields = workflow.fields_of(contact, job)
     carriers = [part for part in product.parts if not part.reason]
     bake.done.append(
         {
             "local": units.to_local(world, skin.matrix, skin.scale),
-            "pressure_kpa": units.kpa(contact.pressure_mpa).astype(np.float32),
+            "fields": baked.hand_fields(fields),
             "parts": {part.name: pressure[part.first : part.first + part.base_count] for part in carriers},
             "force_n": float(np.asarray(contact.force_n).sum()),
             "area_mm2": contact.contact_area_mm2,
             "peak_kpa": float(units.kpa(contact.peak_pressure_mpa)),
+            "shear_n": float(np.linalg.norm(contact.friction.total_force_n)) if contact.friction else 0.0,
             "offset": workflow.offset_mm(contact, job) / skin.scale,
         }
     )
@@ -70,11 +79,26 @@ def keep_frame(bake, job, contact):
 def publish(context, bake):
     """Write the files and hang them on the hand; the next change of frame plays them."""
     settings = context.scene.thenar
+    course = bake.course
+    for number, frame in enumerate(bake.done):
+        frame["work_mj"] = course.work_mj[number] if bake.follows else 0.0
+        frame["slip_loss_mj"] = course.slip_loss_mj[number] if bake.follows else 0.0
     baked.publish(settings.hand, bake.stem, bake.first, bake.done)
+    _sum_up(settings.hand.thenar.bake, bake)
     for part in workflow.product_parts(settings):
         moving.send_home(part)
     context.scene.render.use_lock_interface = True
     settings.result.state_hash = ""
+
+
+def _sum_up(told, bake):
+    told.frame_start, told.frame_end, told.follows = bake.first, bake.last, bake.follows
+    told.peak_kpa = max(frame["peak_kpa"] for frame in bake.done)
+    told.peak_force_n = max(frame["force_n"] for frame in bake.done)
+    told.peak_shear_n = max(frame["shear_n"] for frame in bake.done)
+    told.work_mj, told.slip_loss_mj = bake.done[-1]["work_mj"], bake.done[-1]["slip_loss_mj"]
+    losses = following.cycle_losses(bake.course.force_n, bake.course.work_mj) if bake.follows else []
+    told.cycles, told.cycle_loss_mj = len(losses), float(np.mean(losses)) if losses else 0.0
 
 
 def leave(context, bake):
@@ -91,9 +115,11 @@ def steps(context, frame_start, frame_end):
     try:
         while not bake.is_complete:
             job = read_frame(context, bake)
+            if not bake.done:
+                bake.follows = following.is_needed(job)
             try:
                 contact = yield partial(_compute, bake, job)
-            except native.error_types() as error:
+            except (checks.Refusal, *native.error_types()) as error:
                 raise type(error)(f"at frame {bake.frame}, {error}") from None
             keep_frame(bake, job, contact)
         publish(context, bake)
@@ -107,4 +133,5 @@ def _compute(bake, job, cancel, progress):
         share = (len(bake.done) + fraction) / (bake.last - bake.first + 1)
         progress(f"frame {bake.frame} of {bake.last}, {stage}", share)
 
-    return workflow.compute(job, cancel, progress and report)
+    hooks = cancel, progress and report
+    return following.take(bake.course, job, hooks) if bake.follows else workflow.compute(job, *hooks)

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, StringProperty
 
-from . import native
+from . import names, native
 
 _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
@@ -29,6 +29,12 @@ def acts_over_time(name):
 def can_be_painted(name):
     """Whether a vertex group can stand for the effect's field."""
     return bool(offered().get(name, {}).get("painted"))
+
+
+def needs_history(hand):
+    """Whether a bake of the hand follows its history: friction, or an effect that acts over time, is switched on."""
+    acting = [effect.name for effect in hand.thenar.effects if effect.is_on and effect.amplitude > 0.0]
+    return any(name == names.FRICTION or acts_over_time(name) for name in acting)
 
 
 def is_on(hand, name):

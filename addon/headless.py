@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 
-from . import export, native, workflow
+from . import export, maps, native, workflow
 from . import result as results
 from .scene.checks import Refusal
 
@@ -93,7 +93,7 @@ def _solve(options):
     if options.render:
         from . import pictures
 
-        pictures.render_scene(bpy.context, Path(options.render))
+        pictures.render_scene(bpy.context, Path(options.render), options.map and options.map.upper())
     if options.out:
         save_file(options.out)
     if options.json:
@@ -155,6 +155,7 @@ def _parser():
     add_press_options(solve)
     solve.add_argument("--out", metavar="OUT.blend", help="save the solved file there")
     solve.add_argument("--render", metavar="OUT.png", help="render the scene with pressure and legend")
+    solve.add_argument("--map", choices=[kind.lower() for kind in maps.MAPS], help="what the rendered colours show")
     solve.add_argument("--json", metavar="OUT.json", help="write the result there")
     solve.set_defaults(run=_solve)
     batch = commands.add_parser("batch", help="solve many cases, each in a process of its own")

@@ -9,6 +9,7 @@ from mathutils import Matrix, Vector
 from . import maps, names
 from .operators import display
 from .scene import attributes, mesh, own
+from .scene.checks import Refusal
 from .views import compositor
 
 SAMPLES = 24
@@ -20,11 +21,14 @@ _LEGEND_SHIFT = 0.1
 """Share of the picture by which what it shows gives way to the legend."""
 
 
-def render_scene(context, path):
-    """Render the scene as its camera sees it, with the map and legend; a camera is made where there is none."""
+def render_scene(context, path, kind=None):
+    """Render the scene as its camera sees it, with the map (`kind`, or the one shown) and its legend.
+
+    A camera is made where there is none. Raises `Refusal` where the hand does not carry the map.
+    """
     scene = context.scene
     with ExitStack() as undo:
-        _prepare(context, undo)
+        _prepare(context, undo, kind)
         if scene.camera is None:
             settings = scene.thenar
             _aim(context, undo, _world(settings.hand), (Vector((0.5, -1.0, 0.6)), Vector((0, 0, 1))))
@@ -88,7 +92,10 @@ def _prepare(context, undo, kind=None):
     """Show the map that is chosen, or `kind`, with true colours and legend."""
     scene = context.scene
     was_shown, chosen = scene.thenar.hand.thenar.shows_pressure, scene.thenar.maps.shown
-    display.show(context, kind or (chosen if was_shown else maps.PRESSURE))
+    wanted = maps.MAPS[kind or (chosen if was_shown else maps.PRESSURE)]
+    if not display.shown_objects(context, wanted.attribute):
+        raise Refusal(wanted.missing)
+    display.show(context, wanted.kind)
     undo.callback(*((display.show, context, chosen) if was_shown else (display.hide, context)))
     if not scene.thenar.preset_before:
         undo.callback(compositor.restore_preset, scene)

@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import comfort_settings, effect_settings, map_settings, names, native, status
+from . import bake_settings, comfort_settings, effect_settings, map_settings, names, native, status
 from .scene.units import KPA_PER_MPA
 
 PRESETS = (
@@ -222,6 +222,7 @@ class ThenarObject(bpy.types.PropertyGroup):
     added_slot: BoolProperty()
     slots: CollectionProperty(type=ThenarSlot)
     bake_path: StringProperty()
+    bake: PointerProperty(type=bake_settings.ThenarBake)
 
 
 def _is_mesh(_self, obj):
@@ -273,7 +274,8 @@ class ThenarScene(bpy.types.PropertyGroup):
     )
     slide_mm: FloatVectorProperty(
         name="Slide (mm)",
-        description="How far the product is dragged over the skin, world axes, mm; friction answers to it",
+        description="How far the product is dragged over the skin, world axes, mm; friction answers to it. "
+        "A bake takes the product's own motion instead",
         size=3,
         subtype="XYZ",
     )
@@ -312,6 +314,7 @@ CLASSES = (
     *effect_settings.CLASSES,
     *map_settings.CLASSES,
     *comfort_settings.CLASSES,
+    *bake_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
     ThenarStage,

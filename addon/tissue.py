@@ -34,8 +34,9 @@ def write_thickness(context):
         direction=None,
         input_hash="",
     )
-    with workflow.prepared(job):
-        write.write_thickness(hand.data, job.thickness_mm)
+    with workflow.telling(job):
+        workflow.prepared(job)
+    write.write_thickness(hand.data, job.thickness_mm)
     return job.thickness_mm
 
 

@@ -135,28 +135,36 @@ def compute(job, cancel=None, progress=None):
 
     `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
     """
-    with prepared(job, cancel, progress) as skin:
-        return _press(job, skin, cancel, progress)
+    with telling(job, cancel):
+        return _press(job, prepared(job, cancel, progress), cancel, progress)
 
 
 @contextmanager
-def prepared(job, cancel=None, progress=None):
-    """The job's prepared skin with its effects; errors of the native module leave with the objects' names."""
-    thenar, hand = native.module, job.reading.hand
-    key = cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
-    started = time.perf_counter()
-    if progress is not None:
-        progress("prepare", 0.0)
+def telling(job, cancel=None):
+    """Errors of the native module leave with the objects' names, and the skin in which they happened is dropped."""
     try:
-        skin = cache.skin(key, lambda: new_skin(job, cancel, progress))
-        skin.set_effects([effect.native(thenar) for effect in job.effects])
-        job.thickness_mm = np.asarray(skin.thickness_mm)
-        job.seconds["prepare"] = time.perf_counter() - started
-        yield skin
+        yield
     except native.error_types() as error:
         if cancel is None or not cancel.is_set():
-            cache.drop(key)
+            cache.drop(_skin_key(job))
         raise type(error)(named(str(error), job)) from None
+
+
+def prepared(job, cancel=None, progress=None):
+    """The job's prepared skin with its effects."""
+    thenar, started = native.module, time.perf_counter()
+    if progress is not None:
+        progress("prepare", 0.0)
+    skin = cache.skin(_skin_key(job), lambda: new_skin(job, cancel, progress))
+    skin.set_effects([effect.native(thenar) for effect in job.effects])
+    job.thickness_mm = np.asarray(skin.thickness_mm)
+    job.seconds["prepare"] = time.perf_counter() - started
+    return skin
+
+
+def _skin_key(job):
+    hand = job.reading.hand
+    return cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
 
 
 def _press(job, skin, cancel, progress):

@@ -7,7 +7,7 @@ from . import computing, display, polling
 
 
 class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
-    """Press every frame of a range and keep shape and pressure beside the file, to be played and rendered"""
+    """Press every frame of a range and keep shape and fields beside the file; skin that rubs or remembers follows on"""
 
     bl_idname = "thenar.bake"
     bl_label = "Bake Frames"
@@ -26,9 +26,11 @@ class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, bake):
         display.refresh(context)
-        peak = max(frame["peak_kpa"] for frame in bake.done)
-        count = len(bake.done)
-        self.report({"INFO"}, f"Baked {count} frame{'s' if count > 1 else ''}; highest peak {peak:.0f} kPa")
+        told, count = context.scene.thenar.hand.thenar.bake, len(bake.done)
+        text = f"Baked {count} frame{'s' if count > 1 else ''}; highest peak {told.peak_kpa:.0f} kPa"
+        if told.cycles:
+            text += f"; {told.cycle_loss_mj:.3g} mJ lost per cycle"
+        self.report({"INFO"}, text)
         return {"FINISHED"}
 
 

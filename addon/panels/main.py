@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import maps, names, status
+from .. import effect_settings, maps, names, status
 from ..scene.units import mm_per_unit
 from .preferences import draw_state, wrapped
 
@@ -203,6 +203,11 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
         layout, scene = self.layout, context.scene
         button = layout.operator("thenar.bake", icon="RENDER_ANIMATION")
         button.frame_start, button.frame_end = scene.frame_start, scene.frame_end
+        hand = scene.thenar.hand
+        if hand is not None and effect_settings.needs_history(hand):
+            column = layout.column(align=True)
+            column.active = False
+            column.label(text=f"Frames remember, {scene.render.fps / scene.render.fps_base:g} a second", icon="TIME")
         layout.operator("thenar.export", icon="EXPORT")
         column = layout.column(align=True)
         column.active = False

@@ -134,6 +134,37 @@ class THENAR_PT_comfort(Tab, bpy.types.Panel):
             _lines(layout, settings.result.comfort, (context, icon))
 
 
+class THENAR_PT_bake(Tab, bpy.types.Panel):
+    """What the bake that plays has found over its frames."""
+
+    bl_label = "Bake"
+    bl_parent_id = "THENAR_PT_result"
+
+    @classmethod
+    def poll(cls, context):
+        hand = context.scene.thenar.hand
+        return hand is not None and bool(hand.thenar.bake_path)
+
+    def draw(self, context):
+        layout, told = self.layout, context.scene.thenar.hand.thenar.bake
+        box = layout.box().column(align=True)
+        _pair(box, "Frames", f"{told.frame_start} to {told.frame_end}")
+        _pair(box, "Frames remember", "yes" if told.follows else "no, each alone")
+        _pair(box, "Highest force", f"{told.peak_force_n:.1f} N")
+        _pair(box, "Highest peak", f"{told.peak_kpa:.0f} kPa")
+        if told.follows:
+            _draw_energy(box, told)
+
+
+def _draw_energy(box, told):
+    if told.peak_shear_n:
+        _pair(box, "Highest shear", f"{told.peak_shear_n:.1f} N")
+        _pair(box, "Lost to slip", f"{told.slip_loss_mj:.3g} mJ")
+    _pair(box, "Work on the skin", f"{told.work_mj:.3g} mJ")
+    if told.cycles:
+        _pair(box, f"Lost per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ")
+
+
 class THENAR_PT_notes(Tab, bpy.types.Panel):
     """What to know about the result before it is used."""
 
@@ -182,6 +213,7 @@ CLASSES = (
     THENAR_PT_physics_result,
     THENAR_PT_regions,
     THENAR_PT_comfort,
+    THENAR_PT_bake,
     THENAR_PT_notes,
     THENAR_PT_quality,
 )

@@ -1,4 +1,4 @@
-"""A baked contact: positions as PC2 played by a Mesh Cache modifier, pressures as NPZ played on frame changes."""
+"""A baked contact: positions as PC2 played by a Mesh Cache modifier, fields as NPZ played on frame changes."""
 
 import os
 import struct
@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, moving, own
+from . import attributes, colors, moving, own, units
 from .checks import Refusal
 
 DEFORMERS = {
@@ -17,6 +17,18 @@ DEFORMERS = {
 }  # fmt: skip
 """Modifiers that keep every vertex; the bake stands behind the last of the leading ones."""
 
+_NUMBERS = ("force_n", "area_mm2", "peak_kpa", "shear_n", "work_mj", "slip_loss_mj")
+_UNTOUCHED = {names.SLIP_MARGIN: 1.0}
+"""What a field says where nothing touches, if that is not 0."""
+_OF_ONE_PRESS = (
+    names.DEPTH_MM,
+    names.FORCE_N,
+    names.DISPLACEMENT_MM,
+    names.SHEAR_KPA,
+    names.SLIP_MARGIN,
+    names.THRESHOLD_SHARE,
+)
+"""Attributes of a press that are wrong once a bake plays, unless the bake plays them too."""
 _loaded = {}
 
 
@@ -38,8 +50,8 @@ def folder_of(hand):
 def publish(hand, stem, first_frame, frames):
     """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
 
-    `frames`: dicts with `local` (n, 3) positions in object space, `pressure_kpa` (n), `parts` {name: kPa (k)},
-    numbers `force_n`, `area_mm2`, `peak_kpa`, and `offset` (3), how far the product moves, world, Blender units.
+    `frames`: dicts with `local` (n, 3) positions in object space, `fields` {attribute: (n)} of the hand, `parts` {name:
+    kPa (k)}, the numbers of `_NUMBERS`, and `offset` (3), how far the product moves, world, Blender units.
     """
     pc2, npz = stem.with_name(stem.name + ".pc2"), stem.with_name(stem.name + ".npz")
     _replace(pc2, lambda file: _write_pc2(file, first_frame, frames))
@@ -53,7 +65,16 @@ def publish(hand, stem, first_frame, frames):
     cache.forward_axis, cache.up_axis = "POS_Y", "POS_Z"
     hand.modifiers.move(len(hand.modifiers) - 1, index)
     hand.thenar.bake_path = bpy.path.relpath(str(npz))
+    attributes.remove(hand.data, [name for name in _OF_ONE_PRESS if name not in _field_names(frames)])
     _loaded.clear()
+
+
+def hand_fields(fields):
+    """What a frame plays on the hand, float32 (n,) by attribute, from `write.Fields`."""
+    values = {names.PRESSURE_KPA: units.kpa(fields.pressure_mpa), names.DEPTH_MM: fields.depth_mm}
+    if fields.shear is not None:
+        values |= {names.SHEAR_KPA: units.kpa(fields.shear[0]), names.SLIP_MARGIN: fields.shear[1]}
+    return {name: np.asarray(value, np.float32) for name, value in values.items()}
 
 
 def play(scene, find_parts):
@@ -67,13 +88,14 @@ def play(scene, find_parts):
     tables = _load(hand)
     if tables is None:
         return
-    row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["hand"]) - 1))
-    _show(hand.data, tables["hand"][row], scene.thenar, colors.SKIN)
+    row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["force_n"]) - 1))
+    fields = {name.removeprefix("hand/"): table[row] for name, table in tables.items() if name.startswith("hand/")}
+    _show(hand.data, fields or {names.PRESSURE_KPA: tables["hand"][row]}, scene.thenar, colors.SKIN)
     parts = find_parts(scene.thenar)
     for part in parts:
         values = tables.get(f"part/{part.name}")
         if values is not None and part.type == "MESH" and part.mode != "EDIT":
-            _show(part.data, values[row], scene.thenar, colors.BARE)
+            _show(part.data, {names.PRESSURE_KPA: values[row]}, scene.thenar, colors.BARE)
     offsets = tables["offset"]
     for part in own.roots(parts) if np.any(offsets) else ():
         moving.shift(part, offsets[row])
@@ -89,10 +111,11 @@ def forget():
     _loaded.clear()
 
 
-def _show(mesh, pressure, look, bare):
-    if len(pressure) != len(mesh.vertices):
+def _show(mesh, fields, look, bare):
+    if any(len(values) != len(mesh.vertices) for values in fields.values()):
         return
-    attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
+    for name, values in fields.items():
+        attributes.write(mesh, name, "FLOAT", values)
     colors.recolor(mesh, look, bare)
 
 
@@ -108,12 +131,19 @@ def _load(hand):
 
 
 def _tables(first_frame, frames):
-    tables = {"first_frame": np.int32(first_frame), "hand": np.stack([frame["pressure_kpa"] for frame in frames])}
+    tables = {"first_frame": np.int32(first_frame)}
+    for name in _field_names(frames):
+        plain = np.full(len(frames[0]["local"]), _UNTOUCHED.get(name, 0.0), np.float32)
+        tables[f"hand/{name}"] = np.stack([frame["fields"].get(name, plain) for frame in frames])
     for name in frames[0]["parts"]:
         tables[f"part/{name}"] = np.stack([frame["parts"][name] for frame in frames])
-    for name in ("force_n", "area_mm2", "peak_kpa", "offset"):
+    for name in (*_NUMBERS, "offset"):
         tables[name] = np.array([frame[name] for frame in frames])
     return tables
+
+
+def _field_names(frames):
+    return sorted({name for frame in frames for name in frame["fields"]})
 
 
 def _write_pc2(file, first_frame, frames):

@@ -16,7 +16,10 @@ def _draw():
     settings = getattr(context.scene, "thenar", None)
     if settings is None or not settings.show_legend or context.region is None:
         return
-    if settings.hand is None or not settings.hand.thenar.shows_pressure or not context.space_data.overlay.show_overlays:
+    hand = settings.hand
+    if hand is None or not hand.thenar.shows_pressure or hand.mode == "WEIGHT_PAINT":  # painting shows weights instead
+        return
+    if not context.space_data.overlay.show_overlays:
         return
     left = next((region.width for region in context.area.regions if region.type == "TOOLS"), 0)
     height = min(context.region.height, 620)

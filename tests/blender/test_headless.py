@@ -49,6 +49,8 @@ def test_solve_writes_file_and_summary(grip, tmp_path):
         tmp_path / "o.json",
         "--render",
         tmp_path / "o.png",
+        "--map",
+        "depth",
     )
     assert done.returncode == 0, done.stderr
     assert json.loads((tmp_path / "o.json").read_text())["force_n"] == pytest.approx(expected, rel=1e-6)
@@ -65,6 +67,9 @@ def test_bad_input_is_one_sentence(grip, tmp_path):
     assert "there is no object 'Paw' for the hand; meshes in the file: Pad, Plate" in done.stderr
     assert "Traceback" not in done.stderr
     assert command("solve", tmp_path / "none.blend").returncode == 2
+    done = command("solve", grip, "--map", "shear", "--render", tmp_path / "shear.png")
+    assert done.returncode == 2 and not (tmp_path / "shear.png").exists()
+    assert "nothing shears the skin; add the effect friction" in done.stderr
 
 
 def test_demo_without_samples_says_so(tmp_path):

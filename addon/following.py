@@ -1,0 +1,134 @@
+"""A contact followed through time: skin that remembers from frame to frame, and the energy that it takes up."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import cache, effect_settings, effects, names, workflow
+from .scene import checks, rigid
+
+_SHAPE_MM = 0.01
+"""Largest change of shape of a product that counts as rigid motion; single precision leaves a hundredth of it."""
+_FREE_N = 1e-6
+"""Force below which the product counts as off the skin."""
+
+
+def is_needed(job):
+    """Whether a contact depends on what was before: friction, or an effect that acts over time."""
+    acting = [used.name for used in job.effects if used.amplitude > 0.0]
+    return any(name == names.FRICTION or effect_settings.acts_over_time(name) for name in acting)
+
+
+@dataclass
+class Course:
+    """Frames taken so far. `seconds_per_frame`, s; energies since the first frame, mJ."""
+
+    seconds_per_frame: float
+    first: object = None
+    walk: object = None
+    last: tuple | None = None
+    """Force on the skin by vertex (n, 3), N, and its place (n, 3), mm, both as the product sees them."""
+    work_mj: list = field(default_factory=list)
+    slip_loss_mj: list = field(default_factory=list)
+    force_n: list = field(default_factory=list)
+
+
+def take(course, job, hooks):
+    """The contact of the next frame. `hooks`: cancel and progress.
+
+    Raises `Refusal` where the frame does not follow from the first, and the native module's errors.
+    """
+    first = course.first or job
+    whole = _motion(first, job)
+    posed = job.reading.hand.posed_mm + (job.reading.hand.origin_mm - first.reading.hand.origin_mm)
+    cancel, progress = hooks
+    with workflow.telling(job, cancel):
+        if course.walk is None:
+            course.walk, course.first = _start(job, hooks), job
+        contact = course.walk.advance(
+            len(course.work_mj) * course.seconds_per_frame,
+            posed,
+            whole,
+            force_n=job.force_n,
+            cancel=cancel,
+            progress=progress,
+        )
+    _book(course, contact, (posed, whole, job))
+    return contact
+
+
+def _start(job, hooks):
+    product, direction = job.reading.product, job.direction
+    direction = None if direction is None else np.array(direction, dtype=np.float64)
+    return workflow.prepared(job, *hooks).start(product.vertices_mm, product.triangles, direction=direction)
+
+
+def cycle_losses(force_n, work_mj):
+    """Energy (mJ) lost in every cycle: from a frame without force, through contact, to the next without.
+
+    What the tissue stores it gives back until it is free, so the work done between two such frames is lost.
+    """
+    losses, start, was_pressed = [], None, False
+    for force, work in zip(force_n, work_mj, strict=True):
+        if force > _FREE_N:
+            was_pressed = True
+            continue
+        if start is not None and was_pressed:
+            losses.append(work - start)
+        start, was_pressed = work, False
+    return losses
+
+
+def _motion(first, job):
+    """The product's motion (4, 4) since the first frame, about the first frame's hand. Raises `Refusal`."""
+    if _fixed(first) != _fixed(job):
+        raise checks.Refusal(
+            f"the skin of '{job.hand_name}' changes (rest shape, regions, materials, effects or model), but what it "
+            "remembers belongs to one skin; remove those keys"
+        )
+    before, now = first.reading.product, job.reading.product
+    if before.vertices_mm.shape != now.vertices_mm.shape or not np.array_equal(before.triangles, now.triangles):
+        raise checks.Refusal(_reshaped(job, job.part_names))
+    shift = job.reading.hand.origin_mm - first.reading.hand.origin_mm
+    after = now.vertices_mm + shift
+    whole, left = rigid.motion(before.vertices_mm, after)
+    if left <= _SHAPE_MM:
+        return whole
+    strays = np.linalg.norm(rigid.moved(before.vertices_mm, whole) - after, axis=1)
+    worst = [part.name for part in now.parts if strays[part.first : part.first + part.count].max() > _SHAPE_MM]
+    raise checks.Refusal(_reshaped(job, worst or job.part_names))
+
+
+def _reshaped(job, parts):
+    listed = ", ".join(f"'{name}'" for name in parts)
+    return (
+        f"the product ({listed}) changes its shape or its parts move apart, but friction and effects over time follow "
+        "one rigid product; move it as a whole, or switch those effects off"
+    )
+
+
+def _fixed(job):
+    hand = job.reading.hand
+    skin = (hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
+    return cache.content_hash(*skin, *effects.hashed(job.effects))
+
+
+def _book(course, contact, place):
+    """Add the frame's energies: work of the product on the skin by the mean of the forces at both ends of the step."""
+    posed, whole, job = place
+    forces, places = _as_seen(contact, (posed, whole, workflow.offset_mm(contact, job)))
+    work = course.work_mj[-1] if course.work_mj else 0.0
+    if course.last is not None:
+        before, there = course.last
+        work -= float((0.5 * (forces + before) * (places - there)).sum())
+    course.last = forces, places
+    course.work_mj.append(work)
+    course.slip_loss_mj.append(course.walk.slip_loss_mj)
+    course.force_n.append(float(np.asarray(contact.force_n).sum()))
+
+
+def _as_seen(contact, place):
+    posed, whole, offset = place
+    press = np.asarray(contact.force_n) - np.asarray(contact.adhesion_force_n)
+    forces = np.asarray(contact.product_normal) * press[:, None] + np.asarray(contact.tangential_force_n)
+    return np.nan_to_num(forces) @ whole[:3, :3], rigid.seen(posed - offset, whole)
