@@ -82,6 +82,8 @@ def _draw_state(layout, context):
     column.label(text=f"1 unit = {mm_per_unit(context.scene):g} mm", icon="DRIVER_DISTANCE")
     if settings.live:
         column.label(text="The contact is live", icon="CHECKMARK")
+    elif hand.thenar.bake_path:
+        column.label(text="Plays a bake", icon="RENDER_ANIMATION")
     elif not settings.result.is_valid:
         column.label(text="Not solved yet", icon="DOT")
     elif status.is_stale(context.scene.name):

@@ -22,7 +22,8 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
         if not result.is_valid:
-            layout.label(text="Solve to see forces and pressures", icon="INFO")
+            if not THENAR_PT_bake.poll(context):
+                layout.label(text="Solve to see forces and pressures", icon="INFO")
             draw_maps(layout, context.scene.thenar)
             return
         box = layout.box().column(align=True)

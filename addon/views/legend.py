@@ -45,6 +45,15 @@ def layout(look, result, height, left):
     return Layout(plate, (x, y, bar_width, bar_height), tuple(texts))
 
 
+def raised(plan, height):
+    """The same layout, `height` pixels further up."""
+
+    def lift(box):
+        return box[0], box[1] + height, *box[2:]
+
+    return Layout(lift(plan.plate), lift(plan.bar), tuple(lift(text) for text in plan.texts))
+
+
 def exceeds(look, result):
     """Whether something lies above the top of the colours."""
     view = maps.shown(look)

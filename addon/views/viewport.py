@@ -23,7 +23,9 @@ def _draw():
         return
     left = next((region.width for region in context.area.regions if region.type == "TOOLS"), 0)
     height = min(context.region.height, 620)
-    _draw_layout(legend.layout(settings, settings.result, height, left + 16), settings)
+    below = next((region.height for region in context.area.regions if region.type == "HUD"), 0)
+    plan = legend.layout(settings, settings.result, height, left + 16)
+    _draw_layout(legend.raised(plan, below if below > 1 else 0), settings)
 
 
 def _draw_layout(plan, look):
