@@ -10,7 +10,7 @@ import numpy as np
 
 from . import names, workflow
 from . import result as results
-from .scene import attributes, copies, mesh, units
+from .scene import attributes, baked, copies, mesh, units
 from .scene.checks import Refusal
 
 _SCENE = {".glb", ".gltf", ".usd", ".usda", ".usdc", ".usdz"}
@@ -33,6 +33,24 @@ def write(context, filepath):
     if suffix == ".csv":
         return _write_csv(path, tables)
     return _write_npz(context, path, tables)
+
+
+def write_bake(context, filepath):
+    """Write the numbers of the bake that plays, one row per frame, as CSV. Returns the path.
+
+    Raises `Refusal` for a missing folder or a bake whose files are gone.
+    """
+    path, hand = Path(filepath), context.scene.thenar.hand
+    if not path.parent.is_dir():
+        raise Refusal(f"there is no folder '{path.parent}'; make it or choose another place")
+    curves = baked.curves(hand)
+    if curves is None:
+        raise Refusal(f"the bake of '{hand.name}' has lost its files beside the scene; bake again")
+    render = context.scene.render
+    seconds = (curves["frame"] - curves["frame"][0]) * render.fps_base / render.fps
+    table = {"frame": curves.pop("frame"), "time_s": seconds, **curves}
+    replace_file(path, lambda partial: _save_columns(partial, table))
+    return path
 
 
 def hand_table(context):

@@ -30,4 +30,26 @@ class THENAR_OT_export(bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
 
-CLASSES = (THENAR_OT_export,)
+class THENAR_OT_export_bake(bpy.types.Operator, ExportHelper):
+    """Write force, area, peak, shear, work and loss of every frame of the bake as a table (.csv)"""
+
+    bl_idname = "thenar.export_bake"
+    bl_label = "Export Frames"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".csv"
+    filter_glob: bpy.props.StringProperty(default="*.csv", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_bake(context))
+
+    def execute(self, context):
+        written = running.attempt(self, export.write_bake, context, bpy.path.abspath(self.filepath))
+        if written is None:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Wrote {written.name}")
+        return {"FINISHED"}
+
+
+CLASSES = (THENAR_OT_export, THENAR_OT_export_bake)

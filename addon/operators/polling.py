@@ -58,6 +58,12 @@ def no_result(context):
     return "" if context.scene.thenar.result.is_valid else "there is no result to export; press Solve first"
 
 
+def no_bake(context):
+    """The hand plays no bake."""
+    hand = context.scene.thenar.hand
+    return "" if hand is not None and hand.thenar.bake_path else "there is no bake; press Bake Frames first"
+
+
 def no_groups(context):
     """The hand has no vertex groups."""
     hand = context.scene.thenar.hand

@@ -155,6 +155,7 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
         _pair(box, "Highest peak", f"{told.peak_kpa:.0f} kPa")
         if told.follows:
             _draw_energy(box, told)
+        layout.operator("thenar.export_bake", icon="EXPORT")
 
 
 def _draw_energy(box, told):

@@ -101,6 +101,15 @@ def play(scene, find_parts):
         moving.shift(part, offsets[row])
 
 
+def curves(hand):
+    """Columns (k,) by name of the hand's bake, one row per frame; None where its file is gone."""
+    tables = _load(hand)
+    if tables is None:
+        return None
+    frames = int(tables["first_frame"]) + np.arange(len(tables["force_n"]))
+    return {"frame": frames, **{name: tables[name] for name in _NUMBERS if name in tables}}
+
+
 def is_missing(hand):
     """Whether the hand's bake names a file that is not there."""
     return bool(hand.thenar.bake_path) and not os.path.exists(bpy.path.abspath(hand.thenar.bake_path))

@@ -1,5 +1,7 @@
 """A bake follows the history of the contact: skin relaxes, sticks and drags from frame to frame at the scene's rate."""
 
+import csv
+
 import bpy
 import numpy as np
 import pytest
@@ -234,8 +236,15 @@ def test_a_bake_that_remembers_is_kept_in_the_file(tmp_path):
     told = hand.thenar.bake
     assert (told.frame_start, told.frame_end, told.follows) == (1, 3, True)
     assert told.slip_loss_mj == pytest.approx(tables["slip_loss_mj"][-1])
+    assert bpy.ops.thenar.export_bake(filepath=str(tmp_path / "frames.csv")) == {"FINISHED"}
+    rows = list(csv.DictReader((tmp_path / "frames.csv").open()))
+    assert [row["frame"] for row in rows] == ["1", "2", "3"]
+    assert [float(row["time_s"]) for row in rows] == pytest.approx([0.0, 1 / FPS, 2 / FPS])
+    assert [float(row["shear_n"]) for row in rows] == pytest.approx(tables["shear_n"])
     for frame in (3, 1, 2):
         bpy.context.scene.frame_set(frame)
         assert stage.attribute(hand, "shear_kpa") == pytest.approx(tables["hand/shear_kpa"][frame - 1])
     bpy.ops.thenar.clear()
     assert "shear_kpa" not in hand.data.attributes and not hand.thenar.bake_path
+    with pytest.raises(RuntimeError, match="press Bake Frames first"):
+        bpy.ops.thenar.export_bake(filepath=str(tmp_path / "none.csv"))

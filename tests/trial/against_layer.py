@@ -3,7 +3,6 @@
 import numpy as np
 import thenar
 from proof import pressing
-
 from trial import pads, studies
 
 SQUARE = 6  # raster cells a side over which pressures are compared: 2.4 mm

@@ -22,7 +22,6 @@ import numpy as np
 from felupe.math import dya
 from pypardiso import PyPardisoSolver
 from scipy.sparse import triu
-
 from trial import pads
 
 POISSON = 0.495

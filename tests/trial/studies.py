@@ -30,7 +30,6 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import map_coordinates
 from scipy.spatial import Delaunay
-
 from trial import pads
 
 TABLE = Path(__file__).with_name("inclusions_by_finite_elements.npz")

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import thenar
-
 from trial import against_layer, pads, studies
 
 COMPUTED = sorted({key.split("/")[0] for key in studies.table()})
