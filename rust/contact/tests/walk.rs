@@ -240,3 +240,31 @@ fn a_row_that_fails_leaves_the_walk_where_it_stood() {
         "{refused}"
     );
 }
+
+#[test]
+fn painted_skin_is_followed_until_it_is_painted_anew() {
+    let tool = paraboloid(8.0, 0.0, 9.0);
+    let mut skin = skin(&[]);
+    let mut bone = ActiveEffect::named("bone", 1.0).unwrap();
+    let mut thickness = vec![f64::NAN; skin.vertices()];
+    thickness[0] = 4.0;
+    bone.painted = Some(thickness.clone());
+    skin.set_effects(vec![bone.clone()], &Control::none())
+        .unwrap();
+    let mut walk = Walk::new(&skin, Some(-Vec3::z())).unwrap();
+    let place = stand(&tool, None);
+    for row in &rows()[..2] {
+        skin.advance(&mut walk, (&place, row), &Control::none())
+            .unwrap();
+    }
+    thickness[0] = 5.0;
+    bone.painted = Some(thickness);
+    skin.set_effects(vec![bone], &Control::none()).unwrap();
+    let refused = skin.advance(&mut walk, (&place, &rows()[2]), &Control::none());
+    assert!(
+        refused
+            .unwrap_err()
+            .to_string()
+            .contains("effects have changed")
+    );
+}

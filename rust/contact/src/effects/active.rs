@@ -42,6 +42,19 @@ impl ActiveEffect {
         }
     }
 
+    /// True if both act alike: equal, and painted at the same vertices. (Unpainted vertices are NaN, which equals nothing.)
+    pub fn acts_as(&self, other: &ActiveEffect) -> bool {
+        let bits = |effect: &ActiveEffect| -> Option<Vec<u64>> {
+            let painted = effect.painted.as_ref()?;
+            Some(painted.iter().map(|value| value.to_bits()).collect())
+        };
+        let bare = |effect: &ActiveEffect| ActiveEffect {
+            painted: None,
+            ..effect.clone()
+        };
+        bare(self) == bare(other) && bits(self) == bits(other)
+    }
+
     /// The effect of that name, with the catalogue's numbers, on all regions.
     ///
     /// # Errors

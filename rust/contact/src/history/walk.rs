@@ -283,7 +283,8 @@ impl Skin {
         control: &Control,
     ) -> Result<Step, ContactError> {
         row.check((walk.rows, walk.last.as_ref().map(|last| last.row.time_s)))?;
-        if walk.effects != self.effects() {
+        let (then, now) = (&walk.effects, self.effects());
+        if then.len() != now.len() || !then.iter().zip(now).all(|(a, b)| a.acts_as(b)) {
             return Err(ContactError::Protocol {
                 row: walk.rows,
                 problem: "the skin's effects have changed since the walk began; begin anew"
