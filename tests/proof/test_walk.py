@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import thenar
+
 from proof import meshes
 
 ROWS = [dict(offset_mm=0.1 * k) for k in range(6)] + [dict(force_n=0.05)] * 4
