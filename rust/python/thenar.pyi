@@ -396,6 +396,70 @@ class Study:
     @property
     def warnings(self) -> list[str]: ...
 
+@final
+class Comparison:
+    """What separates simulation and recordings; a residual is measured minus simulated."""
+
+    def to_json(self) -> str:
+        """comparison.json, schema 1."""
+    def report_html(self) -> str:
+        """A self-contained page with plots."""
+    @property
+    def title(self) -> str: ...
+    @property
+    def sentence(self) -> str:
+        """What a designer reads first."""
+    @property
+    def lack_of_fit_p(self) -> float | None: ...
+    @property
+    def notes(self) -> list[str]: ...
+    @property
+    def estimates(self) -> list[Record]: ...
+    @property
+    def recordings(self) -> list[Record]:
+        """By recording: sentence, measures, series by name, mat, frames, worst, residual_kpa (per skin vertex, or None), unknown."""
+
+def compare(
+    study: Study,
+    progress: _Progress | None = None,
+    cancel: _Cancel | None = None,
+    *,
+    seed: int = 1,
+) -> Comparison:
+    """Fits a study's parameters to its recordings and compares what is left. Raises `RecordingError`, `Cancelled`."""
+
+def place_mat(
+    file: str | PathLike[str],
+    on: Literal["plane", "cylinder"],
+    *,
+    origin_mm: ArrayLike,
+    rows: ArrayLike,
+    columns: ArrayLike,
+    diameter_mm: float | None = None,
+    turn: Literal["right", "left"] = "right",
+    mat: str | None = None,
+) -> Record:
+    """Where the sensels of a mat come to lie: center_mm, normal, area_mm2, row, column. Raises `RecordingError`."""
+
+def compare_map(
+    values: ArrayLike,
+    mat: Record,
+    vertices_mm: ArrayLike,
+    triangles: ArrayLike,
+    force_n: ArrayLike,
+    *,
+    name: str = "recording",
+    product: str = "product",
+    hand: str = "hand",
+    calibrated: bool = True,
+    threshold: float | None = None,
+    clipped_from: float | None = None,
+    noise: float | None = None,
+    time_s: float = 0.0,
+    unknown: list[str] = ...,
+) -> Comparison:
+    """Compares one frame of a mat with a contact that was solved, sensel by sensel. Raises `MeshError`, `RecordingError`."""
+
 def read_recording(file: str | PathLike[str]) -> Record:
     """Reads a measurement file of any maker: `format`, `maps` and `curves`. Raises `RecordingError`."""
 

@@ -17,6 +17,23 @@ pub enum Command {
     Press(Box<PressArguments>),
     /// Reads a measurement file of any maker, or a study's folder, and tells what it holds and what it does not say.
     Read(ReadArguments),
+    /// Fits a study's parameters to its recordings and writes report.html, comparison.json and, for mats, residual.csv.
+    Compare(CompareArguments),
+}
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Folder with study.toml.
+    pub study: PathBuf,
+    /// Seed of all that is drawn; the same seed gives the same bytes.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Threads to work with; all if not given. The result does not depend on it.
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
 }
 
 #[derive(Debug, Args)]

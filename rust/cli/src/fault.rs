@@ -1,6 +1,7 @@
 //! Why the binary ends without a result, and the exit code that says so.
 
 use thenar_contact::ContactError;
+use thenar_diagnosis::DiagnosisError;
 use thenar_recordings::RecordingError;
 
 /// One sentence each.
@@ -46,5 +47,14 @@ impl From<ContactError> for Fault {
 impl From<RecordingError> for Fault {
     fn from(error: RecordingError) -> Fault {
         Fault::Input(error.to_string())
+    }
+}
+
+impl From<DiagnosisError> for Fault {
+    fn from(error: DiagnosisError) -> Fault {
+        match error {
+            DiagnosisError::Cancelled => Fault::cancelled(),
+            error => Fault::Input(error.to_string()),
+        }
     }
 }

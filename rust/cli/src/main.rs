@@ -1,16 +1,19 @@
 //! The thenar binary: arguments, files, exit codes. Knows no algorithm.
 
 mod arguments;
+mod compare;
 mod effects;
 mod fault;
 mod interrupt;
 mod materials;
 mod press;
+mod progress;
 mod protocol;
 mod read;
 mod regions;
 mod results;
 mod table;
+mod threads;
 
 use arguments::{Command, Thenar};
 use clap::Parser;
@@ -58,6 +61,7 @@ fn run() -> Result<(), Fault> {
     };
     match thenar.command {
         Command::Press(arguments) => press::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Read(arguments) => {
             tell(&read::told(&arguments.file)?);
             Ok(())

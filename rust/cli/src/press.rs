@@ -4,7 +4,7 @@ use crate::arguments::{ModelName, PressArguments};
 use crate::fault::Fault;
 use crate::regions::RegionTable;
 use crate::results::Output;
-use crate::{effects, interrupt, materials, protocol, regions, results};
+use crate::{effects, interrupt, materials, protocol, regions, results, threads};
 use serde_json::{Value, json};
 use std::path::Path;
 use thenar_contact::{
@@ -19,16 +19,7 @@ use thenar_surface::{Mesh, Product, Vec3};
 /// One sentence; then nothing was written.
 pub fn run(arguments: &PressArguments) -> Result<(), Fault> {
     interrupt::watch()?;
-    if let Some(threads) = arguments.threads {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
-            .build_global();
-        pool.map_err(|error| {
-            Fault::Other(format!(
-                "{threads} threads cannot be started ({error}); give fewer"
-            ))
-        })?;
-    }
+    threads::use_only(arguments.threads)?;
     let control = Control {
         cancelled: &interrupt::is_cancelled,
         progress: &|_, _| {},

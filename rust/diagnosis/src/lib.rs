@@ -13,7 +13,12 @@ mod replay;
 mod noise;
 mod fit;
 mod location;
+mod words;
+pub mod comparison;
+pub mod report;
+mod compare;
 
+pub use compare::compare;
 pub use errors::DiagnosisError;
 pub use fit::{Estimate, Fit, Fitting, Options, Target, fit_study};
 pub use location::{Carrier, Location, Mismatch, Place, Search, Shown, When, locate};

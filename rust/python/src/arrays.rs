@@ -162,6 +162,13 @@ impl<'a, 'py> Argument<'a, 'py> {
         })
     }
 
+    /// (n, 3) numbers, row by row; NaN is let through.
+    pub fn triples_of(&self, n: usize) -> PyResult<Vec<f64>> {
+        self.numbers(&format!("an ({n}, 3) array of numbers"), |shape| {
+            shape == [n, 3]
+        })
+    }
+
     fn numbers(&self, expected: &str, fits: impl Fn(&[usize]) -> bool) -> PyResult<Vec<f64>> {
         let array = self.array(expected, "fiu", fits)?;
         self.cast::<f64>(&array)

@@ -4,6 +4,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use thenar_contact::ContactError;
+use thenar_diagnosis::DiagnosisError;
 use thenar_hand::HandError;
 use thenar_recordings::RecordingError as RecordingFault;
 use thenar_surface::MeshError as MeshFault;
@@ -66,6 +67,7 @@ pub enum Failure {
     Mesh(MeshFault),
     Hand(HandError),
     Recording(RecordingFault),
+    Diagnosis(DiagnosisError),
     Cancelled,
     /// An earlier panic left the prepared skin half changed.
     Spoiled,
@@ -83,6 +85,15 @@ impl From<MeshFault> for Failure {
     }
 }
 
+impl From<DiagnosisError> for Failure {
+    fn from(error: DiagnosisError) -> Failure {
+        match error {
+            DiagnosisError::Cancelled => Failure::Cancelled,
+            error => Failure::Diagnosis(error),
+        }
+    }
+}
+
 impl From<Failure> for PyErr {
     fn from(failure: Failure) -> PyErr {
         match failure {
@@ -90,6 +101,7 @@ impl From<Failure> for PyErr {
             Failure::Mesh(error) => MeshError::new_err(error.to_string()),
             Failure::Hand(error) => MeshError::new_err(error.to_string()),
             Failure::Recording(error) => RecordingError::new_err(error.to_string()),
+            Failure::Diagnosis(error) => RecordingError::new_err(error.to_string()),
             Failure::Cancelled => {
                 Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
             }

@@ -16,6 +16,8 @@ mod hand;
 mod complementarity;
 mod recordings;
 mod study;
+mod placing;
+mod comparison;
 mod parquet_table;
 mod about;
 
@@ -35,8 +37,12 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<walk::Walk>()?;
     module.add_class::<contact::Contact>()?;
     module.add_class::<study::Study>()?;
+    module.add_class::<comparison::Comparison>()?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
     module.add_function(wrap_pyfunction!(recordings::read_recording, module)?)?;
+    module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;
+    module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(comparison::compare_map, module)?)?;
     module.add_function(wrap_pyfunction!(
         complementarity::solve_complementarity,
         module

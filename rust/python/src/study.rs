@@ -7,6 +7,7 @@ use crate::recordings::{curve_record, map_record, path};
 use crate::running::{Hooks, run};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
 use thenar_recordings::meshes::MeshFile;
 use thenar_recordings::study::{
     Data, Indenter, Instrument, PlacedSensel, Shape, Site, StudyRecording, StudySkin,
@@ -14,22 +15,31 @@ use thenar_recordings::study::{
 use thenar_surface::Vec3;
 
 /// Recordings, and the skin, tools and places they were taken with, in mm, N, s, kPa for maps and MPa for moduli.
-#[pyclass(frozen, get_all, module = "thenar")]
+#[pyclass(frozen, module = "thenar")]
 pub struct Study {
+    whole: Arc<thenar_recordings::Study>,
     /// Path of the folder.
+    #[pyo3(get)]
     folder: Py<PyAny>,
+    #[pyo3(get)]
     title: String,
     /// Record: vertices_mm (n, 3), triangles (m, 3), regions (n,) or None, region_names, materials by region name.
+    #[pyo3(get)]
     skin: Py<PyAny>,
     /// Record by name: shape, and radius_mm, axis, vertices_mm, triangles where the shape has them.
+    #[pyo3(get)]
     indenters: Py<PyAny>,
     /// Record by name: point_mm (3,), direction (3,), distance_mm to the skin.
+    #[pyo3(get)]
     sites: Py<PyAny>,
     /// List of records: name, kind, file, indenter, site, protocol, subject, day, temperature_c, rest_s, order, and by kind
     /// `curve`, `map` with `sensels` and `motion`, or `vertices_mm`, `triangles`, `at_time_s`.
+    #[pyo3(get)]
     recordings: Py<PyAny>,
     /// Record of the data sheet, or None.
+    #[pyo3(get)]
     instrument: Option<Py<PyAny>>,
+    #[pyo3(get)]
     warnings: Vec<String>,
 }
 
@@ -49,8 +59,8 @@ impl Study {
             .map(|each| recording(py, each))
             .collect::<PyResult<_>>()?;
         Ok(Study {
-            folder: study.folder.into_pyobject(py)?.into_any().unbind(),
-            title: study.title,
+            folder: study.folder.clone().into_pyobject(py)?.into_any().unbind(),
+            title: study.title.clone(),
             skin: skin(py, &study.skin)?,
             indenters: by_name(
                 py,
@@ -66,9 +76,11 @@ impl Study {
             recordings: PyList::new(py, recordings)?.into_any().unbind(),
             instrument: study
                 .instrument
-                .map(|each| instrument(py, &each))
+                .as_ref()
+                .map(|each| instrument(py, each))
                 .transpose()?,
-            warnings: study.warnings,
+            warnings: study.warnings.clone(),
+            whole: Arc::new(study),
         })
     }
 
@@ -86,6 +98,13 @@ impl Study {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let count = self.recordings.bind(py).len()?;
         Ok(format!("<Study {:?} with {count} recordings>", self.title))
+    }
+}
+
+impl Study {
+    /// The study as the library knows it.
+    pub fn whole(&self) -> Arc<thenar_recordings::Study> {
+        Arc::clone(&self.whole)
     }
 }
 

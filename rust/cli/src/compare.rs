@@ -1,0 +1,92 @@
+//! `thenar compare`: loads a study, fits and compares, writes the report.
+
+use crate::arguments::CompareArguments;
+use crate::fault::Fault;
+use crate::progress::ProgressLine;
+use crate::results::{self, Output};
+use crate::{interrupt, threads};
+use std::fmt::Write;
+use std::path::Path;
+use thenar_contact::Control;
+use thenar_diagnosis::comparison::Comparison;
+use thenar_diagnosis::report::{comparison_html, comparison_json};
+use thenar_diagnosis::{Options, compare};
+use thenar_recordings::Study;
+
+/// Loads, compares, writes, and tells what came out on the terminal.
+///
+/// # Errors
+/// One sentence; then nothing was written.
+pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
+    interrupt::watch()?;
+    threads::use_only(arguments.threads)?;
+    let line = ProgressLine::new();
+    let control = Control {
+        cancelled: &interrupt::is_cancelled,
+        progress: &|stage, share| line.show(stage, share),
+    };
+    let study = Study::load(&arguments.study)?;
+    let options = Options {
+        seed: arguments.seed,
+        ..Options::default()
+    };
+    let comparison = compare(&study, &options, &control)?;
+    let mut outputs = vec![Output {
+        name: "report.html",
+        text: comparison_html(&comparison),
+    }];
+    outputs.extend(residuals(&comparison));
+    outputs.push(Output {
+        name: "comparison.json",
+        text: comparison_json(&comparison),
+    });
+    interrupt::writing(|| results::write(&arguments.out, &outputs))?;
+    drop(line);
+    crate::tell(&told(&study, &comparison, &arguments.out));
+    Ok(())
+}
+
+/// residual.csv: for every calibrated mat the residual per skin vertex in its worst frame, kPa, empty away from the mat.
+fn residuals(comparison: &Comparison) -> Option<Output> {
+    let mats: Vec<_> = comparison
+        .recordings
+        .iter()
+        .filter(|recording| !recording.residual_kpa.is_empty())
+        .collect();
+    let vertices = mats.first()?.residual_kpa.len();
+    let mut text = "recording,vertex,residual_kpa\n".to_owned();
+    for recording in &mats {
+        let name = recording.name.replace('"', "\"\"");
+        for vertex in 0..vertices {
+            let residual = recording.residual_kpa[vertex];
+            if !residual.is_nan() {
+                let _ = writeln!(text, "\"{name}\",{vertex},{residual}");
+            }
+        }
+    }
+    Some(Output {
+        name: "residual.csv",
+        text,
+    })
+}
+
+fn told(study: &Study, comparison: &Comparison, out: &Path) -> String {
+    let mut text = format!("{}\n\n", comparison.sentence);
+    for recording in &comparison.recordings {
+        text += &format!("{}: {}\n", recording.name, recording.sentence);
+    }
+    for estimate in &comparison.estimates {
+        text += &format!(
+            "{} {} = {:.4} ({:.4} to {:.4})\n",
+            estimate.of_what(),
+            estimate.name,
+            estimate.value,
+            estimate.low,
+            estimate.high
+        );
+    }
+    for note in study.warnings.iter().chain(&comparison.notes) {
+        text += &format!("note: {note}\n");
+    }
+    text + &format!("written to {}\n", out.display())
+}

@@ -1,0 +1,72 @@
+//! Conducts a comparison: fit the parameters, locate what is left, then set recordings and simulation side by side.
+
+use nalgebra::Vector3;
+use thenar_contact::Control;
+use thenar_recordings::Study;
+use thenar_surface::Mesh;
+
+use crate::comparison::{Compared, Comparison, compare_fit};
+use crate::{DiagnosisError, Options, Search, fit_study, locate};
+
+/// Part of the work that fitting is, for progress.
+const FITTING: f64 = 0.8;
+/// Part after which all is located.
+const LOCATED: f64 = 0.98;
+
+/// Fits a study's parameters to its recordings, locates the mismatch that is left, and compares.
+///
+/// The same study and options give the same comparison, bit for bit.
+///
+/// # Errors
+/// [`DiagnosisError`]: skin, tools or mats that cannot be used, presses that fail, too few samples, or `Cancelled`.
+pub fn compare(
+    study: &Study,
+    options: &Options,
+    control: &Control<'_>,
+) -> Result<Comparison, DiagnosisError> {
+    let progress = |stage: &str, share: f64| (control.progress)(stage, FITTING * share);
+    let within = Control {
+        cancelled: control.cancelled,
+        progress: &progress,
+    };
+    let fit = fit_study(study, options, &within)?;
+    let progress = |stage: &str, share: f64| {
+        (control.progress)(stage, FITTING + (LOCATED - FITTING) * share);
+    };
+    let within = Control {
+        cancelled: control.cancelled,
+        progress: &progress,
+    };
+    let file = &study.skin.mesh;
+    let mesh = Mesh::new(file.positions.clone(), file.triangles.clone());
+    let mesh = mesh.map_err(DiagnosisError::Skin)?;
+    let search = Search {
+        skin: Some(&mesh),
+        seed: options.seed,
+        ..Search::default()
+    };
+    // Without repeats noise is a guess, and a place that stands out of a guess is none.
+    let is_told = fit.lack_of_fit_p.is_some();
+    let location = is_told
+        .then(|| locate(&fit, &search, &within))
+        .transpose()?;
+    let step = |share: f64| {
+        let step = control.step("comparing", share);
+        step.map_err(|_| DiagnosisError::Cancelled)
+    };
+    step(LOCATED)?;
+    let sites: Vec<(String, Vector3<f64>)> = study
+        .sites
+        .iter()
+        .map(|site| (site.name.clone(), site.point_mm.into()))
+        .collect();
+    let comparison = compare_fit(&Compared {
+        title: &study.title,
+        skin: &study.skin.mesh.positions,
+        sites: &sites,
+        fit: &fit,
+        location: location.as_ref(),
+    });
+    step(1.0)?;
+    Ok(comparison)
+}

@@ -1,0 +1,80 @@
+//! Quantities of which a recording has one value per moment: those that were sampled, and the sums over a mat.
+
+use super::measures::{area_of, force_noise, force_of};
+use super::standing::Standing;
+use super::{Kind, Series, instrument};
+use crate::Quantity;
+
+/// Quantities of which the recording has one value per moment: those that were sampled, and the sums over a mat.
+pub(super) fn series(standing: &Standing) -> Vec<Series> {
+    let mut all = Vec::new();
+    for kind in [Kind::Force, Kind::TangentialForce, Kind::Area] {
+        let mut series = Series {
+            name: kind.name(true),
+            label: kind.label(),
+            unit: kind.unit(true),
+            ..Series::default()
+        };
+        for (k, sample) in standing.measured.samples.iter().enumerate() {
+            if sample.quantity.kind() == kind {
+                series.moments.push(sample.moment);
+                series.measured.push(sample.value);
+                series.simulated.push(standing.simulated[k]);
+                series.before.push(standing.before[k]);
+                series.sigma.push(standing.sigma[k]);
+            }
+        }
+        if !series.moments.is_empty() {
+            all.push(series);
+        }
+    }
+    all.extend(sums(standing));
+    all
+}
+
+/// Force and area of contact on a mat over its frames; without calibration only the area.
+fn sums(standing: &Standing) -> Vec<Series> {
+    let Some(mat) = &standing.measured.mat else {
+        return Vec::new();
+    };
+    let is_pressure = |sample: &crate::Sample| matches!(sample.quantity, Quantity::Pressure(_));
+    if !standing.measured.samples.iter().any(is_pressure) {
+        return Vec::new();
+    }
+    let mut force = Series {
+        name: "mat_force_n",
+        label: "Force on the mat",
+        unit: "N",
+        ..Series::default()
+    };
+    let mut area = Series {
+        name: "mat_area_mm2",
+        label: "Contact area on the mat",
+        unit: "mm²",
+        ..Series::default()
+    };
+    let contact_from = instrument::contact_from(standing);
+    for moment in 0..standing.by_moment.len() {
+        let shown = instrument::shown(standing, moment, contact_from);
+        if shown.samples.iter().all(Option::is_none) {
+            continue;
+        }
+        let push = |series: &mut Series, of: &dyn Fn(&[f64]) -> f64, sigma: f64| {
+            series.moments.push(moment as u32);
+            series.measured.push(of(&shown.measured));
+            series.simulated.push(of(&shown.simulated));
+            series.before.push(of(&shown.before));
+            series.sigma.push(sigma);
+        };
+        push(
+            &mut force,
+            &|values| force_of(values, mat),
+            force_noise(&shown, mat),
+        );
+        push(&mut area, &|values| area_of(values, mat), f64::NAN);
+    }
+    match standing.measured.is_calibrated {
+        true => vec![force, area],
+        false => vec![area],
+    }
+}

@@ -1,0 +1,260 @@
+//! Residual against what it may depend on: in ranges of time, depth, rate, phase, cycle, and place on sensor and skin.
+
+use super::standing::Standing;
+use super::{Kind, SIGNIFICANT};
+use crate::{Phase, Quantity};
+
+/// Most ranges of a variable.
+const MOST_BINS: usize = 8;
+/// Fewest values in a range.
+const FEWEST: usize = 6;
+
+/// What a residual may depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// s.
+    Time,
+    /// mm.
+    Depth,
+    /// mm/s.
+    Rate,
+    /// Part of the protocol.
+    Phase,
+    /// Loadings before, in the recording.
+    Cycle,
+    /// Row of the sensel.
+    SensorRow,
+    /// Column of the sensel.
+    SensorColumn,
+    /// Place on the skin along x, y or z (0, 1, 2), mm.
+    Skin(usize),
+}
+
+impl Variable {
+    const ALL: [Variable; 10] = [
+        Variable::Time,
+        Variable::Depth,
+        Variable::Rate,
+        Variable::Phase,
+        Variable::Cycle,
+        Variable::SensorRow,
+        Variable::SensorColumn,
+        Variable::Skin(0),
+        Variable::Skin(1),
+        Variable::Skin(2),
+    ];
+
+    /// Name with its unit.
+    pub fn name(self) -> &'static str {
+        match self {
+            Variable::Time => "time_s",
+            Variable::Depth => "depth_mm",
+            Variable::Rate => "rate_mm_s",
+            Variable::Phase => "phase",
+            Variable::Cycle => "cycle",
+            Variable::SensorRow => "sensor_row",
+            Variable::SensorColumn => "sensor_column",
+            Variable::Skin(axis) => ["skin_x_mm", "skin_y_mm", "skin_z_mm"][axis.min(2)],
+        }
+    }
+
+    /// Name and unit for people.
+    pub fn label(self) -> &'static str {
+        match self {
+            Variable::Time => "Time, s",
+            Variable::Depth => "Depth, mm",
+            Variable::Rate => "Rate, mm/s",
+            Variable::Phase => "Phase",
+            Variable::Cycle => "Cycle",
+            Variable::SensorRow => "Row of the mat",
+            Variable::SensorColumn => "Column of the mat",
+            Variable::Skin(axis) => ["Skin x, mm", "Skin y, mm", "Skin z, mm"][axis.min(2)],
+        }
+    }
+
+    fn is_counted(self) -> bool {
+        matches!(self, Variable::Phase | Variable::Cycle)
+    }
+}
+
+/// Residual of one kind of quantity against one variable.
+#[derive(Debug, Clone)]
+pub struct Trend {
+    /// The quantity.
+    pub kind: Kind,
+    /// What it is told against.
+    pub variable: Variable,
+    /// Ranges, in order.
+    pub bins: Vec<Bin>,
+}
+
+/// One range of a variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bin {
+    /// Least and largest value in it; the number of the phase or cycle.
+    pub range: [f64; 2],
+    /// `load`, or the cycle's number; empty for ranges.
+    pub label: String,
+    /// Values in it that say something.
+    pub count: usize,
+    /// Mean of measured minus simulated, in the quantity's unit.
+    pub mean: f64,
+    /// Standard error of `mean` if the noise of each value is its own, in the quantity's unit; NaN where the noise is not known.
+    pub standard_error: f64,
+    /// Mean of the whitened residual with all taken out that parameters can absorb, in standard deviations of the noise.
+    pub mean_sigma: f64,
+    /// Standard deviation of `mean_sigma` under noise alone; NaN where the noise is not known.
+    pub standard_error_sigma: f64,
+    /// Chance that noise alone gives a mean as far from zero in any of the ranges looked at; 1 where the noise is not known.
+    pub p: f64,
+}
+
+impl Bin {
+    /// Whether the mean differs from the simulation for other reasons than noise.
+    ///
+    /// What is projected of one recording also moves where parameters that it shares with others would follow those; so the
+    /// mean itself must lie on the same side, by two of its standard errors.
+    pub fn stands_out(&self) -> bool {
+        let is_seen =
+            self.mean * self.mean_sigma > 0.0 && self.mean.abs() > 2.0 * self.standard_error;
+        self.p < SIGNIFICANT && is_seen
+    }
+}
+
+/// Every trend of a recording with two ranges or more; `p` is for one look each.
+pub(super) fn of(standing: &Standing) -> Vec<Trend> {
+    let mut trends = Vec::new();
+    for kind in Kind::ALL {
+        let samples = standing.measured.samples.iter().enumerate();
+        let of_kind: Vec<usize> = samples
+            .filter(|(k, sample)| sample.quantity.kind() == kind && standing.tells(*k))
+            .map(|(k, _)| k)
+            .collect();
+        for variable in Variable::ALL {
+            let mut placed: Vec<(f64, usize)> = of_kind
+                .iter()
+                .map(|k| (value(standing, variable, *k), *k))
+                .filter(|(at, _)| !at.is_nan())
+                .collect();
+            placed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            let bins: Vec<Bin> = groups(&placed, variable.is_counted())
+                .into_iter()
+                .map(|group| bin(standing, variable, group))
+                .collect();
+            if bins.len() > 1 {
+                trends.push(Trend {
+                    kind,
+                    variable,
+                    bins,
+                });
+            }
+        }
+    }
+    trends
+}
+
+/// Pays for the looks (Bonferroni): every probability is multiplied by their number. Returns it.
+pub(super) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
+    let mut bins: Vec<&mut Bin> = trends.flat_map(|trend| trend.bins.iter_mut()).collect();
+    let looks = bins.len();
+    bins.iter_mut()
+        .for_each(|bin| bin.p = (bin.p * looks as f64).min(1.0));
+    looks
+}
+
+fn value(standing: &Standing, variable: Variable, k: usize) -> f64 {
+    let sample = &standing.measured.samples[k];
+    let moment = &standing.measured.moments[sample.moment as usize];
+    let on_mat = || match (sample.quantity, &standing.measured.mat) {
+        (Quantity::Pressure(sensel), Some(mat)) => {
+            ((sensel as usize) < mat.centers.len()).then_some((mat, sensel as usize))
+        }
+        _ => None,
+    };
+    let place = |axis: usize| {
+        let place = on_mat().and_then(|(mat, sensel)| mat.places[sensel]);
+        place.map_or(f64::NAN, |place| f64::from(place[axis]))
+    };
+    match variable {
+        Variable::Time => moment.time_s,
+        Variable::Depth => moment.depth_mm,
+        Variable::Rate => moment.rate_mm_s,
+        Variable::Phase => f64::from(moment.phase as u8),
+        Variable::Cycle => f64::from(moment.cycle),
+        Variable::SensorRow => place(0),
+        Variable::SensorColumn => place(1),
+        Variable::Skin(axis) => on_mat().map_or(f64::NAN, |(mat, sensel)| {
+            mat.centers[sensel][axis] + moment.slide_mm[axis]
+        }),
+    }
+}
+
+/// Parts of about equal size that never divide equal values; one part for each value if they are counted.
+fn groups(placed: &[(f64, usize)], is_counted: bool) -> Vec<&[(f64, usize)]> {
+    let bins = (placed.len() / FEWEST).min(MOST_BINS);
+    let wanted = placed.len().div_ceil(bins.max(1));
+    let mut groups = Vec::new();
+    let mut start = 0;
+    while start < placed.len() {
+        let at_least = if is_counted { 1 } else { wanted };
+        let last = placed[(start + at_least - 1).min(placed.len() - 1)].0;
+        let mut end = start + placed[start..].partition_point(|(at, _)| *at <= last);
+        if placed.len() - end < FEWEST && !is_counted {
+            end = placed.len();
+        }
+        groups.push(&placed[start..end]);
+        start = end;
+    }
+    groups.retain(|group| group.len() >= FEWEST);
+    groups
+}
+
+fn bin(standing: &Standing, variable: Variable, group: &[(f64, usize)]) -> Bin {
+    let samples: Vec<usize> = group.iter().map(|(_, k)| *k).collect();
+    let (first, last) = (group[0].0, group[group.len() - 1].0);
+    let (mean_sigma, error) = standing.mean_projected(&samples);
+    let has_noise = standing.has_noise();
+    let p = match has_noise && error > 1e-6 {
+        true => libm::erfc((mean_sigma / error).abs() / std::f64::consts::SQRT_2),
+        false => 1.0,
+    };
+    Bin {
+        range: [first, last],
+        label: match variable {
+            Variable::Phase => phase_name(standing, samples[0]).to_string(),
+            Variable::Cycle => format!("{}", first as u32 + 1),
+            _ => String::new(),
+        },
+        count: samples.len(),
+        mean: samples.iter().map(|k| standing.residual[*k]).sum::<f64>() / samples.len() as f64,
+        standard_error: raw_error(standing, &samples),
+        mean_sigma: if has_noise { mean_sigma } else { f64::NAN },
+        standard_error_sigma: if has_noise { error } else { f64::NAN },
+        p,
+    }
+}
+
+fn raw_error(standing: &Standing, samples: &[usize]) -> f64 {
+    let squares: f64 = samples.iter().map(|k| standing.sigma[*k].powi(2)).sum();
+    squares.sqrt() / samples.len() as f64
+}
+
+fn phase_name(standing: &Standing, k: usize) -> &'static str {
+    let sample = &standing.measured.samples[k];
+    standing.measured.moments[sample.moment as usize]
+        .phase
+        .name()
+}
+
+impl Phase {
+    /// Name in files and for people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Phase::Apart => "apart",
+            Phase::Load => "load",
+            Phase::Hold => "hold",
+            Phase::Unload => "unload",
+            Phase::Slide => "slide",
+        }
+    }
+}
