@@ -20,6 +20,6 @@ mod compare;
 
 pub use compare::compare;
 pub use errors::DiagnosisError;
-pub use fit::{Estimate, Fit, Fitting, Options, Target, fit_study};
+pub use fit::{EffectFit, Estimate, Fit, Fitting, Found, Free, Options, Target, fit_study};
 pub use location::{Carrier, Location, Mismatch, Place, Search, Shown, When, locate};
 pub use observe::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};

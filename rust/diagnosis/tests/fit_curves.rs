@@ -5,7 +5,7 @@ mod scenes;
 
 use scenes::{Dice, add, curve, curve_of, material, pad, press_hold_release, study};
 use thenar_contact::{ActiveEffect, Control};
-use thenar_diagnosis::{Fit, Fitting, Options, Target, fit_study};
+use thenar_diagnosis::{Fit, Fitting, Free, Options, Target, fit_study};
 use thenar_recordings::Study;
 use thenar_recordings::study::Shape;
 
@@ -327,4 +327,51 @@ fn an_effect_that_is_left_out_shows_and_one_that_is_there_foretells() {
         with.projected[3..].iter().flatten().all(|r| *r == 0.0),
         "held out recordings are not fitted"
     );
+}
+
+/// An amplitude and a time that were planted are found together with the moduli.
+#[test]
+fn numbers_of_an_effect_are_fitted_with_the_moduli() {
+    let truth = ActiveEffect::named("relaxation", 0.5).unwrap();
+    let study = planned();
+    let forces = Fitting::new(&study, &Control::none())
+        .unwrap()
+        .simulate(std::slice::from_ref(&truth), &Control::none())
+        .unwrap();
+    let mut study = measured(&(study, forces), &USUAL, 11);
+    study.recordings.truncate(6);
+    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
+    let base = Options {
+        draws: 99,
+        ..Options::default()
+    };
+    let without = fitting.fit_effects(&base, &[], &Control::none()).unwrap();
+    let begin = ActiveEffect::named("relaxation", 0.2).unwrap();
+    let free = [Free {
+        effect: 0,
+        number: None,
+        bounds: (0.0, 0.9),
+    }];
+    let started = std::time::Instant::now();
+    let with = Options {
+        effects: vec![begin],
+        ..base
+    };
+    let with = fitting.fit_effects(&with, &free, &Control::none()).unwrap();
+    println!(
+        "6 recordings with a free amplitude: {:.2} s",
+        started.elapsed().as_secs_f64()
+    );
+    println!(
+        "{:?}; deviance {:.0} and {:.0}",
+        with.found, without.deviance, with.deviance
+    );
+    let found = with.found[0];
+    assert!(
+        found.low <= truth.amplitude && truth.amplitude <= found.high,
+        "{found:?}"
+    );
+    assert!((found.value - truth.amplitude).abs() < 0.1);
+    assert_eq!(with.effects[0].amplitude, found.value);
+    assert!(with.deviance < without.deviance - 25.0);
 }

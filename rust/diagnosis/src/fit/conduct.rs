@@ -3,12 +3,15 @@
 use thenar_contact::{ActiveEffect, Control};
 use thenar_recordings::Study;
 
-use super::Fit;
 use super::adequacy::{Left, absorbed, lack_of_fit, project};
 use super::descent::{Descent, System, descend};
+use super::effects::{EffectFit, Found, Free, effects_at, free_parameters};
 use super::intervals::estimates;
-use super::parameters::{Case, Kind, Parameter, parameters, setting, touches};
-use super::problem::{Point, Problem};
+use super::parameters::{Case, Kind, Parameter, parameters, touches};
+use super::problem::{HUBER, Point, Problem};
+use super::setting::setting;
+use super::start::scaled_start;
+use super::{Estimate, Fit};
 use crate::DiagnosisError;
 use crate::noise::{Noise, Whitening, noise};
 use crate::observe::{Measured, observe};
@@ -78,16 +81,31 @@ impl Fitting {
     /// # Errors
     /// As [`fit_study`].
     pub fn fit(&mut self, options: &Options, control: &Control<'_>) -> Result<Fit, DiagnosisError> {
-        self.replay.set_effects(&options.effects, control)?;
+        Ok(self.fit_effects(options, &[], control)?.fit)
+    }
+
+    /// Fits numbers of the effects as well.
+    ///
+    /// The noise is judged without effects, so that fits with different ones can be compared.
+    ///
+    /// # Errors
+    /// As [`fit_study`].
+    pub fn fit_effects(
+        &mut self,
+        options: &Options,
+        free: &[Free],
+        control: &Control<'_>,
+    ) -> Result<EffectFit, DiagnosisError> {
         let measured = &self.replay.observed.measured;
         let is_used: Vec<bool> = measured
             .iter()
             .map(|m| !options.held_out.contains(&m.name) && touches(m))
             .collect();
         self.check(&is_used)?;
-        let before = self.at_start(control)?;
-        let noise = self.noise((&before, &is_used), control)?;
-        let parameters = self.parameters((&noise, &is_used), control)?;
+        let noise = self.noise(&is_used, control)?;
+        let mut parameters = self.parameters((&noise, &is_used), control)?;
+        parameters.extend(free_parameters(free, &options.effects));
+        let before = self.simulate(&options.effects, control)?;
         let whitening = Whitening::new(&self.replay.observed.measured, &noise, &is_used);
         if whitening.used() <= parameters.len() {
             return Err(DiagnosisError::TooFewSamples {
@@ -98,27 +116,40 @@ impl Fitting {
         let mut problem = Problem {
             replay: &mut self.replay,
             parameters: &parameters,
+            effects: &options.effects,
             whitening: &whitening,
             is_used: &is_used,
             control,
         };
         let start = scaled_start(&mut problem, &before)?;
         let mut descent = descend(&mut problem, &start)?;
+        let deviance = problem.point(&descent.point.at, Some(HUBER))?.objective;
         foretell(&mut problem, &mut descent.point)?;
         let system = System::new(&problem, (&descent.point, &descent.jacobian));
         let estimates = estimates(&problem, (&descent.point, &system), &noise);
         let left = self.left((&whitening, &descent), &noise, options);
         let notes = self.notes((&noise, &descent), &parameters);
-        Ok(Fit {
+        let is_effect = |(kind, _): &(Kind, Estimate)| matches!(kind, Kind::Effect(..));
+        let (of_effects, others): (Vec<_>, Vec<_>) = estimates.into_iter().partition(is_effect);
+        let fit = Fit {
             measured: self.replay.observed.measured.clone(),
             simulated: descent.point.simulated,
             before,
             sigma: noise.sigma,
             projected: left.projected,
             absorbed: left.absorbed,
-            estimates,
+            estimates: others.into_iter().map(|(_, estimate)| estimate).collect(),
             lack_of_fit_p: left.p,
             notes,
+        };
+        Ok(EffectFit {
+            fit,
+            effects: effects_at(&options.effects, (&parameters, &descent.point.at)),
+            found: of_effects
+                .iter()
+                .map(|(_, estimate)| found(estimate))
+                .collect(),
+            deviance,
         })
     }
 
@@ -180,11 +211,8 @@ impl Fitting {
     }
 
     /// The noise, from repeats along what gain and contact zero do to them.
-    fn noise(
-        &mut self,
-        (before, is_used): (&[Vec<f64>], &[bool]),
-        control: &Control<'_>,
-    ) -> Result<Noise, DiagnosisError> {
+    fn noise(&mut self, is_used: &[bool], control: &Control<'_>) -> Result<Noise, DiagnosisError> {
+        let before = self.simulate(&[], control)?;
         let materials = self.replay.tissue.materials.clone();
         let mut slopes = Vec::with_capacity(before.len());
         for (recording, simulated) in before.iter().enumerate() {
@@ -207,7 +235,7 @@ impl Fitting {
         }
         let noise_n = self.instrument.as_ref().and_then(|i| i.noise_n);
         let measured = &self.replay.observed.measured;
-        Ok(noise(measured, (before, &slopes), is_used, noise_n))
+        Ok(noise(measured, (&before, &slopes), is_used, noise_n))
     }
 
     /// What is fitted: regions that no tool touches are left as they are.
@@ -292,6 +320,7 @@ impl Fitting {
 
 /// Predicts the recordings that were held out: with the estimates, and what their tool shares with those that were not.
 fn foretell(problem: &mut Problem<'_>, point: &mut Point) -> Result<(), DiagnosisError> {
+    problem.turn_effects(&point.at)?;
     let (materials, nuisances) = setting(problem.replay, (problem.parameters, &point.at));
     for recording in (0..nuisances.len()).filter(|&r| !problem.is_used[r]) {
         let setting = (&materials[..], &nuisances[recording]);
@@ -302,63 +331,18 @@ fn foretell(problem: &mut Problem<'_>, point: &mut Point) -> Result<(), Diagnosi
     Ok(())
 }
 
+fn found(estimate: &Estimate) -> Found {
+    Found {
+        value: estimate.value,
+        low: estimate.low,
+        high: estimate.high,
+        is_at_bound: estimate.is_at_bound,
+    }
+}
+
 /// What a fit leaves.
 struct Remainder {
     projected: Vec<Vec<f64>>,
     absorbed: nalgebra::DMatrix<f64>,
     p: Option<f64>,
-}
-
-/// The start, with the moduli moved together to where forces and pressures have the right size.
-fn scaled_start(
-    problem: &mut Problem<'_>,
-    before: &[Vec<f64>],
-) -> Result<Vec<f64>, DiagnosisError> {
-    let mut start: Vec<f64> = problem.parameters.iter().map(|p| p.start).collect();
-    let (mut over, mut under) = (0.0, 0.0);
-    for (measured, simulated) in problem.replay.observed.measured.iter().zip(before) {
-        let scale = simulated
-            .iter()
-            .fold(0.0, |most, f| f64::max(most, *f))
-            .powi(2);
-        if !measured.is_calibrated || scale == 0.0 {
-            continue;
-        }
-        for (sample, f) in measured.samples.iter().zip(simulated) {
-            if super::problem::is_load(sample.quantity) {
-                (over, under) = (over + f * sample.value / scale, under + f * f / scale);
-            }
-        }
-    }
-    let factor = if under > 0.0 { over / under } else { 1.0 };
-    let shift = if factor > 0.0 { libm::log(factor) } else { 0.0 };
-    for (at, parameter) in start.iter_mut().zip(problem.parameters) {
-        if parameter.name.starts_with("g0") || parameter.name.starts_with("g_lim") {
-            *at = (*at + shift).clamp(parameter.bounds.0, parameter.bounds.1);
-        }
-    }
-    scale_counts(problem, &mut start)?;
-    Ok(start)
-}
-
-/// Counts per kPa of uncalibrated mats, so that simulated and measured sums agree.
-fn scale_counts(problem: &mut Problem<'_>, start: &mut [f64]) -> Result<(), DiagnosisError> {
-    for column in 0..start.len() {
-        let Kind::Counts(recording) = problem.parameters[column].kind else {
-            continue;
-        };
-        let (materials, nuisances) = setting(problem.replay, (problem.parameters, start));
-        let simulated = problem.replay.predict(
-            recording,
-            (&materials, &nuisances[recording]),
-            problem.control,
-        )?;
-        let samples = &problem.replay.observed.measured[recording].samples;
-        let ratio = samples.iter().map(|s| s.value).sum::<f64>() / simulated.iter().sum::<f64>();
-        if ratio.is_finite() && ratio > 0.0 {
-            let (low, high) = problem.parameters[column].bounds;
-            start[column] = libm::log(ratio).clamp(low, high);
-        }
-    }
-    Ok(())
 }

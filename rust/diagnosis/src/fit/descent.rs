@@ -11,6 +11,8 @@ const MOST_STEPS: usize = 60;
 const SETTLED: f64 = 1e-7;
 /// The same, once, where every step follows all protocols anew: a hundredth of what a standard error gains.
 const SETTLED_SLOWLY: f64 = 1e-5;
+/// Part of the promised gain from which derivatives that are long to find are kept.
+const KEEPS: f64 = 0.5;
 /// Damping at the start, and its smallest and largest.
 const DAMPING: (f64, f64, f64) = (1e-3, 1e-9, 1e9);
 
@@ -30,7 +32,7 @@ pub struct Descent {
 /// Those of a replay, or `Cancelled`.
 pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, DiagnosisError> {
     let mut point = problem.point(start, None)?;
-    let mut jacobian = problem.jacobian(&point)?;
+    let mut jacobian = problem.jacobian(&point, None)?;
     let (mut damping, mut small_gains) = (DAMPING.0, 0);
     let (settled, enough) = match problem.replay.remembers() {
         true => (SETTLED_SLOWLY, 1),
@@ -58,7 +60,8 @@ pub fn descend(problem: &mut Problem<'_>, start: &[f64]) -> Result<Descent, Diag
             damping = (damping * 0.2).max(DAMPING.1);
             // The threshold follows the residuals' bulk.
             point = problem.point(&next.at, None)?;
-            jacobian = problem.jacobian(&point)?;
+            let is_true = problem.replay.remembers() && gain > KEEPS * predicted;
+            jacobian = problem.jacobian(&point, is_true.then_some(&jacobian))?;
             if small_gains >= enough {
                 return Ok(Descent::settled(point, jacobian));
             }

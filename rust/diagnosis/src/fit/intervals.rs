@@ -14,7 +14,7 @@ const AT_BOUND: f64 = 1e-6;
 /// Smallest eigenvalue of the scaled normal matrix that rounding leaves meaning.
 const LEAST_INFORMATION: f64 = 1e-14;
 
-/// Estimates of all parameters.
+/// Estimates of all parameters, with what they are.
 ///
 /// Standard errors come from `(J^T W J + priors)^-1`, wider by what the misfit exceeds the noise; half widths are those of Student's t with
 /// the degrees of freedom that the noise was told with. Where the data say nothing, the interval is that of the bounds.
@@ -22,7 +22,7 @@ pub fn estimates(
     problem: &Problem<'_>,
     (point, system): (&Point, &System),
     noise: &Noise,
-) -> Vec<Estimate> {
+) -> Vec<(Kind, Estimate)> {
     let parameters = problem.parameters;
     let each = point
         .whitened
@@ -66,7 +66,7 @@ pub fn estimates(
             false => (low, high),
         };
         let near = AT_BOUND * (high - low);
-        estimates.push(Estimate {
+        let estimate = Estimate {
             name: parameter.name.to_owned(),
             target: parameter.target.clone(),
             start: parameter.value(parameter.start),
@@ -75,7 +75,8 @@ pub fn estimates(
             high: parameter.value(ends.1),
             bounds: (parameter.value(low), parameter.value(high)),
             is_at_bound: at - low <= near || high - at <= near,
-        });
+        };
+        estimates.push((parameter.kind, estimate));
     }
     estimates
 }

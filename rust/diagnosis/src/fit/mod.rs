@@ -3,11 +3,15 @@
 mod adequacy;
 mod conduct;
 mod descent;
+mod effects;
 mod intervals;
 mod parameters;
 mod problem;
+mod setting;
+mod start;
 
 pub use conduct::{Fitting, Options, fit_study};
+pub use effects::{EffectFit, Found, Free};
 
 use nalgebra::DMatrix;
 

@@ -3,9 +3,10 @@
 use thenar_contact::Material;
 use thenar_recordings::study::Instrument;
 
+use super::effects::Scale;
 use crate::noise::Noise;
 use crate::observe::{Measured, Quantity};
-use crate::replay::{Nuisance, Replay, Tissue};
+use crate::replay::Tissue;
 use crate::{Phase, Target};
 
 /// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
@@ -54,6 +55,8 @@ pub enum Kind {
     ForceZero(usize),
     /// Logarithm of counts per kPa of a recording.
     Counts(usize),
+    /// A number of an effect: its shape number, or None for its amplitude.
+    Effect(usize, Option<usize>, Scale),
 }
 
 /// A number of a material that can be fitted.
@@ -127,10 +130,15 @@ pub struct Parameter {
 impl Parameter {
     /// True if the coordinate is a logarithm.
     pub fn is_log(&self) -> bool {
-        !matches!(
+        let is_plain = matches!(
             self.kind,
-            Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..) | Kind::ForceZero(_)
-        )
+            Kind::Zero(_)
+                | Kind::Touch(_)
+                | Kind::Pose(..)
+                | Kind::ForceZero(_)
+                | Kind::Effect(_, _, Scale::Plain)
+        );
+        !is_plain
     }
 
     /// The number itself.
@@ -150,7 +158,7 @@ impl Parameter {
             | Kind::Pose(r, _)
             | Kind::ForceZero(r)
             | Kind::Counts(r) => Some(r),
-            Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) => None,
+            Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) | Kind::Effect(..) => None,
         }
     }
 }
@@ -355,34 +363,6 @@ fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
         }
     }
     all
-}
-
-/// The model's own form of a vector of parameters: materials by region, and what belongs to each recording.
-pub fn setting(
-    replay: &Replay,
-    (parameters, at): (&[Parameter], &[f64]),
-) -> (Vec<Material>, Vec<Nuisance>) {
-    let mut materials = replay.tissue.materials.clone();
-    let mut nuisances = vec![Nuisance::none(); replay.place_of.len()];
-    for (parameter, at) in parameters.iter().zip(at) {
-        match parameter.kind {
-            Kind::Tissue(region, number) => *number.of(&mut materials[region]) = libm::exp(*at),
-            Kind::Zero(r) => nuisances[r].zero_mm += at,
-            Kind::Touch(place) => {
-                let of_place = nuisances.iter_mut().zip(&replay.place_of);
-                of_place
-                    .filter(|(_, p)| **p == place)
-                    .for_each(|(n, _)| n.zero_mm += at);
-            }
-            Kind::Gain(r) => nuisances[r].log_gain += at,
-            Kind::InstrumentGain => nuisances.iter_mut().for_each(|n| n.log_gain += at),
-            Kind::Pose(r, 2) => nuisances[r].placement.turn_rad = *at,
-            Kind::Pose(r, axis) => nuisances[r].placement.shift_mm[axis] = *at,
-            Kind::Counts(r) => nuisances[r].log_counts = *at,
-            Kind::ForceZero(r) => nuisances[r].force_zero_n = *at,
-        }
-    }
-    (materials, nuisances)
 }
 
 /// True if some sample was taken with the tool on the skin.

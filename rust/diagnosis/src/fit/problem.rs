@@ -2,10 +2,12 @@
 
 use std::ops::AddAssign;
 
-use nalgebra::DMatrix;
-use thenar_contact::Control;
+use nalgebra::{DMatrix, DVector};
+use thenar_contact::{ActiveEffect, Control};
 
-use super::parameters::{Kind, Parameter, setting};
+use super::effects::effects_at;
+use super::parameters::{Kind, Parameter};
+use super::setting::setting;
 use crate::DiagnosisError;
 use crate::noise::{Whitened, Whitening};
 use crate::observe::Quantity;
@@ -20,6 +22,8 @@ pub struct Problem<'a> {
     pub replay: &'a mut Replay,
     /// What is fitted.
     pub parameters: &'a [Parameter],
+    /// The model's effects, their free numbers where the fit begins.
+    pub effects: &'a [ActiveEffect],
     /// How residuals are whitened.
     pub whitening: &'a Whitening,
     /// By recording: false if it is only predicted once the fit is done.
@@ -49,20 +53,7 @@ impl Problem<'_> {
     /// # Errors
     /// Those of a replay.
     pub fn point(&mut self, at: &[f64], threshold: Option<f64>) -> Result<Point, DiagnosisError> {
-        let recordings = self.replay.observed.measured.len();
-        let (materials, nuisances) = setting(self.replay, (self.parameters, at));
-        let ahead = (&materials[..], &nuisances[..]);
-        self.replay
-            .follow_ahead(ahead, self.is_used, self.control)?;
-        let mut simulated = Vec::with_capacity(recordings);
-        for (recording, nuisance) in nuisances.iter().enumerate() {
-            simulated.push(match self.is_used[recording] {
-                true => self
-                    .replay
-                    .predict(recording, (&materials, nuisance), self.control)?,
-                false => vec![0.0; self.replay.observed.measured[recording].samples.len()],
-            });
-        }
+        let simulated = self.predictions(at)?;
         let whitened = self.whitening.residuals(&simulated.concat());
         let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual, &simulated));
         let misfit: f64 = whitened.residual.iter().map(|r| huber(*r, threshold)).sum();
@@ -79,6 +70,38 @@ impl Problem<'_> {
         })
     }
 
+    /// Predictions of the recordings in use; zeros for the others.
+    ///
+    /// # Errors
+    /// Those of a replay.
+    fn predictions(&mut self, at: &[f64]) -> Result<Vec<Vec<f64>>, DiagnosisError> {
+        self.turn_effects(at)?;
+        let recordings = self.replay.observed.measured.len();
+        let (materials, nuisances) = setting(self.replay, (self.parameters, at));
+        let ahead = (&materials[..], &nuisances[..]);
+        self.replay
+            .follow_ahead(ahead, self.is_used, self.control)?;
+        let mut simulated = Vec::with_capacity(recordings);
+        for (recording, nuisance) in nuisances.iter().enumerate() {
+            simulated.push(match self.is_used[recording] {
+                true => self
+                    .replay
+                    .predict(recording, (&materials, nuisance), self.control)?,
+                false => vec![0.0; self.replay.observed.measured[recording].samples.len()],
+            });
+        }
+        Ok(simulated)
+    }
+
+    /// Gives the model the effects that it has at a place.
+    ///
+    /// # Errors
+    /// What the contact model says of them.
+    pub fn turn_effects(&mut self, at: &[f64]) -> Result<(), DiagnosisError> {
+        let effects = effects_at(self.effects, (self.parameters, at));
+        self.replay.set_effects(&effects, self.control)
+    }
+
     /// Where a residual stands out from the bulk of them.
     fn threshold(&self, residual: &[f64], simulated: &[Vec<f64>]) -> f64 {
         let each = residual.iter().zip(simulated.iter().flatten()).enumerate();
@@ -90,9 +113,15 @@ impl Problem<'_> {
 
     /// Derivatives of all predictions by all parameters, not whitened; rows stacked as the samples.
     ///
+    /// Those by numbers of effects are taken from `kept`, if it is there: they cost most and change least.
+    ///
     /// # Errors
     /// Those of a replay.
-    pub fn jacobian(&mut self, point: &Point) -> Result<DMatrix<f64>, DiagnosisError> {
+    pub fn jacobian(
+        &mut self,
+        point: &Point,
+        kept: Option<&DMatrix<f64>>,
+    ) -> Result<DMatrix<f64>, DiagnosisError> {
         let starts: Vec<usize> = point
             .simulated
             .iter()
@@ -103,8 +132,17 @@ impl Problem<'_> {
             .collect();
         let mut jacobian = DMatrix::zeros(self.whitening.len(), self.parameters.len());
         for column in 0..self.parameters.len() {
-            if matches!(self.parameters[column].kind, Kind::Touch(_)) {
-                continue;
+            match (self.parameters[column].kind, kept) {
+                (Kind::Touch(_), _) => continue,
+                (Kind::Effect(..), Some(kept)) => {
+                    jacobian.set_column(column, &kept.column(column));
+                    continue;
+                }
+                (Kind::Effect(..), None) => {
+                    jacobian.set_column(column, &self.effect_slopes(point, column)?);
+                    continue;
+                }
+                _ => {}
             }
             let only = self.parameters[column].recording();
             for (recording, start) in starts.iter().enumerate() {
@@ -118,6 +156,22 @@ impl Problem<'_> {
         }
         self.sum_touches(&mut jacobian);
         Ok(jacobian)
+    }
+
+    /// Derivatives of all predictions by a number of an effect.
+    fn effect_slopes(
+        &mut self,
+        point: &Point,
+        column: usize,
+    ) -> Result<DVector<f64>, DiagnosisError> {
+        let step = inward(&self.parameters[column], point.at[column]);
+        let mut at = point.at.clone();
+        at[column] += step;
+        let moved = self.predictions(&at)?.concat();
+        self.turn_effects(&point.at)?;
+        let each = moved.iter().zip(point.simulated.iter().flatten());
+        let slopes: Vec<f64> = each.map(|(b, a)| (b - a) / step).collect();
+        Ok(DVector::from_vec(slopes))
     }
 
     /// First touch of a tool moves that of all its recordings.
@@ -159,15 +213,13 @@ impl Problem<'_> {
                 let is_force = |q: Quantity| f64::from(q == Quantity::Force);
                 return Ok(samples.iter().map(|s| is_force(s.quantity)).collect());
             }
-            Kind::Tissue(..) | Kind::Zero(_) | Kind::Touch(_) | Kind::Pose(..) => {}
+            Kind::Tissue(..)
+            | Kind::Zero(_)
+            | Kind::Touch(_)
+            | Kind::Pose(..)
+            | Kind::Effect(..) => {}
         }
-        // Away from the nearer bound.
-        let (low, high) = parameter.bounds;
-        let here = point.at[column];
-        let step = match high - here > here - low {
-            true => parameter.step,
-            false => -parameter.step,
-        };
+        let step = inward(parameter, point.at[column]);
         let mut at = point.at.clone();
         at[column] += step;
         let (from, to) = (
@@ -184,6 +236,15 @@ impl Problem<'_> {
             .zip(simulated)
             .map(|(b, a)| (b - a) / step)
             .collect())
+    }
+}
+
+/// Step of a finite difference, away from the nearer bound.
+fn inward(parameter: &Parameter, here: f64) -> f64 {
+    let (low, high) = parameter.bounds;
+    match high - here > here - low {
+        true => parameter.step,
+        false => -parameter.step,
     }
 }
 

@@ -180,9 +180,11 @@ impl Replay {
             .filter(|e| !is_instrument(e))
             .cloned()
             .collect();
-        let changed = self.tissue.skin.set_effects(of_skin.clone(), control);
-        changed.map_err(DiagnosisError::of_contact("the effects"))?;
-        self.effects = of_skin;
+        if of_skin != self.effects {
+            let changed = self.tissue.skin.set_effects(of_skin.clone(), control);
+            changed.map_err(DiagnosisError::of_contact("the effects"))?;
+            self.effects = of_skin;
+        }
         self.instrument = effects.iter().filter(is_instrument).cloned().collect();
         Ok(())
     }

@@ -1,0 +1,60 @@
+//! Where a fit begins: at the study's own numbers, moved to where the simulation has the size of the measurement.
+
+use super::parameters::Kind;
+use super::problem::{Problem, is_load};
+use super::setting::setting;
+use crate::DiagnosisError;
+
+/// The start, with the moduli moved together to where forces and pressures have the right size.
+pub fn scaled_start(
+    problem: &mut Problem<'_>,
+    before: &[Vec<f64>],
+) -> Result<Vec<f64>, DiagnosisError> {
+    let mut start: Vec<f64> = problem.parameters.iter().map(|p| p.start).collect();
+    let (mut over, mut under) = (0.0, 0.0);
+    for (measured, simulated) in problem.replay.observed.measured.iter().zip(before) {
+        let scale = simulated
+            .iter()
+            .fold(0.0, |most, f| f64::max(most, *f))
+            .powi(2);
+        if !measured.is_calibrated || scale == 0.0 {
+            continue;
+        }
+        for (sample, f) in measured.samples.iter().zip(simulated) {
+            if is_load(sample.quantity) {
+                (over, under) = (over + f * sample.value / scale, under + f * f / scale);
+            }
+        }
+    }
+    let factor = if under > 0.0 { over / under } else { 1.0 };
+    let shift = if factor > 0.0 { libm::log(factor) } else { 0.0 };
+    for (at, parameter) in start.iter_mut().zip(problem.parameters) {
+        if parameter.name.starts_with("g0") || parameter.name.starts_with("g_lim") {
+            *at = (*at + shift).clamp(parameter.bounds.0, parameter.bounds.1);
+        }
+    }
+    scale_counts(problem, &mut start)?;
+    Ok(start)
+}
+
+/// Counts per kPa of uncalibrated mats, so that simulated and measured sums agree.
+fn scale_counts(problem: &mut Problem<'_>, start: &mut [f64]) -> Result<(), DiagnosisError> {
+    for column in 0..start.len() {
+        let Kind::Counts(recording) = problem.parameters[column].kind else {
+            continue;
+        };
+        let (materials, nuisances) = setting(problem.replay, (problem.parameters, start));
+        let simulated = problem.replay.predict(
+            recording,
+            (&materials, &nuisances[recording]),
+            problem.control,
+        )?;
+        let samples = &problem.replay.observed.measured[recording].samples;
+        let ratio = samples.iter().map(|s| s.value).sum::<f64>() / simulated.iter().sum::<f64>();
+        if ratio.is_finite() && ratio > 0.0 {
+            let (low, high) = problem.parameters[column].bounds;
+            start[column] = libm::log(ratio).clamp(low, high);
+        }
+    }
+    Ok(())
+}
