@@ -11,7 +11,7 @@ ONE_THREAD = {name: "1" for name in ("RAYON_NUM_THREADS", "OMP_NUM_THREADS", "OP
 
 def main():
     """Measures, prints, writes. Returns the exit code: 0 unless a benchmark gave a wrong answer."""
-    from bench import friction_rows, grasp, rows
+    from bench import friction_rows, grasp, protocol_rows, rows
 
     table, is_right = [], True
     hand = grasp.grasping()
@@ -20,6 +20,7 @@ def main():
         "distances": lambda: rows.distance_rows(hand),
         "press": lambda: rows.press_rows(hand),
         "friction": friction_rows.friction_rows,
+        "protocols": lambda: protocol_rows.protocol_rows(hand),
     }
     for name, measure in measures.items():
         try:

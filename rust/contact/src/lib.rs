@@ -32,7 +32,7 @@ mod zone;
 pub use control::Control;
 pub use effects::ActiveEffect;
 pub use errors::ContactError;
-pub use history::{Course, Demand, Keep, Motion, Protocol, Row, Run, Stand, Step, Walk};
+pub use history::{Course, Cycle, Demand, Keep, Motion, Protocol, Row, Run, Stand, Step, Walk};
 pub use interface::{StickSlip, solve_stick_slip};
 pub use material::{Material, Swelling};
 pub use press::{

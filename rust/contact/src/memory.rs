@@ -2,6 +2,7 @@
 
 use crate::interface::attraction::Pull;
 use crate::interface::shear_kernel::ShearTables;
+use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
 use crate::solve::operator::Rows;
 
@@ -17,6 +18,8 @@ pub struct Memory {
     pub trail: Trail,
     /// Kernels of shear, once friction has needed them.
     pub shear: Option<ShearTables>,
+    /// And what they are between the sites that were last in contact.
+    pub pairs: Pairs,
 }
 
 /// Where one solve ended, for the next to start from; a walk through a protocol keeps its own.

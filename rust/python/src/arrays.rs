@@ -162,10 +162,10 @@ impl<'a, 'py> Argument<'a, 'py> {
         })
     }
 
-    /// (n, 3) numbers, row by row; NaN is let through.
-    pub fn triples_of(&self, n: usize) -> PyResult<Vec<f64>> {
-        self.numbers(&format!("an ({n}, 3) array of numbers"), |shape| {
-            shape == [n, 3]
+    /// (n, m) numbers, row by row; NaN is let through.
+    pub fn table_of(&self, n: usize, m: usize) -> PyResult<Vec<f64>> {
+        self.numbers(&format!("an ({n}, {m}) array of numbers"), |shape| {
+            shape == [n, m] || (n == 0 && shape.first() == Some(&0))
         })
     }
 

@@ -128,7 +128,7 @@ fn mat_of(mat: &Bound<'_, PyAny>) -> PyResult<(Mat, Vec<bool>)> {
     let is_placed: Vec<bool> = area.iter().map(|area| !area.is_nan()).collect();
     let points = |name: &'static str| -> PyResult<Vec<Vec3>> {
         let value = item(name)?;
-        let flat = Argument::solve(name, &value).triples_of(count)?;
+        let flat = Argument::solve(name, &value).table_of(count, 3)?;
         let kept = (0..count).filter(|k| is_placed[*k]);
         Ok(kept
             .map(|k| Vec3::new(flat[3 * k], flat[3 * k + 1], flat[3 * k + 2]))

@@ -1,6 +1,6 @@
 //! `thenar.Contact`: the result of a press as numpy arrays and records.
 
-use crate::arrays::{column, rows, triple};
+use crate::arrays::{Argument, column, rows, triple};
 use crate::record::record;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -120,6 +120,34 @@ impl Contact {
             convergence: convergence_record(py, &contact.convergence)?,
             warnings: PyList::new(py, contact.warnings)?.into_any().unbind(),
             seconds: record(seconds)?,
+        })
+    }
+}
+
+/// What a mat needs of a contact.
+pub struct PressedSkin {
+    pub displacement: Vec<Vec3>,
+    pub force: Vec<f64>,
+    pub pressure: Vec<f64>,
+    pub direction: Vec3,
+    pub offset: f64,
+}
+
+impl Contact {
+    /// What a mat needs, out of Python again.
+    pub fn pressed(&self, py: Python<'_>) -> PyResult<PressedSkin> {
+        let displacement = self.displacement_mm.bind(py);
+        let displacement = Argument::mesh("displacement_mm", displacement).points()?;
+        let count = displacement.len();
+        let numbers = |name: &str, values: &Py<PyAny>| {
+            Argument::mesh(name, values.bind(py)).numbers_of(count)
+        };
+        Ok(PressedSkin {
+            force: numbers("force_n", &self.force_n)?,
+            pressure: numbers("pressure_mpa", &self.pressure_mpa)?,
+            direction: Argument::mesh("direction", self.direction.bind(py)).vector()?,
+            offset: self.offset_mm,
+            displacement,
         })
     }
 }

@@ -12,6 +12,7 @@ mod requests;
 mod skin;
 mod walk;
 mod contact;
+mod instrument;
 mod hand;
 mod complementarity;
 mod recordings;
@@ -35,6 +36,8 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<protocol::Course>()?;
     module.add_class::<skin::Skin>()?;
     module.add_class::<walk::Walk>()?;
+    module.add_class::<instrument::Mat>()?;
+    module.add_function(wrap_pyfunction!(instrument::observe, module)?)?;
     module.add_class::<contact::Contact>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<comparison::Comparison>()?;

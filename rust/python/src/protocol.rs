@@ -3,9 +3,11 @@
 use crate::arrays::{Argument, column, rows, table, triple};
 use crate::contact::Contact;
 use crate::errors::SolveError;
+use crate::instrument::loads_table;
+use crate::record::record;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use thenar_contact::{Demand, Protocol, Row};
+use pyo3::types::{PyDict, PyList};
+use thenar_contact::{Demand, Keep, Protocol, Row};
 use thenar_surface::Vec3;
 
 const COLUMNS: [&str; 3] = ["offset_mm", "depth_mm", "force_n"];
@@ -37,6 +39,10 @@ pub struct Course {
     work_mj: Py<PyAny>,
     /// (s, n), MPa, or None if only totals were to be kept.
     pressure_mpa: Option<Py<PyAny>>,
+    /// List of (k, 5) x, y, z (mm, in the product's frame), N, mm2 by row, or None unless loads were to be kept.
+    loads: Py<PyAny>,
+    /// Records of the closed cycles: start_s, end_s, loss_mj, work_mj, loss_share; see `thenar_contact::Cycle`.
+    cycles: Py<PyAny>,
     /// (s,), bool.
     has_converged: Py<PyAny>,
     /// (3,), unit direction of travel.
@@ -46,11 +52,11 @@ pub struct Course {
 }
 
 impl Course {
-    /// Moves the result into Python; `vertices` is the number of the skin's, None keeps no pressures.
+    /// Moves the result into Python; `kept` is what was kept of the skin's so many vertices.
     pub fn new(
         py: Python<'_>,
         course: thenar_contact::Course,
-        (names, vertices): (&[String], Option<usize>),
+        (names, (keep, vertices)): (&[String], (Keep, usize)),
     ) -> PyResult<Course> {
         let steps = &course.steps;
         let of = |value: &dyn Fn(&thenar_contact::Step) -> f64| {
@@ -64,7 +70,18 @@ impl Course {
             .iter()
             .flat_map(|step| step.region_force.iter().copied())
             .collect();
-        let pressure = vertices.map(|vertices| {
+        let loads = (keep == Keep::Loads).then(|| {
+            let each = steps.iter().map(|step| loads_table(py, &step.loads));
+            PyList::new(py, each.collect::<PyResult<Vec<_>>>()?)
+        });
+        let loads = match loads.transpose()? {
+            Some(loads) => loads.into_any().unbind(),
+            None => py.None(),
+        };
+        let cycles = course.cycles();
+        let cycles = cycles.iter().map(|cycle| cycle_record(py, cycle));
+        let cycles = PyList::new(py, cycles.collect::<PyResult<Vec<_>>>()?)?;
+        let pressure = (keep == Keep::Pressure).then(|| {
             let mut values = vec![0.0; steps.len() * vertices];
             for (step, row) in steps.iter().zip(values.chunks_mut(vertices.max(1))) {
                 step.pressure
@@ -86,11 +103,23 @@ impl Course {
             region_force_n: table(py, by_region, regions)?,
             work_mj: of(&|step| step.work),
             pressure_mpa: pressure.transpose()?,
+            loads,
+            cycles: cycles.into_any().unbind(),
             has_converged: column(py, steps.iter().map(|step| step.has_converged).collect()),
             direction: triple(py, course.direction),
             last: Py::new(py, Contact::new(py, course.last, names)?)?,
         })
     }
+}
+
+fn cycle_record(py: Python<'_>, cycle: &thenar_contact::Cycle) -> PyResult<Py<PyAny>> {
+    let entries = PyDict::new(py);
+    entries.set_item("start_s", cycle.start_s)?;
+    entries.set_item("end_s", cycle.end_s)?;
+    entries.set_item("work_mj", cycle.work)?;
+    entries.set_item("loss_mj", cycle.loss)?;
+    entries.set_item("loss_share", cycle.share())?;
+    record(entries)
 }
 
 /// A protocol from a dict of columns: `time_s` and one or more of `offset_mm`, `depth_mm`, `force_n`, one of them given

@@ -37,8 +37,9 @@ pub fn keep_named(name: &str) -> PyResult<Keep> {
     match name {
         "totals" => Ok(Keep::Totals),
         "pressure" => Ok(Keep::Pressure),
+        "loads" => Ok(Keep::Loads),
         _ => Err(SolveError::new_err(format!(
-            "keep: there is no {name:?}; choose \"totals\" or \"pressure\""
+            "keep: there is no {name:?}; choose \"totals\", \"pressure\" or \"loads\""
         ))),
     }
 }

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
-use thenar_contact::{ContactError, Control, Keep, Model, Press, Run, SkinInput, Start};
+use thenar_contact::{ContactError, Control, Model, Press, Run, SkinInput, Start};
 use thenar_surface::Mesh;
 
 /// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
@@ -164,8 +164,8 @@ impl Skin {
     /// `protocol`: a dict of columns, `time_s` (s,) and one of `depth_mm` (beyond first touch), `offset_mm` (from where the
     /// product was given) and `force_n` per row, NaN where another column counts, and `slide_mm` (s, 3) if the product
     /// moves besides; product and posture as for `press`; `direction` (3,): where the product moves, None: mean normal;
-    /// `effects`: a list of `Effect` for this run in place of the skin's; `keep`: "totals", or "pressure" for the pressure of every vertex
-    /// at every row. Returns a `Course`. Raises `MeshError`, `SolveError`, `Cancelled`.
+    /// `effects`: a list of `Effect` for this run in place of the skin's; `keep`: "totals", "pressure" for the pressure of every
+    /// vertex at every row, or "loads" for what presses on the product, as a `Mat` reads it. Returns a `Course`. Raises `MeshError`, `SolveError`, `Cancelled`.
     #[pyo3(signature = (protocol, product_vertices_mm, product_triangles=None, posed_vertices_mm=None, direction=None, effects=None, cancel=None, progress=None, *, keep="totals"))]
     #[expect(
         clippy::too_many_arguments,
@@ -198,7 +198,7 @@ impl Skin {
             effects: effects.map(|effects| effects_of(Some(effects))),
             keep: keep_named(keep)?,
         };
-        let kept = (request.keep == Keep::Pressure).then_some(self.vertex_count);
+        let kept = (request.keep, self.vertex_count);
         let inner = Arc::clone(&self.inner);
         let course = run(py, &hooks, move |control| inner.follow(request, control))?;
         Course::new(py, course, (&self.region_names, kept))

@@ -10,12 +10,14 @@ pub(crate) mod state;
 pub(crate) mod recalled;
 mod protocol;
 mod course;
+mod cycle;
 mod approach;
 mod stand;
 mod walk;
 mod run;
 
 pub use course::{Course, Keep, Step};
+pub use cycle::Cycle;
 pub use protocol::{Demand, Protocol, Row};
 pub use run::Run;
 pub use stand::{Motion, Stand};

@@ -10,7 +10,7 @@ use thenar_surface::{Gap, Product, Vec3};
 
 use super::shear_kernel::ShearTables;
 use super::shear_matrix::{ShearMatrix, tangents};
-use super::shear_response::{Place, ShearResponse};
+use super::shear_response::{Pairs, Place, ShearResponse};
 use super::stick_slip::{Dragged, Grip, Trace};
 use crate::effects::{ActiveEffect, Effect, friction};
 use crate::linearize::Solved;
@@ -23,6 +23,9 @@ use crate::{ContactError, Control};
 
 /// Most sites in contact: their compliance takes 8 bytes a pair.
 const MOST_SITES: usize = 8192;
+
+/// Most sites whose kernel is kept for the next row.
+const MOST_KEPT: usize = 3000;
 
 /// Shear of a press, by site in contact.
 #[derive(Debug, Clone)]
@@ -114,10 +117,17 @@ pub(crate) fn drag(
     let Some(tables) = &skin.memory.shear else {
         return Ok(());
     };
-    let scene = Scene::new(skin, tables, (pressed, at));
+    let sites: Vec<u32> = at.iter().map(|&k| pressed.solved.zone[k]).collect();
+    let pairs = response(skin, tables).pairs(&sites, &skin.memory.pairs);
+    let scene = Scene::new(skin, tables, (pressed, at), &pairs);
     let sheared = scene.drag((drag, before), control)?;
     control.check()?;
     pressed.shear = Some(sheared);
+    skin.memory.pairs = if sites.len() <= MOST_KEPT {
+        pairs
+    } else {
+        Pairs::default()
+    };
     control.step("friction", 1.0)
 }
 
@@ -152,7 +162,12 @@ struct Scene {
 }
 
 impl Scene {
-    fn new(skin: &Skin, tables: &ShearTables, (pressed, at): (&Pressed, Vec<usize>)) -> Scene {
+    fn new(
+        skin: &Skin,
+        tables: &ShearTables,
+        (pressed, at): (&Pressed, Vec<usize>),
+        pairs: &Pairs,
+    ) -> Scene {
         let solved = &pressed.solved;
         let place = |&k: &usize| place(skin, pressed, solved.zone[k]);
         let places: Vec<Place> = at.iter().map(place).collect();
@@ -165,7 +180,7 @@ impl Scene {
         let force: f64 = at.iter().map(|&k| solved.force[k]).sum();
         let weighted = |&k: &usize| solved.touch[k].closest * (solved.force[k] / force);
         let center = at.iter().map(weighted).sum();
-        let matrix = response(skin, tables).matrix(&places, &tangents);
+        let matrix = response(skin, tables).matrix(&places, &tangents, pairs);
         let approach = approach(skin, &pressed.solved, &at);
         Scene {
             at,

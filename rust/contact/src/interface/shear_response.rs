@@ -22,6 +22,23 @@ pub struct Place {
     pub weight: f64,
 }
 
+/// The kernel between the sites in contact, kept from row to row: postures and pressures come and go, it stays.
+#[derive(Debug, Clone, Default)]
+pub struct Pairs {
+    /// Ascending.
+    sites: Vec<u32>,
+    /// Mean and deviator of the pairs (i, j), j > i, row by row.
+    values: Vec<[f32; 2]>,
+}
+
+impl Pairs {
+    /// Mean and deviator of the `i`th and the `j`th site, j > i.
+    fn get(&self, i: usize, j: usize) -> [f32; 2] {
+        let n = self.sites.len();
+        self.values[i * (2 * n - i - 1) / 2 + (j - i - 1)]
+    }
+}
+
 /// The response of a skin to shear.
 pub struct ShearResponse<'a> {
     /// Kernels of its layers.
@@ -33,11 +50,17 @@ pub struct ShearResponse<'a> {
 }
 
 impl ShearResponse<'_> {
-    /// Compliance of the places in their planes, mm/N.
-    pub fn matrix(&self, places: &[Place], tangents: &[[Vec3; 2]]) -> ShearMatrix<f32> {
+    /// Compliance of the places in their planes, mm/N; `pairs` are those of their sites.
+    pub fn matrix(
+        &self,
+        places: &[Place],
+        tangents: &[[Vec3; 2]],
+        pairs: &Pairs,
+    ) -> ShearMatrix<f32> {
         let own: Vec<f64> = places.iter().map(|p| self.own(p)).collect();
         ShearMatrix::from_blocks(&own, |i, j| {
-            let Some((alike, along, chord)) = self.pair(&places[i], &places[j]) else {
+            let (from, to) = (&places[i], &places[j]);
+            let Some((alike, along, chord)) = turned(pairs.get(i, j), (from, to)) else {
                 return [0.0; 4];
             };
             let block =
@@ -45,6 +68,29 @@ impl ShearResponse<'_> {
             let ([ax, ay], [bx, by]) = (&tangents[i], &tangents[j]);
             [block(ax, bx), block(ax, by), block(ay, bx), block(ay, by)]
         })
+    }
+
+    /// The kernel between all pairs of ascending `sites`; what `before` holds of them is taken from there.
+    pub fn pairs(&self, sites: &[u32], before: &Pairs) -> Pairs {
+        if sites == before.sites {
+            return before.clone();
+        }
+        let known = |site: &u32| before.sites.binary_search(site).ok();
+        let known: Vec<Option<usize>> = sites.iter().map(known).collect();
+        let n = sites.len();
+        let mut values = Vec::with_capacity(n * n.saturating_sub(1) / 2);
+        for i in 0..n {
+            for j in i + 1..n {
+                values.push(match (known[i], known[j]) {
+                    (Some(a), Some(b)) => before.get(a, b),
+                    _ => self.kernel(sites[i], sites[j]),
+                });
+            }
+        }
+        Pairs {
+            sites: sites.to_vec(),
+            values,
+        }
     }
 
     /// Displacement of `place` under `forces` (N) at `loaded`, mm.
@@ -72,22 +118,38 @@ impl ShearResponse<'_> {
 
     /// Coefficients of the force itself and of its part along the unit chord, mm/N; None out of range.
     fn pair(&self, a: &Place, b: &Place) -> Option<(f64, f64, Vec3)> {
-        let (i, j) = (a.site as usize, b.site as usize);
+        turned(self.kernel(a.site, b.site), (a, b))
+    }
+
+    /// Mean and deviator of the kernel between two sites, 1/mm; zero out of range. No posture changes it.
+    fn kernel(&self, a: u32, b: u32) -> [f32; 2] {
+        let (i, j) = (a as usize, b as usize);
         let (p, q) = (self.sites.patch[i], self.sites.patch[j]);
-        let at_least = self.response.bound(p.min(q), p.max(q))?;
+        let Some(at_least) = self.response.bound(p.min(q), p.max(q)) else {
+            return [0.0; 2];
+        };
         let r = arc_length(&self.sites.rest[i], &self.sites.rest[j], at_least);
-        let chord = (b.position - a.position).try_normalize(0.0)?;
         let (mine, other) = (self.response.mix(i), self.response.mix(j));
         let soft = mixed(mine, other, |a, b| self.tables.softness(a, b));
         let held = Held {
             mean: mixed(mine, other, |a, b| self.tables.held(a, b, r).mean),
             deviator: mixed(mine, other, |a, b| self.tables.held(a, b, r).deviator),
         };
-        let mean = 0.5 * (1.0 + soft) / r - held.mean;
-        let deviator = 0.5 * (1.0 - soft) / r - held.deviator;
-        let scale = a.weight * b.weight * self.response.kept(i, j);
-        Some((scale * (mean - deviator), scale * 2.0 * deviator, chord))
+        let kept = self.response.kept(i, j);
+        let mean = kept * (0.5 * (1.0 + soft) / r - held.mean);
+        let deviator = kept * (0.5 * (1.0 - soft) / r - held.deviator);
+        [mean as f32, deviator as f32]
     }
+}
+
+/// The kernel's mean and deviator at two places as they are: coefficients of the force and of its part along the unit chord.
+fn turned([mean, deviator]: [f32; 2], (a, b): (&Place, &Place)) -> Option<(f64, f64, Vec3)> {
+    if mean == 0.0 && deviator == 0.0 {
+        return None;
+    }
+    let chord = (b.position - a.position).try_normalize(0.0)?;
+    let (mean, deviator, scale) = (f64::from(mean), f64::from(deviator), a.weight * b.weight);
+    Some((scale * (mean - deviator), scale * 2.0 * deviator, chord))
 }
 
 /// `value` over the layers of two sites, mixed; the same when they trade places.
