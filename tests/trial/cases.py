@@ -1,0 +1,134 @@
+"""The trial's cases as study folders: reads cases.json and cases.npz, never the labels.
+
+    for case in names("trial"): write(case, folder)
+
+A case's folder is a study (recordings' format in README): curves of force over depth on a flat pad, each
+protocol twice. `follow_up(case, protocol, folder)` adds a protocol that the case holds back, as if it had been
+recorded next; `held_back(case)` names those.
+"""
+
+import functools
+import json
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import Delaunay
+from trial import protocols
+
+HERE = Path(__file__).parent
+
+
+@functools.cache
+def index():
+    """cases.json: by case the split, pad, what is published of it, and where its recordings begin in cases.npz."""
+    return json.loads((HERE / "cases.json").read_text())["cases"]
+
+
+@functools.cache
+def _numbers():
+    with np.load(HERE / "cases.npz") as table:
+        return {name: table[name] for name in table.files}
+
+
+def names(split):
+    """Cases of `trial` or `calibration`."""
+    return [name for name, case in index().items() if case["split"] == split]
+
+
+def recordings(case):
+    """Recordings of a case in their order: protocol, repeat, order, first sample, newtons a step, held back or not."""
+    about, found, first = index()[case], [], index()[case]["first"]
+    for order, step in enumerate(about["steps_n"]):
+        repeat, number = divmod(order, len(protocols.PROTOCOLS))
+        protocol = list(protocols.PROTOCOLS)[number]
+        held = protocol not in about["published"] or repeat >= about["repeats"]
+        one = {"protocol": protocol, "repeat": repeat, "order": order, "first": first, "step_n": step}
+        found.append(one | {"held_back": held})
+        first += len(protocols.sampled(about["pad"], protocol)[0])
+    return found
+
+
+def held_back(case):
+    """Protocols that were recorded and are not in the study."""
+    return sorted({one["protocol"] for one in recordings(case) if one["held_back"]})
+
+
+def curve(case, number):
+    """(times s, stated depths mm, forces N) of a case's recording."""
+    one = recordings(case)[number]
+    time, _ = protocols.sampled(index()[case]["pad"], one["protocol"])
+    rows = slice(one["first"], one["first"] + len(time))
+    table = _numbers()
+    return time, table["depth"][rows] * protocols.STEP_MM, table["force"][rows] * one["step_n"]
+
+
+def write(case, folder, more=()):
+    """Writes the study, with the protocols `more` of those held back."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    about = index()[case]
+    text = _head(about)
+    for number, one in enumerate(recordings(case)):
+        if one["held_back"] and one["protocol"] not in more:
+            continue
+        name = f"{one['protocol']}, repeat {one['repeat'] + 1}"
+        file = f"press_{number}.csv"
+        rows = [f"{t:.4f},{d:.4f},{f:.7f}" for t, d, f in zip(*curve(case, number), strict=True)]
+        (folder / file).write_text("time_s,depth_mm,force_n\n" + "\n".join(rows) + "\n")
+        tool = protocols.PROTOCOLS[one["protocol"]].tool
+        text += f'[[recordings]]\nname = "{name}"\nkind = "indentation"\nfile = "{file}"\nindenter = "{tool}"\n'
+        text += f'site = "pad"\nprotocol = "{one["protocol"]}"\norder = {one["order"]}\nrest_s = 300.0\n'
+    (folder / "study.toml").write_text(text)
+    (folder / "skin.ply").write_text(skin(about["pad"]))
+
+
+def follow_up(case, protocol, folder):
+    """The study again, with one protocol that it held back."""
+    if protocol not in held_back(case):
+        raise ValueError(f"case {case} holds back no {protocol}; it holds back {held_back(case)}")
+    write(case, folder, (protocol,))
+
+
+def _head(about):
+    """study.toml without its recordings."""
+    thickness = protocols.PADS[about["pad"]][1]
+    text = f"""[study]
+title = "A pad over bone, pressed by three spheres"
+[skin]
+mesh = "skin.ply"
+[skin.materials.default]
+g0_mpa = 0.008
+g_lim_mpa = 0.015
+d_lim_mm = {0.3 * thickness:.3f}
+thickness_mm = {thickness:.3f}
+"""
+    for tool in protocols.TOOLS:
+        radius = protocols.radius(about["pad"], tool)
+        text += f'[indenters.{tool}]\nshape = "sphere"\nradius_mm = {radius:.3f}\n'
+    return text + "[sites.pad]\npoint_mm = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\n"
+
+
+@functools.cache
+def skin(pad):
+    """The pad at rest as a PLY file, facing +z: rings around first touch, closer there, points moved at random."""
+    thickness = protocols.PADS[pad][1]
+    random = np.random.default_rng(3)
+    fine = 0.09 * thickness
+    points, r = [np.zeros((1, 2))], 0.0
+    while r < 3.2 * thickness:
+        step = fine * (1.0 + 0.45 * max(0.0, r / thickness - 0.7))
+        r += step
+        count = max(6, round(2.0 * np.pi * r / (1.1 * step)))
+        angle = 2.0 * np.pi * (np.arange(count) + random.random()) / count
+        wobble = 0.12 * step * random.standard_normal((count, 2))
+        points.append(np.stack([r * np.cos(angle), r * np.sin(angle)], axis=1) + wobble)
+    points = np.concatenate(points)
+    triangles = Delaunay(points).simplices
+    edges = points[triangles][:, 1:] - points[triangles][:, :1]
+    turned = edges[:, 0, 0] * edges[:, 1, 1] < edges[:, 0, 1] * edges[:, 1, 0]
+    triangles[turned] = triangles[turned][:, ::-1]
+    head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\n"
+    head += "property double x\nproperty double y\nproperty double z\n"
+    head += f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n"
+    body = [f"{x:.5f} {y:.5f} 0.0" for x, y in points]
+    return head + "\n".join(body + [f"3 {a} {b} {c}" for a, b, c in triangles]) + "\n"

@@ -1,0 +1,278 @@
+"""Makes the trial's cases from truth_runs.npz: recordings (cases.npz), the public index (cases.json), labels.json.
+
+Knows nothing of Thenar. `python -m trial.make_cases` in `tests`; the same tables give the same bytes. What a careful
+person would take for the base model is the pad of nu = 0.4995, neo-Hookean, of the stated thickness, its force times a
+modulus that grows evenly with depth, G0 to Glim over 0.3 thicknesses (`Truth.base`). Every truth is that, times its own
+such modulus, and one of: nothing more, effects, an instrument's error, or what no list holds. `kappa`: root mean square
+of what remains of the truth once G0 and Glim are refitted to all recordings together, over the noise's; `r2` is of the
+same refit. labels.json is sealed: only score.py opens it; the index holds a salted hash of every label.
+"""
+
+import functools
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+from trial import observing, protocols
+
+HERE = Path(__file__).parent
+REPEATS, REPEAT_GAIN, ZERO_MM = 2, 0.04, 0.02
+NOISES = (0.01, 0.03)
+KAPPAS = (0.5, 1.0, 2.0)
+RICH = tuple(protocols.PROTOCOLS)
+USUAL = ("slow, small sphere", "fast, small sphere", "cycles, small sphere")
+MOST_STEPS = 32000  # forces are kept as shares of each recording's largest
+
+# How many of each stratum: (trial, calibration).
+NULLS = {"normal": (40, 16), "outliers": (20, 8), "slow": (20, 8), "wide": (20, 8)}
+DECOYS, SINGLE, PAIR, UNLISTED, MIXED, AMBIGUOUS, POOR = (7, 3), (5, 2), (3, 2), (8, 3), (3, 1), (5, 2), (4, 2)
+INSTEAD = (  # ambiguous by design: what is true, what is recorded, what else would do nearly as well (see `rival`)
+    ("relaxation", USUAL[:2], "drainage"),
+    ("drainage", USUAL[:2], "relaxation"),
+    ("rate_independent_loss", ("wide sphere",), "relaxation"),
+    ("relaxation", ("wide sphere",), "rate_independent_loss"),
+)
+MIXES = (("relaxation", "fixture_compliance"), ("adhesion", "offset"), ("bone", "saturation"), ("relaxation", "drift"))
+
+
+class Truth:
+    """The forces of one pad with one effect (or pair) at any amplitude between 0 and 1, before scatter and noise."""
+
+    def __init__(self, pad, effect="none", variant=0):
+        self.pad = pad
+        table, self.parts, self.loading = runs(), {}, {}
+        for name in RICH:
+            rest = table[f"{pad}/none/0/0/{name}"].astype(float)
+            first, low, high = 1e-9, np.zeros_like(rest), np.zeros_like(rest)
+            if effect != "none":
+                first, high = protocols.AMPLITUDES[0], table[f"{pad}/{effect}/{variant}/1.0/{name}"] - rest
+                half = table.get(f"{pad}/{effect}/{variant}/{first}/{name}")
+                low = first * high if half is None else half - rest
+            bent = (high - low / first) / (1.0 - first)
+            time, depth = protocols.sampled(pad, name)
+            self.parts[name] = (time, depth, [along(pad, name, part, time) for part in (rest, high - bent, bent)])
+            way = protocols.course(pad, name, protocols.STEPS)[protocols.STEPS[0] : 2 * protocols.STEPS[0] + 1, 1]
+            loading = rest[protocols.STEPS[0] : 2 * protocols.STEPS[0] + 1]
+            power = np.log(loading[-1] / loading[-3]) / np.log(way[-1] / way[-3])
+            self.loading[name] = (PchipInterpolator(way, loading), way[-1], loading[-1], power)
+
+    def presses(self, amplitude, growth):
+        """Every protocol twice, the second time after all the others; forces in N for moduli (G0, Glim)."""
+        found = []
+        for repeat in range(REPEATS):
+            for number, name in enumerate(RICH):
+                time, depth, (rest, first, second) = self.parts[name]
+                force = (rest + amplitude * first + amplitude**2 * second) / 0.01 * modulus(self.pad, depth, growth)
+                order = number + repeat * len(RICH)
+                found.append(observing.Press(name, repeat, order, time, depth, depth.copy(), force))
+        return found
+
+    def base(self, press):
+        """Columns by which a recording's base model is linear in G0 and in Glim - G0, at the stated depths."""
+        within, deepest, most, power = self.loading[press.protocol]
+        stated = np.maximum(press.stated, 0.0)
+        beyond = most * (np.maximum(stated, deepest) / deepest) ** power
+        force = np.where(stated > deepest, beyond, within(np.minimum(stated, deepest))) / 0.01
+        return np.stack([force, force * modulus(self.pad, stated, (0.0, 1.0))], axis=1)
+
+
+@functools.cache
+def truth_of(pad, effect, variant):
+    """One `Truth` for all cases that share it."""
+    return Truth(pad, effect, variant)
+
+
+_RUNS = {}
+
+
+def runs():
+    """The finite elements' forces."""
+    if not _RUNS:
+        _RUNS.update(np.load(HERE / "truth_runs.npz"))
+    return _RUNS
+
+
+def modulus(pad, depth, growth):
+    """G at a depth, of (G0, Glim)."""
+    share = np.clip(depth / (0.3 * protocols.PADS[pad][1]), 0.0, 1.0)
+    return growth[0] + (growth[1] - growth[0]) * share
+
+
+def along(pad, name, force, time):
+    """Forces at other times: smooth on every leg of the motion."""
+    motion = protocols.course(pad, name, protocols.STEPS)
+    ends = protocols.legs(pad, name)[:, 0]
+    out = np.zeros_like(time)
+    for start, end in zip(ends[:-1], ends[1:], strict=True):
+        within = (motion[:, 0] >= start - 1e-9) & (motion[:, 0] <= end + 1e-9)
+        here = (time > start - 1e-9) & (time <= end + 1e-9)
+        out[here] = PchipInterpolator(motion[within, 0], force[within])(time[here])
+    return out
+
+
+def severity(truth, presses, noise):
+    """(kappa, R2) of a case before scatter and noise."""
+    scale = [1.0 / (noise * press.force.max()) for press in presses]
+    columns = np.concatenate([truth.base(press) * s for press, s in zip(presses, scale, strict=True)])
+    seen = [press.force * s for press, s in zip(presses, scale, strict=True)]
+    all_seen = np.concatenate(seen)
+    left = all_seen - columns @ np.linalg.lstsq(columns, all_seen, rcond=None)[0]
+    about = sum(((one - one.mean()) ** 2).sum() for one in seen)
+    return float(np.sqrt((left**2).mean())), float(1.0 - (left**2).sum() / about)
+
+
+def distorted(truth, growth, what, amplitudes, seed):
+    """The presses with an effect at its amplitude and a distortion at its own."""
+    presses = truth.presses(amplitudes[0], growth)
+    if what:
+        forms = observing.INSTRUMENT | observing.UNLISTED
+        forms[what](presses, amplitudes[1], np.random.default_rng(seed))
+    return presses
+
+
+def amplitudes_for(plan, growth, seed):
+    """Amplitudes of the effect and of the distortion at which each alone is as severe as planned, or as can be."""
+    effect, what = plan.get("effect", "none"), plan.get("distortion")
+    one = (
+        _halved(plan, (truth_of(plan["pad"], effect, plan["variant"]), growth, None, seed)) if effect != "none" else 0.0
+    )
+    two = _halved(plan, (truth_of(plan["pad"], "none", 0), growth, what, seed)) if what else 0.0
+    return one, two
+
+
+def _halved(plan, made_of):
+    """The amplitude, found by halving."""
+    truth, growth, what, seed = made_of
+    low, high = 0.0, 1.0
+    for _ in range(14):
+        middle = 0.5 * (low + high)
+        presses = published(plan, distorted(truth, growth, what, (middle, middle), seed))
+        low, high = (middle, high) if severity(truth, presses, plan["noise"])[0] < plan["kappa"] else (low, middle)
+    return low
+
+
+def published(plan, presses):
+    """The presses that a plan's study holds."""
+    return [press for press in presses if press.protocol in plan["published"]]
+
+
+def rival(plan, presses):
+    """What remains over the noise if the other name of an ambiguous case is fitted, at its best amplitude and form."""
+    best = np.inf
+    scale = [1.0 / (plan["noise"] * press.force.max()) for press in presses]
+    seen = np.concatenate([press.force * s for press, s in zip(presses, scale, strict=True)])
+    for variant in (0, 1):
+        if f"{plan['pad']}/{plan['names'][1]}/{variant}/1.0/wide sphere" not in runs():
+            continue
+        other = truth_of(plan["pad"], plan["names"][1], variant)
+        for amplitude in np.linspace(0.0, 1.0, 21):
+            flat, grown = other.presses(amplitude, (1.0, 1.0)), other.presses(amplitude, (0.0, 1.0))
+            kept = [k for k, press in enumerate(flat) if press.protocol in plan["published"]]
+            columns = [np.stack([flat[k].force, grown[k].force], axis=1) * s for k, s in zip(kept, scale, strict=True)]
+            columns = np.concatenate(columns)
+            left = seen - columns @ np.linalg.lstsq(columns, seen, rcond=None)[0]
+            best = min(best, float(np.sqrt((left**2).mean())))
+    return best
+
+
+def plans(split):
+    """Every case of a split as a plan, in the order of the strata; the numbers are drawn from the plan's own seed."""
+    which = 0 if split == "trial" else 1
+    for scatter, counts in NULLS.items():
+        yield from ({"stratum": "null", "scatter": scatter, "names": []} for _ in range(counts[which]))
+    for name in observing.INSTRUMENT:
+        yield from ({"stratum": "decoy", "distortion": name, "names": [name]} for _ in range(DECOYS[which]))
+    for name in protocols.SINGLE:
+        for kappa in KAPPAS:
+            one = {"stratum": "single", "effect": name, "names": [name], "kappa": kappa}
+            yield from (dict(one) for _ in range(SINGLE[which]))
+    for pair in protocols.PAIRS:
+        yield from ({"stratum": "pair", "effect": "+".join(pair), "names": list(pair)} for _ in range(PAIR[which]))
+    for name in observing.UNLISTED:
+        yield from ({"stratum": "unlisted", "distortion": name, "names": []} for _ in range(UNLISTED[which]))
+    for effect, error in MIXES:
+        both = {"stratum": "mixed", "effect": effect, "distortion": error, "names": [effect, error]}
+        yield from (dict(both) for _ in range(MIXED[which]))
+    for effect, published, other in INSTEAD:
+        cannot = {"stratum": "ambiguous", "effect": effect, "published": published, "names": [effect, other]}
+        cannot |= {"kappa": 1.0, "noise": NOISES[0]}
+        yield from (dict(cannot) for _ in range(AMBIGUOUS[which]))
+    for effect in ("none", "relaxation"):
+        poor = {"stratum": "poor", "effect": effect, "names": [], "published": ("wide sphere",), "repeats": 1}
+        yield from (dict(poor) for _ in range(POOR[which]))
+
+
+def drawn(plan, split, number):
+    """(plan with what is drawn, presses with scatter and noise, presses held back)."""
+    seed = [{"trial": 20, "calibration": 10}[split], number]
+    random = np.random.default_rng(seed)
+    plan = {"noise": float(random.choice(NOISES, p=[0.65, 0.35])), "pad": str(random.choice(_pads(plan, split)))} | plan
+    usual = plan["stratum"] == "null" and random.random() < 0.25
+    plan.setdefault("published", USUAL if usual else RICH)
+    plan.setdefault("kappa", float(random.choice([1.0, 2.0, 4.0])))
+    plan["variant"] = int(random.integers(2)) if _has_two(plan) else 0
+    low = np.exp(random.uniform(np.log(0.005), np.log(0.015)))
+    growth = (float(low), float(low * random.uniform(0.9, 2.5)))
+    plan, presses = _as_severe(plan, growth, seed)
+    if plan["stratum"] == "ambiguous":
+        plan["rival_kappa"] = rival(plan, published(plan, presses))
+    wide = 2.0 if plan.get("scatter") == "wide" else 1.0
+    observing.scatter(presses, random, wide * REPEAT_GAIN, wide * ZERO_MM)
+    observing.disturb(presses, random, plan["noise"], plan.get("scatter", "normal"))
+    return plan | {"g_mpa": growth}, presses
+
+
+def _as_severe(plan, growth, seed):
+    """The plan with its amplitudes, and the presses; with less noise if the effect cannot be as strong."""
+    truth = truth_of(plan["pad"], plan.get("effect", "none"), plan["variant"])
+    amplitudes = (0.0, 0.0) if plan["stratum"] == "null" else amplitudes_for(plan, growth, seed)
+    presses = distorted(truth, growth, plan.get("distortion"), amplitudes, seed)
+    kappa, r2 = severity(truth, published(plan, presses), plan["noise"])
+    if plan["stratum"] == "single" and kappa < 0.9 * plan["kappa"] and plan["noise"] > NOISES[0]:
+        return _as_severe(plan | {"noise": NOISES[0]}, growth, seed)
+    made = {"wanted_kappa": plan["kappa"], "kappa": kappa, "r2": r2, "amplitudes": amplitudes}
+    return plan | made, presses
+
+
+def _pads(plan, split):
+    """Pads of the split for which the finite elements of a plan were computed."""
+    pads = [pad for pad, what in protocols.PADS.items() if what[0] == split]
+    key = "none/0/0" if plan.get("effect", "none") == "none" else f"{plan['effect']}/0/1.0"
+    return [pad for pad in pads if f"{pad}/{key}/{RICH[-1]}" in runs()]
+
+
+def _has_two(plan):
+    """Whether the second form of an effect was computed on the plan's pad."""
+    return f"{plan['pad']}/{plan.get('effect')}/1/{protocols.AMPLITUDES[1]}/{RICH[-1]}" in runs()
+
+
+def main():
+    """Draws every case, shuffles them, and writes the three files."""
+    splits = ("trial", "calibration")
+    found = [(split, *drawn(plan, split, k)) for split in splits for k, plan in enumerate(plans(split))]
+    shuffled = np.random.default_rng(99).permutation(len(found))
+    salt = hashlib.sha256(np.random.default_rng(5).bytes(16)).hexdigest()[:16]
+    public, labels, forces, depths, first = {}, {}, [], [], 0
+    for number, where in enumerate(shuffled):
+        split, plan, presses = found[where]
+        steps, begin = [], first
+        for press in presses:
+            steps.append(float(f"{np.abs(press.force).max() / MOST_STEPS:.6g}"))
+            forces.append(np.round(press.force / steps[-1]).astype(np.int16))
+            depths.append(np.round(press.stated / protocols.STEP_MM).astype(np.int16))
+            first += len(press.force)
+        label = {key: value for key, value in plan.items() if key not in ("pad", "published")}
+        sealed = hashlib.sha256((salt + json.dumps(label, sort_keys=True)).encode()).hexdigest()
+        name = f"case_{number:03d}"
+        public[name] = {"split": split, "pad": plan["pad"], "label": sealed, "first": begin, "steps_n": steps}
+        public[name] |= {"published": list(plan["published"]), "repeats": plan.get("repeats", REPEATS)}
+        labels[name] = label
+    np.savez_compressed(HERE / "cases.npz", force=np.concatenate(forces), depth=np.concatenate(depths))
+    (HERE / "cases.json").write_text(json.dumps({"cases": public}, indent=None).replace('"case_', '\n"case_') + "\n")
+    (HERE / "labels.json").write_text(json.dumps({"salt": salt, "labels": labels}).replace('"case_', '\n"case_') + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,109 @@
+"""The scorer notices: right verdicts pass every row; shuffled labels, effects that are not there, open gates do not."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from trial import score
+
+
+@pytest.fixture(scope="module")
+def sealed():
+    return score.labels("trial")
+
+
+def right(label):
+    """What a diagnosis that knows the label would say."""
+    names, stratum = label["names"], label["stratum"]
+    verdict = {"verdict": "missing_physics", "findings": [{"effect": name} for name in names], "names_90": [names]}
+    verdict["fit"] = {"reducible_error_removed": {"value": 0.9}}
+    if stratum == "null":
+        return {"verdict": "parameters", "findings": []}
+    if stratum == "decoy":
+        return verdict | {"verdict": "instrument"}
+    if stratum == "unlisted":
+        return {"verdict": "unlisted", "findings": []}
+    if stratum == "ambiguous":
+        return {"verdict": "cannot_tell", "findings": [], "cannot_tell": [names]}
+    if stratum == "poor":
+        return {"verdict": "insufficient_data", "findings": []}
+    return verdict
+
+
+def rows(sealed, said):
+    return {row.name: row for row in score.table(sealed, said)}
+
+
+@pytest.mark.parametrize(
+    ("hits", "of", "low", "high"), [(0, 10, 0.0, 0.2775), (1, 10, 0.0179, 0.4042), (81, 263, 0.2553, 0.3662)]
+)
+def test_wilson_bounds_are_the_published_ones(hits, of, low, high):
+    """Brown, Cai & DasGupta 2001 and Newcombe 1998 (81 of 263, method 3)."""
+    assert score.wilson(hits, of) == pytest.approx((low, high), abs=1e-4)
+
+
+def test_right_verdicts_meet_every_row(sealed):
+    found = rows(sealed, {name: right(label) for name, label in sealed.items()})
+    assert all(row.holds() for row in found.values()), score.shown(found.values())
+    assert found["one effect, kappa >= 1: exact"].rate() == 1.0
+
+
+def test_shuffled_labels_collapse(sealed):
+    names = list(sealed)
+    turned = np.random.default_rng(1).permutation(len(names))
+    said = {name: right(sealed[names[k]]) for name, k in zip(names, turned, strict=True)}
+    found = rows(sealed, said)
+    assert found["one effect, kappa >= 1: exact"].rate() < 0.2
+    assert found["nulls: a missing effect claimed"].rate() > 0.3
+    assert found["a wrong name anywhere"].rate() > 0.3
+    assert found["unlisted: refused as a name"].rate() < 0.3
+
+
+def test_an_effect_of_no_severity_makes_its_name_a_false_alarm(sealed):
+    said = {name: right(label) for name, label in sealed.items()}
+    mutated = {
+        name: label | {"stratum": "null", "names": [], "kappa": 0.0} if label.get("effect") == "bone" else label
+        for name, label in sealed.items()
+    }
+    found = rows(mutated, said)
+    assert not found["nulls: a missing effect claimed"].holds()
+    assert found["a wrong name anywhere"].hits == sum(label.get("effect") == "bone" for label in sealed.values()) > 10
+
+
+def test_an_open_gate_shows(sealed):
+    """A diagnosis that always names the effect that fits best: no refusal, no doubt, no silence."""
+    said = {name: right(label) for name, label in sealed.items()}
+    for name, label in sealed.items():
+        if label["stratum"] in ("null", "unlisted", "ambiguous", "poor"):
+            said[name] = {"verdict": "missing_physics", "findings": [{"effect": "relaxation"}]}
+    found = rows(sealed, said)
+    for name in ("nulls: a missing effect claimed", "unlisted: refused as a name", "a wrong name anywhere"):
+        assert not found[name].holds()
+    assert found["ambiguous: the right set, not one name"].rate() == 0.0
+
+
+def test_silence_is_scored_as_such(sealed):
+    found = rows(sealed, {})
+    assert found["answered"].rate() == 0.0 and found["one effect, kappa >= 1: exact"].rate() == 0.0
+    assert found["nulls: a missing effect claimed"].rate() == 0.0
+
+
+def test_a_label_that_was_changed_is_refused(tmp_path):
+    for name in ("cases.json", "labels.json"):
+        shutil.copy(score.HERE / name, tmp_path / name)
+    sealed = json.loads((tmp_path / "labels.json").read_text())
+    first = next(iter(sealed["labels"]))
+    sealed["labels"][first]["names"] = ["friction"]
+    (tmp_path / "labels.json").write_text(json.dumps(sealed))
+    with pytest.raises(ValueError, match=f"the label of {first} is not the one sealed"):
+        score.labels("trial", tmp_path)
+
+
+def test_verdicts_are_read_by_case(tmp_path, sealed):
+    one, two, *_ = sealed
+    (tmp_path / one).mkdir()
+    (tmp_path / one / "findings.json").write_text('{"verdict": "instrument", "findings": [{"effect": "gain"}]}')
+    (tmp_path / f"{two}.json").write_text('{"verdict": "unlisted", "findings": []}')
+    said = score.verdicts(tmp_path, sealed)
+    assert set(said) == {one, two} and score.named(said[one]) == {"gain"}
