@@ -12,6 +12,8 @@ _OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
 """Amplitudes to start from where the most is out of reason. Relaxation: palms, Shojaeizadeh 2022; the others: ours."""
 
+_UNITS = ("_mm2_per_s", "_n_per_mm", "_j_per_m2", "_mpa", "_mm", "_s")
+"""Ends of the library's names that tell a unit, longest first."""
 _LAWS = {}
 """Items of choices by their options: Blender needs the texts of a dynamic list kept."""
 
@@ -43,8 +45,9 @@ def is_on(hand, name):
 
 
 def title(name):
-    """An effect's or number's name for reading."""
-    return name.removesuffix("_mm").replace("_", " ").capitalize()
+    """An effect's or number's name for reading, without the unit that stands beside it."""
+    unit = next((suffix for suffix in _UNITS if name.endswith(suffix)), "")
+    return name.removesuffix(unit).replace("_", " ").capitalize()
 
 
 def _options(self, _context):

@@ -65,7 +65,7 @@ def _draw_effect(layout, effect, hand):
         row.prop_search(effect, "painted", hand, "vertex_groups", icon="BRUSH_DATA")
         row.operator("thenar.paint_thickness", text="", icon="BRUSHES_ALL")
         if effect.painted:
-            column.prop(effect, "painted_full")
+            column.prop(effect, "painted_full", text="Weight 1 (mm)")
             lines = column.column(align=True)
             lines.active = False
             lines.label(text=f"Weight 0.5 is {effect.painted_full / 2:.3g} mm")
