@@ -19,6 +19,8 @@ class ThenarBake(bpy.types.PropertyGroup):
     cycles: IntProperty()
     cycle_loss_mj: FloatProperty()
     """Mean of what the cycles lost, mJ."""
+    cycle_loss_share: FloatProperty()
+    """The same over the work that was done on the skin."""
 
 
 CLASSES = (ThenarBake,)

@@ -97,8 +97,10 @@ def _sum_up(told, bake):
     told.peak_force_n = max(frame["force_n"] for frame in bake.done)
     told.peak_shear_n = max(frame["shear_n"] for frame in bake.done)
     told.work_mj, told.slip_loss_mj = bake.done[-1]["work_mj"], bake.done[-1]["slip_loss_mj"]
-    losses = following.cycle_losses(bake.course.force_n, bake.course.work_mj) if bake.follows else []
-    told.cycles, told.cycle_loss_mj = len(losses), float(np.mean(losses)) if losses else 0.0
+    found = following.cycles(bake.course.force_n, bake.course.work_mj) if bake.follows else []
+    loss, work = np.sum(found, axis=0) if found else (0.0, 0.0)
+    told.cycles, told.cycle_loss_mj = len(found), loss / max(len(found), 1)
+    told.cycle_loss_share = loss / work if work > 0.0 else 0.0
 
 
 def leave(context, bake):

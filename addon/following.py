@@ -9,8 +9,8 @@ from .scene import checks, rigid
 
 _SHAPE_MM = 0.01
 """Largest change of shape of a product that counts as rigid motion; single precision leaves a hundredth of it."""
-_FREE_N = 1e-6
-"""Force below which the product counts as off the skin."""
+_FREE_SHARE = 1e-4
+"""Force below which the product counts as off the skin, over the largest of the course; the library's own."""
 
 
 def is_needed(job):
@@ -63,20 +63,16 @@ def _start(job, hooks):
     return workflow.prepared(job, *hooks).start(product.vertices_mm, product.triangles, direction=direction)
 
 
-def cycle_losses(force_n, work_mj):
-    """Energy (mJ) lost in every cycle: from a frame without force, through contact, to the next without.
+def cycles(force_n, work_mj):
+    """(loss, work) in mJ of every cycle: from a frame without force, through contact, to the next without.
 
-    What the tissue stores it gives back until it is free, so the work done between two such frames is lost.
+    Work is the most that was done on the skin on the way. What skin stores it gives back until it is free, so the work
+    done between two free frames is lost.
     """
-    losses, start, was_pressed = [], None, False
-    for force, work in zip(force_n, work_mj, strict=True):
-        if force > _FREE_N:
-            was_pressed = True
-            continue
-        if start is not None and was_pressed:
-            losses.append(work - start)
-        start, was_pressed = work, False
-    return losses
+    free = np.asarray(force_n) <= _FREE_SHARE * max(force_n, default=0.0)
+    rests = np.flatnonzero(free)
+    between = [(a, b) for a, b in zip(rests[:-1], rests[1:], strict=True) if b - a > 1]
+    return [(work_mj[b] - work_mj[a], max(work_mj[a : b + 1]) - work_mj[a]) for a, b in between]
 
 
 def _motion(first, job):

@@ -164,7 +164,7 @@ def _draw_energy(box, told):
         _pair(box, "Lost to slip", f"{told.slip_loss_mj:.3g} mJ")
     _pair(box, "Work on the skin", f"{told.work_mj:.3g} mJ")
     if told.cycles:
-        _pair(box, f"Lost per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ")
+        _pair(box, f"Lost per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}")
 
 
 class THENAR_PT_notes(Tab, bpy.types.Panel):

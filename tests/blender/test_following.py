@@ -35,9 +35,10 @@ def test_a_rigid_motion_is_found_and_a_change_of_shape_is_not():
 def test_what_a_cycle_loses_is_the_work_between_two_free_frames():
     force = [0, 1, 2, 1, 0, 0, 3, 0, 2]
     work = [0, 1, 4, 3, 2, 2, 9, 7, 8]
-    assert following.cycle_losses(force, work) == [2, 5]
-    assert following.cycle_losses([1, 2, 0], [0, 1, 2]) == [], "the first frame is pressed already"
-    assert following.cycle_losses([0, 2, 1], [0, 1, 2]) == [], "the last one still is"
+    assert following.cycles(force, work) == [(2, 4), (5, 7)]
+    assert following.cycles([1, 2, 0], [0, 1, 2]) == [], "the first frame is pressed already"
+    assert following.cycles([0, 2, 1], [0, 1, 2]) == [], "the last one still is"
+    assert following.cycles([0, 0], [0, 0]) == following.cycles([], []) == []
 
 
 def made(tmp_path, depth=1.0, **effects):
@@ -206,6 +207,7 @@ def test_an_elastic_cycle_loses_nothing(tmp_path):
 def test_relaxing_skin_loses_energy_in_a_cycle(tmp_path):
     tables, told = pressed_and_released(tmp_path, relaxation=dict(RELAXING))
     assert told.cycles == 1 and told.cycle_loss_mj == pytest.approx(tables["work_mj"][-1])
+    assert told.cycle_loss_share == pytest.approx(tables["work_mj"][-1] / tables["work_mj"].max())
     assert 0.02 * tables["work_mj"].max() < told.cycle_loss_mj < 0.5 * tables["work_mj"].max()
 
 
