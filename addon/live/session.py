@@ -27,6 +27,8 @@ class Session:
     """Prepared for this session alone: a solve of another scene must not change its effects or what it remembers."""
     product: object = None
     painted: dict = field(default_factory=dict)
+    is_warm: bool = True
+    """Whether solves begin at the last one: faster, but skin beside the contact then keeps some of its way there."""
 
     def fits(self, hand, parts):
         """Whether hand and product are still the ones it began with."""
@@ -99,6 +101,15 @@ def follow(context, session):
     return True
 
 
+def settle(context, session):
+    """Solve what the scene shows once more from nothing, as Solve does. Raises as `follow` does."""
+    session.seen, session.is_warm = "", False
+    try:
+        return follow(context, session)
+    finally:
+        session.is_warm = True
+
+
 def _take_product(context, session, parts):
     skin = session.job.reading.hand
     product = read.read_product(context, parts, skin.scale, skin.origin_mm)
@@ -112,7 +123,7 @@ def _press(job, session):
     slide = None if job.slide_mm is None else np.array(job.slide_mm, dtype=np.float64)
     posed = job.reading.hand.posed_mm
     try:
-        return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, warm_start=True)
+        return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, warm_start=session.is_warm)
     except native.error_types() as error:
         raise type(error)(workflow.named(str(error), job)) from None
 

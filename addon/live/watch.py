@@ -4,7 +4,7 @@ Handlers only mark a scene; the timer solves. In background, where there are no 
 """
 
 import time
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 
 import bpy
 from bpy.app.handlers import persistent
@@ -15,6 +15,8 @@ from ..scene.checks import Refusal
 from . import nodes, session
 
 _RATE_S = 1.0
+_SETTLE_S = 0.5
+"""So long after the last motion the contact is solved anew from nothing: it then is what Solve would leave."""
 _sessions = {}
 """Scene name -> `session.Session`."""
 _marked = set()
@@ -28,7 +30,7 @@ def follow_now(context):
     Mistakes that the user can mend become the reason that the panel shows; the last contact then stays.
     """
     scene = context.scene
-    if scene is None or not scene.thenar.live or _state["rendering"] or _state["busy"] or status.run.stage:
+    if not _may_follow(scene):
         return False
     told = status.live.setdefault(scene.name, status.Following())
     began = time.perf_counter()
@@ -42,6 +44,19 @@ def follow_now(context):
     if is_new:
         _count(scene.name, told, time.perf_counter() - began)
     return is_new
+
+
+def settle_now(context):
+    """Solve the resting scene from nothing. Returns whether it was; one that moved meanwhile is followed instead."""
+    now = _sessions.get(context.scene.name)
+    if follow_now(context) or now is None or not _may_follow(context.scene) or status.live[context.scene.name].problem:
+        return False
+    with _alone():
+        try:
+            return session.settle(context, now)
+        except (Refusal, *native.error_types()) as error:
+            status.live[context.scene.name].problem = running.sentence(error)
+            return False
 
 
 def switched(context):
@@ -62,6 +77,11 @@ def forget():
     _times.clear()
     _marked.clear()
     status.live.clear()
+
+
+def _may_follow(scene):
+    is_free = not (_state["rendering"] or _state["busy"] or status.run.stage)
+    return is_free and scene is not None and scene.thenar.live
 
 
 def _follow(context, scene):
@@ -115,13 +135,27 @@ def _tick():
         return 0.1 if _marked else None
     names = set(_marked)
     _marked.clear()
-    for window in bpy.context.window_manager.windows:
-        if window.scene.name in names:
-            names.discard(window.scene.name)
-            with bpy.context.temp_override(window=window) if hasattr(bpy.context, "temp_override") else nullcontext():
-                if follow_now(bpy.context) or status.live.get(bpy.context.scene.name):
-                    running.redraw(bpy.context)
+    if any(_in_windows(names, follow_now)):
+        if bpy.app.timers.is_registered(_rest):
+            bpy.app.timers.unregister(_rest)
+        bpy.app.timers.register(_rest, first_interval=_SETTLE_S)
     return 0.0 if _marked else None
+
+
+def _rest():
+    list(_in_windows(set(_sessions), settle_now))
+
+
+def _in_windows(names, action):
+    """What `action(context)` returns in a window of each scene of `names` that a window shows."""
+    done = set()
+    for window in bpy.context.window_manager.windows:
+        name = window.scene.name
+        if name in names and name not in done:
+            done.add(name)
+            with bpy.context.temp_override(window=window):
+                yield action(bpy.context)
+                running.redraw(bpy.context)
 
 
 def _mark(scene):
@@ -184,6 +218,7 @@ def unregister():
         handlers = getattr(bpy.app.handlers, event)
         if handler in handlers:
             handlers.remove(handler)
-    if bpy.app.timers.is_registered(_tick):
-        bpy.app.timers.unregister(_tick)
+    for timer in (_tick, _rest):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
     forget()

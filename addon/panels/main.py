@@ -120,8 +120,9 @@ def _draw_solve(layout):
 def _draw_live(layout, context):
     scene = context.scene
     told = status.live.get(scene.name)
-    row = layout.row(align=True)
-    row.prop(scene.thenar, "live", text="Live", toggle=True, icon="PLAY_SOUND" if scene.thenar.live else "PAUSE")
+    row = layout.row()
+    row.use_property_split = False
+    row.prop(scene.thenar, "live", toggle=True, icon="RADIOBUT_ON" if scene.thenar.live else "RADIOBUT_OFF")
     if not scene.thenar.live or told is None:
         return
     if told.problem:
@@ -130,7 +131,7 @@ def _draw_live(layout, context):
         for line in wrapped(told.problem, context):
             column.label(text=line)
     else:
-        layout.label(text=f"{told.rate:.0f} updates/s, {told.ms:.0f} ms each", icon="TIME")
+        layout.label(text=f"{told.rate:.0f} updates in the last second, {told.ms:.0f} ms each", icon="TIME")
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):

@@ -78,6 +78,21 @@ def test_own_output_is_not_read(scene):
         assert np.array_equal(stage.evaluated(hand), pressed)
 
 
+def test_at_rest_it_is_what_solve_leaves(scene):
+    hand, product = stage.scene()
+    stage.bend(hand)
+    stage.raise_under(hand, product)
+    switch(True)
+    for lift in (0.3, 0.4, -0.6):
+        product.location.z += lift * MM
+        assert follow()
+    assert watch.settle_now(bpy.context)
+    shown, settled = stage.evaluated(hand), force()
+    expected, wanted = solved_apart(hand)
+    assert settled == wanted
+    assert np.abs(shown - expected).max() < 5e-4 * 1.5  # the key keeps to 5e-4 of a displacement of about 1.5 mm
+
+
 def test_what_did_not_move_is_skipped(scene):
     hand, product = stage.scene()
     switch(True)
