@@ -1,33 +1,35 @@
-"""The trial's cases as study folders: reads cases.json and cases.npz, never the labels.
+"""The trial's cases as study folders: reads the public indices and what was recorded, never the labels.
 
     for case in names("trial"): write(case, folder)
 
 A case's folder is a study (recordings' format in README): curves of force over depth on a flat pad, each
 protocol twice. `follow_up(case, protocol, folder)` adds a protocol that the case holds back, as if it had been
-recorded next; `held_back(case)` names those.
+recorded next; `held_back(case)` names those. Cases `local_...` hold the maps of a mat, on the pads of studies.py.
 """
 
 import functools
 import json
+import zlib
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial import Delaunay
-from trial import protocols
+from trial import protocols, studies
 
 HERE = Path(__file__).parent
 
 
 @functools.cache
 def index():
-    """cases.json: by case the split, pad, what is published of it, and where its recordings begin in cases.npz."""
-    return json.loads((HERE / "cases.json").read_text())["cases"]
+    """Both public indices: by case the split, the pad, what is published of it, and where its recordings are kept."""
+    both = [json.loads((HERE / name).read_text())["cases"] for name in ("cases.json", "local_cases.json")]
+    return both[0] | both[1]
 
 
 @functools.cache
 def _numbers():
-    with np.load(HERE / "cases.npz") as table:
-        return {name: table[name] for name in table.files}
+    with np.load(HERE / "cases.npz") as curves, np.load(HERE / "local_cases.npz") as maps:
+        return {name: table[name] for table in (curves, maps) for name in table.files}
 
 
 def names(split):
@@ -37,8 +39,8 @@ def names(split):
 
 def recordings(case):
     """Recordings of a case in their order: protocol, repeat, order, first sample, newtons a step, held back or not."""
-    about, found, first = index()[case], [], index()[case]["first"]
-    for order, step in enumerate(about["steps_n"]):
+    about, found, first = index()[case], [], index()[case].get("first")
+    for order, step in enumerate(about.get("steps_n", [])):
         repeat, number = divmod(order, len(protocols.PROTOCOLS))
         protocol = list(protocols.PROTOCOLS)[number]
         held = protocol not in about["published"] or repeat >= about["repeats"]
@@ -67,6 +69,9 @@ def write(case, folder, more=()):
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     about = index()[case]
+    if "mat" in about:
+        _unpack(about, folder)
+        return
     text = _head(about)
     for number, one in enumerate(recordings(case)):
         if one["held_back"] and one["protocol"] not in more:
@@ -80,6 +85,14 @@ def write(case, folder, more=()):
         text += f'site = "pad"\nprotocol = "{one["protocol"]}"\norder = {one["order"]}\nrest_s = 300.0\n'
     (folder / "study.toml").write_text(text)
     (folder / "skin.ply").write_text(skin(about["pad"]))
+
+
+def _unpack(about, folder):
+    """Writes a case with maps: its files as they were packed, and its skin."""
+    first, last = about["bytes"]
+    for name, text in json.loads(zlib.decompress(_numbers()["files"][first:last].tobytes())).items():
+        (folder / name).write_text(text)
+    (folder / "skin.ply").write_text(studies.Pad(about["pad"], studies.MATS[about["mat"]][1]).skin())
 
 
 def follow_up(case, protocol, folder):

@@ -2,7 +2,7 @@
 
     python -m trial.score VERDICTS [--split trial] [--json OUT]        (in `tests`)
 
-VERDICTS is a folder of `<case>/findings.json` or `<case>.json`. The only file that opens labels.json; it checks every
+VERDICTS is a folder of `<case>/findings.json` or `<case>.json`. The only file that opens the labels; it checks every
 label against the salted hash in the public index first. A case without a verdict counts as one that says nothing
 (`insufficient_data`) and is counted in the last row.
 """
@@ -10,6 +10,7 @@ label against the salted hash in the public index first. A case without a verdic
 import argparse
 import hashlib
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,15 +69,17 @@ def wilson(hits, of, z=1.959963984540054):
 
 def labels(split, folder=HERE):
     """Sealed labels by case. Raises ValueError for one that is not what the index's hash says."""
-    index = json.loads((folder / "cases.json").read_text())["cases"]
-    sealed = json.loads((folder / "labels.json").read_text())
     found = {}
-    for name, label in sealed["labels"].items():
-        digest = hashlib.sha256((sealed["salt"] + json.dumps(label, sort_keys=True)).encode()).hexdigest()
-        if digest != index[name]["label"]:
-            raise ValueError(f"{folder / 'labels.json'}: the label of {name} is not the one sealed; restore the file")
-        if index[name]["split"] == split:
-            found[name] = label
+    for kind in ("", "local_"):
+        index = json.loads((folder / f"{kind}cases.json").read_text())["cases"]
+        sealed = json.loads((folder / f"{kind}labels.json").read_text())
+        for name, label in sealed["labels"].items():
+            digest = hashlib.sha256((sealed["salt"] + json.dumps(label, sort_keys=True)).encode()).hexdigest()
+            if digest != index[name]["label"]:
+                path = folder / f"{kind}labels.json"
+                raise ValueError(f"{path}: the label of {name} is not the one sealed; restore the file")
+            if index[name]["split"] == split:
+                found[name] = label
     return found
 
 
@@ -134,7 +137,7 @@ def table(sealed, said):
         _count("too little data: said so", of("poor"), _says_little, 0.75),
         _count("90 % name sets hold the truth", [p for p in listed if sets_of(p[1])], _held, 0.85),
     ]
-    return [*rows, *_gains(severe), *_about(pairs, said)]
+    return [*rows, *_places(of("local")), *_gains(severe), *_about(pairs, said)]
 
 
 def _count(name, group, test, must, is_ceiling=False):  # noqa: PLR0913 - a row and its test
@@ -158,6 +161,20 @@ def _held(label, verdict):
     return frozenset(label["names"]) in sets_of(verdict)
 
 
+def _places(local):
+    """Spots: whether they are named, and of those, how many are placed within one sensel's pitch on the skin."""
+    found = [(label, finding) for label, verdict in local for finding in verdict.get("findings", [])]
+    found = [(label, finding) for label, finding in found if finding["effect"] == "inclusion" and "where" in finding]
+    near = sum(
+        math.dist(finding["where"]["center_mm"], label["center_mm"]) <= label["pitch_mm"] for label, finding in found
+    )
+    exact = sum(named(verdict) == {"inclusion"} for _, verdict in local)
+    return [
+        Row("spots: named, and nothing else", exact, len(local), 0.85),
+        Row("spots: placed within one pitch (median)", near, len(found), 0.5),
+    ]
+
+
 def _gains(severe):
     """Held-out error removed where the right name was given; the median is 75 % where half of the cases have that."""
     shares = []
@@ -174,7 +191,7 @@ def _gains(severe):
 
 def _about(pairs, said):
     """What the trial itself is: how well its truths hide, and how much of it was answered."""
-    hidden = [label for label, _ in pairs if label["stratum"] not in ("null", "poor")]
+    hidden = [label for label, _ in pairs if label["stratum"] not in ("null", "poor", "local")]
     concealed = sum(label["r2"] >= CONCEALED for label in hidden)
     return [
         Row("concealed: R2 >= 0.98 after refitting the base", concealed, len(hidden), 0.6),
@@ -195,8 +212,8 @@ def by_stratum(sealed, said):
             right = not blames_skin(verdict)
         elif label["stratum"] == "unlisted":
             right = _refused(label, verdict)
-        hits, of = found.get((*kind, label["wanted_kappa"]), (0, 0))
-        found[(*kind, label["wanted_kappa"])] = (hits + right, of + 1)
+        hits, of = found.get((*kind, label.get("wanted_kappa", 0.0)), (0, 0))
+        found[(*kind, label.get("wanted_kappa", 0.0))] = (hits + right, of + 1)
     return sorted((*kind, *counts) for kind, counts in found.items())
 
 

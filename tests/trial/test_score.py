@@ -18,6 +18,8 @@ def right(label):
     names, stratum = label["names"], label["stratum"]
     verdict = {"verdict": "missing_physics", "findings": [{"effect": name} for name in names], "names_90": [names]}
     verdict["fit"] = {"reducible_error_removed": {"value": 0.9}}
+    if stratum == "local":
+        verdict["findings"][0]["where"] = {"center_mm": label["center_mm"], "radius_mm": label["radius_mm"]}
     if stratum == "null":
         return {"verdict": "parameters", "findings": []}
     if stratum == "decoy":
@@ -83,6 +85,17 @@ def test_an_open_gate_shows(sealed):
     assert found["ambiguous: the right set, not one name"].rate() == 0.0
 
 
+def test_a_place_off_by_more_than_a_pitch_is_no_place(sealed):
+    said = {name: right(label) for name, label in sealed.items()}
+    for name, label in sealed.items():
+        if label["stratum"] == "local":
+            x, y, z = label["center_mm"]
+            said[name]["findings"][0]["where"]["center_mm"] = [x + 1.01 * label["pitch_mm"], y, z]
+    found = rows(sealed, said)
+    assert found["spots: named, and nothing else"].rate() == 1.0
+    assert found["spots: placed within one pitch (median)"].rate() == 0.0
+
+
 def test_silence_is_scored_as_such(sealed):
     found = rows(sealed, {})
     assert found["answered"].rate() == 0.0 and found["one effect, kappa >= 1: exact"].rate() == 0.0
@@ -90,7 +103,7 @@ def test_silence_is_scored_as_such(sealed):
 
 
 def test_a_label_that_was_changed_is_refused(tmp_path):
-    for name in ("cases.json", "labels.json"):
+    for name in ("cases.json", "labels.json", "local_cases.json", "local_labels.json"):
         shutil.copy(score.HERE / name, tmp_path / name)
     sealed = json.loads((tmp_path / "labels.json").read_text())
     first = next(iter(sealed["labels"]))
