@@ -81,7 +81,9 @@ def _draw_state(layout, context):
     )
     column.label(text=f"1 unit = {mm_per_unit(context.scene):g} mm", icon="DRIVER_DISTANCE")
     if settings.live:
-        column.label(text="The contact is live", icon="CHECKMARK")
+        told = status.live.get(context.scene.name)
+        waits = told is not None and told.problem
+        column.label(text="Live waits" if waits else "The contact is live", icon="PAUSE" if waits else "CHECKMARK")
     elif hand.thenar.bake_path:
         column.label(text="Plays a bake", icon="RENDER_ANIMATION")
     elif not settings.result.is_valid:
@@ -131,7 +133,7 @@ def _draw_live(layout, context):
         for line in wrapped(told.problem, context):
             column.label(text=line)
     else:
-        layout.label(text=f"{told.rate:.0f} updates in the last second, {told.ms:.0f} ms each", icon="TIME")
+        layout.label(text=f"{told.rate:.0f} a second, {told.ms:.0f} ms each", icon="TIME")
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):

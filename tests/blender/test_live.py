@@ -1,5 +1,7 @@
 """Live: contact that follows hand, armature and product, and leaves no trace where it is not wanted."""
 
+import os
+
 import bpy
 import numpy as np
 import pytest
@@ -170,9 +172,7 @@ def test_frames_move_it_and_renders_do_not(scene, tmp_path):
     try:
         scene.frame_set(5)
         assert seen == [True] and force() > before
-        camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-        scene.collection.objects.link(camera)
-        scene.camera = camera
+        scene.camera = add_camera()
         scene.render.engine, scene.cycles.samples = "CYCLES", 1
         scene.render.resolution_x = scene.render.resolution_y = 4
         scene.frame_start, scene.frame_end = 6, 8
@@ -217,21 +217,33 @@ def test_scenes_are_followed_apart(scene):
 
 
 def test_long_session_without_error_or_growth(scene, tmp_path):
-    """Updates with saving, loading and rendering between them; undo needs a window and is driven there."""
+    """Updates with saving, loading and rendering between; undo needs a window. `LIVE_UPDATES` tells how many."""
+    count = int(os.environ.get("LIVE_UPDATES", "500"))
     _, product = stage.scene()
     switch(True)
-    path, sizes, heights = str(tmp_path / "long.blend"), [], np.random.default_rng(0).uniform(-0.5, 0.5, 500)
-    start = product.location.z
-    for count, height in enumerate(heights):
-        bpy.context.scene.thenar.product.location.z = start + height * MM
+    bpy.context.scene.render.engine, bpy.context.scene.cycles.samples = "CYCLES", 1
+    bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 4
+    bpy.context.scene.camera = add_camera()
+    path, start, sizes = str(tmp_path / "long.blend"), product.location.z, []
+    for step, lift in enumerate(np.random.default_rng(0).uniform(-0.5, 0.5, count)):
+        bpy.context.scene.thenar.product.location.z = start + lift * MM
         assert follow() and not told().problem
-        if count % 100 == 50:
+        if step % 100 == 50:
             bpy.ops.wm.save_as_mainfile(filepath=path)
             bpy.ops.wm.open_mainfile(filepath=path)
-        if count % 100 == 99:
+        if step % 100 == 75:
+            bpy.ops.render.render()
+        if step % 100 == 99:
             sizes.append(resident_mb())
+    print(f"{count} updates; resident {sizes[0]:.0f} MB after 100, {sizes[-1]:.0f} MB at the end")
     assert sizes[-1] < sizes[0] + 10.0
     assert len(bpy.data.node_groups) == 1 and len(bpy.context.scene.thenar.hand.modifiers) == 1
+
+
+def add_camera():
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(camera)
+    return camera
 
 
 def resident_mb():
