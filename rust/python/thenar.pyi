@@ -503,9 +503,7 @@ def hand(
 ) -> Record: ...
 def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float64]: ...
 def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...
-def observe(
-    signals: Mapping[str, Any], mat: Mat | None = None, effects: Sequence[Effect] | None = None
-) -> Record:
+def observe(signals: Mapping[str, Any], mat: Mat | None = None, effects: Sequence[Effect] | None = None) -> Record:
     """What a measuring set-up shows of what happens at the skin: channels after the instrument effects."""
 
 def parameters() -> list[Record]:

@@ -28,7 +28,8 @@ def ring_compliance(edges, shear_modulus, nu, thickness):
 def press_by_sphere(radius, depth, edges, layer):
     """Frictionless press of a rigid sphere, its contact held along its own normals where the surface lies once moved.
 
-    `layer` is (G, nu, h). Small strain, but geometry as it is. Returns (force N, contact radius mm).
+    `layer` is (G, nu, h); G a number, or a function of distance from the axis and height over the bottom. Small strain,
+    but geometry as it is. Returns (force N, contact radius mm).
     """
     rings = len(edges) - 1
     both = _compliances(edges, *layer)
@@ -115,6 +116,10 @@ def _assemble(r_edges, z_edges, shear_modulus, nu):
             n_z = np.einsum("i,j->ij", value[:, a], slope[:, b]).ravel() * (2.0 / dz)[..., None]
             q = np.einsum("i,j->ij", line[:, a], line[:, b]).ravel()
             r = (r_edges[:-1, None] + (point[a] + 1.0) * dr / 2.0) * np.ones(shape)
+            modulus = shear_modulus
+            if callable(shear_modulus):
+                z = (z_edges[None, :-1] + (point[b] + 1.0) * dz / 2.0) * np.ones(shape)
+                modulus = shear_modulus(r, z)
             measure = 2.0 * np.pi * r * weight[a] * weight[b] * dr * dz / 4.0
             strain = np.zeros((*shape, 4, 18))  # rr, zz, hoop, sqrt(2) rz
             strain[..., 0, 0::2] = n_r
@@ -124,13 +129,13 @@ def _assemble(r_edges, z_edges, shear_modulus, nu):
             strain[..., 3, 1::2] = n_r / np.sqrt(2.0)
             divergence = strain[..., :3, :].sum(axis=-2)
             block[..., :18, :18] += (
-                2.0 * shear_modulus * measure[..., None, None] * np.einsum("...ai,...aj->...ij", strain, strain)
+                2.0 * (modulus * measure)[..., None, None] * np.einsum("...ai,...aj->...ij", strain, strain)
             )
             mixed = measure[..., None, None] * np.einsum("...i,j->...ij", divergence, q)
             block[..., :18, 18:] -= mixed
             block[..., 18:, :18] -= np.swapaxes(mixed, -1, -2)
             block[..., 18:, 18:] -= (
-                (1.0 - 2.0 * nu) / (2.0 * shear_modulus * nu) * measure[..., None, None] * np.outer(q, q)
+                (1.0 - 2.0 * nu) / (2.0 * nu) * (measure / modulus)[..., None, None] * np.outer(q, q)
             )
     i, j = np.mgrid[0:nr, 0:nz]
     nodes = np.stack([node[2 * i + p, 2 * j + q] for p in range(3) for q in range(3)], axis=-1)

@@ -3,7 +3,9 @@
 //! At held depth the force falls from F0 to `F0 / (2 (1 - nu_drained))` along the master curve of a sphere,
 //! `0.491 exp(-0.908 sqrt(tau)) + 0.509 exp(-1.679 tau)` with tau = D t / a^2 (Hu, Zhao, Vlassak & Suo 2010). The curve is
 //! represented by exponentials of tau within 6e-4; the radius a of the contact is sqrt(area / pi) of the
-//! region's contact at the step before. The bulge beside the contact stays that of the undrained tissue.
+//! region's contact at the step before. The curve is that of a half space, so of contacts small against the thickness; layers
+//! have curves of their own (Hu, Chan, Vlassak & Suo 2011, J Appl Phys 110:086103), which are left out. The bulge beside the
+//! contact stays that of the undrained tissue.
 
 use super::active::ActiveEffect;
 use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
