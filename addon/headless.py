@@ -37,6 +37,8 @@ def open_file(path):
         bpy.ops.wm.open_mainfile(filepath=str(Path(path).resolve()), load_ui=False)
     except RuntimeError as error:
         raise Refusal(f"'{path}' cannot be opened: {' '.join(str(error).split())}") from None
+    if bpy.context.scene.thenar.live:
+        bpy.context.scene.thenar.live = False
 
 
 def save_file(path):

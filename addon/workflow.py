@@ -42,6 +42,8 @@ def prepare(context):
     hand, parts = check(context)
     if own.bake_modifiers(hand):
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then solve")
+    if context.scene.thenar.live:
+        raise checks.Refusal(f"Live keeps the contact of '{hand.name}' up to date; switch it off first")
     job = read_job(context, hand, parts)
     job.state_hash = state_hash(context)
     job.seconds["read"] = time.perf_counter() - started

@@ -6,8 +6,9 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import names, status
+from thenar_blender import headless, names, status, workflow
 from thenar_blender.live import watch
+from thenar_blender.scene import checks
 
 MM = stage.MM
 
@@ -198,6 +199,18 @@ def test_it_goes_on_after_loading(scene, tmp_path):
     assert force() == before and np.array_equal(stage.evaluated(settings.hand), pressed)
     settings.product.location.z += 0.2 * MM
     assert follow() and force() > before
+
+
+def test_command_line_solves_a_file_that_was_live(scene, tmp_path):
+    stage.scene()
+    switch(True)
+    live, path = force(), tmp_path / "live.blend"
+    with pytest.raises(checks.Refusal, match="switch it off"):
+        workflow.solve(bpy.context)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    headless.open_file(path)
+    assert workflow.solve(bpy.context).force_n == live
+    assert own_traces(bpy.context.scene.thenar.hand) == []
 
 
 def test_scenes_are_followed_apart(scene):
