@@ -26,6 +26,7 @@ class ThenarMaps(bpy.types.PropertyGroup):
     shown: EnumProperty(name="Map", description="What the colours on the skin show", items=KINDS)
     shear_kpa: _range("Range (kPa)", "Shear, kPa,", 50)
     depth_mm: _range("Range (mm)", "Depth, mm,", 5)
+    residual_kpa: _range("Range (kPa)", "Measured minus simulated pressure, kPa,", 50)
     thickness_mm: _range("Range (mm)", "Thickness, mm,", 20)
 
 

@@ -27,16 +27,27 @@ class Map:
     """Setting that holds the top of its range; empty: 0 to `fixed`."""
     fixed: float = 1.0
     covers: str = "itself"
-    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", or "skin"."""
+    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin" or "mat"."""
+    is_signed: bool = False
+    """Whether the colours run from minus to plus the top of the range."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How values become colours: the top of the range (from 0), the palette, and the edge at which covering is full."""
+    """How values become colours: the range from `low`, the palette, and the edge at which covering is full."""
 
     high: float
     palette: str
     edge: float
+    low: float = 0.0
+
+    def share(self, value):
+        """Where values stand in the range, 0 to 1."""
+        return (value - self.low) / (self.high - self.low)
+
+    def value(self, share):
+        """The value at a share of the range."""
+        return self.low + share * (self.high - self.low)
 
 
 _NO_CONTACT = "there is no pressure yet; press Solve first"
@@ -98,6 +109,18 @@ MAPS = {
             fixed=2.0,
             covers="contact",
         ),
+        Map(
+            "RESIDUAL",
+            names.RESIDUAL_KPA,
+            "Residual",
+            "kPa",
+            "Measured minus simulated pressure below the compared mat: red reads more than the simulation",
+            "no mat was compared; load a recording under Recordings, place it, and compare",
+            palette="COOLWARM",
+            limit="residual_kpa",
+            covers="mat",
+            is_signed=True,
+        ),
     )
 }
 
@@ -118,13 +141,19 @@ def scale(view, look):
     """The map's `Scale` under the present settings."""
     place = setting(view, look)
     high = max(view.fixed if place is None else getattr(*place), 1e-6)
-    edges = {"itself": colormap.EDGE * high, "contact": colormap.EDGE * max(look.range_kpa, 1e-6), "skin": _BARELY}
-    return Scale(high, view.palette or look.palette, edges[view.covers])
+    edges = {
+        "itself": colormap.EDGE * high,
+        "contact": colormap.EDGE * max(look.range_kpa, 1e-6),
+        "skin": _BARELY,
+        "mat": 1.0,
+    }
+    low = -high if view.is_signed else 0.0
+    return Scale(high, view.palette or look.palette, edges[view.covers], low)
 
 
 def covering(view):
     """The attribute that decides where the map covers the surface."""
-    return names.PRESSURE_KPA if view.covers == "contact" else view.attribute
+    return {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT}.get(view.covers, view.attribute)
 
 
 def peak(view, result):

@@ -16,6 +16,10 @@ SLIP_MARGIN = "slip_margin"
 THICKNESS_MM = "tissue_thickness_mm"
 THRESHOLD_SHARE = "threshold_share"
 """Pressure over the threshold of its region."""
+RESIDUAL_KPA = "residual_kpa"
+"""Measured minus simulated pressure; 0 away from the mat."""
+ON_MAT = "on_mat"
+"""1 where a compared mat lies, 0 elsewhere."""
 COLOR = "Thenar Pressure"
 MAP_COLOR = "Thenar Map"
 """Colours of any other map than the pressure's."""
@@ -32,10 +36,13 @@ HAND_ATTRIBUTES = (
     SLIP_MARGIN,
     THICKNESS_MM,
     THRESHOLD_SHARE,
+    RESIDUAL_KPA,
+    ON_MAT,
     COLOR,
     MAP_COLOR,
 )
-PRODUCT_ATTRIBUTES = (PRESSURE_KPA, COLOR)
+RESIDUAL_ATTRIBUTES = (RESIDUAL_KPA, ON_MAT)
+PRODUCT_ATTRIBUTES = (PRESSURE_KPA, *RESIDUAL_ATTRIBUTES, COLOR, MAP_COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"
 MATERIAL_SUFFIX = " · pressure"

@@ -90,7 +90,7 @@ def hide(context):
 def fitting_range(context):
     """A round value above the largest of the map that is shown; 1, 1.5, 2, 3, 5 or 7.5 times a power of ten."""
     name = maps.shown(context.scene.thenar).attribute
-    peaks = [attributes.read(obj.data, name).max(initial=0.0) for obj, _ in shown_objects(context, name)]
+    peaks = [abs(attributes.read(obj.data, name)).max(initial=0.0) for obj, _ in shown_objects(context, name)]
     peak = max(peaks, default=0.0)
     if not 0.0 < peak < 1e9:
         return None

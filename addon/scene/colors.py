@@ -20,7 +20,7 @@ def mapped(values, scale, bare):
     """Scene-linear RGBA (n, 4) float32 by a `maps.Scale`; `values`: those of the map, and those that cover (n,)."""
     shown, covering = (np.asarray(part, dtype=np.float64) for part in values)
     cover = colormap.cover(covering / scale.edge)[:, None]
-    tinted = colormap.to_linear(colormap.srgb(scale.palette, shown / scale.high))
+    tinted = colormap.to_linear(colormap.srgb(scale.palette, scale.share(shown)))
     out = np.ones((len(shown), 4), np.float32)
     out[:, :3] = colormap.to_linear(np.array(bare)) * (1.0 - cover) + tinted * cover
     return out

@@ -57,6 +57,7 @@ def update_group(look):
     scale = maps.scale(view, look)
     tree.nodes["Value"].attribute_name = view.attribute
     tree.nodes["Cover"].attribute_name = maps.covering(view)
+    tree.nodes["Range"].inputs["From Min"].default_value = scale.low
     tree.nodes["Range"].inputs["From Max"].default_value = scale.high
     tree.nodes["Edge"].inputs["From Max"].default_value = scale.edge
     _fill_ramp(tree.nodes["Ramp"].color_ramp, scale.palette)

@@ -62,6 +62,7 @@ def write_contact(context, hand, parts, reading, fields):
 def write_hand(hand, fields, look):
     """The hand's attributes and its colours for Solid view."""
     mesh, pressure = hand.data, units.kpa(fields.pressure_mpa)
+    attributes.remove(mesh, names.RESIDUAL_ATTRIBUTES)  # they belong to the contact before
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
     attributes.write(mesh, names.DEPTH_MM, "FLOAT", fields.depth_mm)
     attributes.write(mesh, names.REGION, "INT", fields.regions)
@@ -107,6 +108,7 @@ def _write_part(context, undo, record, reading, fields):
         undo.callback(copies.remove_copy, record.name)
         return
     undo.callback(attributes.snapshot(part.data, names.PRODUCT_ATTRIBUTES))
+    attributes.remove(part.data, names.RESIDUAL_ATTRIBUTES)
     carried = units.kpa(pressure[: len(part.data.vertices)])
     attributes.write(part.data, names.PRESSURE_KPA, "FLOAT", carried)
     attributes.write(part.data, names.COLOR, "FLOAT_COLOR", colors.linear(carried, look, colors.BARE))

@@ -40,7 +40,7 @@ def layout(look, result, height, left):
     ]
     for tick in range(TICKS):
         fraction = tick / (TICKS - 1)
-        label = number(scale.high * fraction) + (" +" if tick == TICKS - 1 and exceeds(look, result) else "")
+        label = number(scale.value(fraction)) + (" +" if tick == TICKS - 1 and exceeds(look, result) else "")
         texts.append((x + bar_width + 9 * unit, y + fraction * bar_height - size * 0.35, size, label))
     return Layout(plate, (x, y, bar_width, bar_height), tuple(texts))
 

@@ -445,7 +445,7 @@ class Comparison:
     def estimates(self) -> list[Record]: ...
     @property
     def recordings(self) -> list[Record]:
-        """By recording: sentence, measures, series by name, mat, frames, worst, residual_kpa (per skin vertex, or None), unknown."""
+        """By recording: sentence, measures, series by name, mat, frames, worst, residual_kpa by vertex, unknown."""
 
 def compare(
     study: Study,
@@ -486,7 +486,10 @@ def compare_map(
     time_s: float = 0.0,
     unknown: list[str] = ...,
 ) -> Comparison:
-    """Compares one frame of a mat with a contact that was solved, sensel by sensel. Raises `MeshError`, `RecordingError`."""
+    """Compares one frame of a mat with a solved contact, sensel by sensel. Raises `MeshError`, `RecordingError`."""
+
+def spread_map(values: ArrayLike, mat: Record, positions_mm: ArrayLike, depth_mm: float = 0.0) -> NDArray[np.float64]:
+    """Values of sensels at positions on the mat or near it, NaN away from it. Raises `MeshError`."""
 
 def read_recording(file: str | PathLike[str]) -> Record:
     """Reads a measurement file of any maker: `format`, `maps` and `curves`. Raises `RecordingError`."""

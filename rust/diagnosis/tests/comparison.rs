@@ -2,7 +2,7 @@
 
 mod made;
 
-use made::{Normal, Vec3, compared, fit_of, flat_mat, indentation, map, pad_force};
+use made::{Normal, compared, fit_of, flat_mat, indentation, map, pad_force};
 use nalgebra::DMatrix;
 use thenar_diagnosis::comparison::{RecordingComparison, Variable};
 use thenar_diagnosis::{Censoring, Quantity, Sample};

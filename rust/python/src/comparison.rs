@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use thenar_diagnosis::comparison::{
-    Frame, Measure, RecordingComparison, Series, Still, WorstPlace, compare_still,
+    Frame, Measure, RecordingComparison, Series, Still, WorstPlace, compare_still, on_skin,
 };
 use thenar_diagnosis::report::{comparison_html, comparison_json};
 use thenar_diagnosis::{Estimate, Mat, Options, Target};
@@ -111,6 +111,30 @@ pub fn compare_map(
     Ok(Comparison {
         inner: Arc::new(inner),
     })
+}
+
+/// Values of sensels (n,), NaN for missing, at positions (m, 3) on the mat or near it, mm: hand or product.
+///
+/// A position takes the mean of the sensels nearer than their side, with weights that fall linearly to that distance; NaN away from
+/// the mat. `depth_mm` is how far the mat has gone into the skin where the positions are those before contact. Raises `MeshError`.
+#[pyfunction]
+#[pyo3(signature = (values, mat, positions_mm, depth_mm=0.0))]
+pub fn spread_map(
+    py: Python<'_>,
+    values: &Bound<'_, PyAny>,
+    mat: &Bound<'_, PyAny>,
+    positions_mm: &Bound<'_, PyAny>,
+    depth_mm: f64,
+) -> PyResult<Py<PyAny>> {
+    let (mat, cells) = mat_of(mat)?;
+    let given = Argument::solve("values", values).numbers_of(cells.len())?;
+    let values: Vec<f64> = (0..given.len())
+        .filter(|k| cells[*k])
+        .map(|k| given[k])
+        .collect();
+    let positions = Argument::mesh("positions_mm", positions_mm).points()?;
+    let carried = py.detach(move || on_skin(&positions, &mat, &values, depth_mm));
+    Ok(column(py, carried))
 }
 
 /// The mat of a record, and which of its cells have a place.

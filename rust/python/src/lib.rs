@@ -46,6 +46,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare_map, module)?)?;
+    module.add_function(wrap_pyfunction!(comparison::spread_map, module)?)?;
     module.add_function(wrap_pyfunction!(
         complementarity::solve_complementarity,
         module

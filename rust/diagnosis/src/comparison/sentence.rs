@@ -123,10 +123,10 @@ fn strongest(recording: &RecordingComparison) -> Option<(&Trend, &Bin)> {
             .flat_map(|trend| trend.bins.iter().map(move |bin| (trend, bin)))
             .filter(|(_, bin)| bin.stands_out())
     };
-    let most = all().map(|(_, bin)| standings(bin)).fold(0.0, f64::max);
+    let most = all().map(|(_, bin)| bin.standings()).fold(0.0, f64::max);
     all()
-        .filter(|(_, bin)| standings(bin) >= 0.8 * most)
-        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * standings(bin)) as i64))
+        .filter(|(_, bin)| bin.standings() >= 0.8 * most)
+        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * bin.standings()) as i64))
 }
 
 fn rank(variable: Variable) -> u8 {
@@ -139,12 +139,8 @@ fn rank(variable: Variable) -> u8 {
     }
 }
 
-fn standings(bin: &Bin) -> f64 {
-    (bin.mean_sigma / bin.standard_error_sigma).abs()
-}
-
 fn least_p(recording: &RecordingComparison) -> f64 {
-    -strongest(recording).map_or(0.0, |(_, bin)| standings(bin))
+    -strongest(recording).map_or(0.0, |(_, bin)| bin.standings())
 }
 
 fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String {
@@ -156,10 +152,10 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
         None => String::new(),
     };
     format!(
-        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {} standard deviations of the noise apart ({} after {} looks).",
+        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {} standard errors apart ({} after {} looks).",
         trend.kind.label().to_lowercase(),
         place(trend.variable, bin),
-        number(standings(bin)),
+        number(bin.standings()),
         chance(bin.p),
         recording
             .trends

@@ -8,6 +8,8 @@ use crate::{Phase, Quantity};
 const MOST_BINS: usize = 8;
 /// Fewest values in a range.
 const FEWEST: usize = 6;
+/// Standard deviation below which parameters absorb all of a range.
+const NOTHING_LEFT: f64 = 1e-6;
 
 /// What a residual may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,13 +113,26 @@ pub struct Bin {
 
 impl Bin {
     /// Whether the mean differs from the simulation for other reasons than noise.
-    ///
-    /// What is projected of one recording also moves where parameters that it shares with others would follow those; so the
-    /// mean itself must lie on the same side, by two of its standard errors.
     pub fn stands_out(&self) -> bool {
-        let is_seen =
-            self.mean * self.mean_sigma > 0.0 && self.mean.abs() > 2.0 * self.standard_error;
-        self.p < SIGNIFICANT && is_seen
+        self.p < SIGNIFICANT
+    }
+
+    /// How many standard errors the mean lies off the simulation: the lesser of the mean as read and of what is projected.
+    ///
+    /// What is projected of one recording also moves where parameters that it shares with others would follow those, and the mean
+    /// as read knows nothing of noise that repeats share; only what both show is told. 0 if they disagree in sign or the noise
+    /// is not known.
+    pub fn standings(&self) -> f64 {
+        let (read, projected) = (
+            self.mean / self.standard_error,
+            self.mean_sigma / self.standard_error_sigma,
+        );
+        let is_told = read * projected > 0.0 && self.standard_error_sigma > NOTHING_LEFT;
+        if is_told {
+            read.abs().min(projected.abs())
+        } else {
+            0.0
+        }
     }
 }
 
@@ -214,11 +229,7 @@ fn bin(standing: &Standing, variable: Variable, group: &[(f64, usize)]) -> Bin {
     let (first, last) = (group[0].0, group[group.len() - 1].0);
     let (mean_sigma, error) = standing.mean_projected(&samples);
     let has_noise = standing.has_noise();
-    let p = match has_noise && error > 1e-6 {
-        true => libm::erfc((mean_sigma / error).abs() / std::f64::consts::SQRT_2),
-        false => 1.0,
-    };
-    Bin {
+    let mut bin = Bin {
         range: [first, last],
         label: match variable {
             Variable::Phase => phase_name(standing, samples[0]).to_string(),
@@ -230,8 +241,10 @@ fn bin(standing: &Standing, variable: Variable, group: &[(f64, usize)]) -> Bin {
         standard_error: raw_error(standing, &samples),
         mean_sigma: if has_noise { mean_sigma } else { f64::NAN },
         standard_error_sigma: if has_noise { error } else { f64::NAN },
-        p,
-    }
+        p: 1.0,
+    };
+    bin.p = libm::erfc(bin.standings() / std::f64::consts::SQRT_2);
+    bin
 }
 
 fn raw_error(standing: &Standing, samples: &[usize]) -> f64 {

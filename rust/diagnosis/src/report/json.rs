@@ -210,6 +210,7 @@ fn trend(trend: &Trend, is_calibrated: bool) -> Value {
             "count": bin.count,
             "mean": bin.mean,
             "standard_error": bin.standard_error,
+            "standard_errors": bin.standings(),
             "stands_out": bin.stands_out(),
             "mean_sigmas": bin.mean_sigma,
             "standard_error_sigmas": bin.standard_error_sigma,

@@ -1,0 +1,67 @@
+"""A comparison of the library as properties that the panel shows and the file keeps."""
+
+from math import isnan
+
+_SHOWN = {
+    "peak_kpa",
+    "mean_kpa",
+    "force_n",
+    "area_mm2",
+    "overlap",
+    "center_distance_mm",
+    "peak_over_mean",
+    "largest_force_n",
+    "force_rms_residual_n",
+    "scan_rms_residual_mm",
+}
+
+
+def fill(state, comparison, about):
+    """Write a comparison into the scene's `comparison`; `about`: name of the recording, and the hand or None."""
+    name, hand = about
+    state.is_valid, state.recording, state.sentence = True, name, comparison.sentence
+    is_hand = hand is not None and hand.type == "MESH"
+    state.hand_name, state.vertices = (hand.name, len(hand.data.vertices)) if is_hand else ("", 0)
+    for rows in (state.measures, state.worst, state.notes):
+        rows.clear()
+    several = len(comparison.recordings) > 1
+    for recording in comparison.recordings:
+        prefix = f"{recording.name}: " if several else ""
+        for measure in recording.measures:
+            if measure.name in _SHOWN:
+                _measure(state.measures.add(), measure, prefix + measure.of)
+        for place in recording.worst[:3] if several else recording.worst:
+            _worst(state.worst.add(), place, (prefix, recording))
+        for text in recording.unknown:
+            state.notes.add().name = prefix + text
+    for text in comparison.notes:
+        state.notes.add().name = text
+
+
+def _measure(row, measure, group):
+    row.name, row.group = measure.label, group
+    is_share = measure.name == "overlap"
+    row.unit = "" if is_share else measure.unit
+    row.measured = _text(measure.measured, is_share)
+    row.simulated = _text(measure.simulated, is_share)
+
+
+def _worst(row, place, about):
+    prefix, recording = about
+    unit = {"Pressure": "kPa" if recording.is_calibrated else "counts", "Contact area": "mm²"}.get(place.quantity, "N")
+    if place.row is not None:
+        where = f"row {place.row}, column {place.column}"
+    elif place.sensel is not None:
+        where = f"sensel {place.sensel}"
+    else:
+        where = f"{place.quantity.lower()} at {place.time_s:.3g} s"
+    row.name = prefix + where
+    sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
+    row.residual = f"{place.residual:+.3g} {unit}{sigmas}"
+    row.vertices = ",".join(str(vertex) for vertex in place.vertices)
+
+
+def _text(value, is_share):
+    if isnan(value):
+        return ""
+    return f"{value:.0%}" if is_share else f"{value:.4g}"

@@ -1,0 +1,138 @@
+"""The panel of recordings: list, placing, compare, what it found."""
+
+import bpy
+
+from .. import status
+from ..panels.main import Tab
+from ..panels.preferences import wrapped
+from . import settings
+
+SHARE = 0.5
+
+
+class THENAR_UL_recordings(bpy.types.UIList):
+    """What was loaded."""
+
+    def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
+        layout.label(text=item.name, icon="FILE_FOLDER" if item.kind == settings.STUDY else "MESH_GRID")
+
+
+class THENAR_PT_recordings(Tab, bpy.types.Panel):
+    """Recordings beside the simulation."""
+
+    bl_label = "Recordings"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 6
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, state = self.layout, context.scene.thenar_recordings
+        row = layout.row()
+        row.template_list("THENAR_UL_recordings", "", state, "items", state, "index", rows=2)
+        side = row.column(align=True)
+        side.operator("thenar.load_recording", text="", icon="ADD")
+        side.operator("thenar.remove_recording", text="", icon="REMOVE")
+        item = settings.chosen(context)
+        if item is None:
+            layout.label(text="Load a study or a mat's export", icon="INFO")
+            return
+        for line in wrapped(item.about, context):
+            layout.label(text=line)
+        if item.kind == settings.MAP:
+            _draw_placing(layout, item)
+        row = layout.row()
+        row.scale_y = 1.3
+        row.operator("thenar.compare", icon="MOD_DATA_TRANSFER")
+
+
+def _draw_placing(layout, item):
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    placing, column = item.placing, layout.column(align=True)
+    column.prop(placing, "on")
+    column.prop(placing, "axis")
+    if placing.on == "CYLINDER":
+        column.prop(placing, "diameter_mm")
+        column.prop(placing, "turn_deg")
+        column.prop(placing, "shift_mm", index=0, text="Shift (mm)")
+    else:
+        column.prop(placing, "turn_deg", text="Turn (°)")
+        column.prop(placing, "shift_mm")
+    column.prop(placing, "is_mirrored")
+    column = layout.column(align=True)
+    column.prop(item, "frame_rule")
+    if item.frame_rule == "NUMBER":
+        column.prop(item, "frame", text=f"of {item.frames}")
+    layout.operator("thenar.outline_mat", icon="MOD_WIREFRAME")
+
+
+class THENAR_PT_comparison(Tab, bpy.types.Panel):
+    """What the last comparison found."""
+
+    bl_label = "Comparison"
+    bl_parent_id = "THENAR_PT_recordings"
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.thenar_recordings.comparison.is_valid
+
+    def draw(self, context):
+        layout, state = self.layout, context.scene.thenar_recordings.comparison
+        column = layout.column(align=True)
+        for line in wrapped(state.sentence, context):
+            column.label(text=line)
+        _draw_measures(layout, state)
+        if len(state.worst):
+            layout.label(text="Worst places: click to select")
+        column = layout.column(align=True)
+        for number, place in enumerate(state.worst):
+            split = column.split(factor=SHARE, align=True)
+            split.operator("thenar.select_place", text=place.name, icon="RESTRICT_SELECT_OFF").index = number
+            split.label(text=place.residual)
+        layout.operator("thenar.report", icon="TEXT")
+
+
+def _draw_measures(layout, state):
+    column, group = layout.box().column(align=True), None
+    for row in state.measures:
+        if row.group != group:
+            group = row.group
+            split = column.split(factor=SHARE)
+            split.label(text=group[:1].upper() + group[1:])
+            _numbers(split, ("measured", "simulated"))
+        split = column.split(factor=SHARE)
+        split.label(text=row.name + (f" ({row.unit})" if row.unit else ""))
+        _numbers(split, (row.measured, row.simulated))
+
+
+def _numbers(split, texts):
+    row = split.row()
+    for text in texts:
+        cell = row.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=text)
+
+
+class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):
+    """What a reader should know."""
+
+    bl_label = "Notes"
+    bl_parent_id = "THENAR_PT_comparison"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.thenar_recordings.comparison.notes) > 0
+
+    def draw(self, context):
+        for note in context.scene.thenar_recordings.comparison.notes:
+            column = self.layout.column(align=True)
+            for number, line in enumerate(wrapped(note.name, context)):
+                column.label(text=line, icon="DOT" if number == 0 else "BLANK1")
+
+
+CLASSES = (THENAR_UL_recordings, THENAR_PT_recordings, THENAR_PT_comparison, THENAR_PT_comparison_notes)

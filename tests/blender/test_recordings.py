@@ -1,0 +1,234 @@
+"""Recordings in a scene: a mat laid on the product, compared with the contact by sensel, shown on both."""
+
+import json
+
+import bpy
+import numpy as np
+import pytest
+import stage
+
+SIDE, PITCH = 9, 1.5
+DULL = (5, 3)
+"""Row and column of the planted sensel, which reads 10 % of what presses on it."""
+
+
+def write_asf(path, frames, units="KPa"):
+    """A Tekscan export of frames (k, rows, columns)."""
+    _, rows, columns = np.shape(frames)
+    head = (
+        f"DATA_TYPE MOVIE\nVERSION Tekscan Pressure Measurement System 6.33\nSENSOR_TYPE TEST\n"
+        f"ROWS {rows}\nCOLS {columns}\n"
+        f"ROW_SPACING {PITCH} mm\nCOL_SPACING {PITCH} mm\nSENSEL_AREA {PITCH**2} mm2\nNOISE_THRESHOLD 0\n"
+        f"SECONDS_PER_FRAME 0.1\nSTART_FRAME 1\nEND_FRAME {len(frames)}\nUNITS {units}\n"
+        "MIRROR_ROW 0\nMIRROR_COL 0\nASCII_DATA @@\n"
+    )
+    body = "".join(
+        f"\nFrame {number}\n" + "".join(",".join(f"{cell:.3f}" for cell in row) + "\n" for row in frame)
+        for number, frame in enumerate(frames, 1)
+    )
+    path.write_text(head + body)
+    return str(path)
+
+
+def read_by_hand(hand):
+    """What a flat mat in the middle below the ball reads, kPa: force by cell, sorted in by position alone."""
+    force, places = stage.attribute(hand, "contact_force_n"), stage.evaluated(hand)
+    cells = np.floor(places[:, :2] / PITCH + SIDE / 2).astype(int)
+    frame = np.zeros((SIDE, SIDE))
+    inside = ((cells >= 0) & (cells < SIDE)).all(axis=1) & (force > 0)
+    np.add.at(frame, (cells[inside, 1], cells[inside, 0]), force[inside])
+    return frame / PITCH**2 * 1e3
+
+
+def measure(name):
+    rows = bpy.context.scene.thenar_recordings.comparison.measures
+    return next((row.measured, row.simulated) for row in rows if row.name == name and "mean force" in row.group)
+
+
+@pytest.fixture
+def compared(tmp_path):
+    """Ball on plate, a mat that reads the contact but for the dull sensel, laid on the plate and compared."""
+    hand, product = stage.pad(fineness=5), stage.plate(top=-6.3)
+    settings = bpy.context.scene.thenar
+    settings.hand, settings.product = hand, product
+    bpy.context.view_layer.update()
+    stage.solve()
+    frame = read_by_hand(hand)
+    frame[DULL] *= 0.1
+    path = write_asf(tmp_path / "mat.asf", [0.5 * frame, frame, 1.5 * frame])
+    assert bpy.ops.thenar.load_recording(filepath=path) == {"FINISHED"}
+    placing = bpy.context.scene.thenar_recordings.items[0].placing
+    placing.on, placing.axis = "PLANE", "+Z"
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    return hand, product
+
+
+def test_the_dull_sensel_is_the_worst_place(compared):
+    state = bpy.context.scene.thenar_recordings
+    assert state.items[0].frames == 3
+    worst = state.comparison.worst[0]
+    assert worst.name == f"row {DULL[0]}, column {DULL[1]}"
+    assert worst.residual.startswith("-") and worst.residual.endswith("kPa")
+    measured, simulated = map(float, measure("Force"))
+    assert measured < simulated == pytest.approx(bpy.context.scene.thenar.result.force_n, rel=0.03)
+    overlap = float(measure("Overlap of the contact areas (both / either)")[1].rstrip("%"))
+    assert overlap > 75
+    assert "without repeats" in state.comparison.sentence
+    assert any("Nothing was fitted" in note.name for note in state.comparison.notes)
+
+
+def test_residuals_lie_on_hand_and_product_below_the_mat(compared):
+    hand, product = compared
+    middle = (np.array(DULL[::-1]) + 0.5 - SIDE / 2) * PITCH
+    for obj in compared:
+        residual, on_mat = stage.attribute(obj, "residual_kpa"), stage.attribute(obj, "on_mat")
+        assert set(np.unique(on_mat)) == {0.0, 1.0}
+        assert (residual[on_mat == 0] == 0).all()
+        lowest = stage.evaluated(obj)[residual.argmin()]
+        assert np.linalg.norm(lowest[:2] - middle) < 1.5 * PITCH
+    half = SIDE * PITCH / 2
+    places = stage.evaluated(product)
+    far = np.abs(places[:, :2]).max(axis=1) > half + PITCH
+    below = places[:, 2] < -9.9
+    assert not stage.attribute(product, "on_mat")[far | below].any()
+    assert bpy.context.scene.thenar.maps.shown == "RESIDUAL"
+
+
+def test_a_place_selects_its_vertices(compared):
+    hand, _ = compared
+    assert bpy.ops.thenar.select_place(index=0) == {"FINISHED"}
+    assert bpy.context.object == hand and hand.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = [vertex.index for vertex in hand.data.vertices if vertex.select]
+    middle = (np.array(DULL[::-1]) + 0.5 - SIDE / 2) * PITCH
+    assert chosen
+    assert np.abs(stage.evaluated(hand)[chosen][:, :2] - middle).max() < 1.5 * PITCH
+    with pytest.raises(RuntimeError, match="[Tt]here is no place 99"):
+        bpy.ops.thenar.select_place(index=99)
+
+
+def test_reports_are_written_whole(compared, tmp_path):
+    page, numbers = tmp_path / "report.html", tmp_path / "comparison.json"
+    assert bpy.ops.thenar.report(filepath=str(page)) == {"FINISHED"}
+    assert bpy.ops.thenar.report(filepath=str(numbers)) == {"FINISHED"}
+    assert page.read_text().startswith("<!DOCTYPE html>")
+    told = json.loads(numbers.read_text())
+    assert told["sentence"] == bpy.context.scene.thenar_recordings.comparison.sentence
+    with pytest.raises(RuntimeError, match="cannot be written"):
+        bpy.ops.thenar.report(filepath=str(tmp_path / "none" / "report.html"))
+    with pytest.raises(RuntimeError, match="no ending that is known"):
+        bpy.ops.thenar.report(filepath=str(tmp_path / "report.doc"))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["comparison.json", "mat.asf", "report.html"]
+
+
+def test_the_file_keeps_recordings_and_comparison(compared, tmp_path):
+    before = bpy.context.scene.thenar_recordings.comparison.sentence
+    path = str(tmp_path / "kept.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    state = bpy.context.scene.thenar_recordings
+    assert state.comparison.sentence == before and len(state.comparison.worst) > 0
+    assert state.items[0].placing.axis == "+Z"
+    assert "residual_kpa" in bpy.context.scene.thenar.hand.data.attributes
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    assert state.comparison.sentence == before
+
+
+def test_solving_anew_takes_the_residual_away(compared):
+    hand, product = compared
+    stage.solve()
+    assert "residual_kpa" not in hand.data.attributes and "residual_kpa" not in product.data.attributes
+    assert bpy.context.scene.thenar.maps.shown == "PRESSURE"
+
+
+def test_raw_counts_are_compared_by_shape(tmp_path):
+    hand, _ = stage.scene()
+    stage.solve()
+    path = write_asf(tmp_path / "raw.asf", [np.round(read_by_hand(hand) * 3)], units="Raw")
+    bpy.ops.thenar.load_recording(filepath=path)
+    placing = bpy.context.scene.thenar_recordings.items[0].placing
+    placing.on, placing.axis = "PLANE", "+Z"
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    comparison = bpy.context.scene.thenar_recordings.comparison
+    assert "not calibrated" in comparison.sentence
+    assert not any("kPa" in row.unit for row in comparison.measures)
+    assert "residual_kpa" not in hand.data.attributes
+
+
+def test_a_mat_wraps_around_a_turned_cylinder(tmp_path):
+    stage.scene()
+    bpy.ops.mesh.primitive_cylinder_add(radius=0.012, depth=0.08, vertices=96, location=(0.01, 0.02, -0.017))
+    bar = bpy.context.object
+    bar.rotation_euler = (0.0, 1.2, 0.4)
+    settings = bpy.context.scene.thenar
+    settings.product = bar
+    bpy.context.view_layer.update()
+    bpy.ops.thenar.load_recording(filepath=write_asf(tmp_path / "mat.asf", np.ones((1, 6, 20))))
+    placing = bpy.context.scene.thenar_recordings.items[0].placing
+    assert placing.diameter_mm == pytest.approx(24, rel=1e-3)
+    placing.shift_mm = (4.0, 0.0)
+    assert bpy.ops.thenar.outline_mat() == {"FINISHED"}
+    mat = bpy.data.objects["Thenar Mat"]
+    assert len(mat.data.polygons) == 120
+    inverse = np.linalg.inv(np.array(bar.matrix_world))
+    corners = stage.evaluated(mat) * 1e-3 @ inverse[:3, :3].T + inverse[:3, 3]
+    centers = corners.reshape(-1, 4, 3).mean(axis=1) * 1e3
+    assert np.allclose(np.linalg.norm(centers[:, :2], axis=1), 12, atol=1e-3)
+    assert np.isclose(0.5 * (centers[:, 2].min() + centers[:, 2].max()), 4, atol=1e-3)
+    assert np.isclose(np.ptp(centers[:, 2]), 5 * PITCH, atol=1e-3)
+    assert bpy.ops.thenar.outline_mat() == {"FINISHED"}
+    assert len([obj for obj in bpy.data.objects if obj.name.startswith("Thenar Mat")]) == 1
+
+
+def test_a_study_is_compared_with_its_own_skin(tmp_path):
+    side = np.arange(13) - 6.0
+    lines = [f"v {x} {y} 0" for y in side for x in side]
+    for row in range(12):
+        for column in range(12):
+            a = row * 13 + column + 1
+            lines.append(f"f {a} {a + 1} {a + 14} {a + 13}")
+    (tmp_path / "skin.obj").write_text("\n".join(lines) + "\n")
+    depth = np.linspace(0.05, 0.8, 30)
+    force = 4 / 3 * 4 * 0.02 * np.sqrt(8) * depth**1.5
+    table = "".join(f"{0.1 * k + 0.1},{d},{f}\n" for k, (d, f) in enumerate(zip(depth, force, strict=True)))
+    (tmp_path / "press.csv").write_text("time_s,depth_mm,force_n\n" + table)
+    (tmp_path / "study.toml").write_text(
+        '[study]\ntitle = "Ball"\n[skin]\nmesh = "skin.obj"\n[skin.materials.default]\ng0_mpa = 0.03\n'
+        "g_lim_mpa = 0.05\n"
+        'd_lim_mm = 4.0\nthickness_mm = "inf"\n[indenters.ball]\nshape = "sphere"\nradius_mm = 8.0\n'
+        "[sites.middle]\npoint_mm = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\n"
+        '[[recordings]]\nname = "press"\nkind = "indentation"\nfile = "press.csv"\nindenter = "ball"\nsite = "middle"\n'
+    )
+    bpy.ops.thenar.load_recording(filepath=str(tmp_path / "study.toml"))
+    state = bpy.context.scene.thenar_recordings
+    assert (state.items[0].name, state.items[0].kind) == ("Ball", "STUDY")
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    rows = {row.name: row for row in state.comparison.measures}
+    assert float(rows["Largest force"].measured) == pytest.approx(force.max(), rel=0.01)
+    assert float(rows["Residual of the force, rms"].simulated) < 0.05 * force.max()
+
+
+def test_what_cannot_be_done_says_why(tmp_path):
+    with pytest.raises(RuntimeError, match="[Nn]o recording is loaded"):
+        bpy.ops.thenar.compare()
+    with pytest.raises(RuntimeError, match="none.asf"):
+        bpy.ops.thenar.load_recording(filepath=str(tmp_path / "none.asf"))
+    curve = tmp_path / "curve.csv"
+    curve.write_text("time_s,depth_mm,force_n\n0.1,0.1,0.1\n0.2,0.2,0.3\n0.3,0.3,0.5\n")
+    with pytest.raises(RuntimeError, match="study.toml"):
+        bpy.ops.thenar.load_recording(filepath=str(curve))
+    assert len(bpy.context.scene.thenar_recordings.items) == 0
+    bpy.ops.thenar.load_recording(filepath=write_asf(tmp_path / "mat.asf", np.ones((2, 3, 3))))
+    with pytest.raises(RuntimeError, match="[Cc]hoose the hand"):
+        bpy.ops.thenar.compare()
+    stage.scene()
+    item = bpy.context.scene.thenar_recordings.items[0]
+    item.frame_rule, item.frame = "NUMBER", 3
+    with pytest.raises(RuntimeError, match="no frame 3"):
+        bpy.ops.thenar.compare()
+    assert "residual_kpa" not in bpy.context.scene.thenar.hand.data.attributes
+    item.frame_rule, item.placing.on, item.placing.diameter_mm = "MEAN", "CYLINDER", 1.0
+    with pytest.raises(RuntimeError, match="overlaps itself"):
+        bpy.ops.thenar.compare()
+    assert bpy.ops.thenar.remove_recording() == {"FINISHED"}
+    assert len(bpy.context.scene.thenar_recordings.items) == 0
