@@ -375,3 +375,36 @@ fn numbers_of_an_effect_are_fitted_with_the_moduli() {
     assert_eq!(with.effects[0].amplitude, found.value);
     assert!(with.deviance < without.deviance - 25.0);
 }
+
+/// Forces that are off by a smooth share of depth, alike in all repeats: lack of fit unless the form may be off by as much.
+#[test]
+fn a_form_that_is_off_is_taken_up_where_it_may_be() {
+    let (study, mut forces) = clean();
+    for (recording, force) in forces.iter_mut().enumerate() {
+        let depths = curve_of(&mut study.clone(), recording).channels[1]
+            .values
+            .clone();
+        let bump = |d: f64| 1.0 + 0.1 * (2.5 * d).sin();
+        force
+            .iter_mut()
+            .zip(&depths)
+            .for_each(|(f, d)| *f *= bump(*d));
+    }
+    let study = measured(&(study, forces), &USUAL, 5);
+    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
+    let mut p = |form_error: f64| {
+        let options = Options {
+            form_error,
+            draws: 199,
+            ..Options::default()
+        };
+        fitting
+            .fit(&options, &Control::none())
+            .unwrap()
+            .lack_of_fit_p
+            .unwrap()
+    };
+    let (strict, lenient) = (p(0.0), p(0.05));
+    println!("p {strict} and {lenient}");
+    assert!(strict < 0.01 && lenient > 0.01);
+}

@@ -3,9 +3,10 @@
 use thenar_contact::{ActiveEffect, Control};
 use thenar_recordings::Study;
 
-use super::adequacy::{Left, absorbed, lack_of_fit, project};
+use super::adequacy::{Left, absorbed, blocks, lack_of_fit, project};
 use super::descent::{Descent, System, descend};
 use super::effects::{EffectFit, Found, Free, effects_at, free_parameters};
+use super::form::form_parameters;
 use super::intervals::estimates;
 use super::parameters::{Case, Kind, Parameter, parameters, touches};
 use super::problem::{HUBER, Point, Problem};
@@ -31,6 +32,9 @@ pub struct Options {
     pub draws: usize,
     /// Effects that the model has.
     pub effects: Vec<ActiveEffect>,
+    /// Standard deviation of the share by which the load may be off at any depth for want of a better model, for each tool at each
+    /// site; 0: the model is taken as true.
+    pub form_error: f64,
     /// Recordings, by name, that are predicted and not fitted.
     pub held_out: Vec<String>,
 }
@@ -41,6 +45,7 @@ impl Default for Options {
             seed: 1,
             draws: 999,
             effects: Vec::new(),
+            form_error: 0.0,
             held_out: Vec::new(),
         }
     }
@@ -104,6 +109,8 @@ impl Fitting {
         self.check(&is_used)?;
         let noise = self.noise(&is_used, control)?;
         let mut parameters = self.parameters((&noise, &is_used), control)?;
+        let place_of = &self.replay.place_of;
+        parameters.extend(form_parameters(options.form_error, place_of, &is_used));
         parameters.extend(free_parameters(free, &options.effects));
         let before = self.simulate(&options.effects, control)?;
         let whitening = Whitening::new(&self.replay.observed.measured, &noise, &is_used);
@@ -130,7 +137,8 @@ impl Fitting {
         let left = self.left((&whitening, &descent), &noise, options);
         let notes = self.notes((&noise, &descent), &parameters);
         let is_effect = |(kind, _): &(Kind, Estimate)| matches!(kind, Kind::Effect(..));
-        let (of_effects, others): (Vec<_>, Vec<_>) = estimates.into_iter().partition(is_effect);
+        let (of_effects, mut others): (Vec<_>, Vec<_>) = estimates.into_iter().partition(is_effect);
+        others.retain(|(kind, _)| !matches!(kind, Kind::Form(..)));
         let fit = Fit {
             measured: self.replay.observed.measured.clone(),
             simulated: descent.point.simulated,
@@ -302,6 +310,7 @@ impl Fitting {
             projected: &projected,
             counts: &counts,
             absorbed: &absorbed,
+            blocks: &blocks(&self.replay.observed.measured),
             noise,
             whitening,
         };

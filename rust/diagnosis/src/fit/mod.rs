@@ -4,6 +4,7 @@ mod adequacy;
 mod conduct;
 mod descent;
 mod effects;
+mod form;
 mod intervals;
 mod parameters;
 mod problem;

@@ -55,6 +55,8 @@ pub enum Kind {
     ForceZero(usize),
     /// Logarithm of counts per kPa of a recording.
     Counts(usize),
+    /// Logarithm of the factor by which the model's own form is off at one knot of depth, for a tool at a site.
+    Form(usize, usize),
     /// A number of an effect: its shape number, or None for its amplitude.
     Effect(usize, Option<usize>, Scale),
 }
@@ -136,6 +138,7 @@ impl Parameter {
                 | Kind::Touch(_)
                 | Kind::Pose(..)
                 | Kind::ForceZero(_)
+                | Kind::Form(..)
                 | Kind::Effect(_, _, Scale::Plain)
         );
         !is_plain
@@ -158,7 +161,11 @@ impl Parameter {
             | Kind::Pose(r, _)
             | Kind::ForceZero(r)
             | Kind::Counts(r) => Some(r),
-            Kind::Tissue(..) | Kind::InstrumentGain | Kind::Touch(_) | Kind::Effect(..) => None,
+            Kind::Tissue(..)
+            | Kind::InstrumentGain
+            | Kind::Touch(_)
+            | Kind::Form(..)
+            | Kind::Effect(..) => None,
         }
     }
 }

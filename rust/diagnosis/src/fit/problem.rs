@@ -146,7 +146,10 @@ impl Problem<'_> {
             }
             let only = self.parameters[column].recording();
             for (recording, start) in starts.iter().enumerate() {
-                if only.is_none_or(|only| only == recording) && self.is_used[recording] {
+                let elsewhere = matches!(self.parameters[column].kind, Kind::Form(place, _)
+                    if self.replay.place_of[recording] != place);
+                let matters = only.is_none_or(|only| only == recording) && !elsewhere;
+                if matters && self.is_used[recording] {
                     let slopes = self.slopes(point, (column, recording))?;
                     for (k, slope) in slopes.iter().enumerate() {
                         jacobian[(start + k, column)] = *slope;
@@ -217,6 +220,7 @@ impl Problem<'_> {
             | Kind::Zero(_)
             | Kind::Touch(_)
             | Kind::Pose(..)
+            | Kind::Form(..)
             | Kind::Effect(..) => {}
         }
         let step = inward(parameter, point.at[column]);

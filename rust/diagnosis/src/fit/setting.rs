@@ -28,6 +28,12 @@ pub fn setting(
             Kind::Pose(r, axis) => nuisances[r].placement.shift_mm[axis] = *at,
             Kind::Counts(r) => nuisances[r].log_counts = *at,
             Kind::Effect(..) => {}
+            Kind::Form(place, knot) => {
+                let of_place = nuisances.iter_mut().zip(&replay.place_of);
+                of_place
+                    .filter(|(_, p)| **p == place)
+                    .for_each(|(n, _)| n.form[knot] = *at);
+            }
             Kind::ForceZero(r) => nuisances[r].force_zero_n = *at,
         }
     }

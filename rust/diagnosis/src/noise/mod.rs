@@ -4,6 +4,8 @@ mod alike;
 mod frames;
 mod repeats;
 mod whitening;
+#[cfg(test)]
+mod tests;
 
 pub use whitening::{Whitened, Whitening};
 

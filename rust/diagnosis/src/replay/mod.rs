@@ -29,6 +29,9 @@ const DEPTH_MARGIN: (f64, f64) = (0.1, 0.05);
 /// Plates and rods reach this much beyond the skin, at most this far from the site, mm: other fingers are not in the way.
 const REACH: (f64, f64) = (1.2, 60.0);
 
+/// Depths at which the model's form may be off.
+pub const KNOTS: usize = 4;
+
 /// What belongs to one recording alone, besides the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nuisance {
@@ -38,6 +41,8 @@ pub struct Nuisance {
     pub log_gain: f64,
     /// Force that the load cell shows without load, N.
     pub force_zero_n: f64,
+    /// Logarithm of a factor on the load, at [`KNOTS`] equal parts of the deepest depth; 0 at first touch, straight between.
+    pub form: [f64; KNOTS],
     /// How the mat lies otherwise than the study says.
     pub placement: Placement,
     /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
@@ -54,6 +59,7 @@ impl Nuisance {
             zero_mm: 0.0,
             log_gain: 0.0,
             force_zero_n: 0.0,
+            form: [0.0; KNOTS],
             placement: Placement::default(),
             log_counts: 0.0,
         }

@@ -4,7 +4,7 @@ use thenar_contact::ActiveEffect;
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::{Signals, observe};
 
-use super::{Nuisance, Replay};
+use super::{KNOTS, Nuisance, Replay};
 use crate::DiagnosisError;
 use crate::observe::{Measured, Quantity, interpolated};
 
@@ -70,6 +70,7 @@ impl Replay {
         at_skin: AtSkin,
     ) -> Result<Vec<f64>, DiagnosisError> {
         let measured = &self.observed.measured[recording];
+        let at_skin = self.of_form(recording, nuisance, at_skin);
         let shown = self.through_instrument(recording, at_skin)?;
         let gain = libm::exp(nuisance.log_gain);
         let counts = libm::exp(nuisance.log_gain + nuisance.log_counts);
@@ -87,6 +88,33 @@ impl Replay {
         Ok(samples
             .map(|s| one(s.moment as usize, s.quantity))
             .collect())
+    }
+
+    /// Loads with what the model's form is off by.
+    fn of_form(&self, recording: usize, nuisance: &Nuisance, mut at_skin: AtSkin) -> AtSkin {
+        if nuisance.form == [0.0; KNOTS] {
+            return at_skin;
+        }
+        let deepest = self.deepest(recording);
+        for (k, depth) in self.depths(recording, nuisance).iter().enumerate() {
+            let place = (depth / deepest).clamp(0.0, 1.0) * KNOTS as f64;
+            if place.is_nan() {
+                continue;
+            }
+            let knot = (place as usize).min(KNOTS - 1);
+            let before = if knot == 0 {
+                0.0
+            } else {
+                nuisance.form[knot - 1]
+            };
+            let share = place - knot as f64;
+            let factor = libm::exp(before + share * (nuisance.form[knot] - before));
+            at_skin.force[k] *= factor;
+            at_skin.tangential[k] *= factor;
+            let frame = at_skin.frames.get_mut(k).into_iter().flatten();
+            frame.for_each(|value| *value *= factor);
+        }
+        at_skin
     }
 
     /// The effects that act on readings, in order; those on motion and on where the mat lies have acted already.

@@ -1,0 +1,164 @@
+//! Noise planted in made-up repeats is told again, and so is how repeats differ as a whole.
+
+use super::noise;
+use crate::observe::{Censoring, Measured, Moment, Phase, Quantity, Sample};
+use crate::random::Random;
+use nalgebra::Vector3;
+
+const SAMPLES: usize = 90;
+const STEP_S: f64 = 0.05;
+const PEAK_N: f64 = 3.0;
+
+fn force(depth: f64) -> f64 {
+    PEAK_N * (depth.max(0.0) / 2.0).powf(1.5)
+}
+
+/// What is planted: share of the peak, memory (s), gain and zero (mm) between repeats, share of outliers.
+struct Planted {
+    noise: f64,
+    memory_s: f64,
+    gain: f64,
+    zero_mm: f64,
+    outliers: f64,
+}
+
+fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
+    let (gain, zero) = (
+        (planted.gain * random.normal()).exp(),
+        planted.zero_mm * random.normal(),
+    );
+    let (mut moments, mut samples, mut colored) = (Vec::new(), Vec::new(), random.normal());
+    for k in 0..SAMPLES {
+        let carry = if planted.memory_s > 0.0 {
+            (-STEP_S / planted.memory_s).exp()
+        } else {
+            0.0
+        };
+        colored = carry * colored + (1.0 - carry * carry).sqrt() * random.normal();
+        let jump = if random.uniform() < planted.outliers {
+            10.0 * random.normal()
+        } else {
+            0.0
+        };
+        let depth = 2.0 * (k + 1) as f64 / SAMPLES as f64;
+        moments.push(Moment {
+            time_s: STEP_S * k as f64,
+            depth_mm: depth,
+            demand_n: f64::NAN,
+            slide_mm: Vector3::zeros(),
+            rate_mm_s: 0.4,
+            phase: Phase::Load,
+            cycle: 0,
+        });
+        samples.push(Sample {
+            moment: k as u32,
+            quantity: Quantity::Force,
+            value: gain * force(depth - zero) + planted.noise * PEAK_N * (colored + jump),
+            censoring: Censoring::Seen,
+        });
+    }
+    Measured {
+        name: String::new(),
+        protocol: protocol.into(),
+        indenter: "plate".into(),
+        site: "pad".into(),
+        moments,
+        samples,
+        mat: None,
+        is_calibrated: true,
+        unknown: Vec::new(),
+    }
+}
+
+/// A study of that many protocols and repeats with what the model says of it, here the truth without noise times a wrong modulus.
+fn study(
+    protocols: usize,
+    repeats: usize,
+    planted: &Planted,
+) -> (Vec<Measured>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let mut random = Random::new(8);
+    let names = (0..protocols * repeats).map(|k| format!("{}", k / repeats));
+    let measured: Vec<Measured> = names
+        .map(|name| repeat(&name, planted, &mut random))
+        .collect();
+    let each = |f: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+        let of = |m: &Measured| m.moments.iter().map(|moment| f(moment.depth_mm)).collect();
+        measured.iter().map(of).collect()
+    };
+    let wrong = 1.7;
+    let simulated = each(&|d| wrong * force(d));
+    let slopes = each(&|d| wrong * (force(d + 1e-4) - force(d)) / 1e-4);
+    (measured, simulated, slopes)
+}
+
+#[test]
+fn what_is_planted_between_and_within_repeats_is_told() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.15,
+        gain: 0.04,
+        zero_mm: 0.03,
+        outliers: 0.01,
+    };
+    let (measured, simulated, slopes) = study(8, 4, &planted);
+    let told = noise(&measured, (&simulated, &slopes), &[true; 32], None);
+    let sigma = told.sigma.iter().map(|s| s[0]).sum::<f64>() / 32.0 / PEAK_N;
+    println!(
+        "noise {sigma:.5}, memory {:.3} s, gain {:.4}, zero {:?} mm",
+        told.memory_s[0], told.gain, told.zero_mm
+    );
+    assert!((sigma / planted.noise - 1.0).abs() < 0.15, "{sigma}");
+    assert!(
+        (told.memory_s[0] / planted.memory_s - 1.0).abs() < 0.4,
+        "{:?}",
+        told.memory_s
+    );
+    // 24 degrees of freedom tell a standard deviation to a seventh.
+    assert!(
+        (told.gain / planted.gain - 1.0).abs() < 0.35,
+        "{}",
+        told.gain
+    );
+    assert!(
+        (told.zero_mm.unwrap() / planted.zero_mm - 1.0).abs() < 0.35,
+        "{:?}",
+        told.zero_mm
+    );
+}
+
+#[test]
+fn repeats_that_do_not_differ_as_a_whole_are_not_said_to() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.0,
+        gain: 0.0,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let (measured, simulated, slopes) = study(8, 4, &planted);
+    let told = noise(&measured, (&simulated, &slopes), &[true; 32], None);
+    // Half of the error with which one recording's gain and zero can be told apart stays as doubt.
+    assert!(
+        told.gain < 0.005 && told.zero_mm.unwrap() < 0.005,
+        "{} {:?}",
+        told.gain,
+        told.zero_mm
+    );
+    assert_eq!(told.memory_s[0], 0.0);
+}
+
+#[test]
+fn without_repeats_noise_is_judged_by_roughness_and_that_is_said() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.0,
+        gain: 0.04,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let (measured, simulated, slopes) = study(5, 1, &planted);
+    let told = noise(&measured, (&simulated, &slopes), &[true; 5], None);
+    assert_eq!((told.degrees, told.zero_mm), (None, None));
+    assert!((told.sigma[0][0] / PEAK_N / 0.01 - 1.0).abs() < 0.3);
+    assert!(told.notes[0].contains("no protocol was repeated"));
+}
