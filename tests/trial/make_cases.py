@@ -20,19 +20,20 @@ from trial import observing, protocols
 HERE = Path(__file__).parent
 REPEATS, REPEAT_GAIN, ZERO_MM = 2, 0.04, 0.02
 NOISES = (0.01, 0.03)
-KAPPAS = (0.5, 1.0, 2.0)
+KAPPAS = (0.5, 1.0, 2.0, 4.0)
 RICH = tuple(protocols.PROTOCOLS)
 USUAL = ("slow, small sphere", "fast, small sphere", "cycles, small sphere")
 MOST_STEPS = 32000  # forces are kept as shares of each recording's largest
 
 # How many of each stratum: (trial, calibration).
 NULLS = {"normal": (40, 16), "outliers": (20, 8), "slow": (20, 8), "wide": (20, 8)}
-DECOYS, SINGLE, PAIR, UNLISTED, MIXED, AMBIGUOUS, POOR = (7, 3), (5, 2), (3, 2), (8, 3), (3, 1), (5, 2), (4, 2)
-INSTEAD = (  # ambiguous by design: what is true, what is recorded, what else would do nearly as well (see `rival`)
-    ("relaxation", USUAL[:2], "drainage"),
-    ("drainage", USUAL[:2], "relaxation"),
-    ("rate_independent_loss", ("wide sphere",), "relaxation"),
-    ("relaxation", ("wide sphere",), "rate_independent_loss"),
+DECOYS, SINGLE, PAIR, UNLISTED, MIXED, AMBIGUOUS, POOR = (7, 3), (5, 2), (4, 2), (8, 3), (3, 1), (5, 2), (4, 2)
+ALIKE = 0.3  # what may remain, over the noise, of an effect that another imitates
+INSTEAD = (  # ambiguous by design: what is true, and the little that is recorded of it
+    ("relaxation", USUAL[:2]),
+    ("drainage", USUAL[:2]),
+    ("relaxation", ("large sphere",)),
+    ("drainage", ("large sphere",)),
 )
 MIXES = (("relaxation", "fixture_compliance"), ("adhesion", "offset"), ("bone", "saturation"), ("relaxation", "drift"))
 
@@ -158,23 +159,42 @@ def published(plan, presses):
     return [press for press in presses if press.protocol in plan["published"]]
 
 
-def rival(plan, presses):
-    """What remains over the noise if the other name of an ambiguous case is fitted, at its best amplitude and form."""
+def rival(plan, presses, name):
+    """What remains over the noise if effect `name` is fitted instead: G0, Glim and an amplitude, in either form."""
     best = np.inf
     scale = [1.0 / (plan["noise"] * press.force.max()) for press in presses]
     seen = np.concatenate([press.force * s for press, s in zip(presses, scale, strict=True)])
     for variant in (0, 1):
-        if f"{plan['pad']}/{plan['names'][1]}/{variant}/1.0/wide sphere" not in runs():
+        if f"{plan['pad']}/{name}/{variant}/1.0/wide sphere" not in runs():
             continue
-        other = truth_of(plan["pad"], plan["names"][1], variant)
-        for amplitude in np.linspace(0.0, 1.0, 21):
-            flat, grown = other.presses(amplitude, (1.0, 1.0)), other.presses(amplitude, (0.0, 1.0))
-            kept = [k for k, press in enumerate(flat) if press.protocol in plan["published"]]
-            columns = [np.stack([flat[k].force, grown[k].force], axis=1) * s for k, s in zip(kept, scale, strict=True)]
-            columns = np.concatenate(columns)
-            left = seen - columns @ np.linalg.lstsq(columns, seen, rcond=None)[0]
-            best = min(best, float(np.sqrt((left**2).mean())))
+        made = [truth_of(plan["pad"], name, variant).presses(*how) for how in ((0.0, (1.0, 1.0)), (0.0, (0.0, 1.0)))]
+        made += [truth_of(plan["pad"], name, variant).presses(1.0, plan["g_mpa"])]
+        made += [truth_of(plan["pad"], name, variant).presses(0.0, plan["g_mpa"])]
+        kept = [k for k, press in enumerate(made[0]) if press.protocol in plan["published"]]
+        flat, grown, most, none = (
+            np.concatenate([one[k].force * s for k, s in zip(kept, scale, strict=True)]) for one in made
+        )
+        columns = np.stack([flat, grown, most - none], axis=1)
+        amplitude = np.clip(np.linalg.lstsq(columns, seen, rcond=None)[0][2], 0.0, 1.0)
+        rest = seen - amplitude * columns[:, 2]
+        left = rest - columns[:, :2] @ np.linalg.lstsq(columns[:, :2], rest, rcond=None)[0]
+        best = min(best, float(np.sqrt((left**2).mean())))
     return best
+
+
+def with_rival(plan, presses):
+    """The plan with the effect that imitates its own best: a single effect that is matched so is ambiguous."""
+    if plan["stratum"] not in ("single", "ambiguous"):
+        return plan
+    others = [name for name in protocols.SINGLE if name != plan["effect"]]
+    rest = {name: rival(plan, presses, name) for name in others}
+    closest = min(rest, key=rest.get)
+    plan = plan | {"rival": closest, "rival_kappa": rest[closest]}
+    if plan["stratum"] == "single" and plan["kappa"] < ALIKE:
+        return plan | {"stratum": "faint"}
+    if rest[closest] < ALIKE or plan["stratum"] == "ambiguous":
+        plan |= {"stratum": "ambiguous", "names": [plan["effect"], closest]}
+    return plan
 
 
 def plans(split):
@@ -189,14 +209,15 @@ def plans(split):
             one = {"stratum": "single", "effect": name, "names": [name], "kappa": kappa}
             yield from (dict(one) for _ in range(SINGLE[which]))
     for pair in protocols.PAIRS:
-        yield from ({"stratum": "pair", "effect": "+".join(pair), "names": list(pair)} for _ in range(PAIR[which]))
+        both = {"stratum": "pair", "effect": "+".join(pair), "names": list(pair)}
+        yield from (dict(both) for _ in range(PAIR[which] if _pads(both, split) else 0))
     for name in observing.UNLISTED:
         yield from ({"stratum": "unlisted", "distortion": name, "names": []} for _ in range(UNLISTED[which]))
     for effect, error in MIXES:
         both = {"stratum": "mixed", "effect": effect, "distortion": error, "names": [effect, error]}
         yield from (dict(both) for _ in range(MIXED[which]))
-    for effect, published, other in INSTEAD:
-        cannot = {"stratum": "ambiguous", "effect": effect, "published": published, "names": [effect, other]}
+    for effect, held in INSTEAD:
+        cannot = {"stratum": "ambiguous", "effect": effect, "published": held, "names": [effect]}
         cannot |= {"kappa": 1.0, "noise": NOISES[0]}
         yield from (dict(cannot) for _ in range(AMBIGUOUS[which]))
     for effect in ("none", "relaxation"):
@@ -216,12 +237,11 @@ def drawn(plan, split, number):
     low = np.exp(random.uniform(np.log(0.005), np.log(0.015)))
     growth = (float(low), float(low * random.uniform(0.9, 2.5)))
     plan, presses = _as_severe(plan, growth, seed)
-    if plan["stratum"] == "ambiguous":
-        plan["rival_kappa"] = rival(plan, published(plan, presses))
+    plan = with_rival(plan, published(plan, presses))
     wide = 2.0 if plan.get("scatter") == "wide" else 1.0
     observing.scatter(presses, random, wide * REPEAT_GAIN, wide * ZERO_MM)
     observing.disturb(presses, random, plan["noise"], plan.get("scatter", "normal"))
-    return plan | {"g_mpa": growth}, presses
+    return plan, presses
 
 
 def _as_severe(plan, growth, seed):
@@ -232,7 +252,7 @@ def _as_severe(plan, growth, seed):
     kappa, r2 = severity(truth, published(plan, presses), plan["noise"])
     if plan["stratum"] == "single" and kappa < 0.9 * plan["kappa"] and plan["noise"] > NOISES[0]:
         return _as_severe(plan | {"noise": NOISES[0]}, growth, seed)
-    made = {"wanted_kappa": plan["kappa"], "kappa": kappa, "r2": r2, "amplitudes": amplitudes}
+    made = {"g_mpa": growth, "wanted_kappa": plan["kappa"], "kappa": kappa, "r2": r2, "amplitudes": amplitudes}
     return plan | made, presses
 
 

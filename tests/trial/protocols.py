@@ -32,6 +32,7 @@ COMPUTED = (  # pads on which single effects, pairs, and the second form of sing
     ("forefinger", "fingertip", "thumb"),
     ("fingertip",),
 )
+TWO_FORMS = {"bone": ("forefinger", "fingertip", "thumb", "palm")}  # more pads for the second form
 SINGLE = (
     "relaxation",
     "adhesion",
@@ -68,7 +69,7 @@ PROTOCOLS = {
     "fast, small sphere": Protocol("small", 2, HOLD_S),
     "large sphere": Protocol("large", 1, HOLD_S),
     "cycles, small sphere": Protocol("small", 1, 0.0, CYCLES),
-    "wide sphere": Protocol("wide", 1, 0.0),
+    "wide sphere": Protocol("wide", 1, HOLD_S),
 }
 
 

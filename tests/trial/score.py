@@ -191,7 +191,7 @@ def _gains(severe):
 
 def _about(pairs, said):
     """What the trial itself is: how well its truths hide, and how much of it was answered."""
-    hidden = [label for label, _ in pairs if label["stratum"] not in ("null", "poor", "local")]
+    hidden = [label for label, _ in pairs if label["stratum"] not in ("null", "poor", "local", "faint")]
     concealed = sum(label["r2"] >= CONCEALED for label in hidden)
     return [
         Row("concealed: R2 >= 0.98 after refitting the base", concealed, len(hidden), 0.6),

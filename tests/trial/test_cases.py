@@ -11,7 +11,7 @@ from trial import cases, protocols, score
 
 HERE = Path(__file__).parent
 RUNS = dict(np.load(HERE / "truth_runs.npz"))
-LEAST = {"null": 60, "decoy": 40, "single": 120, "pair": 10, "unlisted": 20, "ambiguous": 12, "local": 30}
+LEAST = {"null": 60, "decoy": 40, "single": 90, "pair": 10, "unlisted": 20, "ambiguous": 12, "local": 30}
 
 
 def run(key, protocol, pad="fingertip"):
@@ -141,7 +141,7 @@ def test_the_trial_is_as_large_as_it_must_be_and_hides_its_truths():
     sealed = score.labels("trial")
     counts = {stratum: sum(label["stratum"] == stratum for label in sealed.values()) for stratum in LEAST}
     assert all(counts[stratum] >= least for stratum, least in LEAST.items()), counts
-    hidden = [label["r2"] for label in sealed.values() if label["stratum"] not in ("null", "poor", "local")]
+    hidden = [label["r2"] for label in sealed.values() if label["stratum"] not in ("null", "poor", "local", "faint")]
     assert np.mean(np.array(hidden) >= score.CONCEALED) >= 0.6
     trial, calibration = (
         {("mat" in cases.index()[name], cases.index()[name]["pad"]) for name in cases.names(split)}
@@ -150,8 +150,10 @@ def test_the_trial_is_as_large_as_it_must_be_and_hides_its_truths():
     assert trial and calibration and not trial & calibration
 
 
-def test_ambiguous_cases_are_ambiguous():
-    """The other name, fitted, leaves less than the noise of the recordings, and the base model alone leaves more."""
+def test_ambiguous_cases_are_ambiguous_and_single_ones_are_not():
+    """The closest other effect, fitted instead, leaves little beside the noise; of a single effect it leaves more."""
     for label in score.labels("trial").values():
         if label["stratum"] == "ambiguous":
-            assert label["rival_kappa"] < 0.5 < label["kappa"] and label["rival_kappa"] < 0.5 * label["kappa"]
+            assert label["rival_kappa"] < 0.5 and label["names"] == [label["effect"], label["rival"]]
+        if label["stratum"] == "single":
+            assert label["rival_kappa"] >= 0.3

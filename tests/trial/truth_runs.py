@@ -14,7 +14,19 @@ from pathlib import Path
 
 import numpy as np
 from trial.axisymmetric import Pad, Tissue, Tool, press
-from trial.protocols import AMPLITUDES, COMPUTED, PADS, PAIRS, PROTOCOLS, SINGLE, STEPS, course, depth, radius
+from trial.protocols import (
+    AMPLITUDES,
+    COMPUTED,
+    PADS,
+    PAIRS,
+    PROTOCOLS,
+    SINGLE,
+    STEPS,
+    TWO_FORMS,
+    course,
+    depth,
+    radius,
+)
 
 TABLE = Path(__file__).with_suffix(".npz")
 
@@ -76,7 +88,8 @@ def wanted():
         singles = [((effect,), 0) for effect in SINGLE]
         more = [*((pair, 0) for pair in PAIRS), *(((effect,), 1) for effect in SINGLE)]
         for effects, variant in singles + more if amplitude == AMPLITUDES[-1] else singles:
-            for pad in COMPUTED[len(effects) - 1 + 2 * variant]:
+            pads = COMPUTED[len(effects) - 1 + 2 * variant]
+            for pad in TWO_FORMS.get(effects[0], pads) if variant == 1 else pads:
                 key = f"{pad}/{'+'.join(effects)}/{variant}/{amplitude}"
                 yield key, pad, tuple((effect, variant, amplitude) for effect in effects)
 
@@ -88,7 +101,8 @@ def main():
         if all(f"{key}/{name}" in kept for name in PROTOCOLS) or (sys.argv[1:] and sys.argv[1] not in key):
             continue
         start = time.time()
-        found = {f"{key}/{name}": forces(pad, effects, name).astype(np.float32) for name in PROTOCOLS}
+        lacking = [name for name in PROTOCOLS if f"{key}/{name}" not in kept]
+        found = {f"{key}/{name}": forces(pad, effects, name).astype(np.float32) for name in lacking}
         if not all(np.isfinite(force).all() for force in found.values()):
             print(f"{key}: no equilibrium, left out", flush=True)
             continue
