@@ -103,10 +103,6 @@ fn what_is_planted_between_and_within_repeats_is_told() {
     let (measured, simulated, slopes) = study(8, 4, &planted);
     let told = noise(&measured, (&simulated, &slopes), &[true; 32], None);
     let sigma = told.sigma.iter().map(|s| s[0]).sum::<f64>() / 32.0 / PEAK_N;
-    println!(
-        "noise {sigma:.5}, memory {:.3} s, gain {:.4}, zero {:?} mm",
-        told.memory_s[0], told.gain, told.zero_mm
-    );
     assert!((sigma / planted.noise - 1.0).abs() < 0.15, "{sigma}");
     assert!(
         (told.memory_s[0] / planted.memory_s - 1.0).abs() < 0.4,

@@ -1,6 +1,8 @@
 //! Small studies for the integration tests, made in memory: a fingertip pad or a flat skin, tools, and curves.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod laboratory;
+
 use std::path::PathBuf;
 
 use thenar_recordings::meshes::MeshFile;
