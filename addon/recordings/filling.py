@@ -3,17 +3,18 @@
 from math import isnan
 
 _SHOWN = {
-    "peak_kpa",
-    "mean_kpa",
-    "force_n",
-    "area_mm2",
-    "overlap",
-    "center_distance_mm",
-    "peak_over_mean",
-    "largest_force_n",
-    "force_rms_residual_n",
-    "scan_rms_residual_mm",
+    "peak_kpa": "Peak",
+    "mean_kpa": "Mean",
+    "force_n": "Force",
+    "area_mm2": "Area",
+    "overlap": "Overlap",
+    "center_distance_mm": "Centres apart",
+    "peak_over_mean": "Peak / mean",
+    "largest_force_n": "Largest force",
+    "force_rms_residual_n": "Force off, rms",
+    "scan_rms_residual_mm": "Scan off, rms",
 }
+"""The measures that the panel shows, and what it calls them: there is little room."""
 
 
 def fill(state, comparison, about):
@@ -39,7 +40,7 @@ def fill(state, comparison, about):
 
 
 def _measure(row, measure, group):
-    row.name, row.group = measure.label, group
+    row.name, row.group = _SHOWN[measure.name], group
     is_share = measure.name == "overlap"
     row.unit = "" if is_share else measure.unit
     row.measured = _text(measure.measured, is_share)

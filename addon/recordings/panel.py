@@ -7,7 +7,7 @@ from ..panels.main import Tab
 from ..panels.preferences import wrapped
 from . import settings
 
-SHARE = 0.5
+SHARE = 0.47
 
 
 class THENAR_UL_recordings(bpy.types.UIList):
@@ -40,8 +40,9 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         if item is None:
             layout.label(text="Load a study or a mat's export", icon="INFO")
             return
+        about = layout.column(align=True)
         for line in wrapped(item.about, context):
-            layout.label(text=line)
+            about.label(text=line)
         if item.kind == settings.MAP:
             _draw_placing(layout, item)
         row = layout.row()
@@ -101,9 +102,10 @@ def _draw_measures(layout, state):
     for row in state.measures:
         if row.group != group:
             group = row.group
+            column.label(text=group[:1].upper() + group[1:])
             split = column.split(factor=SHARE)
-            split.label(text=group[:1].upper() + group[1:])
-            _numbers(split, ("measured", "simulated"))
+            split.label(text="")
+            _numbers(split, ("read", "simulated"))
         split = column.split(factor=SHARE)
         split.label(text=row.name + (f" ({row.unit})" if row.unit else ""))
         _numbers(split, (row.measured, row.simulated))

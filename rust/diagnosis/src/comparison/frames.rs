@@ -10,8 +10,11 @@ use crate::Mat;
 pub(super) const WORST: &str = "frame of the largest residual";
 const MEAN: &str = "frame of mean force";
 const LARGEST: &str = "frame of largest force";
+/// Why the only frame is shown.
+const ONLY: &str = "frame compared";
 
-/// The frames worth showing, in the order of time; a frame that is shown for several reasons stands once.
+/// The frames worth showing, in the order of time; a frame that is shown for several reasons stands once. A
+/// recording of one frame shows that.
 ///
 /// The mean is over the frames in which the mat carries anything; the frame is the one whose force is nearest to it.
 pub(super) fn shown(standing: &Standing) -> Vec<Frame> {
@@ -32,6 +35,9 @@ pub(super) fn shown(standing: &Standing) -> Vec<Frame> {
         .min_by(|a, b| (a.1 - mean).abs().total_cmp(&(b.1 - mean).abs()));
     let largest = loaded.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     let worst = all.iter().max_by(|a, b| a.2.total_cmp(&b.2));
+    if let ([only], true) = (loaded.as_slice(), all.len() == 1) {
+        return vec![frame(standing, (only.0, contact_from), vec![ONLY, WORST])];
+    }
     let mut chosen: Vec<(usize, Vec<&'static str>)> = Vec::new();
     let moments = [
         (nearest.map(|row| row.0), MEAN),

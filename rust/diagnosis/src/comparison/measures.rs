@@ -38,7 +38,8 @@ pub(super) fn table(standing: &Standing, series: &[Series], frames: &[Frame]) ->
     };
     for frame in frames {
         let shown = instrument::shown(standing, frame.moment as usize, frame.contact_from);
-        for why in frame.why.iter().filter(|why| **why != super::frames::WORST) {
+        let mut reasons = frame.why.iter().filter(|why| **why != super::frames::WORST);
+        if let Some(why) = reasons.next() {
             let rows = match standing.measured.is_calibrated {
                 true => of_frame(&shown, mat),
                 false => of_shape(&shown, mat),
@@ -50,7 +51,8 @@ pub(super) fn table(standing: &Standing, series: &[Series], frames: &[Frame]) ->
 }
 
 fn of_series(series: &Series) -> [Measure; 2] {
-    let largest = |values: &[f64]| values.iter().copied().fold(0.0_f64, f64::max);
+    let largest =
+        |values: &[f64]| told(values, &|values| values.iter().copied().fold(0.0, f64::max));
     let at = (0..series.measured.len())
         .max_by(|a, b| series.measured[*a].total_cmp(&series.measured[*b]));
     let measure = |name, label, measured, before, after, noise| Measure {
@@ -153,7 +155,7 @@ fn of_frame(shown: &Shown, mat: &Mat) -> Vec<Measure> {
         unit,
         of: "",
         measured: of(&shown.measured),
-        before: of(&shown.before),
+        before: told(&shown.before, of),
         after: of(&shown.simulated),
         noise,
     };
@@ -199,7 +201,7 @@ fn of_shape(shown: &Shown, mat: &Mat) -> Vec<Measure> {
         unit,
         of: "",
         measured: of(&shown.measured),
-        before: of(&shown.before),
+        before: told(&shown.before, of),
         after: of(&shown.simulated),
         noise: f64::NAN,
     };
@@ -223,7 +225,7 @@ fn of_place(shown: &Shown, mat: &Mat) -> [Measure; 4] {
         unit,
         of: "",
         measured: f64::NAN,
-        before: of(&shown.before),
+        before: told(&shown.before, of),
         after: of(&shown.simulated),
         noise,
     };
@@ -282,6 +284,14 @@ impl Shares {
             measured: area(&|k| measured[k] > 0.0),
             simulated: area(&|k| simulated[k] > 0.0),
         }
+    }
+}
+
+/// A measure of values; NaN where there are none.
+fn told(values: &[f64], of: &dyn Fn(&[f64]) -> f64) -> f64 {
+    match values.iter().all(|value| value.is_nan()) {
+        true => f64::NAN,
+        false => of(values),
     }
 }
 

@@ -231,10 +231,17 @@ fn rest(recording: &RecordingComparison) -> String {
             number(left),
             number(noise)
         ),
-        false => format!(
-            "Measured and simulated {what} differ by {} {unit} rms{share}; the noise is not known.",
-            number(left)
-        ),
+        false => {
+            let rms = if recording.moments.len() > 1 {
+                " rms"
+            } else {
+                ""
+            };
+            format!(
+                "Measured and simulated {what} differ by {} {unit}{rms}{share}; the noise is not known.",
+                number(left)
+            )
+        }
     }
 }
 

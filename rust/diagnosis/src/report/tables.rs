@@ -88,14 +88,12 @@ pub fn estimates(estimates: &[Estimate]) -> String {
 
 /// Measures of a recording, before and after the fit, under a line for the whole and for every frame.
 pub fn measures(rows: &[Measure]) -> String {
-    let heads = [
-        "<Measure",
-        "Measured",
-        "Noise \u{00b1}",
-        "Simulated, at the start",
-        "Simulated, fitted",
-        "<Unit",
-    ];
+    let is_fitted = rows.iter().any(|measure| !measure.before.is_nan());
+    let mut heads = vec!["<Measure", "Measured", "Noise \u{00b1}"];
+    heads.extend(match is_fitted {
+        true => &["Simulated, at the start", "Simulated, fitted", "<Unit"][..],
+        false => &["Simulated", "<Unit"][..],
+    });
     let mut html = String::new();
     for (k, measure) in rows.iter().enumerate() {
         if k == 0 || rows[k - 1].of != measure.of {
@@ -114,14 +112,16 @@ pub fn measures(rows: &[Measure]) -> String {
                 number(value)
             }
         };
-        let cells = [
+        let mut cells = vec![
             escaped(measure.label),
             told(measure.measured),
             told(measure.noise),
-            told(measure.before),
             format!("<b>{}</b>", told(measure.after)),
             measure.unit.to_string(),
         ];
+        if is_fitted {
+            cells.insert(3, told(measure.before));
+        }
         html += &row_of(&heads, &cells);
     }
     format!("{}{html}</tbody></table>\n", head(&heads))
