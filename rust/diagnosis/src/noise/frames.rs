@@ -1,7 +1,7 @@
 //! Noise of a mat from repeats: sensel by sensel and frame by frame, part of it constant and part growing with the reading.
 
-use super::repeats::{Group, Scatter, by_moment, spread};
-use crate::observe::{Measured, Quantity};
+use super::repeats::{Group, Scatter, spread};
+use crate::observe::{Censoring, Measured, Quantity};
 
 /// Readings below this part of the peak tell the constant part, those above the other one the growing part.
 const LOW: f64 = 0.1;
@@ -110,4 +110,15 @@ fn cells(group: &Group, measured: &[Measured]) -> (Vec<Cell>, Vec<f64>) {
         }
     }
     (cells, gains)
+}
+
+/// Values of one quantity by moment; None where it is missing or censored.
+fn by_moment(measured: &Measured, quantity: Quantity) -> Vec<Option<f64>> {
+    let mut values = vec![None; measured.moments.len()];
+    for sample in &measured.samples {
+        if sample.quantity == quantity && sample.censoring == Censoring::Seen {
+            values[sample.moment as usize] = Some(sample.value);
+        }
+    }
+    values
 }

@@ -91,12 +91,13 @@ pub fn noise(
     noise_n: Option<f64>,
 ) -> Noise {
     let groups = repeats::groups(measured, is_used);
-    let scatter = CHANNELS
-        .map(|channel| Repeats::new(channel, &groups).scatter(measured, (simulated, slopes)));
+    let scatter = CHANNELS.map(|channel| {
+        Repeats::new(channel, &groups, measured).scatter(measured, (simulated, slopes))
+    });
     let degrees: f64 = scatter.iter().flatten().map(|s| s.degrees).sum();
     let forces = scatter[0].as_ref();
     let mut notes = Vec::new();
-    if groups.is_empty() {
+    if degrees == 0.0 {
         notes.push(
             "no protocol was repeated: noise is judged by how rough each recording is, and whether the misfit is more than noise cannot be tested"
                 .to_owned(),

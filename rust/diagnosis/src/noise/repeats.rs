@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::alike::{Aligned, Told, aligned};
 use super::{Channel, POOLED_DEGREES};
+use crate::observe::Measured;
 use crate::observe::scatter::median;
-use crate::observe::{Censoring, Measured, Quantity};
 
 /// Deviations beyond this many standard deviations are outliers, and not noise.
 const OUTLIER: f64 = 3.5;
@@ -86,9 +86,9 @@ impl Scatter {
 }
 
 /// The repeats of one channel.
-pub struct Repeats<'a> {
+pub struct Repeats {
     channel: Channel,
-    groups: &'a [Group],
+    groups: Vec<Group>,
 }
 
 /// Deviations within one group.
@@ -105,9 +105,19 @@ struct Deviations {
     unit_variance: Vector2<f64>,
 }
 
-impl<'a> Repeats<'a> {
-    /// Of a channel.
-    pub fn new(channel: Channel, groups: &'a [Group]) -> Repeats<'a> {
+impl Repeats {
+    /// Of a channel: a press's force and its map share a protocol, but each repeats its own kind.
+    pub fn new(channel: Channel, groups: &[Group], measured: &[Measured]) -> Repeats {
+        let has = |k: &usize| {
+            let mut samples = measured[*k].samples.iter();
+            samples.any(|s| Channel::of(s.quantity) == channel)
+        };
+        let own = |group: &Group| -> Group { group.iter().copied().filter(has).collect() };
+        let groups = groups
+            .iter()
+            .map(own)
+            .filter(|group| group.len() > 1)
+            .collect();
         Repeats { channel, groups }
     }
 
@@ -118,7 +128,7 @@ impl<'a> Repeats<'a> {
         (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
     ) -> Option<Scatter> {
         if self.channel == Channel::Pressure {
-            return super::frames::scatter(self.groups, measured);
+            return super::frames::scatter(&self.groups, measured);
         }
         let told = |&k: &usize| Told {
             measured: &measured[k],
@@ -385,15 +395,4 @@ fn between(all: &[Deviations], shares: &[(f64, f64)], memory_s: f64) -> Vector2<
     variance.zip_map(&least, |v, least| {
         (v.max(least) * (degrees + 2.0) / degrees).sqrt()
     })
-}
-
-/// Values of one quantity by moment; None where it is missing or censored.
-pub fn by_moment(measured: &Measured, quantity: Quantity) -> Vec<Option<f64>> {
-    let mut values = vec![None; measured.moments.len()];
-    for sample in &measured.samples {
-        if sample.quantity == quantity && sample.censoring == Censoring::Seen {
-            values[sample.moment as usize] = Some(sample.value);
-        }
-    }
-    values
 }

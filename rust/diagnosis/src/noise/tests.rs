@@ -158,3 +158,35 @@ fn without_repeats_noise_is_judged_by_roughness_and_that_is_said() {
     assert!((told.sigma[0][0] / PEAK_N / 0.01 - 1.0).abs() < 0.3);
     assert!(told.notes[0].contains("no protocol was repeated"));
 }
+
+/// A press and its map share a protocol, but the map has no force: it must not hide what the presses repeat.
+#[test]
+fn recordings_of_another_kind_do_not_hide_repeats() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.0,
+        gain: 0.0,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let (mut measured, simulated, slopes) = study(3, 3, &planted);
+    let alone = noise(
+        &measured,
+        (&simulated[..6], &slopes[..6]),
+        &[true, true, true, true, true, true, false, false, false],
+        None,
+    );
+    for other in &mut measured[6..] {
+        other.protocol = "0".into();
+        other
+            .samples
+            .iter_mut()
+            .for_each(|s| s.quantity = Quantity::Area);
+    }
+    let mixed = noise(&measured, (&simulated, &slopes), &[true; 9], None);
+    assert_eq!(mixed.sigma[0], alone.sigma[0]);
+    assert!(
+        mixed.degrees.unwrap() > alone.degrees.unwrap(),
+        "the areas repeat each other, too"
+    );
+}
