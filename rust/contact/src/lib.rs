@@ -8,6 +8,7 @@ pub mod effects;
 pub mod instrument;
 
 mod control;
+mod carried;
 mod direction;
 mod errors;
 mod fields;

@@ -2,11 +2,11 @@
 
 use thenar_surface::{Gap, Product, Vec3};
 
+use crate::carried::{Found, field, lifted_sites};
 use crate::direction::{LEAST_COSINE, yielding_directions};
 use crate::memory::Last;
-use crate::paper;
 use crate::press::Convergence;
-use crate::response::assembly::{Load, compliance, coupling, displacements};
+use crate::response::assembly::{compliance, coupling};
 use crate::skin::Skin;
 use crate::solve::operator::Rows;
 use crate::solve::{Accuracy, solve_contact};
@@ -77,7 +77,7 @@ pub fn solve(
         remember_coupling(skin, &state.zone, control)?;
         state.open(skin, setting);
         state.passes(skin, setting, (tolerance, control))?;
-        let field = write(skin, setting, &state);
+        let field = field(skin, setting, &state.found());
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
         if lifted.is_empty() || round == MOST_ROUNDS {
             return Ok(state.finish(field, worst, tolerance));
@@ -280,6 +280,17 @@ impl State {
             .fold(0.0, f64::max)
     }
 
+    fn found(&self) -> Found<'_> {
+        Found {
+            zone: &self.zone,
+            force: &self.force,
+            direction: &self.direction,
+            cosine: &self.cosine,
+            travel: &self.travel,
+            touch: &self.touch,
+        }
+    }
+
     fn extend(&mut self, lifted: Vec<u32>) {
         let carried: Vec<(u32, f64)> = self
             .zone
@@ -316,7 +327,8 @@ impl State {
     }
 }
 
-fn vertex(skin: &Skin, site: u32) -> usize {
+/// The welded vertex of a site.
+pub fn vertex(skin: &Skin, site: u32) -> usize {
     skin.sites.vertex[site as usize] as usize
 }
 
@@ -333,65 +345,4 @@ fn remember_coupling(skin: &mut Skin, zone: &[u32], control: &Control) -> Result
     skin.memory.coupling = coupling(&skin.response, zone, &skin.sites);
     skin.memory.zone = zone.to_vec();
     Ok(())
-}
-
-/// Displacement of every site.
-fn write(skin: &Skin, setting: &Setting<'_>, state: &State) -> Vec<Vec3> {
-    if skin.model == Model::Paper {
-        return paper::displacement(skin, setting, (&state.zone, &state.force, &state.travel));
-    }
-    let mut loads = Vec::new();
-    for (k, &site) in state.zone.iter().enumerate() {
-        if state.force[k] > 0.0 {
-            let load = setting.weight[site as usize] * state.cosine[k] * state.force[k];
-            loads.push(Load {
-                site,
-                load: state.direction[k] * load,
-            });
-        }
-    }
-    let mut field = displacements(&skin.response, &loads, &skin.sites);
-    for (site, u) in field.iter_mut().enumerate() {
-        *u *= setting.weight[site] * skin.sites.follow[site];
-    }
-    for (k, &site) in state.zone.iter().enumerate() {
-        field[site as usize] = state.direction[k] * state.travel[k];
-    }
-    field
-}
-
-/// Skin outside the zone that the displacement carries into the product, and how deep, mm.
-fn lifted_sites(
-    skin: &Skin,
-    setting: &Setting<'_>,
-    (field, zone): (&[Vec3], &[u32]),
-    tolerance: f64,
-) -> (f64, Vec<u32>) {
-    let mut near = Vec::new();
-    for (site, u) in field.iter().enumerate() {
-        let gap = &setting.detection.gaps[vertex(skin, site as u32)];
-        let can_reach = gap.as_ref().is_some_and(|g| g.distance < u.norm());
-        if can_reach && skin.sites.is_skin(site) && zone.binary_search(&(site as u32)).is_err() {
-            near.push(site as u32);
-        }
-    }
-    let points: Vec<Vec3> = near
-        .iter()
-        .map(|&s| setting.detection.positions[vertex(skin, s)] + field[s as usize])
-        .collect();
-    let facing = |&s: &u32| {
-        setting.detection.gaps[vertex(skin, s)]
-            .as_ref()
-            .map_or_else(Vec3::zeros, |g| -g.normal)
-    };
-    let normals: Vec<Vec3> = near.iter().map(facing).collect();
-    let gaps = setting.product.gaps(&points, Some(&normals), limits());
-    let depth = |g: &Option<Gap>| g.as_ref().map_or(0.0, |g| -g.distance);
-    let worst = gaps.iter().map(depth).fold(0.0, f64::max);
-    let lifted = near
-        .into_iter()
-        .zip(&gaps)
-        .filter(|(_, g)| depth(g) > tolerance)
-        .map(|(s, _)| s);
-    (worst, lifted.collect())
 }

@@ -199,7 +199,8 @@ fn a_warm_start_follows_and_a_fresh_one_forgets() {
     let mut dice = Dice(5);
     for _ in 0..5 {
         let up = Vec3::new(0.0, 0.0, 0.1 * (dice.roll() - 0.5));
-        let posed: Vec<Vec3> = mesh.positions().iter().map(|p| p + up).collect();
+        let tilt = Rotation3::from_euler_angles(0.1 * (dice.roll() - 0.5), 0.05, 0.0);
+        let posed: Vec<Vec3> = mesh.positions().iter().map(|p| tilt * p + up).collect();
         let warm = Press {
             product: &product,
             posed: Some(&posed),
@@ -210,6 +211,9 @@ fn a_warm_start_follows_and_a_fresh_one_forgets() {
         let warm = skin.press(&warm, &Control::none()).unwrap();
         let fresh = press_posed(&mut skin.clone(), &product, &posed);
         assert!((warm.total_force.z / fresh.total_force.z - 1.0).abs() < 2e-3);
+        let apart = warm.displacement.iter().zip(&fresh.displacement);
+        let apart = apart.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(apart < 0.02, "displacements differ by {apart} mm");
     }
     assert_eq!(strip(press(&mut skin, &product)), strip(first));
 }
