@@ -5,9 +5,7 @@ person would take for the base model is the pad of nu = 0.4995, neo-Hookean, of 
 modulus that grows evenly with depth, G0 to Glim over 0.3 thicknesses (`Truth.base`). Every truth is that, times its own
 such modulus, and one of: nothing more, effects, an instrument's error, or what no list holds. `kappa`: root mean square
 of what remains of the truth once G0 and Glim are refitted to all recordings together, over the noise's; `r2` is of the
-same refit. `beyond_scatter` is kappa with every recording's gain (4 %) and zero (0.02 mm) fitted as well: what no
-recording of two repeats can tell from their scatter is not there. labels.json is sealed: only score.py opens it; the
-index holds a salted hash of every label.
+same refit. labels.json is sealed: only score.py opens it; the index holds a salted hash of every label.
 """
 
 import functools
@@ -126,25 +124,6 @@ def severity(truth, presses, noise):
     return float(np.sqrt((left**2).mean())), float(1.0 - (left**2).sum() / about)
 
 
-def beyond_scatter(truth, presses, noise):
-    """As kappa, but with a gain and a contact zero of every recording fitted too, at the cost of their scatter."""
-    blocks, seen, priors = [], [], 2 * len(presses)
-    for k, press in enumerate(presses):
-        scale = 1.0 / (noise * press.force.max())
-        own = np.zeros((len(press.force), priors))
-        own[:, 2 * k] = REPEAT_GAIN * press.force * scale
-        shifted = observing.Press(**(vars(press) | {"stated": press.stated + ZERO_MM}))
-        rest = truth.base(shifted).sum(axis=1) - truth.base(press).sum(axis=1)
-        own[:, 2 * k + 1] = rest * scale * press.force.max() / max(truth.base(press).sum(axis=1).max(), 1e-12)
-        blocks.append(np.hstack([truth.base(press) * scale, own]))
-        seen.append(press.force * scale)
-    count = sum(len(one) for one in seen)
-    columns = np.vstack([*blocks, np.hstack([np.zeros((priors, 2)), np.eye(priors)])])
-    seen = np.concatenate([*seen, np.zeros(priors)])
-    left = seen - columns @ np.linalg.lstsq(columns, seen, rcond=None)[0]
-    return float(np.sqrt((left**2).sum() / count))
-
-
 def distorted(truth, growth, what, amplitudes, seed):
     """The presses with an effect at its amplitude and a distortion at its own."""
     presses = truth.presses(amplitudes[0], growth)
@@ -258,8 +237,6 @@ def drawn(plan, split, number):
     low = np.exp(random.uniform(np.log(0.005), np.log(0.015)))
     growth = (float(low), float(low * random.uniform(0.9, 2.5)))
     plan, presses = _as_severe(plan, growth, seed)
-    truth = truth_of(plan["pad"], plan.get("effect", "none"), plan["variant"])
-    plan["beyond_scatter"] = beyond_scatter(truth, published(plan, presses), plan["noise"])
     plan = with_rival(plan, published(plan, presses))
     wide = 2.0 if plan.get("scatter") == "wide" else 1.0
     observing.scatter(presses, random, wide * REPEAT_GAIN, wide * ZERO_MM)

@@ -122,14 +122,12 @@ def table(sealed, said):
     singles = of("single")
     severe = [pair for pair in singles if pair[0]["kappa"] >= REACHED]
     mild = [pair for pair in singles if 0.5 * REACHED <= pair[0]["kappa"] < REACHED]
-    clear = [pair for pair in singles if pair[0]["beyond_scatter"] >= REACHED]
     decoys, listed = of("decoy"), of("single", "pair", "mixed", "decoy")
     rows = [
         _count("nulls: a missing effect claimed", of("null"), lambda label, v: blames_skin(v), 0.02, True),
         _count("decoys: blamed on the skin", decoys, lambda label, v: blames_skin(v), 0.05, True),
         _count("decoys: named as the instrument", decoys, lambda label, v: v["verdict"] == "instrument", 0.9),
         Row("one effect, kappa >= 1: exact", exact(severe), len(severe), 0.85),
-        Row("one effect, as much beyond scatter: exact", exact(clear), len(clear), 0.85),
         Row("one effect, kappa 0.5: exact", exact(mild), len(mild), 0.8),
         _count("a wrong name anywhere", pairs, lambda label, v: bool(named(v) - set(label["names"])), 0.05, True),
         Row("two effects: the exact pair", exact(of("pair")), len(of("pair")), 0.65),

@@ -157,7 +157,7 @@ fn a_simulation_that_is_off_by_a_little_everywhere_raises_no_alarm_and_hides_no_
             0.0,
         );
         let fit = design.fit(&mut noise, &|_, moment, center, value| {
-            error(moment, center, value) + 3.0 * moment.depth_mm * bump(center, at)
+            error(moment, center, value) + 5.0 * moment.depth_mm * bump(center, at)
         });
         let location = locate(&fit, &trusted, &Control::none()).unwrap();
         let place = location
@@ -308,17 +308,18 @@ fn little_data_and_hidden_data_are_told_as_such() {
             .mismatches
             .is_empty()
     );
-    let mut fit = Design::flat(4).fit(&mut Noise::new(1), &|_, _, _, value| 5.0 + value);
-    for sample in fit.measured.iter_mut().flat_map(|one| &mut one.samples) {
-        sample.censoring = Censoring::AtLeast;
+    // Everything clips, and the simulation lies over every limit: nothing is known to be amiss.
+    let mut fit = Design::flat(4).fit(&mut Noise::new(1), &nothing);
+    for (which, one) in fit.measured.iter_mut().enumerate() {
+        for (at, sample) in one.samples.iter_mut().enumerate() {
+            sample.censoring = Censoring::AtLeast;
+            sample.value = fit.simulated[which][at] - 3.0 * fit.sigma[which][at];
+            fit.projected[which][at] = 0.0;
+        }
     }
     let location = found(&fit);
-    assert_eq!(
-        (location.looks, location.p, location.mismatches.len()),
-        (0, None, 0)
-    );
-    assert!(location.sentence.contains("Nothing can be located"));
-    assert!(location.notes[0].contains("instrument's limits"));
+    assert!(location.mismatches.is_empty(), "{}", location.sentence);
+    assert!(location.notes[0].contains("272 values that the instrument's limits hide"));
     let mut empty = fit;
     for list in [&mut empty.projected, &mut empty.sigma, &mut empty.simulated] {
         list.iter_mut().for_each(Vec::clear);
@@ -328,7 +329,30 @@ fn little_data_and_hidden_data_are_told_as_such() {
         .iter_mut()
         .for_each(|one| one.samples.clear());
     empty.absorbed = DMatrix::zeros(0, 0);
-    assert_eq!(found(&empty).looks, 0);
+    let location = found(&empty);
+    assert_eq!((location.looks, location.p), (0, None));
+    assert!(location.sentence.contains("Nothing can be located"));
+}
+
+#[test]
+fn sensels_that_clip_where_the_simulation_says_less_are_found() {
+    let design = Design::flat(6);
+    let mut fit = design.fit(&mut Noise::new(4), &nothing);
+    let patch = [14, 15, 20, 21];
+    for (which, one) in fit.measured.iter_mut().enumerate() {
+        for (at, sample) in one.samples.iter_mut().enumerate() {
+            if matches!(sample.quantity, Quantity::Pressure(sensel) if patch.contains(&sensel)) {
+                sample.censoring = Censoring::AtLeast;
+                sample.value = fit.simulated[which][at] + 3.0 * fit.sigma[which][at];
+                // Root of minus twice the logarithm of 0.001350, the probability of such a reading.
+                fit.projected[which][at] = 3.635;
+            }
+        }
+    }
+    let first = found(&fit).mismatches.remove(0);
+    assert!(first.size > 0.0, "{}", first.sentence);
+    let place = first.place.unwrap();
+    assert!((place.center_mm - Vector3::new(0.0, 0.0, 0.0)).norm() < PITCH);
 }
 
 #[test]

@@ -1,9 +1,9 @@
-//! What a simulation may be off by though nothing local is missing: smooth factors, and a small rough error that all presses share.
+//! What a simulation may be off by though nothing local is missing: smooth factors, and a rough error that all presses share.
 //!
 //! A layer over bone is no finite-strain solid. Against finite elements of six pads over curved bone (neo-Hookean to exponential,
 //! plate and rod, depths to 15 % of the thickness) its pressures are off by 1.5 to 2.9 % rms of the largest; with a factor quadratic
-//! in place and free at each depth 0.3 to 1.2 % are left, at most 3.9 %. The factor is taken out; what is left is told as noise
-//! that does not fall with repeats.
+//! in place and free at each depth 0.3 to 1.2 % are left, in single sensels up to 3.9 %. The factor is taken out; what is left is
+//! told as noise that does not fall with repeats.
 
 use std::collections::BTreeMap;
 
@@ -32,12 +32,14 @@ pub(super) struct Allowance {
 /// Atoms of one kind of channel under one tool at one site, and how they are numbered.
 struct Family<'a> {
     atoms: Vec<(usize, &'a Atom)>,
-    /// Place of each on the skin; origin for what has none.
+    /// Place of each on the skin, mm; of what has none its depth, in quarters of the largest.
     places: Vec<Vector3<f64>>,
+    /// Distance from a place to the next.
     pitch: f64,
+    is_of_map: bool,
 }
 
-/// Allows for a simulation whose pressures are off by `error` of the largest; None: it is taken as exact.
+/// Allows for a simulation whose pressures, forces and areas are off by `error` of the largest; None: it is taken as exact.
 pub(super) fn allow(
     (measured, cells): (&[Measured], &Cells),
     (atoms, sensors): (&Atoms, &[Sensor]),
@@ -53,9 +55,7 @@ pub(super) fn allow(
     let (mut smooth, mut rough) = (Vec::new(), Vec::new());
     for family in families((measured, cells), atoms, sensors).values() {
         smooth.extend(factors(family, count));
-        if family.pitch > 0.0 {
-            rough.extend(nodes(family, (error, count)));
-        }
+        rough.extend(nodes(family, (error, count)));
     }
     Allowance {
         smooth: orthonormal(smooth, count),
@@ -76,10 +76,10 @@ fn families<'a>(
                 let of =
                     |sensor: &Sensor| sensor.place_of(atom.cell, sensel).zip(Some(sensor.pitch));
                 let found = sensors.iter().find_map(of);
-                let (place, pitch) = found.unwrap_or((Vector3::zeros(), 0.0));
+                let (place, pitch) = found.unwrap_or((Vector3::zeros(), 1.0));
                 (Channel::Pressure(0), place, pitch)
             }
-            other => (other, Vector3::zeros(), 0.0),
+            other => (other, Vector3::new(4.0 * atom.depth, 0.0, 0.0), 1.0),
         };
         let family = families
             .entry((kind, one.indenter.as_str(), one.site.as_str()))
@@ -87,6 +87,7 @@ fn families<'a>(
                 atoms: Vec::new(),
                 places: Vec::new(),
                 pitch,
+                is_of_map: atom.channel.is_of_map(),
             });
         family.atoms.push((at, atom));
         family.places.push(place);
@@ -96,7 +97,7 @@ fn families<'a>(
 
 /// The simulated value times powers of depth, and for maps times 1, x, y, x^2, x y, y^2 about the middle of the contact.
 fn factors(family: &Family<'_>, count: usize) -> Vec<Vec<f64>> {
-    let shapes = if family.pitch > 0.0 {
+    let shapes = if family.is_of_map {
         shapes(family)
     } else {
         vec![vec![1.0; family.atoms.len()]]
@@ -159,25 +160,32 @@ fn shapes(family: &Family<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Bumps one node apart, together of variance `error` of the largest pressure everywhere: the same in all presses of a tool at a site.
+/// Bumps one node apart and two nodes apart, each of half the variance, together `error` of the largest value everywhere: the same in
+/// all presses of a tool at a site.
 fn nodes(family: &Family<'_>, (error, count): (f64, usize)) -> Vec<Vec<f64>> {
-    let mut distinct: Vec<Vector3<f64>> = Vec::new();
-    let spacing = family
-        .pitch
-        .max(family.pitch * (family.places.len() as f64 / MOST_NODES).sqrt().min(4.0) * 0.5);
+    let crowd = (family.places.len() as f64 / MOST_NODES).sqrt();
+    let spacing = family.pitch * (0.5 * crowd).clamp(1.0, 4.0);
+    let share = error * 0.5_f64.sqrt();
+    let mut columns = bumps(family, spacing, (share, count));
+    columns.extend(bumps(family, 2.0 * spacing, (share, count)));
+    columns
+}
+
+fn bumps(family: &Family<'_>, spacing: f64, (error, count): (f64, usize)) -> Vec<Vec<f64>> {
+    let mut nodes: Vec<Vector3<f64>> = Vec::new();
     for place in &family.places {
-        if distinct
+        if nodes
             .iter()
             .all(|node| (node - place).norm() >= 0.9 * spacing)
         {
-            distinct.push(*place);
+            nodes.push(*place);
         }
     }
-    let mut columns = vec![vec![0.0; count]; distinct.len()];
+    let mut columns = vec![vec![0.0; count]; nodes.len()];
     for ((at, atom), place) in family.atoms.iter().zip(&family.places) {
         let bump =
             |node: &Vector3<f64>| (-(node - place).norm_squared() / (spacing * spacing)).exp();
-        let bumps: Vec<f64> = distinct.iter().map(bump).collect();
+        let bumps: Vec<f64> = nodes.iter().map(bump).collect();
         let length = bumps.iter().map(|b| b * b).sum::<f64>().sqrt().max(1e-3);
         for (column, bump) in columns.iter_mut().zip(&bumps) {
             column[*at] = error * atom.peak * atom.weight * bump / length;

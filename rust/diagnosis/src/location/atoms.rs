@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::cells::Cells;
+use super::censored;
 use crate::{Censoring, Fit, Measured, Quantity};
 
 /// What an atom is of. Scanned points have no order on the skin here, and are taken together.
@@ -48,8 +49,10 @@ pub(super) struct Atom {
     pub simulated: f64,
     /// Mean depth over the largest of the study, or force asked for where no depth is known.
     pub depth: f64,
-    /// Mean over its samples of the largest simulated pressure of their moment, kPa; 0 for other channels.
+    /// Mean over its samples of the largest simulated pressure of their moment, kPa; of another channel its largest simulated value.
     pub peak: f64,
+    /// Mean of measured minus simulated, in their unit.
+    pub residual: f64,
     /// Number of samples, and sum of the squares of what they scatter about the value.
     pub scatter: (f64, f64),
 }
@@ -59,8 +62,8 @@ pub(super) struct Atoms {
     pub list: Vec<Atom>,
     /// What parameters absorb, along the atoms: a row per atom.
     pub absorbed: DMatrix<f64>,
-    /// Samples that an instrument's limits hide, and which are left out.
-    pub censored: usize,
+    /// Samples that an instrument's limits hide.
+    pub hidden: usize,
 }
 
 /// What is summed up of one atom.
@@ -70,27 +73,26 @@ struct Sum {
     simulated: f64,
     depth: f64,
     peak: f64,
+    residual: f64,
     samples: f64,
     squares: f64,
     along: Vec<f64>,
 }
 
-/// Sums up a fit. Censored samples say only one side of a value; a sum over many of them has a mean of its own, so they stay out.
+/// Sums up a fit.
 pub(super) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
     let directions = fit.absorbed.ncols();
     let mut sums: BTreeMap<(Channel, usize), Sum> = BTreeMap::new();
-    let mut censored = 0;
+    let mut hidden = 0;
     let mut row = 0;
+    let projected = censored::projected(fit);
     for (recording, one) in fit.measured.iter().enumerate() {
-        let peaks = peaks(one, &fit.simulated[recording]);
+        let peaks = Peaks::new(one, &fit.simulated[recording]);
         for (at, sample) in one.samples.iter().enumerate() {
             let inverse = 1.0 / fit.sigma[recording][at];
-            let value = fit.projected[recording][at];
+            let value = projected[recording][at];
             row += 1;
-            if sample.censoring != Censoring::Seen {
-                censored += 1;
-                continue;
-            }
+            hidden += usize::from(sample.censoring != Censoring::Seen);
             if !(inverse.is_finite() && inverse > 0.0 && value.is_finite()) {
                 continue;
             }
@@ -104,7 +106,8 @@ pub(super) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
             sum.value += inverse * value;
             sum.simulated += weight * fit.simulated[recording][at];
             sum.depth += weight * cells.reach[recording][moment];
-            sum.peak += weight * peaks[moment];
+            sum.residual += weight * (sample.value - fit.simulated[recording][at]);
+            sum.peak += weight * peaks.of(channel, moment);
             sum.samples += 1.0;
             sum.squares += value * value;
             for (column, total) in sum.along.iter_mut().enumerate() {
@@ -115,7 +118,7 @@ pub(super) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
     let mut atoms = Atoms {
         list: Vec::with_capacity(sums.len()),
         absorbed: DMatrix::zeros(sums.len(), directions),
-        censored,
+        hidden,
     };
     for ((channel, cell), sum) in sums {
         let weight = sum.square.sqrt();
@@ -130,6 +133,7 @@ pub(super) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
             simulated: sum.simulated / sum.square,
             depth: sum.depth / sum.square,
             peak: sum.peak / sum.square,
+            residual: sum.residual / sum.square,
             scatter: (
                 sum.samples,
                 (sum.squares - sum.value * sum.value / sum.square).max(0.0),
@@ -147,6 +151,7 @@ impl Sum {
             simulated: 0.0,
             depth: 0.0,
             peak: 0.0,
+            residual: 0.0,
             samples: 0.0,
             squares: 0.0,
             along: vec![0.0; directions],
@@ -154,14 +159,35 @@ impl Sum {
     }
 }
 
-/// Largest simulated pressure of every moment.
-fn peaks(measured: &Measured, simulated: &[f64]) -> Vec<f64> {
-    let mut peaks = vec![0.0; measured.moments.len()];
-    for (sample, value) in measured.samples.iter().zip(simulated) {
-        if matches!(sample.quantity, Quantity::Pressure(_)) {
-            let peak = &mut peaks[sample.moment as usize];
-            *peak = f64::max(*peak, *value);
+/// Largest simulated values of a recording.
+struct Peaks {
+    /// Pressure, by moment.
+    pressure: Vec<f64>,
+    /// Magnitude, by other channel.
+    series: BTreeMap<Channel, f64>,
+}
+
+impl Peaks {
+    fn new(measured: &Measured, simulated: &[f64]) -> Peaks {
+        let mut peaks = Peaks {
+            pressure: vec![0.0; measured.moments.len()],
+            series: BTreeMap::new(),
+        };
+        for (sample, value) in measured.samples.iter().zip(simulated) {
+            let channel = Channel::of(sample.quantity);
+            let peak = match channel.is_of_map() {
+                true => &mut peaks.pressure[sample.moment as usize],
+                false => peaks.series.entry(channel).or_default(),
+            };
+            *peak = peak.max(value.abs());
+        }
+        peaks
+    }
+
+    fn of(&self, channel: Channel, moment: usize) -> f64 {
+        match channel.is_of_map() {
+            true => self.pressure[moment],
+            false => self.series.get(&channel).copied().unwrap_or(0.0),
         }
     }
-    peaks
 }

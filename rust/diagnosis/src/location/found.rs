@@ -107,7 +107,7 @@ pub struct Mismatch {
     pub place: Option<Place>,
     /// When.
     pub when: When,
-    /// Measured minus simulated, mean over place and time with what parameters absorb taken out, in the unit of what is shown.
+    /// Measured minus simulated, mean over place and time, in the unit of what is shown; of maps with what parameters absorb taken out.
     pub size: f64,
     /// Lower end of the 90 % interval; that the largest was picked makes sizes near the threshold too large.
     pub low: f64,

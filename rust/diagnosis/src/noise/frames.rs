@@ -3,9 +3,13 @@
 use super::repeats::{Group, Scatter, spread};
 use crate::observe::{Censoring, Measured, Quantity};
 
-/// Readings below this part of the peak tell the constant part, those above the other one the growing part.
+/// Readings below this part of the peak, or this much over where a threshold no longer cuts them, tell the constant part.
 const LOW: f64 = 0.1;
+const LOW_BEYOND: f64 = 0.2;
+/// Readings above this part of the peak tell the growing part.
 const HIGH: f64 = 0.3;
+/// Means below this many thresholds belong to readings that are shown because noise lifted them.
+const CUT: f64 = 2.0;
 /// Fewest readings from which either is told.
 const LEAST: usize = 20;
 
@@ -18,6 +22,7 @@ struct Cell {
 /// What repeats of maps show; None where no two of them have the same frames.
 pub fn scatter(groups: &[Group], measured: &[Measured]) -> Option<Scatter> {
     let (mut low, mut high, mut peak) = (Vec::new(), Vec::new(), 0.0f64);
+    let mut inverse = 0.0;
     let (mut gains, mut degrees, mut members) = (0.0, 0.0, Vec::new());
     for group in groups {
         let (cells, gain) = cells(group, measured);
@@ -26,12 +31,19 @@ pub fn scatter(groups: &[Group], measured: &[Measured]) -> Option<Scatter> {
         }
         let most = cells.iter().fold(0.0, |most, c| f64::max(most, c.mean));
         let scale = (group.len() as f64 / (group.len() as f64 - 1.0)).sqrt();
-        for cell in cells.iter().filter(|c| c.mean > 0.0) {
+        let cut = CUT * threshold(group, measured);
+        let until = (LOW * most).max(if cut > 0.0 {
+            cut + LOW_BEYOND * most
+        } else {
+            0.0
+        });
+        for cell in cells.iter().filter(|c| c.mean > cut) {
             let scaled = cell.deviations.iter().map(|u| u * scale);
-            match cell.mean {
-                mean if mean < LOW * most => low.extend(scaled),
-                mean if mean > HIGH * most => high.extend(scaled.map(|u| u / mean)),
-                _ => {}
+            if cell.mean < until {
+                low.extend(scaled);
+            } else if cell.mean > HIGH * most {
+                high.extend(scaled.map(|u| u / cell.mean));
+                inverse += cell.deviations.len() as f64 / cell.mean.powi(2);
             }
         }
         let nu = group.len() as f64 - 1.0;
@@ -45,25 +57,31 @@ pub fn scatter(groups: &[Group], measured: &[Measured]) -> Option<Scatter> {
     if low.len() + high.len() < LEAST || peak == 0.0 {
         return None;
     }
-    let constant = if low.len() >= LEAST {
-        spread(&low)
-    } else {
-        0.0
+    let told = |list: &[f64]| {
+        if list.len() >= LEAST {
+            spread(list)
+        } else {
+            0.0
+        }
     };
-    let whole = if high.len() >= LEAST {
-        spread(&high)
-    } else {
-        0.0
-    };
+    let (constant, whole) = (told(&low), told(&high));
     let share = constant / peak;
-    // Of readings near the peak the constant part is a share too.
-    let proportional = (whole * whole - share * share).max(0.0).sqrt();
+    // Of large readings the constant part is a share, too.
+    let known = constant * constant * inverse / (high.len() as f64).max(1.0);
+    let proportional = (whole * whole - known).max(0.0).sqrt();
     Some(Scatter::of_map(
         &members,
         (share, proportional),
         (low.len() + high.len()) as f64 * degrees / members.len() as f64,
         (gains / degrees * (degrees + 2.0) / degrees).sqrt(),
     ))
+}
+
+/// Largest limit under which a reading of the group is hidden; 0 without one.
+fn threshold(group: &Group, measured: &[Measured]) -> f64 {
+    let samples = group.iter().flat_map(|k| &measured[*k].samples);
+    let hidden = samples.filter(|s| s.censoring == Censoring::AtMost);
+    hidden.fold(0.0, |most, s| f64::max(most, s.value))
 }
 
 /// Cells that every repeat of a group saw, and each repeat's departure from the mean gain.
