@@ -1,8 +1,17 @@
 //! The sentences that a designer reads first. Knows nothing of how a report looks.
 
 use super::{Bin, Kind, Measure, RecordingComparison, SIGNIFICANT, Series, Trend, Variable};
+use crate::location::MODEL_ERROR;
 use crate::words::{chance, number, percent};
 use crate::{Estimate, Fit, Location};
+
+/// Said where nothing was located.
+fn within_the_model() -> String {
+    format!(
+        " No place is off by more than the {} of the largest value that the model itself may be.",
+        percent(MODEL_ERROR)
+    )
+}
 
 /// About the whole study.
 pub(super) fn of_study(
@@ -36,11 +45,15 @@ pub(super) fn of_study(
                 "Parameters within their bounds do not explain the recordings: noise alone leaves as much with {}.",
                 chance(p)
             );
-            let located = location.filter(|location| !location.mismatches.is_empty());
-            match (located, worst) {
-                (Some(located), _) => format!("{start} {}", located.sentence),
-                (None, Some(worst)) => format!("{start} {}", named(worst)),
-                (None, None) => start,
+            match (location, worst) {
+                (Some(found), _) if !found.mismatches.is_empty() => {
+                    format!("{start} {}", found.sentence)
+                }
+                (found, worst) => {
+                    let named =
+                        worst.map_or_else(String::new, |worst| format!(" {}", named(worst)));
+                    start + &named + &found.map_or_else(String::new, |_| within_the_model())
+                }
             }
         }
         None => {
