@@ -59,7 +59,7 @@ def _worst(row, place, about):
     row.name = prefix + where
     sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
     row.residual = f"{place.residual:+.3g} {unit}{sigmas}"
-    row.vertices = ",".join(str(vertex) for vertex in place.vertices)
+    row.vertices = ",".join(map(str, place.vertices))
 
 
 def _text(value, is_share):

@@ -7,6 +7,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import names
 from ..operators import computing, display, polling, running
+from ..scene import regions
 from ..scene.checks import Refusal
 from . import comparing, laying, loading, outline, settings
 
@@ -148,7 +149,8 @@ def _select(context, index):
     state, hand = context.scene.thenar_recordings.comparison, context.scene.thenar.hand
     if index >= len(state.worst):
         raise Refusal(f"there is no place {index}; the comparison lists {len(state.worst)}")
-    vertices = [int(number) for number in state.worst[index].vertices.split(",") if number]
+    listed = state.worst[index].vertices
+    vertices = [int(number) for number in listed.split(",") if number]
     if hand.type != "MESH" or len(hand.data.vertices) != state.vertices or max(vertices, default=0) >= state.vertices:
         raise Refusal(f"the place lies on another skin than '{hand.name}'; choose the hand that was compared")
     if not vertices:
@@ -159,10 +161,7 @@ def _select(context, index):
         other.select_set(False)
     hand.select_set(True)
     context.view_layer.objects.active = hand
-    for elements in (hand.data.vertices, hand.data.edges, hand.data.polygons):
-        elements.foreach_set("select", [False] * len(elements))
-    for vertex in vertices:
-        hand.data.vertices[vertex].select = True
+    regions.select_only(hand.data, vertices)
     context.tool_settings.mesh_select_mode = (True, False, False)
     bpy.ops.object.mode_set(mode="EDIT")
     return len(vertices)

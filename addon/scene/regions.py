@@ -27,7 +27,14 @@ def vertex_regions(context, hand, group_names):
 
 def select_vertices(mesh, region):
     """Select the vertices that the last result counted to `region`, and nothing else."""
-    mesh.vertices.foreach_set("select", attributes.read(mesh, names.REGION) == region)
+    select_only(mesh, attributes.read(mesh, names.REGION) == region)
+
+
+def select_only(mesh, vertices):
+    """Select vertices, given as numbers or as a mask, and nothing else."""
+    chosen = np.zeros(len(mesh.vertices), bool)
+    chosen[vertices] = True
+    mesh.vertices.foreach_set("select", chosen)
     mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
     mesh.polygons.foreach_set("select", np.zeros(len(mesh.polygons), bool))
 

@@ -1,6 +1,8 @@
 """Live: contact that follows hand, armature and product, and leaves no trace where it is not wanted."""
 
 import os
+import subprocess
+import sys
 
 import bpy
 import numpy as np
@@ -230,7 +232,16 @@ def test_scenes_are_followed_apart(scene):
 
 
 def test_long_session_without_error_or_growth(scene, tmp_path):
-    """Updates with saving, loading and rendering between; undo needs a window. `LIVE_UPDATES` tells how many."""
+    """Updates with saving, loading and rendering between; undo needs a window. `LIVE_UPDATES` tells how many.
+
+    In a process of its own: what tests before it left to be freed would count as growth.
+    """
+    if "LIVE_ALONE" not in os.environ:
+        alone = [sys.executable, "-m", "pytest", "-s", "-q", __file__, "-k", "long_session"]
+        done = subprocess.run(alone, env={**os.environ, "LIVE_ALONE": "1"}, capture_output=True, text=True)
+        print(*(line for line in done.stdout.splitlines() if "resident" in line), sep="\n")
+        assert done.returncode == 0, done.stdout + done.stderr
+        return
     count = int(os.environ.get("LIVE_UPDATES", "500"))
     _, product = stage.scene()
     switch(True)
