@@ -1,14 +1,11 @@
 """A batch of 1,000 cases on two Dask workers, one killed half-way, the scheduler restarted, against one process.
 
-    target/venv/bin/python tests/bench/farm.py [--cases 1000] [--blend blend-samples/cylinder_48.blend]
-
-Without a file a case is a ball on a plate and takes some 30 ms, so that what the batch itself costs is seen.
+    target/venv/bin/python tests/bench/farm.py [--cases 1000]
 
 Prints the throughput as a ratio of the two runs, and whether the tables are the same bytes.
 """
 
 import argparse
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -51,20 +48,14 @@ def main():
     """Both runs, then the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cases", type=int, default=FORCES * STIFFNESSES)
-    parser.add_argument("--blend", type=Path, help="press this file's hand with 100 to 300 N instead")
-    options = parser.parse_args()
-    cases, blend = options.cases, options.blend
+    cases = parser.parse_args().cases
     stiffnesses = max(1, cases // FORCES)
     thenar_blender.register()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        if blend is None:
-            stage.scene()
-            bpy.ops.wm.save_as_mainfile(filepath=str(folder / "grip.blend"))
-        else:
-            shutil.copy(blend, folder / "grip.blend")
-        first, step = (0.5, 0.1) if blend is None else (100.0, 10.0)
-        forces = [round(first + step * k, 3) for k in range(FORCES)]
+        stage.scene()
+        bpy.ops.wm.save_as_mainfile(filepath=str(folder / "grip.blend"))
+        forces = [round(0.5 + 0.1 * k, 3) for k in range(FORCES)]
         factors = [round(0.8 + 0.01 * k, 3) for k in range(stiffnesses)]
         (folder / "jobs.toml").write_text(
             f'blend = "grip.blend"\nsave = false\n[[sweep]]\nname = "push"\nforce_n = {forces}\nstiffness = {factors}\n'
