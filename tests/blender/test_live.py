@@ -1,5 +1,6 @@
 """Live: contact that follows hand, armature and product, and leaves no trace where it is not wanted."""
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -13,6 +14,8 @@ from thenar_blender.live import watch
 from thenar_blender.scene import checks
 
 MM = stage.MM
+ALONE = {"LIVE_ALONE": "1", "MALLOC_ARENA_MAX": "1"}
+"""What a process of its own is given, so that its memory can be compared."""
 
 
 def follow():
@@ -234,11 +237,12 @@ def test_scenes_are_followed_apart(scene):
 def test_long_session_without_error_or_growth(scene, tmp_path):
     """Updates with saving, loading and rendering between; undo needs a window. `LIVE_UPDATES` tells how many.
 
-    In a process of its own: what tests before it left to be freed would count as growth.
+    In a process of its own: what tests before it left to be freed would count as growth. With one arena that is trimmed before it is
+    read, what the allocator keeps for its threads does not count: it comes and goes by 10 MB, what is held by 0.1 MB.
     """
     if "LIVE_ALONE" not in os.environ:
         alone = [sys.executable, "-m", "pytest", "-s", "-q", __file__, "-k", "long_session"]
-        done = subprocess.run(alone, env={**os.environ, "LIVE_ALONE": "1"}, capture_output=True, text=True)
+        done = subprocess.run(alone, env={**os.environ, **ALONE}, capture_output=True, text=True)
         print(*(line for line in done.stdout.splitlines() if "resident" in line), sep="\n")
         assert done.returncode == 0, done.stdout + done.stderr
         return
@@ -259,8 +263,8 @@ def test_long_session_without_error_or_growth(scene, tmp_path):
             bpy.ops.render.render()
         if step % 100 == 99:
             sizes.append(resident_mb())
-    print(f"{count} updates; resident {sizes[0]:.0f} MB after 100, {sizes[-1]:.0f} MB at the end")
-    assert sizes[-1] < sizes[0] + 10.0
+    print(f"{count} updates; resident {sizes[0]:.1f} MB after 100, {sizes[-1]:.1f} MB at the end")
+    assert sizes[-1] < sizes[0] + 1.0
     assert len(bpy.data.node_groups) == 1 and len(bpy.context.scene.thenar.hand.modifiers) == 1
 
 
@@ -271,5 +275,7 @@ def add_camera():
 
 
 def resident_mb():
+    """Resident memory of this process, MB, without what its allocator could give back (Linux with glibc)."""
+    ctypes.CDLL(None).malloc_trim(0)
     with open("/proc/self/statm") as file:
         return int(file.read().split()[1]) * 4096 / 2**20
