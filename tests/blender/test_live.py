@@ -237,8 +237,8 @@ def test_scenes_are_followed_apart(scene):
 def test_long_session_without_error_or_growth(scene, tmp_path):
     """Updates with saving, loading and rendering between; undo needs a window. `LIVE_UPDATES` tells how many.
 
-    In a process of its own: what tests before it left to be freed would count as growth. With one arena that is trimmed before it is
-    read, what the allocator keeps for its threads does not count: it comes and goes by 10 MB, what is held by 0.1 MB.
+    In a process of its own: what tests before it left to be freed would count as growth. With one arena that is trimmed
+    before it is read, what the allocator keeps for its threads does not count: it comes and goes by 10 MB.
     """
     if "LIVE_ALONE" not in os.environ:
         alone = [sys.executable, "-m", "pytest", "-s", "-q", __file__, "-k", "long_session"]
