@@ -142,7 +142,7 @@ def test_the_trial_is_as_large_as_it_must_be_and_hides_its_truths():
     counts = {stratum: sum(label["stratum"] == stratum for label in sealed.values()) for stratum in LEAST}
     assert all(counts[stratum] >= least for stratum, least in LEAST.items()), counts
     hidden = [label["r2"] for label in sealed.values() if label["stratum"] not in ("null", "poor", "local", "faint")]
-    assert np.mean(np.array(hidden) >= score.CONCEALED) >= 0.6
+    assert np.mean(np.array(hidden) >= counts.CONCEALED) >= 0.6
     trial, calibration = (
         {("mat" in cases.index()[name], cases.index()[name]["pad"]) for name in cases.names(split)}
         for split in ("trial", "calibration")

@@ -10,6 +10,7 @@ mod setup;
 mod testing;
 mod tally;
 mod demo;
+mod prove;
 
 use anyhow::{Result, bail};
 use places::Places;
@@ -21,6 +22,7 @@ const USAGE: &str = "cargo xtask COMMAND
   demo      solve and render the sample grasp into target/demo
   test      every test: Rust, Python, Blender, architecture, packaging, docs, lint
   samples   make blend-samples anew from code
+  prove     the blind trial of the diagnosis: table of verdicts against sealed labels (`-- --help`: options)
   bench     benchmarks, each as a ratio against a peer in the same run
   bundle WHEEL...  one extension zip per platform from ready wheels (for releases)";
 
@@ -47,6 +49,7 @@ fn dispatch(arguments: &[String]) -> Result<ExitCode> {
         "test" => testing::run(&places),
         "samples" => demo::samples(&places),
         "bench" => demo::bench(&places, rest),
+        "prove" => prove::run(&places, rest),
         "bundle" => extension::bundle_command(&places, rest),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");

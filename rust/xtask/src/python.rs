@@ -32,6 +32,7 @@ pub const BLENDER_50: Environment = Environment {
         "bpy==5.0.1",
         "numpy==1.26.4",
         "scipy==1.17.1",
+        "scikit-learn==1.9.1",
         "pytest==9.2.0",
         "hypothesis==6.170.15",
         "distributed==2026.8.0",
