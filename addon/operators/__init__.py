@@ -3,9 +3,9 @@
 import bpy
 
 from .. import status
-from . import bake, clear, display, effects, export, regions, solve
+from . import bake, clear, display, effects, export, regions, report, solve
 
-_MODULES = (solve, clear, display, regions, effects, export, bake)
+_MODULES = (solve, clear, display, regions, effects, export, bake, report)
 
 
 def register():

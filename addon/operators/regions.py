@@ -4,7 +4,7 @@ import bpy
 
 from .. import settings
 from ..scene import regions
-from . import polling, running
+from . import polling, selecting
 
 
 class THENAR_OT_pick(bpy.types.Operator):
@@ -132,15 +132,9 @@ class THENAR_OT_select_region(bpy.types.Operator):
 
     def execute(self, context):
         hand = context.scene.thenar.hand
-        if hand.mode == "EDIT":
-            bpy.ops.object.mode_set(mode="OBJECT")
-        regions.select_vertices(hand.data, self.index)
+        selecting.to_object_mode(context)
+        selecting.select(context, hand, regions.region_vertices(hand.data, self.index))
         context.scene.thenar.result.region_index = self.index
-        if not bpy.app.background:
-            context.view_layer.objects.active = hand
-            context.tool_settings.mesh_select_mode = (True, False, False)
-            bpy.ops.object.mode_set(mode="EDIT")
-        running.redraw(context)
         return {"FINISHED"}
 
 

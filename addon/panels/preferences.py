@@ -27,9 +27,14 @@ def draw_state(layout, context):
     column.label(text=status.where(), icon="BLANK1")
 
 
+def text_width(context):
+    """How many letters fit on a line of the region."""
+    return max(20, int((context.region.width / context.preferences.system.ui_scale - 50) / 6.6))
+
+
 def wrapped(text, context):
     """Lines that fit the region: panels do not wrap."""
-    width = max(20, int((context.region.width / context.preferences.system.ui_scale - 50) / 6.6))
+    width = text_width(context)
     lines = [""]
     for word in text.split():
         if lines[-1] and len(lines[-1]) + len(word) + 1 > width:

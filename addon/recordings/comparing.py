@@ -1,16 +1,16 @@
-"""The order of a comparison: press as the scene stands, lay the mat, compare by sensel, write the residual back."""
+"""The order of a comparison: press as the scene stands, lay the mat, compare by sensel, write the residual back.
+
+A study is compared with its own skin; where that is the scene's hand, its places and residuals are shown on it.
+"""
 
 from functools import partial
 
 import numpy as np
 
-from .. import native, status, workflow
-from ..scene import attributes, own, read, units
+from .. import names, native, reports, status, workflow
+from ..scene import attributes, matching, own, read, units
 from ..scene.checks import Refusal
 from . import filling, laying, loading, settings
-
-last = {}
-"""By scene: what was compared last, for reports. Not kept in files."""
 
 
 def steps(context):
@@ -22,19 +22,41 @@ def steps(context):
     if item is None:
         raise Refusal("no recording is loaded; load one first")
     state, name = context.scene.thenar_recordings, item.name
+    hand, match = context.scene.thenar.hand, None
     if item.kind == settings.STUDY:
-        comparison = yield partial(_study, item.path)
+        comparison, skin_mm = yield partial(_study, item.path)
+        match = matching.on_scene_hand(context, skin_mm)
+        told = "" if match is None else _carry(context, comparison, match)
+        filling.fill(state.comparison, comparison, (name, None if match is None else hand, match))
+        if told:
+            state.comparison.notes.add().name = told
     else:
         comparison = yield from _still(context, item)
-    hand = context.scene.thenar.hand
-    filling.fill(state.comparison, comparison, (name, hand))
-    last[context.scene.name] = comparison
+        filling.fill(state.comparison, comparison, (name, hand, None))
+    state.comparison.stamp = reports.keep(comparison)
     return comparison
 
 
 def _study(path, cancel=None, progress=None):
+    """The library's comparison, and the study's skin (n, 3), mm."""
     thenar = native.module
-    return thenar.compare(thenar.Study.load(path), progress, cancel)
+    study = thenar.Study.load(path)
+    return thenar.compare(study, progress, cancel), np.asarray(study.skin.vertices_mm)
+
+
+def _carry(context, comparison, match):
+    """Write the largest residual of a study's calibrated mats on the hand. Returns a note on it, or nothing."""
+    hand, parts = context.scene.thenar.hand, workflow.product_parts(context.scene.thenar)
+    carried = [each for each in comparison.recordings if each.residual_kpa is not None and len(each.residual_kpa)]
+    carried = [each for each in carried if np.isfinite(each.residual_kpa).any()]
+    if not carried:
+        return ""
+    if not hand.data.is_editable or hand.mode == "EDIT":
+        return f"'{hand.name}' is linked or in Edit Mode, so the residual is not shown on it."
+    worst = max(carried, key=lambda each: np.nanmax(np.abs(each.residual_kpa)))
+    _take_off(hand, parts)
+    put(hand.data, match.carried(worst.residual_kpa))
+    return f"The hand shows the residual of '{worst.name}', the largest of the study."
 
 
 def _still(context, item):
@@ -102,9 +124,7 @@ def _write(context, job, found):
     """Residuals as attributes on hand and product; none where the mat is not calibrated."""
     comparison, mat, residual = found
     hand, parts = context.scene.thenar.hand, workflow.product_parts(context.scene.thenar)
-    for obj in (hand, *parts):
-        if obj.type == "MESH" and obj.data.is_editable:
-            attributes.remove(obj.data, workflow.names.RESIDUAL_ATTRIBUTES)
+    _take_off(hand, parts)
     if residual is None:
         return
     carried = comparison.recordings[0].residual_kpa
@@ -118,9 +138,15 @@ def _write(context, job, found):
     status.set_stale(context.scene.name, False)
 
 
+def _take_off(hand, parts):
+    for obj in (hand, *parts):
+        if obj.type == "MESH" and obj.data.is_editable:
+            attributes.remove(obj.data, names.RESIDUAL_ATTRIBUTES)
+
+
 def put(mesh, residual_kpa):
     """Write residuals (n,), kPa, NaN away from the mat."""
     is_on = np.isfinite(residual_kpa)
-    attributes.write(mesh, workflow.names.RESIDUAL_KPA, "FLOAT", np.where(is_on, residual_kpa, 0.0))
-    attributes.write(mesh, workflow.names.ON_MAT, "FLOAT", is_on.astype(np.float32))
+    attributes.write(mesh, names.RESIDUAL_KPA, "FLOAT", np.where(is_on, residual_kpa, 0.0))
+    attributes.write(mesh, names.ON_MAT, "FLOAT", is_on.astype(np.float32))
     mesh.update()

@@ -18,8 +18,11 @@ _SHOWN = {
 
 
 def fill(state, comparison, about):
-    """Write a comparison into the scene's `comparison`; `about`: name of the recording, and the hand or None."""
-    name, hand = about
+    """Write a comparison into the scene's `comparison`.
+
+    `about`: name of the recording, the hand on which its places lie or None, and the `Match` of a study's skin with it.
+    """
+    name, hand, match = about
     state.is_valid, state.recording, state.sentence = True, name, comparison.sentence
     is_hand = hand is not None and hand.type == "MESH"
     state.hand_name, state.vertices = (hand.name, len(hand.data.vertices)) if is_hand else ("", 0)
@@ -33,6 +36,8 @@ def fill(state, comparison, about):
                 _measure(state.measures.add(), measure, prefix + measure.of)
         for place in recording.worst[:3] if several else recording.worst:
             _worst(state.worst.add(), place, (prefix, recording))
+            vertices = place.vertices if match is None else match.on_hand(place.vertices)
+            state.worst[-1].vertices = ",".join(map(str, vertices))
         for text in recording.unknown:
             state.notes.add().name = prefix + text
     for text in comparison.notes:
@@ -59,7 +64,6 @@ def _worst(row, place, about):
     row.name = prefix + where
     sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
     row.residual = f"{place.residual:+.3g} {unit}{sigmas}"
-    row.vertices = ",".join(map(str, place.vertices))
 
 
 def _text(value, is_share):

@@ -1,13 +1,10 @@
-"""Operators of recordings: load, take off, show the mat, compare, select a place, report."""
-
-from pathlib import Path
+"""Operators of recordings: load, take off, show the mat, compare, select a place."""
 
 import bpy
-from bpy_extras.io_utils import ExportHelper, ImportHelper
+from bpy_extras.io_utils import ImportHelper
 
 from .. import names
-from ..operators import computing, display, polling, running
-from ..scene import regions
+from ..operators import computing, display, polling, running, selecting
 from ..scene.checks import Refusal
 from . import comparing, laying, loading, outline, settings
 
@@ -155,56 +152,8 @@ def _select(context, index):
         raise Refusal(f"the place lies on another skin than '{hand.name}'; choose the hand that was compared")
     if not vertices:
         raise Refusal("the recording does not say where this place lies on the skin; give its sensels or site")
-    if context.object is not None and context.object.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
-    for other in context.selected_objects:
-        other.select_set(False)
-    hand.select_set(True)
-    context.view_layer.objects.active = hand
-    regions.select_only(hand.data, vertices)
-    context.tool_settings.mesh_select_mode = (True, False, False)
-    bpy.ops.object.mode_set(mode="EDIT")
+    selecting.select(context, hand, vertices)
     return len(vertices)
-
-
-class THENAR_OT_report(bpy.types.Operator, ExportHelper):
-    """Write what the comparison found: a page with plots (.html), or every number (.json)"""
-
-    bl_idname = "thenar.report"
-    bl_label = "Write Report"
-    bl_options = {"REGISTER"}
-
-    filename_ext = ".html"
-    check_extension = False
-    filter_glob: bpy.props.StringProperty(default="*.html;*.json", options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        return polling.allows(cls, polling.no_module(), _no_comparison(context))
-
-    def execute(self, context):
-        written = running.attempt(self, _write, context, Path(bpy.path.abspath(self.filepath)))
-        if written is None:
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {written.name}")
-        return {"FINISHED"}
-
-
-def _write(context, path):
-    comparison = comparing.last.get(context.scene.name)
-    if comparison is None:
-        raise Refusal("the comparison was made before this file was opened; press Compare again, then write the report")
-    if path.suffix not in {".html", ".json"}:
-        raise Refusal(f"'{path.name}' has no ending that is known; give .html for a page or .json for numbers")
-    text = comparison.report_html() if path.suffix == ".html" else comparison.to_json()
-    aside = path.with_name(f".{path.name}.part")
-    try:
-        aside.write_text(text, encoding="utf-8")
-        aside.replace(path)
-    except OSError as error:
-        aside.unlink(missing_ok=True)
-        raise Refusal(f"'{path}' cannot be written ({error.strerror}); choose another folder") from None
-    return path
 
 
 CLASSES = (
@@ -213,5 +162,4 @@ CLASSES = (
     THENAR_OT_outline_mat,
     THENAR_OT_compare,
     THENAR_OT_select_place,
-    THENAR_OT_report,
 )

@@ -94,7 +94,7 @@ class THENAR_PT_comparison(Tab, bpy.types.Panel):
             split = column.split(factor=SHARE, align=True)
             split.operator("thenar.select_place", text=place.name, icon="RESTRICT_SELECT_OFF").index = number
             split.label(text=place.residual)
-        layout.operator("thenar.report", icon="TEXT")
+        layout.operator("thenar.report", icon="TEXT").kind = "COMPARISON"
 
 
 def _draw_measures(layout, state):

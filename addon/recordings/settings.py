@@ -91,6 +91,7 @@ class ThenarComparison(bpy.types.PropertyGroup):
 
     is_valid: BoolProperty()
     recording: StringProperty()
+    stamp: StringProperty()
     hand_name: StringProperty()
     vertices: IntProperty()
     sentence: StringProperty()

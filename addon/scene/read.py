@@ -60,7 +60,7 @@ def read_hand(context, hand, group_names):
     _check_regions(hand, vertex_regions)
     depsgraph = context.evaluated_depsgraph_get()
     count = len(hand.data.vertices)
-    rest = _rest_positions(hand)
+    rest = rest_positions(hand)
     posed = mesh.evaluated_positions(hand, depsgraph, count)
     checks.check_finite(rest, hand.name, "hand")
     checks.check_finite(posed, hand.name, "posed hand")
@@ -73,7 +73,7 @@ def read_hand(context, hand, group_names):
     if units.is_mirrored(matrix):
         triangles = triangles[:, ::-1].copy()
     return HandReading(
-        rest_mm=rest.astype(np.float64) @ units.rest_stretch(matrix, scale).T,
+        rest_mm=_stretched(rest, matrix, scale),
         posed_mm=posed_mm,
         triangles=triangles,
         regions=vertex_regions,
@@ -107,7 +107,17 @@ def read_product(context, parts, scale, origin_mm):
     return ProductReading(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32), tuple(records))
 
 
-def _rest_positions(hand):
+def rest_mm(context, hand):
+    """The hand's rest positions (n, 3), mm, in the frame that the library has them in, whatever was solved."""
+    return _stretched(rest_positions(hand), units.world_from_local(hand), units.mm_per_unit(context.scene))
+
+
+def _stretched(rest, matrix, scale):
+    return rest.astype(np.float64) @ units.rest_stretch(matrix, scale).T
+
+
+def rest_positions(hand):
+    """Positions (n, 3) float32 of the hand's first shape, local, Blender units."""
     keys = hand.data.shape_keys
     if keys is None:
         return mesh.positions(hand.data)

@@ -25,9 +25,9 @@ def vertex_regions(context, hand, group_names):
     return regions
 
 
-def select_vertices(mesh, region):
-    """Select the vertices that the last result counted to `region`, and nothing else."""
-    select_only(mesh, attributes.read(mesh, names.REGION) == region)
+def region_vertices(mesh, region):
+    """Numbers of the vertices that the last result counted to `region`. Not in Edit Mode, which hides attributes."""
+    return np.flatnonzero(attributes.read(mesh, names.REGION) == region)
 
 
 def select_only(mesh, vertices):

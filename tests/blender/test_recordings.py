@@ -5,6 +5,7 @@ import json
 import bpy
 import numpy as np
 import pytest
+import small_studies
 import stage
 
 SIDE, PITCH = 9, 1.5
@@ -181,31 +182,40 @@ def test_a_mat_wraps_around_a_turned_cylinder(tmp_path):
 
 
 def test_a_study_is_compared_with_its_own_skin(tmp_path):
-    side = np.arange(13) - 6.0
-    lines = [f"v {x} {y} 0" for y in side for x in side]
-    for row in range(12):
-        for column in range(12):
-            a = row * 13 + column + 1
-            lines.append(f"f {a} {a + 1} {a + 14} {a + 13}")
-    (tmp_path / "skin.obj").write_text("\n".join(lines) + "\n")
-    depth = np.linspace(0.05, 0.8, 30)
-    force = 4 / 3 * 4 * 0.02 * np.sqrt(8) * depth**1.5
-    table = "".join(f"{0.1 * k + 0.1},{d},{f}\n" for k, (d, f) in enumerate(zip(depth, force, strict=True)))
-    (tmp_path / "press.csv").write_text("time_s,depth_mm,force_n\n" + table)
-    (tmp_path / "study.toml").write_text(
-        '[study]\ntitle = "Ball"\n[skin]\nmesh = "skin.obj"\n[skin.materials.default]\ng0_mpa = 0.03\n'
-        "g_lim_mpa = 0.05\n"
-        'd_lim_mm = 4.0\nthickness_mm = "inf"\n[indenters.ball]\nshape = "sphere"\nradius_mm = 8.0\n'
-        "[sites.middle]\npoint_mm = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\n"
-        '[[recordings]]\nname = "press"\nkind = "indentation"\nfile = "press.csv"\nindenter = "ball"\nsite = "middle"\n'
-    )
-    bpy.ops.thenar.load_recording(filepath=str(tmp_path / "study.toml"))
+    stage.scene()
+    bpy.ops.thenar.load_recording(filepath=str(small_studies.write(tmp_path, small_studies.flat_skin())))
     state = bpy.context.scene.thenar_recordings
     assert (state.items[0].name, state.items[0].kind) == ("Ball", "STUDY")
     assert bpy.ops.thenar.compare() == {"FINISHED"}
-    rows = {row.name: row for row in state.comparison.measures}
-    assert float(rows["Largest force"].measured) == pytest.approx(force.max(), rel=0.01)
-    assert float(rows["Force off, rms"].simulated) < 0.05 * force.max()
+    rows, largest = {row.name: row for row in state.comparison.measures}, small_studies.hertz_n(0.8)
+    assert float(rows["Largest force"].measured) == pytest.approx(largest, rel=0.01)
+    assert float(rows["Force off, rms"].simulated) < 0.05 * largest
+    with pytest.raises(RuntimeError, match="another skin than 'Pad'"):
+        bpy.ops.thenar.select_place(index=0)
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (4.0, -7.0, 3.0)])
+def test_a_study_of_the_hand_is_shown_on_it(tmp_path, shift):
+    hand, _ = stage.scene()
+    hand.data.calc_loop_triangles()
+    triangles = np.array([list(each.vertices) for each in hand.data.loop_triangles])
+    local = np.array([vertex.co for vertex in hand.data.vertices]) * 1e3
+    lowest = local[local[:, 2].argmin()]
+    dull = np.array((4, 2))
+    path = small_studies.write_mat(tmp_path, (local + shift, triangles), lowest + shift, tuple(dull))
+    bpy.ops.thenar.load_recording(filepath=str(path))
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    comparison = bpy.context.scene.thenar_recordings.comparison
+    assert any("residual of 'mat'" in note.name for note in comparison.notes)
+    residual, on_mat = stage.attribute(hand, "residual_kpa"), stage.attribute(hand, "on_mat")
+    place = lowest[:2] + (dull[::-1] - 3) * 1.5
+    assert set(np.unique(on_mat)) == {0.0, 1.0} and (residual[on_mat == 0] == 0).all()
+    assert np.linalg.norm(local[residual.argmin()][:2] - place) < 1.5, "the dull sensel reads least against the model"
+    assert comparison.worst[0].name == "row 4, column 2"
+    assert bpy.ops.thenar.select_place(index=0) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = [vertex.index for vertex in hand.data.vertices if vertex.select]
+    assert chosen and np.linalg.norm(local[chosen][:, :2] - place, axis=1).max() < 1.5
 
 
 def test_what_cannot_be_done_says_why(tmp_path):

@@ -1,0 +1,200 @@
+"""Takes a finding over: the effect on the scene's hand with the finding's numbers, and into the study's model."""
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import effect_settings, names, native
+from ..scene import matching
+from ..scene.checks import Refusal
+from . import freshness, reading, wording
+
+EVERYWHERE = {"", "default", names.WHOLE_SKIN}
+"""What studies call skin that is not sorted into regions."""
+_AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What was done: a sentence, and a doubt about it; empty if there is none."""
+
+    sentence: str
+    doubt: str
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """An effect as it will stand on the hand."""
+
+    row: dict
+    region: str
+    amplitude: float | None
+    numbers: dict
+    choices: dict
+
+
+def apply(context, index):
+    """Switch the finding of that number on. Returns `Taken`. Raises `Refusal`, with the scene as it was."""
+    state = context.scene.thenar_diagnosis
+    found = reading.parse(state.findings)
+    finding = reading.finding(found, index)
+    _refuse_unnamed(found, finding)
+    row = next((row for row in native.effects() if row["name"] == finding["effect"]), None)
+    if row is None:
+        raise Refusal(f"Thenar has no effect '{finding['effect']}' to switch on; correct it by hand")
+    title, doubt = wording.title(row["name"]), freshness.problem(state)
+    if row["kind"] == "instrument":
+        _to_model(state, finding)
+        return Taken(f"{title} is the instrument's: nothing on the skin is changed; it is in the study's model", doubt)
+    hand = _hand(context)
+    wanted = _wanted(context, finding, row, hand)
+    effect = _switch_on(hand, wanted)
+    _to_model(state, finding)
+    where = f"on '{effect.region}'" if effect.region else "on all skin"
+    waits = (
+        "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
+    )
+    return Taken(f"{title} is switched on {where}{waits}", doubt)
+
+
+def _refuse_unnamed(found, finding):
+    """Refuse what is no name: an unlisted cause, rivals that cannot be told apart, or too little data."""
+    effect, verdict = finding["effect"], found["verdict"]
+    rivals = reading.rivals(found, effect)
+    next_text = next((told.get("text", "") for told in found.get("record_next", ())), "")
+    remedy = (
+        f"record this first: {next_text[:1].lower()}{next_text[1:]}".rstrip(".") if next_text else "record more first"
+    )
+    if verdict == "unlisted" or effect == "unlisted":
+        raise Refusal(
+            "what was found is not in Thenar's list of effects, so there is nothing to switch on; see the report"
+        )
+    if rivals:
+        raise Refusal(
+            f"these recordings cannot tell {wording.apart([effect, *rivals])}, so neither is switched on; {remedy}"
+        )
+    if verdict not in reading.NAMED:
+        word = {"cannot_tell": "cannot tell what is missing", "insufficient_data": "are too few to name anything"}
+        told = word.get(verdict, "name no effect")
+        raise Refusal(f"these recordings {told}, so {wording.name(effect)} is not switched on; {remedy}")
+
+
+def _hand(context):
+    hand = context.scene.thenar.hand
+    if hand is None or hand.type != "MESH":
+        raise Refusal("choose the hand's mesh under Hand first, so that the effect has skin to act on")
+    if hand.library is not None or not hand.is_editable:
+        raise Refusal(f"'{hand.name}' is linked from a library; use Object > Relations > Make Local > Selected & Data")
+    return hand
+
+
+def _wanted(context, finding, row, hand):
+    """The finding in the terms of the hand's properties. Raises `Refusal`."""
+    numbers, choices, amplitude = {}, {}, None
+    shapes = {shape["name"]: shape["unit"] for shape in row["shape"]}
+    options = {choice["name"]: choice["options"] for choice in row["choices"]}
+    for name, told in (finding.get("parameters") or {}).items():
+        value, unit = told.get("value"), told.get("unit") or "1"
+        if name == "amplitude":
+            amplitude = _checked(value, (finding, name))
+        elif name in shapes:
+            if unit != shapes[name]:
+                raise Refusal(f"the finding gives {name} in {unit} and Thenar wants {shapes[name]}; diagnose again")
+            numbers[name] = _checked(value, (finding, name))
+        elif name in options and value in options[name]:
+            choices[name] = value
+    numbers |= _placed(context, finding, shapes)
+    return _Wanted(row, _region(finding, hand), amplitude, numbers, choices)
+
+
+def _checked(value, about):
+    finding, name = about
+    if not isinstance(value, int | float) or not np.isfinite(value):
+        raise Refusal(f"the finding '{finding['effect']}' has no number for {name}; diagnose again")
+    return float(value)
+
+
+def _region(finding, hand):
+    """The hand's region that the finding names; empty for all skin."""
+    region = (finding.get("where") or {}).get("region") or ""
+    if region in EVERYWHERE or not hand.thenar.materials:
+        return ""
+    if region not in hand.thenar.materials:
+        raise Refusal(
+            f"the finding lies in region '{region}', which '{hand.name}' does not list; "
+            "give its vertex group and row under Materials that name, or choose the hand that the study was taken from"
+        )
+    return region
+
+
+def _placed(context, finding, shapes):
+    """Place and directions of the finding in the frame of the hand at rest. Raises `Refusal` where that is unknown."""
+    told = {name: each.get("value") for name, each in (finding.get("parameters") or {}).items()}
+    center = (finding.get("where") or {}).get("center_mm")
+    has_center = "center_x_mm" in shapes
+    if has_center and "center_x_mm" in told:
+        center = [told.get(f"center_{axis}_mm", 0.0) for axis in _AXES]
+    turned = [told.get(f"direction_{axis}", float(axis == "x")) for axis in _AXES]
+    has_direction = "direction_x" in shapes and bool(told.get("slope"))
+    if not has_center and not has_direction:
+        return {}
+    if has_center and center is None:
+        raise Refusal(f"the finding '{finding['effect']}' does not say where it lies; look at its report")
+    match = on_hand(context)
+    placed = {}
+    if has_center:
+        point = match.point_mm(center)
+        placed |= {f"center_{axis}_mm": float(point[k]) for k, axis in enumerate(_AXES)}
+    if has_direction:
+        direction = match.direction(turned)
+        placed |= {f"direction_{axis}": float(direction[k]) for k, axis in enumerate(_AXES)}
+    return placed
+
+
+def on_hand(context):
+    """How the study's skin lies on the scene's hand. Raises `Refusal` if it does not, or cannot be read."""
+    hand, path = context.scene.thenar.hand, context.scene.thenar_diagnosis.path
+    if hand is None or hand.type != "MESH":
+        raise Refusal("choose the hand's mesh under Hand first, so that the place can be shown on it")
+    match = matching.on_scene_hand(context, native.module.Study.load(path).skin.vertices_mm)
+    if match is None:
+        raise Refusal(
+            f"the study's skin is not '{hand.name}', so the place is not known on it; "
+            "choose the hand that the study was taken from"
+        )
+    return match
+
+
+def _switch_on(hand, wanted):
+    """Change the effect of that name and region, or add it."""
+    name, listed = wanted.row["name"], hand.thenar.effects
+    effect = next((each for each in listed if each.name == name and each.region == wanted.region), None)
+    if effect is None:
+        effect = listed.add()
+        effect_settings.fill(effect, wanted.row)
+        effect.region = wanted.region
+    hand.thenar.effect_index = list(listed).index(effect)
+    effect.is_on = True
+    if wanted.amplitude is not None:
+        effect.amplitude = wanted.amplitude
+    for name, value in wanted.numbers.items():
+        effect.numbers[name].value = value
+    for name, value in wanted.choices.items():
+        effect.choices[name].value = value
+    return effect
+
+
+def _to_model(state, finding):
+    """The study's model with the finding; once for each effect."""
+    row = next((row for row in state.model if row.name == finding["effect"]), None) or state.model.add()
+    row.name, row.kind = finding["effect"], finding.get("kind") or ""
+    row.parameters = json.dumps(finding.get("parameters") or {})
+
+
+def is_on(context, effect):
+    """Whether a finding's effect is taken over: on the hand, or for an instrument in the study's model."""
+    hand = context.scene.thenar.hand
+    if effect in effect_settings.offered():
+        return hand is not None and effect_settings.is_on(hand, effect)
+    return effect in context.scene.thenar_diagnosis.model

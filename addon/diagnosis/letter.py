@@ -1,0 +1,177 @@
+"""The diagnosis as a letter: what a designer reads, in order, from the library's findings. Knows nothing of layout."""
+
+from dataclasses import dataclass
+
+from . import wording
+
+HEADINGS = {
+    "nothing_missing": "Nothing is missing",
+    "parameters": "Only parameters were off",
+    "instrument": "It is the instrument",
+    "missing_physics": "Physics is missing",
+    "cannot_tell": "Cannot tell yet",
+    "unlisted": "Not in the list",
+    "insufficient_data": "Too few recordings",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A word and what stands beside it."""
+
+    label: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One finding; `index` is its number, `sureness` 0 to 1 or None, `has_place` whether the skin can show it."""
+
+    index: int
+    effect: str
+    title: str
+    is_instrument: bool
+    sureness: float | None
+    rows: tuple
+    has_place: bool
+
+
+@dataclass(frozen=True)
+class Bar:
+    """An error as a bar: `share` of the longest, 0 to 1."""
+
+    label: str
+    text: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A recording to make next."""
+
+    text: str
+    settles: str
+    outlook: str
+
+
+@dataclass(frozen=True)
+class Letter:
+    """The whole of it; tuples are empty where there is nothing to say."""
+
+    verdict: str
+    heading: str
+    sentence: str
+    entries: tuple
+    rivals: tuple
+    bars: tuple
+    gain: tuple
+    advice: tuple
+    smallest: tuple
+
+
+def write(found):
+    """The letter of parsed findings."""
+    bars, gain = _fit(found.get("fit") or {})
+    return Letter(
+        verdict=found["verdict"],
+        heading=HEADINGS[found["verdict"]],
+        sentence=found.get("sentence") or "",
+        entries=tuple(_entry(index, finding) for index, finding in enumerate(found.get("findings", ()))),
+        rivals=tuple(_rivals(found)),
+        bars=bars,
+        gain=gain,
+        advice=tuple(_advice(each) for each in found.get("record_next", ())),
+        smallest=tuple(
+            Row(wording.title(effect), wording.value(seen))
+            for effect, seen in (found.get("smallest_seen") or {}).items()
+        ),
+    )
+
+
+def lines(letter):
+    """The letter as plain lines of text."""
+    yield letter.heading
+    yield letter.sentence
+    for entry in letter.entries:
+        sure = "" if entry.sureness is None else f", {wording.share(entry.sureness)} sure"
+        yield f"{entry.index + 1}. {entry.title}{sure}"
+        yield from (f"   {row.label}: {row.text}" for row in entry.rows)
+    yield from letter.rivals
+    yield from (f"{bar.label}: {bar.text}" for bar in letter.bars)
+    yield from letter.gain
+    for advice in letter.advice:
+        yield f"Record next: {advice.text}"
+        yield from (text for text in (advice.settles, advice.outlook) if text)
+    yield from (f"{row.label}: seen from {row.text}" for row in letter.smallest)
+
+
+def _entry(index, finding):
+    where, when = finding.get("where") or {}, finding.get("when") or {}
+    rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
+    told = (
+        ("Where", wording.place(where)),
+        ("When", wording.moment(when)),
+        ("In", wording.some(when.get("recordings"))),
+        ("Depends on", wording.depends(finding.get("depends_on"))),
+    )
+    rows += [Row(label, text) for label, text in told if text]
+    return Entry(
+        index=index,
+        effect=finding["effect"],
+        title=wording.title(finding["effect"]),
+        is_instrument=finding.get("kind") == "instrument",
+        sureness=finding.get("confidence"),
+        rows=tuple(rows),
+        has_place=bool(where.get("center_mm") or where.get("vertices") or where.get("region")),
+    )
+
+
+def _rivals(found):
+    """What cannot be told apart, and what else the name may be at 90 %."""
+    for effects in found.get("cannot_tell", ()):
+        yield f"These recordings cannot tell {wording.apart(effects)}."
+    sets = found.get("names_90") or []
+    if len(sets) > 1:
+        words = [" with ".join(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
+        yield f"At 90 % it is one of: {'; '.join(words)}."
+
+
+def _fit(fit):
+    """Bars of the error before, after and at the noise floor, and sentences on what was gained."""
+    told = [("Before", fit.get("before")), ("After", fit.get("after")), ("Noise floor", fit.get("noise_floor"))]
+    told = [(label, each) for label, each in told if each and each.get("rms") is not None]
+    longest = max((each["rms"] for _, each in told), default=0.0)
+    bars = tuple(
+        Bar(label, wording.value({**each, "value": each["rms"]}), each["rms"] / longest if longest > 0.0 else 0.0)
+        for label, each in told
+    )
+    return bars, tuple(_gain(fit))
+
+
+def _gain(fit):
+    removed = fit.get("reducible_error_removed")
+    if removed and removed.get("value") is not None:
+        between = ""
+        if removed.get("low") is not None and removed.get("high") is not None:
+            between = f" ({wording.share(removed['low'])} to {wording.share(removed['high'])})"
+        yield f"{wording.share(removed['value'])}{between} of the error that could be removed is gone."
+    held_out = fit.get("held_out")
+    if held_out:
+        count = len(held_out)
+        plural = "" if count == 1 else "s"
+        yield f"Judged on {count} recording{plural} that the fit did not use: {wording.some(held_out)}."
+
+
+def _advice(told):
+    settles = told.get("settles") or []
+    words = wording.apart([each if isinstance(each, str) else " and ".join(each) for each in settles])
+    outlook = []
+    if told.get("probability") is not None:
+        outlook.append(f"settles it in {wording.share(told['probability'])} of cases")
+    if told.get("minutes") is not None:
+        outlook.append(f"{wording.number(told['minutes'])} min")
+    return Advice(
+        text=told.get("text") or "",
+        settles=f"Tells {words}." if words else "",
+        outlook=", ".join(outlook)[:1].upper() + ", ".join(outlook)[1:],
+    )

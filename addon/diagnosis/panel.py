@@ -1,0 +1,240 @@
+"""The panel of the diagnosis: a letter with buttons. Layout only; the words stand in letter.py."""
+
+from functools import lru_cache
+
+import bpy
+
+from .. import status
+from ..panels.main import Tab
+from ..panels.preferences import text_width, wrapped
+from ..recordings import settings as recordings
+from ..scene.checks import Refusal
+from . import applying, freshness, letter, reading
+
+ICONS = {
+    "nothing_missing": "CHECKMARK",
+    "parameters": "OPTIONS",
+    "instrument": "TOOL_SETTINGS",
+    "missing_physics": "ZOOM_ALL",
+    "cannot_tell": "QUESTION",
+    "unlisted": "HELP",
+    "insufficient_data": "INFO",
+}
+
+
+@lru_cache(maxsize=8)
+def written(findings):
+    """The letter of findings.json; None with the reason if it cannot be read."""
+    try:
+        return letter.write(reading.parse(findings)), ""
+    except Refusal as refusal:
+        return None, str(refusal)
+
+
+def _letter(context):
+    state = context.scene.thenar_diagnosis
+    return written(state.findings)[0] if state.is_valid else None
+
+
+class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
+    """The question, and the answer in one sentence."""
+
+    bl_label = "Diagnosis"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 7
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, state = self.layout, context.scene.thenar_diagnosis
+        item = recordings.chosen(context)
+        if item is None or item.kind != recordings.STUDY:
+            _paragraph(layout, "Load a study under Recordings, and select it", (context, "INFO"))
+        else:
+            _faint(layout, context, f"{item.name}: {item.about}")
+        _draw_button(layout)
+        if not state.is_valid:
+            return
+        told, problem = written(state.findings)
+        if told is None:
+            _alert(layout, context, problem)
+            return
+        doubt = freshness.problem(state)
+        if doubt:
+            _alert(layout, context, doubt)
+        box = layout.box().column(align=True)
+        box.label(text=told.heading, icon=ICONS[told.verdict])
+        box.separator(factor=0.5)
+        _paragraph(box, told.sentence, (context, ""))
+        if item is None or item.path != state.path:
+            _faint(layout, context, f"Of the study '{state.study}'")
+        layout.operator("thenar.report", text="Write Report", icon="TEXT").kind = "DIAGNOSIS"
+
+
+class _Part(Tab):
+    """A part of the letter; there if it has something to say."""
+
+    bl_parent_id = "THENAR_PT_diagnosis"
+
+    @classmethod
+    def poll(cls, context):
+        told = _letter(context)
+        return told is not None and bool(cls.said(told))
+
+
+class THENAR_PT_findings(_Part, bpy.types.Panel):
+    """What was found: how sure, how large, where, when."""
+
+    bl_label = "What Was Found"
+
+    @staticmethod
+    def said(told):
+        """The findings."""
+        return told.entries
+
+    def draw(self, context):
+        for entry in _letter(context).entries:
+            _draw_entry(self.layout, context, entry)
+
+
+class THENAR_PT_gain(_Part, bpy.types.Panel):
+    """The error on recordings held out, before and after."""
+
+    bl_label = "Before and After"
+
+    @staticmethod
+    def said(told):
+        """Bars and sentences."""
+        return told.bars or told.gain
+
+    def draw(self, context):
+        layout, told = self.layout, _letter(context)
+        column = layout.column(align=True)
+        for bar in told.bars:
+            split = column.split(factor=0.34)
+            split.label(text=bar.label)
+            split.progress(factor=bar.share, text=bar.text)
+        for sentence in told.gain:
+            _paragraph(layout, sentence, (context, ""))
+
+
+class THENAR_PT_rivals(_Part, bpy.types.Panel):
+    """What cannot be told, and which recording would tell it."""
+
+    bl_label = "What to Record Next"
+
+    @staticmethod
+    def said(told):
+        """Rivals and advice."""
+        return told.rivals or told.advice
+
+    def draw(self, context):
+        layout, told = self.layout, _letter(context)
+        for sentence in told.rivals:
+            _paragraph(layout, sentence, (context, "QUESTION"))
+        for advice in told.advice:
+            box = layout.box().column(align=True)
+            _paragraph(box, advice.text, (context, "REC"))
+            for text in (advice.settles, advice.outlook):
+                if text:
+                    _faint(box, context, text)
+
+
+class THENAR_PT_smallest(_Part, bpy.types.Panel):
+    """The smallest of every effect that these recordings would have shown."""
+
+    bl_label = "Smallest That Would Be Seen"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @staticmethod
+    def said(told):
+        """Rows by effect."""
+        return told.smallest
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        for row in _letter(context).smallest:
+            _draw_row(column, context, row)
+
+
+def _draw_button(layout):
+    if status.run.stage:
+        text = f"{status.run.stage.capitalize()} {status.run.fraction:.0%} · Esc cancels"
+        layout.progress(factor=status.run.fraction, text=text)
+        return
+    row = layout.row()
+    row.scale_y = 1.3
+    row.operator("thenar.diagnose", icon="VIEWZOOM")
+
+
+def _draw_entry(layout, context, entry):
+    box = layout.box().column(align=True)
+    head = box.row()
+    head.label(text=entry.title, icon="TOOL_SETTINGS" if entry.is_instrument else "PHYSICS")
+    if entry.sureness is not None:
+        sure = head.row()
+        sure.alignment = "RIGHT"
+        sure.label(text=f"{letter.wording.share(entry.sureness)} sure")
+    for row in entry.rows:
+        _draw_row(box, context, row)
+    box.separator(factor=0.5)
+    buttons = box.row(align=True)
+    if entry.has_place:
+        buttons.operator("thenar.show_finding", text="Show", icon="RESTRICT_SELECT_OFF").index = entry.index
+    if applying.is_on(context, entry.effect):
+        buttons.label(text="In the model" if entry.is_instrument else "Switched on", icon="CHECKMARK")
+    else:
+        word = "Into the Model" if entry.is_instrument else "Switch On"
+        buttons.operator("thenar.apply_finding", text=word, icon="ADD").index = entry.index
+
+
+def _draw_row(column, context, row):
+    """A word and what stands beside it; below it where the sidebar is too narrow for both."""
+    if len(row.label) + len(row.text) + 4 <= text_width(context):
+        split = column.split(factor=len(row.label) / (len(row.label) + len(row.text) + 2))
+        split.label(text=row.label)
+        beside = split.row()
+        beside.alignment = "RIGHT"
+        beside.label(text=row.text)
+        return
+    column.label(text=row.label)
+    for line in wrapped(row.text, context):
+        below = column.row()
+        below.alignment = "RIGHT"
+        below.label(text=line)
+
+
+def _paragraph(layout, text, about):
+    context, icon = about
+    column = layout.column(align=True)
+    for number, line in enumerate(wrapped(text, context)):
+        if icon:
+            column.label(text=line, icon=icon if number == 0 else "BLANK1")
+        else:
+            column.label(text=line)
+
+
+def _faint(layout, context, text):
+    column = layout.column(align=True)
+    column.active = False
+    for line in wrapped(text, context):
+        column.label(text=line)
+
+
+def _alert(layout, context, text):
+    column = layout.column(align=True)
+    column.alert = True
+    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
+        column.label(text=line, icon="ERROR" if number == 0 else "BLANK1")
+
+
+CLASSES = (
+    THENAR_PT_diagnosis,
+    THENAR_PT_findings,
+    THENAR_PT_gain,
+    THENAR_PT_rivals,
+    THENAR_PT_smallest,
+)

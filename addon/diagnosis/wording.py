@@ -1,0 +1,110 @@
+"""Words and numbers of the letter: effects, values with intervals, places and times, as a reader wants them."""
+
+from math import isfinite
+
+from .. import effect_settings
+
+PHASES = {
+    "load": "while pressing in",
+    "hold": "while holding",
+    "unload": "while letting go",
+    "slide": "while sliding",
+    "rest": "at rest",
+}
+DEPENDS = {
+    "time": "time",
+    "rate": "speed",
+    "cycle": "count of presses",
+    "direction": "direction of sliding",
+    "radius": "size of the tool",
+    "skin_position": "place on the skin",
+    "sensor_position": "place on the sensor",
+}
+
+
+def title(name):
+    """An effect's, number's or region's name for reading."""
+    return effect_settings.title(name)
+
+
+def name(effect):
+    """An effect's name in the middle of a sentence."""
+    return effect.replace("_", " ")
+
+
+def apart(effects):
+    """What follows "cannot tell": `relaxation from drainage`, `gain, modulus and offset apart`."""
+    words = [name(effect) for effect in effects]
+    return " from ".join(words) if len(words) < 3 else f"{', '.join(words[:-1])} and {words[-1]} apart"
+
+
+def number(value):
+    """Three digits, without an exponent where that is readable."""
+    if value is None or not isfinite(value):
+        return "unknown"
+    if value != 0.0 and not 1e-3 <= abs(value) < 1e6:
+        return f"{value:.2e}"
+    text = f"{value:.3g}"
+    return f"{float(text):.0f}" if "e" in text else text
+
+
+def interval(low, high):
+    """`0.31–0.37`; with `to` where a minus sign would be read as a dash. Empty where it is not known."""
+    if low is None or high is None or not (isfinite(low) and isfinite(high)):
+        return ""
+    return f"{number(low)} to {number(high)}" if low < 0.0 else f"{number(low)}–{number(high)}"
+
+
+def value(told):
+    """A value with its unit and, in brackets, its interval: `1.4 s (0.9–2.2)`."""
+    if isinstance(told.get("value"), str):
+        return told["value"]
+    unit = told.get("unit") or ""
+    text = number(told.get("value")) + (f" {unit}" if unit not in {"", "1"} else "")
+    between = interval(told.get("low"), told.get("high"))
+    return f"{text} ({between})" if between else text
+
+
+def share(part):
+    """A share as percent; never 100 % or 0 % where it is not quite that."""
+    if part is None or not isfinite(part):
+        return "unknown"
+    if 0.995 <= part < 1.0:
+        return "> 99 %"
+    if 0.0 < part < 0.005:
+        return "< 1 %"
+    return f"{100 * part:.0f} %"
+
+
+def place(where):
+    """Where a finding lies: site, region, and how far around its middle. Empty where it lies everywhere."""
+    parts = [title(where["region"]).lower()] if where.get("region") else []
+    if where.get("site"):
+        parts.append(f"site {where['site']}")
+    if where.get("center_mm") and where.get("radius_mm"):
+        parts.append(f"within {number(where['radius_mm'])} mm")
+    return ", ".join(parts)
+
+
+def moment(when):
+    """When a finding shows: phase, time, depth and cycles. Empty where always."""
+    phases = when.get("phase") or []
+    phases = phases.replace("|", ",").split(",") if isinstance(phases, str) else phases
+    parts = [PHASES.get(phase.strip(), phase.strip()) for phase in phases]
+    for key, before, unit in (("time_s", "at ", " s"), ("depth_mm", "at ", " mm deep"), ("cycles", "press ", "")):
+        span = when.get(key)
+        if span and len(span) == 2 and None not in span:
+            parts.append(f"{before}{number(span[0]) if span[0] == span[1] else interval(*span)}{unit}")
+    return ", ".join(parts)
+
+
+def depends(words):
+    """`time, size of the tool`."""
+    return ", ".join(DEPENDS.get(word, name(word)) for word in words or ())
+
+
+def some(names, most=3):
+    """The first few names, and how many more."""
+    names = list(names or ())
+    more = len(names) - most
+    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")

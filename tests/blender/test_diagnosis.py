@@ -1,0 +1,331 @@
+"""The diagnosis in a scene: asked for, kept, read as a letter, shown on the skin, switched on or refused."""
+
+import json
+from types import SimpleNamespace
+
+import bpy
+import findings
+import numpy as np
+import pytest
+import small_studies
+import stage
+from thenar_blender import native
+from thenar_blender.diagnosis import freshness, letter, reading
+from thenar_blender.scene.checks import Refusal
+
+
+@pytest.fixture
+def diagnose(tmp_path, monkeypatch):
+    """Loads a study of the scene's pad and diagnoses it, with the given findings as the library's answer."""
+    skin = None
+
+    def run(found, turned=None):
+        nonlocal skin
+        hand = bpy.context.scene.thenar.hand
+        if hand is not None and skin is None:
+            hand.data.calc_loop_triangles()
+            triangles = np.array([list(each.vertices) for each in hand.data.loop_triangles])
+            vertices = np.array([vertex.co for vertex in hand.data.vertices]) * 1e3
+            skin = (vertices if turned is None else turned(vertices)), triangles
+        point = (0.0, 0.0, 0.0) if skin is None else skin[0][0]
+        path = small_studies.write(tmp_path, skin or small_studies.flat_skin(), point)
+        answer = found if isinstance(found, Exception) else findings.Answer(found)
+
+        def diagnosed(study, progress=None, cancel=None):
+            assert study.title == "Ball"
+            if isinstance(answer, Exception):
+                raise answer
+            return answer
+
+        monkeypatch.setattr(native.module, "diagnose", diagnosed, raising=False)
+        if not len(bpy.context.scene.thenar_recordings.items):
+            bpy.ops.thenar.load_recording(filepath=str(path))
+        return bpy.ops.thenar.diagnose()
+
+    return run
+
+
+def effects():
+    """What is switched on: name -> (amplitude, numbers, region)."""
+    listed = bpy.context.scene.thenar.hand.thenar.effects
+    return {
+        each.name: (each.amplitude, {number.name: number.value for number in each.numbers}, each.region)
+        for each in listed
+        if each.is_on
+    }
+
+
+def told():
+    """The letter of the scene as lines."""
+    return list(letter.lines(letter.write(reading.parse(bpy.context.scene.thenar_diagnosis.findings))))
+
+
+@pytest.mark.parametrize("verdict", sorted(reading.VERDICTS))
+def test_every_verdict_has_its_letter(verdict, diagnose):
+    assert diagnose(findings.FINDINGS[verdict]) == {"FINISHED"}
+    lines = told()
+    assert lines[0] == letter.HEADINGS[verdict] and lines[1] == findings.FINDINGS[verdict]["sentence"]
+    assert all(line == line.strip() or line.startswith("   ") for line in lines) and "" not in lines
+    assert not any(word in " ".join(lines) for word in ("None", "nan", "_", "[", "{"))
+
+
+def test_the_letter_tells_size_place_time_and_gain(diagnose):
+    diagnose(findings.FINDINGS["missing_physics"])
+    lines = told()
+    for line in (
+        "1. Relaxation, 97 % sure",
+        "   Amplitude: 0.34 (0.31–0.37)",
+        "   Time 3: 1.9 s (1.6–2.3)",
+        "   Where: site pad",
+        "   When: while holding, at 0.8–30 s, at 1.2–2 mm deep",
+        "   In: slow 1, slow 2, fast 1 and 2 more",
+        "   Depends on: time, speed",
+        "Before: 0.21 N (0.18–0.24)",
+        "Noise floor: 0.03 N (0.02–0.04)",
+        "96 % (91 % to > 99 %) of the error that could be removed is gone.",
+        "Judged on 2 recordings that the fit did not use: sphere 1, sphere 2.",
+        "Adhesion: seen from 0.02 J/m2",
+    ):
+        assert line in lines, lines
+    bars = letter.write(findings.FINDINGS["missing_physics"]).bars
+    assert [round(bar.share, 3) for bar in bars] == [1.0, 0.238, 0.143]
+
+
+def test_the_letter_names_rivals_and_the_recording_that_settles_it(diagnose):
+    diagnose(findings.FINDINGS["cannot_tell"])
+    lines = told()
+    assert "These recordings cannot tell relaxation from drainage." in lines
+    assert "At 90 % it is one of: relaxation; drainage." in lines
+    assert "Record next: Hold a sphere of 16 mm or more at the same depth for 30 s, twice." in lines
+    assert "Settles it in 87 % of cases, 4 min" in lines
+
+
+def test_a_finding_changes_the_next_solve(diagnose):
+    stage.scene()
+    diagnose(findings.FINDINGS["missing_physics"])
+    before = stage.solve().peak_kpa
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    amplitude, numbers, region = effects()["bone"]
+    assert (amplitude, numbers["thickness_mm"], region) == (1.0, 2.0, "")
+    assert stage.solve().peak_kpa > 1.1 * before, "2 mm over bone press harder than 7 mm"
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    assert len(bpy.context.scene.thenar.hand.thenar.effects) == 1, "taken over twice, it stands once"
+    assert [row.name for row in bpy.context.scene.thenar_diagnosis.model] == ["bone"]
+
+
+def test_what_acts_over_time_says_that_it_needs_a_bake(diagnose):
+    stage.scene()
+    diagnose(findings.FINDINGS["missing_physics"])
+    assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
+    amplitude, numbers, _ = effects()["relaxation"]
+    assert amplitude == pytest.approx(0.34) and numbers["time_3_s"] == pytest.approx(1.9)
+    stage.solve()
+    assert any("bake to see it" in text.name for text in bpy.context.scene.thenar.result.warnings)
+
+
+def test_a_finding_of_one_region_stays_there(diagnose):
+    hand, _ = stage.scene()
+    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found["findings"][1]["where"]["region"] = "left"
+    diagnose(found)
+    points = stage.evaluated(hand)
+    for name, inside in (("left", points[:, 0] < 0.0), ("right", points[:, 0] >= 0.0)):
+        hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(inside)], 1.0, "REPLACE")
+    bpy.ops.thenar.assign_regions()
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    assert effects()["bone"][2] == "left"
+    assert bpy.ops.thenar.show_finding(index=1) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert {vertex.index for vertex in hand.data.vertices if vertex.select} == set(np.flatnonzero(points[:, 0] < 0.0))
+    hand.thenar.effects.clear()
+    hand.thenar.materials["left"].name = "other"
+    with pytest.raises(RuntimeError, match="region 'left', which 'Pad' does not list"):
+        bpy.ops.thenar.apply_finding(index=1)
+    assert not effects()
+
+
+def turned(points):
+    """A skin as another program may have moved it: turned by 90 degrees about x, and shifted."""
+    return points[:, [0, 2, 1]] * (1.0, 1.0, -1.0) + (5.0, -3.0, 2.0)
+
+
+@pytest.mark.parametrize("moved", [None, turned])
+def test_an_inclusion_comes_to_lie_at_its_place_on_the_hand(diagnose, moved):
+    hand, _ = stage.scene()
+    local = np.array([vertex.co for vertex in hand.data.vertices]) * 1e3
+    lowest = int(local[:, 2].argmin())
+    there = (local if moved is None else moved(local))[lowest]
+    diagnose(findings.inclusion(there, 3.0), moved)
+    before = stage.solve().peak_kpa
+    assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
+    _, numbers, _ = effects()["inclusion"]
+    center = [numbers[f"center_{axis}_mm"] for axis in "xyz"]
+    assert np.allclose(center, local[lowest], atol=0.02)
+    assert (numbers["contrast"], numbers["radius_mm"]) == (4.0, 3.0)
+    assert stage.solve().peak_kpa > 1.05 * before, "a stiff place below the contact presses harder"
+    assert bpy.ops.thenar.show_finding(index=0) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = {vertex.index for vertex in hand.data.vertices if vertex.select}
+    assert chosen == set(np.flatnonzero(np.linalg.norm(local - local[lowest], axis=1) <= 3.0))
+
+
+def test_a_place_on_another_skin_is_not_guessed(diagnose):
+    diagnose(findings.inclusion((0.0, 0.0, 0.0), 3.0))
+    with pytest.raises(RuntimeError, match="[Cc]hoose the hand"):
+        bpy.ops.thenar.apply_finding(index=0)
+    stage.scene()
+    for operator in (bpy.ops.thenar.apply_finding, bpy.ops.thenar.show_finding):
+        with pytest.raises(RuntimeError, match="study's skin is not 'Pad'"):
+            operator(index=0)
+    assert not effects() and not len(bpy.context.scene.thenar_diagnosis.model)
+
+
+def test_an_instrument_changes_nothing_on_the_skin(diagnose):
+    stage.scene()
+    diagnose(findings.FINDINGS["instrument"])
+    before = stage.solve().input_hash
+    assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
+    model = bpy.context.scene.thenar_diagnosis.model
+    assert [(row.name, row.kind) for row in model] == [("drift", "instrument")]
+    assert json.loads(model[0].parameters)["rate_n_per_min"]["value"] == 0.1
+    assert stage.solve().input_hash == before and not effects()
+
+
+@pytest.mark.parametrize(
+    ("verdict", "index", "reason"),
+    [
+        ("unlisted", 0, "not in Thenar's list"),
+        ("cannot_tell", 0, "cannot tell relaxation from drainage.*record this first: hold a sphere"),
+        ("nothing_missing", 0, "lists no finding"),
+        ("missing_physics", 7, "no finding 7; the diagnosis lists 2"),
+    ],
+)
+def test_what_has_no_name_is_not_switched_on(diagnose, verdict, index, reason):
+    stage.scene()
+    diagnose(findings.FINDINGS[verdict])
+    with pytest.raises(RuntimeError, match=reason):
+        bpy.ops.thenar.apply_finding(index=index)
+    assert not effects() and not len(bpy.context.scene.thenar_diagnosis.model)
+
+
+def test_a_named_effect_with_a_rival_is_not_switched_on(diagnose):
+    stage.scene()
+    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found["cannot_tell"] = [["bone", "stiffening_law"]]
+    diagnose(found)
+    with pytest.raises(RuntimeError, match="cannot tell bone from stiffening law"):
+        bpy.ops.thenar.apply_finding(index=1)
+    assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
+    assert set(effects()) == {"relaxation"}
+
+
+def test_a_finding_in_another_unit_is_refused(diagnose):
+    stage.scene()
+    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found["findings"][1]["parameters"]["thickness_mm"]["unit"] = "m"
+    diagnose(found)
+    with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar wants mm"):
+        bpy.ops.thenar.apply_finding(index=1)
+    assert not effects()
+
+
+def test_the_file_keeps_the_diagnosis(diagnose, tmp_path):
+    stage.scene()
+    diagnose(findings.FINDINGS["missing_physics"])
+    before, path = told(), str(tmp_path / "kept.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert told() == before and freshness.problem(bpy.context.scene.thenar_diagnosis) == ""
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert set(effects()) == {"bone"} and len(bpy.context.scene.thenar_diagnosis.model) == 1
+
+
+def test_findings_of_a_study_that_changed_are_called_old(diagnose, tmp_path):
+    stage.scene()
+    diagnose(findings.FINDINGS["missing_physics"])
+    state = bpy.context.scene.thenar_diagnosis
+    (tmp_path / "report.html").write_text("a report beside the study is no change")
+    freshness.forget()
+    assert freshness.problem(state) == ""
+    with (tmp_path / "press.csv").open("a") as file:
+        file.write("3.2,0.82,0.2\n")
+    freshness.forget()
+    assert "has changed since" in freshness.problem(state)
+    (tmp_path / "press.csv").unlink()
+    (tmp_path / "study.toml").unlink()
+    freshness.forget()
+    assert "no longer at" in freshness.problem(state)
+    state.made_with = "Thenar 0.0.1"
+    assert "made with Thenar 0.0.1" in freshness.problem(state)
+
+
+def test_reports_take_the_diagnosis_or_the_comparison(diagnose, tmp_path):
+    stage.scene()
+    diagnose(findings.FINDINGS["cannot_tell"])
+    page, numbers = tmp_path / "diagnosis.html", tmp_path / "findings.json"
+    assert bpy.ops.thenar.report(filepath=str(page)) == {"FINISHED"}
+    assert findings.FINDINGS["cannot_tell"]["sentence"] in page.read_text()
+    assert bpy.ops.thenar.report(filepath=str(numbers)) == {"FINISHED"}
+    assert json.loads(numbers.read_text()) == findings.FINDINGS["cannot_tell"]
+    with pytest.raises(RuntimeError, match="nothing to report"):
+        bpy.ops.thenar.report(filepath=str(page), kind="COMPARISON")
+    bpy.context.scene.thenar_diagnosis.stamp = "1"
+    assert bpy.ops.thenar.report(filepath=str(numbers)) == {"FINISHED"}, "the file keeps the findings themselves"
+    assert json.loads(numbers.read_text()) == findings.FINDINGS["cannot_tell"]
+    with pytest.raises(RuntimeError, match="press Diagnose again"):
+        bpy.ops.thenar.report(filepath=str(page))
+
+
+def test_a_diagnosis_that_fails_leaves_the_last_one(diagnose):
+    diagnose(findings.FINDINGS["instrument"])
+    before = told()
+    with pytest.raises(RuntimeError, match="No press is long enough"):
+        diagnose(native.module.RecordingError("no press is long enough"))
+    with pytest.raises(RuntimeError, match="unknown verdict 'guess'"):
+        diagnose(findings.FINDINGS["instrument"] | {"verdict": "guess"})
+    assert told() == before
+
+
+def test_what_cannot_be_asked_says_why():
+    with pytest.raises(RuntimeError, match="[Nn]o study is loaded"):
+        bpy.ops.thenar.diagnose()
+    for operator in (bpy.ops.thenar.apply_finding, bpy.ops.thenar.show_finding):
+        with pytest.raises(RuntimeError, match="[Nn]othing was diagnosed"):
+            operator(index=0)
+    with pytest.raises(RuntimeError, match="[Nn]othing was found yet"):
+        bpy.ops.thenar.report(filepath="/nowhere/report.html")
+    item = bpy.context.scene.thenar_recordings.items.add()
+    item.kind = "MAP"
+    with pytest.raises(RuntimeError, match="mat alone cannot be diagnosed"):
+        bpy.ops.thenar.diagnose()
+
+
+@pytest.mark.parametrize("text", ["", "[]", '{"schema": 2}', '{"schema": 1, "verdict": "unlisted", "findings": [{}]}'])
+def test_findings_that_are_none_are_refused(text):
+    with pytest.raises(Refusal, match="press Diagnose again"):
+        reading.parse(text)
+
+
+def test_the_library_is_asked_beside_the_window(monkeypatch, tmp_path):
+    """Progress and cancel reach the library; nothing of the scene is read or written by the worker."""
+    from thenar_blender.diagnosis import diagnosing
+
+    seen = {}
+
+    def diagnosed(study, progress=None, cancel=None):
+        seen.update(progress=progress, cancel=cancel)
+        return findings.Answer(findings.FINDINGS["nothing_missing"])
+
+    monkeypatch.setattr(native.module, "diagnose", diagnosed, raising=False)
+    bpy.ops.thenar.load_recording(filepath=str(small_studies.write(tmp_path, small_studies.flat_skin())))
+    steps = diagnosing.steps(bpy.context)
+    work = next(steps)
+    cancel, progress = SimpleNamespace(is_set=lambda: False), lambda stage, fraction: None
+    value = work(cancel, progress)
+    assert seen == {"progress": progress, "cancel": cancel}
+    assert not bpy.context.scene.thenar_diagnosis.is_valid
+    with pytest.raises(StopIteration) as end:
+        steps.send(value)
+    assert end.value.value["verdict"] == "nothing_missing" and bpy.context.scene.thenar_diagnosis.is_valid
