@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+from contextlib import suppress
 
 TIMES_TRIED = 2
 """A case whose process dies is given to a fresh one once; then it counts as what killed it."""
@@ -50,7 +51,8 @@ class Child:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
-            self._process.stdin.close()
+            with suppress(BrokenPipeError):  # a task that the dead process never took
+                self._process.stdin.close()
             self._complaints.close()
             self._process = None
 

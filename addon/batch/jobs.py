@@ -56,6 +56,26 @@ def read_jobs(path):
     return [_checked(case, path) for case in _named_apart(cases, path)]
 
 
+def check(case, name):
+    """Refuse a case that says what no case can say; `name` is how the user knows it. Raises `Refusal`."""
+    for key, value in case.items():
+        if key not in KEYS:
+            raise Refusal(f"case {name} has the unknown key '{key}'; known: {', '.join(sorted(KEYS))}")
+        wanted = KEYS[key]
+        if not _fits(value, wanted):
+            told = " or ".join(f'"{word}"' for word in wanted) if isinstance(wanted, tuple) else wanted
+            raise Refusal(f"case {name}: {key} is {value!r}, but must be {told}")
+    if "blend" not in case:
+        raise Refusal(f'case {name} names no file; add blend = "FILE.blend"')
+    for key in ("hand_percentile", "hand_sex"):
+        if key in case and "fit" not in case:
+            raise Refusal(
+                f'case {name}: a hand of its own size must be laid on the product; add fit = "firm" or "light"'
+            )
+    if case.get("hand_percentile", 50) >= 100:
+        raise Refusal(f"case {name}: hand_percentile is {case['hand_percentile']}, but must lie below 100")
+
+
 def case_hash(case, files):
     """Digest of all that a case's result depends on: its settings, its file's bytes, Thenar's version.
 
@@ -110,22 +130,7 @@ def _named_apart(cases, path):
 
 
 def _checked(case, path):
-    for key, value in case.items():
-        if key not in KEYS:
-            raise Refusal(f"case {case['name']} has the unknown key '{key}'; known: {', '.join(sorted(KEYS))}")
-        wanted = KEYS[key]
-        if not _fits(value, wanted):
-            told = " or ".join(f'"{word}"' for word in wanted) if isinstance(wanted, tuple) else wanted
-            raise Refusal(f"case {case['name']}: {key} is {value!r}, but must be {told}")
-    if "blend" not in case:
-        raise Refusal(f'case {case["name"]} names no file; add blend = "FILE.blend"')
-    for key in ("hand_percentile", "hand_sex"):
-        if key in case and "fit" not in case:
-            raise Refusal(
-                f'case {case["name"]}: a hand of its own size must be laid on the product; add fit = "firm" or "light"'
-            )
-    if case.get("hand_percentile", 50) >= 100:
-        raise Refusal(f"case {case['name']}: hand_percentile is {case['hand_percentile']}, but must lie below 100")
+    check(case, case["name"])
     case.update({key: str((path.parent / case[key]).resolve()) for key in _PATHS})
     return case
 

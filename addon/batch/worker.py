@@ -13,25 +13,41 @@ from .. import headless, native, workflow
 from .. import result as results
 from ..hand import build, fitting, grasp, pads, posing
 from ..scene.checks import Refusal
+from .jobs import check
+
+_FORM = 'give each on a line of its own, as {"case": {"blend": "FILE.blend"}, "stem": "FOLDER/NAME"}'
 
 
 def serve():
-    """Answer tasks until the input ends. What Blender prints goes to the standard error output."""
+    """Answer tasks until the input ends, one line each. What Blender prints goes to the standard error output."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
-    for line in sys.stdin:
-        answers.write(json.dumps(_answer(json.loads(line))) + "\n")
+    for number, line in enumerate(sys.stdin.buffer, 1):
+        answers.write(json.dumps(_answer(line, number)) + "\n")
         answers.flush()
 
 
-def _answer(task):
+def _answer(line, number):
     try:
+        task = _task(line, number)
         return {"summary": solve(task["case"], Path(task["stem"]))}
     except (Refusal, *native.error_types()) as error:
         return {"error": " ".join(str(error).split())}
     except Exception as error:  # one bad case must not take the worker with it
         place = traceback.extract_tb(error.__traceback__)[-1]
         return {"error": f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"}
+
+
+def _task(line, number):
+    """The task of a line of the input. Raises `Refusal` where it is none."""
+    try:
+        task = json.loads(line)
+    except ValueError as error:  # what is not UTF-8 too
+        raise Refusal(f"line {number} is not JSON ({error}); {_FORM}") from None
+    if not isinstance(task, dict) or not isinstance(task.get("case"), dict) or not isinstance(task.get("stem"), str):
+        raise Refusal(f"line {number} is no task; {_FORM}")
+    check(task["case"], task["case"].get("name", f"of line {number}"))
+    return task
 
 
 def solve(case, stem):

@@ -127,6 +127,41 @@ def test_a_case_that_kills_its_process_twice_is_a_failed_case():
     assert told == {"error": "it took longer than 0.5 s, 2 times"}
 
 
+def test_a_worker_answers_every_line_and_goes_on(grip, tmp_path):
+    good = json.dumps({"case": {"blend": str(grip), "save": False}, "stem": str(tmp_path / "good")}).encode()
+    lines = [
+        (b"", "line 1 is not JSON"),
+        (b"{", "line 2 is not JSON"),
+        (b"\xff", "line 3 is not JSON"),
+        (b"[1]", "line 4 is no task"),
+        (b'{"case": {}, "stem": "x"}', "case of line 5 names no file"),
+        (b'{"case": {"blend": "none.blend", "name": "lost"}, "stem": "x"}', "none.blend"),
+        (b'{"case": {"blend": "a", "colour": 1, "name": "odd"}, "stem": "x"}', "case odd has the unknown key 'colour'"),
+        (b'{"case": {"blend": "a", "force_n": "2"}, "stem": "x"}', "must be a number above zero"),
+    ]
+    told = subprocess.run(
+        [sys.executable, "-m", "thenar_blender", "worker"],
+        input=b"\n".join([*(line for line, _ in lines), good]) + b"\n",
+        capture_output=True,
+        env=dask_cluster.environment(),
+        timeout=120,
+    )
+    answers = [json.loads(line) for line in told.stdout.splitlines()]
+    assert told.returncode == 0 and len(answers) == len(lines) + 1
+    for answer, (_, sentence) in zip(answers, lines, strict=False):
+        assert sentence in answer["error"] and "Traceback" not in answer["error"], answer
+    assert answers[-1]["summary"]["force_n"] > 0.0
+
+
+def test_a_task_that_the_process_never_took_does_not_break_its_end():
+    deaf = "import os, time; os.close(0); print('deaf', flush=True); time.sleep(1)"
+    process = child.Child([sys.executable, "-c", deaf], {})
+    process._start()
+    assert process._answers.get(timeout=30) == "deaf\n"
+    with pytest.raises(child.ChildDied, match="ended with code 0"):
+        process.solve({"case": 1}, 30.0)
+
+
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
