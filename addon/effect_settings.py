@@ -12,7 +12,10 @@ _OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
 """Amplitudes to start from where the most is out of reason. Relaxation: palms, Shojaeizadeh 2022; the others: ours."""
 
-_UNITS = ("_mm2_per_s", "_n_per_mm", "_j_per_m2", "_mpa", "_mm", "_s")
+_UNITS = (
+    *("_mm2_per_s", "_n_per_mm", "_mm_per_n", "_j_per_m2", "_kpa_per_min", "_n_per_min"),
+    *("_mpa", "_kpa", "_rad", "_mm", "_n", "_s"),
+)
 """Ends of the library's names that tell a unit, longest first."""
 _LAWS = {}
 """Items of choices by their options: Blender needs the texts of a dynamic list kept."""
@@ -21,6 +24,11 @@ _LAWS = {}
 def offered():
     """Catalogue rows of the skin's effects by name, in the order in which they compose."""
     return {row["name"]: row for row in native.effects() if row["stage"] in _OF_THE_SKIN}
+
+
+def meaning(name):
+    """What an effect of the catalogue is, in a few words; empty for what it does not list."""
+    return next((row["meaning"] for row in native.effects() if row["name"] == name), "")
 
 
 def acts_over_time(name):

@@ -51,11 +51,12 @@ def apply(context, index):
     wanted = _wanted(context, finding, row, hand)
     effect = _switch_on(hand, wanted)
     _to_model(state, finding)
-    where = f"on '{effect.region}'" if effect.region else "on all skin"
+    where = f"for '{effect.region}'" if effect.region else "for all skin"
+    where = "at its place" if "center_x_mm" in wanted.numbers else where
     waits = (
         "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
     )
-    return Taken(f"{title} is switched on {where}{waits}", doubt)
+    return Taken(f"{title} is on {where}{waits}", doubt)
 
 
 def _refuse_unnamed(found, finding):

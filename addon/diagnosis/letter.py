@@ -25,14 +25,20 @@ class Row:
 
 @dataclass(frozen=True)
 class Entry:
-    """One finding; `index` is its number, `sureness` 0 to 1 or None, `has_place` whether the skin can show it."""
+    """One finding.
+
+    `index` is its number, `sureness` 0 to 1 or None, `rows` its numbers, `story` where and when it shows, and
+    `has_place` whether the skin can show it.
+    """
 
     index: int
     effect: str
     title: str
     is_instrument: bool
     sureness: float | None
+    meaning: str
     rows: tuple
+    story: str
     has_place: bool
 
 
@@ -95,6 +101,7 @@ def lines(letter):
     for entry in letter.entries:
         sure = "" if entry.sureness is None else f", {wording.share(entry.sureness)} sure"
         yield f"{entry.index + 1}. {entry.title}{sure}"
+        yield from (f"   {text}" for text in (entry.meaning, entry.story) if text)
         yield from (f"   {row.label}: {row.text}" for row in entry.rows)
     yield from letter.rivals
     yield from (f"{bar.label}: {bar.text}" for bar in letter.bars)
@@ -108,20 +115,16 @@ def lines(letter):
 def _entry(index, finding):
     where, when = finding.get("where") or {}, finding.get("when") or {}
     rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
-    told = (
-        ("Where", wording.place(where)),
-        ("When", wording.moment(when)),
-        ("In", wording.some(when.get("recordings"))),
-        ("Depends on", wording.depends(finding.get("depends_on"))),
-    )
-    rows += [Row(label, text) for label, text in told if text]
+    story = (wording.place(where), wording.moment(when), wording.depends(finding.get("depends_on")))
     return Entry(
         index=index,
         effect=finding["effect"],
         title=wording.title(finding["effect"]),
         is_instrument=finding.get("kind") == "instrument",
         sureness=finding.get("confidence"),
+        meaning=wording.meaning(finding["effect"]),
         rows=tuple(rows),
+        story=" ".join(text for text in story if text),
         has_place=bool(where.get("center_mm") or where.get("vertices") or where.get("region")),
     )
 

@@ -60,6 +60,7 @@ class THENAR_OT_apply_finding(_OfFinding, bpy.types.Operator):
     bl_label = "Switch On"
 
     def execute(self, context):
+        selecting.to_object_mode(context)  # undo in Edit Mode knows of the mesh alone
         taken = running.attempt(self, applying.apply, context, self.index)
         if taken is None:
             return {"CANCELLED"}

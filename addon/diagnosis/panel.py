@@ -112,6 +112,8 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
 
     def draw(self, context):
         layout, told = self.layout, _letter(context)
+        if told.bars:
+            _faint(layout, context, "Error on recordings held out, rms, with its interval")
         column = layout.column(align=True)
         for bar in told.bars:
             split = column.split(factor=0.34)
@@ -178,8 +180,12 @@ def _draw_entry(layout, context, entry):
         sure = head.row()
         sure.alignment = "RIGHT"
         sure.label(text=f"{letter.wording.share(entry.sureness)} sure")
+    if entry.meaning:
+        _faint(box, context, entry.meaning)
     for row in entry.rows:
         _draw_row(box, context, row)
+    if entry.story:
+        _paragraph(box, entry.story, (context, ""))
     box.separator(factor=0.5)
     buttons = box.row(align=True)
     if entry.has_place:

@@ -77,34 +77,51 @@ def share(part):
 
 
 def place(where):
-    """Where a finding lies: site, region, and how far around its middle. Empty where it lies everywhere."""
-    parts = [title(where["region"]).lower()] if where.get("region") else []
+    """Where a finding lies, as a sentence. Empty where it lies everywhere."""
+    parts = []
+    if where.get("region"):
+        parts.append(f"in the region {title(where['region']).lower()}")
     if where.get("site"):
-        parts.append(f"site {where['site']}")
+        parts.append(f"at the site {where['site']}")
     if where.get("center_mm") and where.get("radius_mm"):
-        parts.append(f"within {number(where['radius_mm'])} mm")
-    return ", ".join(parts)
+        parts.append(f"within {number(where['radius_mm'])} mm of one place")
+    return f"It lies {', '.join(parts)}." if parts else ""
 
 
 def moment(when):
-    """When a finding shows: phase, time, depth and cycles. Empty where always."""
+    """When a finding shows, as a sentence: phase, time, depth, cycles and recordings. Empty where always."""
     phases = when.get("phase") or []
     phases = phases.replace("|", ",").split(",") if isinstance(phases, str) else phases
     parts = [PHASES.get(phase.strip(), phase.strip()) for phase in phases]
-    for key, before, unit in (("time_s", "at ", " s"), ("depth_mm", "at ", " mm deep"), ("cycles", "press ", "")):
+    for key, told in (("time_s", "at {} s"), ("depth_mm", "at {} mm depth"), ("cycles", "in presses {}")):
         span = when.get(key)
         if span and len(span) == 2 and None not in span:
-            parts.append(f"{before}{number(span[0]) if span[0] == span[1] else interval(*span)}{unit}")
-    return ", ".join(parts)
+            parts.append(told.format(number(span[0]) if span[0] == span[1] else interval(*span)))
+    if when.get("recordings"):
+        parts.append(f"in {some(when['recordings'])}")
+    return f"It shows {', '.join(parts)}." if parts else ""
 
 
 def depends(words):
-    """`time, size of the tool`."""
-    return ", ".join(DEPENDS.get(word, name(word)) for word in words or ())
+    """`It depends on time and on speed.` Empty where that is not known."""
+    words = [DEPENDS.get(word, name(word)) for word in words or ()]
+    return f"It depends on {listed(words)}." if words else ""
+
+
+def listed(words):
+    """`a, b and c`."""
+    words = list(words)
+    return " and ".join(words) if len(words) < 3 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
 def some(names, most=3):
-    """The first few names, and how many more."""
-    names = list(names or ())
-    more = len(names) - most
-    return ", ".join(names[:most]) + (f" and {more} more" if more > 0 else "")
+    """The first few names in quotes, and how many more."""
+    quoted = [f"'{name}'" for name in names or ()]
+    more = len(quoted) - most
+    return listed([*quoted[:most], f"{more} more"] if more > 0 else quoted)
+
+
+def meaning(effect):
+    """What an effect is, as a sentence; empty for what the library does not list."""
+    text = effect_settings.meaning(effect)
+    return text[:1].upper() + text[1:] + "." if text else ""

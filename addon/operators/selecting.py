@@ -3,8 +3,11 @@
 import bpy
 from mathutils import Vector
 
-from ..scene import mesh, regions
+from ..scene import regions
 from . import running
+
+_CLEAR = 1e-3
+"""How far before the skin a ray to the eye begins, as a share of the way: the skin itself is no cover."""
 
 
 def select(context, hand, vertices):
@@ -33,15 +36,26 @@ def look_at(context, hand, vertices):
     """Turn the 3D view in which the user clicked so that the middle of `vertices` faces the eye."""
     if context.area is None or context.area.type != "VIEW_3D" or not vertices:
         return
-    with mesh.evaluated_mesh(hand, context.evaluated_depsgraph_get()) as shape:
-        found = [shape.vertices[vertex] for vertex in vertices if vertex < len(shape.vertices)]
-        middle = sum((vertex.co for vertex in found), Vector()) / max(len(found), 1)
-        normal = sum((vertex.normal for vertex in found), Vector())
-    view, matrix = context.space_data.region_3d, hand.matrix_world
+    found = [hand.data.vertices[vertex] for vertex in vertices]  # Edit Mode shows the mesh at rest
+    middle = sum((vertex.co for vertex in found), Vector()) / len(found)
+    normal = sum((vertex.normal for vertex in found), Vector())
+    space, matrix = context.space_data, hand.matrix_world
+    view, place = space.region_3d, matrix @ middle
     if view.view_perspective == "CAMERA":
         view.view_perspective = "PERSP"
-    view.view_location = matrix @ middle
-    view.view_distance = min(view.view_distance, 1.5 * max(hand.dimensions))
-    facing = matrix.to_3x3().inverted_safe().transposed() @ normal
-    if facing.length > 0.0:
-        view.view_rotation = facing.to_track_quat("Z", "Y")
+    view.view_location = place
+    view.view_distance = min(view.view_distance, max(hand.dimensions))
+    facing = (matrix.to_3x3().inverted_safe().transposed() @ normal).normalized()
+    if facing.length == 0.0:
+        return
+    view.view_rotation = facing.to_track_quat("Z", "Y")
+    if _is_covered(context, place, facing * view.view_distance):
+        space.shading.show_xray = True
+
+
+def _is_covered(context, place, to_eye):
+    """Whether something stands between the place and the eye: where a hand is pressed, the product does."""
+    start = place + _CLEAR * to_eye
+    return context.scene.ray_cast(
+        context.evaluated_depsgraph_get(), start, to_eye.normalized(), distance=to_eye.length
+    )[0]

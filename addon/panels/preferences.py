@@ -1,8 +1,13 @@
 """The extension's preferences: what is loaded, or why it is not."""
 
+import re
+
 import bpy
 
 from .. import names, status
+
+_UNIT = re.compile(r"(?<=\d) (?=(?:%|[kM]?Pa|mm²?|cm²|s|N|min|Hz)(?:\W|$))")
+"""The blank between a number and its unit, at which no line ends."""
 
 
 class ThenarPreferences(bpy.types.AddonPreferences):
@@ -36,11 +41,11 @@ def wrapped(text, context):
     """Lines that fit the region: panels do not wrap."""
     width = text_width(context)
     lines = [""]
-    for word in text.split():
+    for word in _UNIT.sub("\u00a0", " ".join(text.split())).split(" "):
         if lines[-1] and len(lines[-1]) + len(word) + 1 > width:
             lines.append("")
         lines[-1] = f"{lines[-1]} {word}".strip()
-    return lines
+    return [line.replace("\u00a0", " ") for line in lines]
 
 
 CLASSES = (ThenarPreferences,)

@@ -76,14 +76,13 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "1. Relaxation, 97 % sure",
         "   Amplitude: 0.34 (0.31–0.37)",
         "   Time 3: 1.9 s (1.6–2.3)",
-        "   Where: site pad",
-        "   When: while holding, at 0.8–30 s, at 1.2–2 mm deep",
-        "   In: slow 1, slow 2, fast 1 and 2 more",
-        "   Depends on: time, speed",
+        "   Force that fades with time at held depth, by three exponentials of time.",
+        "   It lies at the site pad. It shows while holding, at 0.8–30 s, at 1.2–2 mm depth, in 'slow 1', 'slow 2', "
+        "'fast 1' and 2 more. It depends on time and speed.",
         "Before: 0.21 N (0.18–0.24)",
         "Noise floor: 0.03 N (0.02–0.04)",
         "96 % (91 % to > 99 %) of the error that could be removed is gone.",
-        "Judged on 2 recordings that the fit did not use: sphere 1, sphere 2.",
+        "Judged on 2 recordings that the fit did not use: 'sphere 1' and 'sphere 2'.",
         "Adhesion: seen from 0.02 J/m2",
     ):
         assert line in lines, lines
