@@ -135,7 +135,7 @@ def _rivals(found):
         yield f"These recordings cannot tell {wording.apart(effects)}."
     sets = found.get("names_90") or []
     if len(sets) > 1:
-        words = [" with ".join(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
+        words = [wording.listed(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
         yield f"At 90 % it is one of: {'; '.join(words)}."
 
 

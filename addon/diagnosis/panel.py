@@ -5,8 +5,8 @@ from functools import lru_cache
 import bpy
 
 from .. import status
+from ..panels import text
 from ..panels.main import Tab
-from ..panels.preferences import text_width, wrapped
 from ..recordings import settings as recordings
 from ..scene.checks import Refusal
 from . import applying, freshness, letter, reading
@@ -52,25 +52,25 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
         layout, state = self.layout, context.scene.thenar_diagnosis
         item = recordings.chosen(context)
         if item is None or item.kind != recordings.STUDY:
-            _paragraph(layout, "Load a study under Recordings, and select it", (context, "INFO"))
+            text.paragraph(layout, context, "Load a study under Recordings, and select it", "INFO")
         else:
-            _faint(layout, context, f"{item.name}: {item.about}")
+            text.faint(layout, context, f"{item.name}: {item.about}")
         _draw_button(layout)
         if not state.is_valid:
             return
         told, problem = written(state.findings)
         if told is None:
-            _alert(layout, context, problem)
+            text.alert(layout, context, problem)
             return
         doubt = freshness.problem(state)
         if doubt:
-            _alert(layout, context, doubt)
+            text.alert(layout, context, doubt)
         box = layout.box().column(align=True)
         box.label(text=told.heading, icon=ICONS[told.verdict])
         box.separator(factor=0.5)
-        _paragraph(box, told.sentence, (context, ""))
+        text.paragraph(box, context, told.sentence)
         if item is None or item.path != state.path:
-            _faint(layout, context, f"Of the study '{state.study}'")
+            text.faint(layout, context, f"Of the study '{state.study}'")
         layout.operator("thenar.report", text="Write Report", icon="TEXT").kind = "DIAGNOSIS"
 
 
@@ -113,14 +113,14 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
     def draw(self, context):
         layout, told = self.layout, _letter(context)
         if told.bars:
-            _faint(layout, context, "Error on recordings held out, rms, with its interval")
+            text.faint(layout, context, "Error on recordings held out, rms, with its interval")
         column = layout.column(align=True)
         for bar in told.bars:
             split = column.split(factor=0.34)
             split.label(text=bar.label)
             split.progress(factor=bar.share, text=bar.text)
         for sentence in told.gain:
-            _paragraph(layout, sentence, (context, ""))
+            text.paragraph(layout, context, sentence)
 
 
 class THENAR_PT_rivals(_Part, bpy.types.Panel):
@@ -136,13 +136,13 @@ class THENAR_PT_rivals(_Part, bpy.types.Panel):
     def draw(self, context):
         layout, told = self.layout, _letter(context)
         for sentence in told.rivals:
-            _paragraph(layout, sentence, (context, "QUESTION"))
+            text.paragraph(layout, context, sentence, "QUESTION")
         for advice in told.advice:
             box = layout.box().column(align=True)
-            _paragraph(box, advice.text, (context, "REC"))
-            for text in (advice.settles, advice.outlook):
-                if text:
-                    _faint(box, context, text)
+            text.paragraph(box, context, advice.text, "REC")
+            for line in (advice.settles, advice.outlook):
+                if line:
+                    text.faint(box, context, line)
 
 
 class THENAR_PT_smallest(_Part, bpy.types.Panel):
@@ -163,9 +163,7 @@ class THENAR_PT_smallest(_Part, bpy.types.Panel):
 
 
 def _draw_button(layout):
-    if status.run.stage:
-        text = f"{status.run.stage.capitalize()} {status.run.fraction:.0%} · Esc cancels"
-        layout.progress(factor=status.run.fraction, text=text)
+    if text.progress(layout):
         return
     row = layout.row()
     row.scale_y = 1.3
@@ -181,11 +179,11 @@ def _draw_entry(layout, context, entry):
         sure.alignment = "RIGHT"
         sure.label(text=f"{letter.wording.share(entry.sureness)} sure")
     if entry.meaning:
-        _faint(box, context, entry.meaning)
+        text.faint(box, context, entry.meaning)
     for row in entry.rows:
         _draw_row(box, context, row)
     if entry.story:
-        _paragraph(box, entry.story, (context, ""))
+        text.paragraph(box, context, entry.story)
     box.separator(factor=0.5)
     buttons = box.row(align=True)
     if entry.has_place:
@@ -199,7 +197,7 @@ def _draw_entry(layout, context, entry):
 
 def _draw_row(column, context, row):
     """A word and what stands beside it; below it where the sidebar is too narrow for both."""
-    if len(row.label) + len(row.text) + 4 <= text_width(context):
+    if len(row.label) + len(row.text) + 4 <= text.width(context):
         split = column.split(factor=len(row.label) / (len(row.label) + len(row.text) + 2))
         split.label(text=row.label)
         beside = split.row()
@@ -207,34 +205,10 @@ def _draw_row(column, context, row):
         beside.label(text=row.text)
         return
     column.label(text=row.label)
-    for line in wrapped(row.text, context):
+    for line in text.wrapped(row.text, text.width(context)):
         below = column.row()
         below.alignment = "RIGHT"
         below.label(text=line)
-
-
-def _paragraph(layout, text, about):
-    context, icon = about
-    column = layout.column(align=True)
-    for number, line in enumerate(wrapped(text, context)):
-        if icon:
-            column.label(text=line, icon=icon if number == 0 else "BLANK1")
-        else:
-            column.label(text=line)
-
-
-def _faint(layout, context, text):
-    column = layout.column(align=True)
-    column.active = False
-    for line in wrapped(text, context):
-        column.label(text=line)
-
-
-def _alert(layout, context, text):
-    column = layout.column(align=True)
-    column.alert = True
-    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
-        column.label(text=line, icon="ERROR" if number == 0 else "BLANK1")
 
 
 CLASSES = (

@@ -4,7 +4,8 @@ import bpy
 
 from .. import effect_settings, maps, names, status
 from ..scene.units import mm_per_unit
-from .preferences import draw_state, wrapped
+from . import text
+from .preferences import draw_state
 
 
 class Tab:
@@ -110,9 +111,7 @@ def _draw_force(layout, settings):
 
 
 def _draw_solve(layout):
-    run = status.run
-    if run.stage:
-        layout.progress(factor=run.fraction, text=f"{run.stage.capitalize()} {run.fraction:.0%} · Esc cancels")
+    if text.progress(layout):
         return
     row = layout.row()
     row.scale_y = 1.6
@@ -128,10 +127,7 @@ def _draw_live(layout, context):
     if not scene.thenar.live or told is None:
         return
     if told.problem:
-        column = layout.column(align=True)
-        column.alert = True
-        for line in wrapped(told.problem, context):
-            column.label(text=line)
+        text.alert(layout, context, told.problem)
     else:
         layout.label(text=f"{told.rate:.0f} a second, {told.ms:.0f} ms each", icon="TIME")
 

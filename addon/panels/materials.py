@@ -2,8 +2,8 @@
 
 import bpy
 
+from . import text
 from .main import OfHand
-from .preferences import wrapped
 
 
 class THENAR_PT_materials(OfHand, bpy.types.Panel):
@@ -34,10 +34,7 @@ def _draw_material(layout, material, context):
     layout.use_property_split = True
     layout.use_property_decorate = False
     layout.prop(material, "preset")
-    source = layout.column(align=True)
-    source.active = False
-    for line in wrapped(material.bl_rna.properties["preset"].enum_items[material.preset].description, context):
-        source.label(text=line)
+    text.faint(layout, context, material.bl_rna.properties["preset"].enum_items[material.preset].description)
     column = layout.column(align=True)
     for name in ("g0_kpa", "g_lim_kpa", "d_lim_mm", "poisson_ratio"):
         column.prop(material, name)

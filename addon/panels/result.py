@@ -3,9 +3,9 @@
 import bpy
 
 from .. import maps, status
+from . import text
 from .lists import SHARE, columns
 from .main import Physics, Tab
-from .preferences import wrapped
 
 
 class THENAR_PT_result(Tab, bpy.types.Panel):
@@ -63,13 +63,6 @@ def _pair(column, name, value):
     right.label(text=value)
 
 
-def _lines(layout, text, about):
-    context, icon = about
-    column = layout.column(align=True)
-    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], context)):
-        column.label(text=line, icon=icon if number == 0 else "BLANK1")
-
-
 class THENAR_PT_physics_result(Physics, bpy.types.Panel):
     """The totals in the physics properties."""
 
@@ -94,10 +87,10 @@ class THENAR_PT_regions(Tab, bpy.types.Panel):
         split = layout.split(factor=SHARE)
         split.label(text="Region")
         row = split.row()
-        for text in ("N", "cm²", "kPa"):
+        for unit in ("N", "cm²", "kPa"):
             cell = row.row()
             cell.alignment = "RIGHT"
-            cell.label(text=text)
+            cell.label(text=unit)
         layout.template_list("THENAR_UL_regions", "", result, "regions", result, "region_index", rows=6)
         if not result.fingers:
             return
@@ -132,7 +125,7 @@ class THENAR_PT_comfort(Tab, bpy.types.Panel):
                 column.prop(given, f"{part}_kpa")
         if settings.result.comfort:
             icon = "ERROR" if settings.result.over_mm2 else "CHECKMARK"
-            _lines(layout, settings.result.comfort, (context, icon))
+            text.paragraph(layout, context, settings.result.comfort, icon)
 
 
 class THENAR_PT_bake(Tab, bpy.types.Panel):
@@ -183,8 +176,8 @@ class THENAR_PT_notes(Tab, bpy.types.Panel):
         self.layout.label(text=f"({len(context.scene.thenar.result.warnings)})")
 
     def draw(self, context):
-        for text in context.scene.thenar.result.warnings:
-            _lines(self.layout, text.name, (context, "ERROR"))
+        for note in context.scene.thenar.result.warnings:
+            text.paragraph(self.layout, context, note.name, "ERROR")
 
 
 class THENAR_PT_quality(Tab, bpy.types.Panel):

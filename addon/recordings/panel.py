@@ -3,8 +3,8 @@
 import bpy
 
 from .. import status
+from ..panels import text
 from ..panels.main import Tab
-from ..panels.preferences import wrapped
 from . import settings
 
 SHARE = 0.47
@@ -40,11 +40,11 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         if item is None:
             layout.label(text="Load a study or a mat's export", icon="INFO")
             return
-        about = layout.column(align=True)
-        for line in wrapped(item.about, context):
-            about.label(text=line)
+        text.faint(layout, context, item.about)
         if item.kind == settings.MAP:
             _draw_placing(layout, item)
+        if text.progress(layout):
+            return
         row = layout.row()
         row.scale_y = 1.3
         row.operator("thenar.compare", icon="MOD_DATA_TRANSFER")
@@ -83,9 +83,7 @@ class THENAR_PT_comparison(Tab, bpy.types.Panel):
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings.comparison
-        column = layout.column(align=True)
-        for line in wrapped(state.sentence, context):
-            column.label(text=line)
+        text.paragraph(layout, context, state.sentence)
         _draw_measures(layout, state)
         if len(state.worst):
             layout.label(text="Worst places: click to select")
@@ -113,10 +111,10 @@ def _draw_measures(layout, state):
 
 def _numbers(split, texts):
     row = split.row()
-    for text in texts:
+    for told in texts:
         cell = row.row()
         cell.alignment = "RIGHT"
-        cell.label(text=text)
+        cell.label(text=told)
 
 
 class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):
@@ -132,9 +130,7 @@ class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):
 
     def draw(self, context):
         for note in context.scene.thenar_recordings.comparison.notes:
-            column = self.layout.column(align=True)
-            for number, line in enumerate(wrapped(note.name, context)):
-                column.label(text=line, icon="DOT" if number == 0 else "BLANK1")
+            text.paragraph(self.layout, context, note.name, "DOT")
 
 
 CLASSES = (THENAR_UL_recordings, THENAR_PT_recordings, THENAR_PT_comparison, THENAR_PT_comparison_notes)

@@ -12,6 +12,8 @@ from bpy.props import (
     StringProperty,
 )
 
+from ..settings import ThenarText
+
 STUDY, MAP = "STUDY", "MAP"
 AXES = tuple((f"{sign}{axis}", f"{sign}{axis}", f"The product's {sign}{axis} axis") for axis in "XYZ" for sign in "+-")
 
@@ -82,10 +84,6 @@ class ThenarWorst(bpy.types.PropertyGroup):
     vertices: StringProperty()
 
 
-class ThenarLine(bpy.types.PropertyGroup):
-    """A line of text, in `name`."""
-
-
 class ThenarComparison(bpy.types.PropertyGroup):
     """What the last comparison of the scene found."""
 
@@ -97,7 +95,7 @@ class ThenarComparison(bpy.types.PropertyGroup):
     sentence: StringProperty()
     measures: CollectionProperty(type=ThenarMeasure)
     worst: CollectionProperty(type=ThenarWorst)
-    notes: CollectionProperty(type=ThenarLine)
+    notes: CollectionProperty(type=ThenarText)
 
 
 class ThenarRecordings(bpy.types.PropertyGroup):
@@ -113,7 +111,6 @@ CLASSES = (
     ThenarRecording,
     ThenarMeasure,
     ThenarWorst,
-    ThenarLine,
     ThenarComparison,
     ThenarRecordings,
 )

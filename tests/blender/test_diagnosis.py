@@ -4,7 +4,7 @@ import json
 from types import SimpleNamespace
 
 import bpy
-import findings
+import letters
 import numpy as np
 import pytest
 import small_studies
@@ -29,7 +29,7 @@ def diagnose(tmp_path, monkeypatch):
             skin = (vertices if turned is None else turned(vertices)), triangles
         point = (0.0, 0.0, 0.0) if skin is None else skin[0][0]
         path = small_studies.write(tmp_path, skin or small_studies.flat_skin(), point)
-        answer = found if isinstance(found, Exception) else findings.Answer(found)
+        answer = found if isinstance(found, Exception) else letters.Answer(found)
 
         def diagnosed(study, progress=None, cancel=None):
             assert study.title == "Ball"
@@ -62,15 +62,15 @@ def told():
 
 @pytest.mark.parametrize("verdict", sorted(reading.VERDICTS))
 def test_every_verdict_has_its_letter(verdict, diagnose):
-    assert diagnose(findings.FINDINGS[verdict]) == {"FINISHED"}
+    assert diagnose(letters.FINDINGS[verdict]) == {"FINISHED"}
     lines = told()
-    assert lines[0] == letter.HEADINGS[verdict] and lines[1] == findings.FINDINGS[verdict]["sentence"]
+    assert lines[0] == letter.HEADINGS[verdict] and lines[1] == letters.FINDINGS[verdict]["sentence"]
     assert all(line == line.strip() or line.startswith("   ") for line in lines) and "" not in lines
     assert not any(word in " ".join(lines) for word in ("None", "nan", "_", "[", "{"))
 
 
 def test_the_letter_tells_size_place_time_and_gain(diagnose):
-    diagnose(findings.FINDINGS["missing_physics"])
+    diagnose(letters.FINDINGS["missing_physics"])
     lines = told()
     for line in (
         "1. Relaxation, 97 % sure",
@@ -86,12 +86,12 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "Adhesion: seen from 0.02 J/m2",
     ):
         assert line in lines, lines
-    bars = letter.write(findings.FINDINGS["missing_physics"]).bars
+    bars = letter.write(letters.FINDINGS["missing_physics"]).bars
     assert [round(bar.share, 3) for bar in bars] == [1.0, 0.238, 0.143]
 
 
 def test_the_letter_names_rivals_and_the_recording_that_settles_it(diagnose):
-    diagnose(findings.FINDINGS["cannot_tell"])
+    diagnose(letters.FINDINGS["cannot_tell"])
     lines = told()
     assert "These recordings cannot tell relaxation from drainage." in lines
     assert "At 90 % it is one of: relaxation; drainage." in lines
@@ -101,7 +101,7 @@ def test_the_letter_names_rivals_and_the_recording_that_settles_it(diagnose):
 
 def test_a_finding_changes_the_next_solve(diagnose):
     stage.scene()
-    diagnose(findings.FINDINGS["missing_physics"])
+    diagnose(letters.FINDINGS["missing_physics"])
     before = stage.solve().peak_kpa
     assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
     amplitude, numbers, region = effects()["bone"]
@@ -114,7 +114,7 @@ def test_a_finding_changes_the_next_solve(diagnose):
 
 def test_what_acts_over_time_says_that_it_needs_a_bake(diagnose):
     stage.scene()
-    diagnose(findings.FINDINGS["missing_physics"])
+    diagnose(letters.FINDINGS["missing_physics"])
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     amplitude, numbers, _ = effects()["relaxation"]
     assert amplitude == pytest.approx(0.34) and numbers["time_3_s"] == pytest.approx(1.9)
@@ -124,7 +124,7 @@ def test_what_acts_over_time_says_that_it_needs_a_bake(diagnose):
 
 def test_a_finding_of_one_region_stays_there(diagnose):
     hand, _ = stage.scene()
-    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["findings"][1]["where"]["region"] = "left"
     diagnose(found)
     points = stage.evaluated(hand)
@@ -154,7 +154,7 @@ def test_an_inclusion_comes_to_lie_at_its_place_on_the_hand(diagnose, moved):
     local = np.array([vertex.co for vertex in hand.data.vertices]) * 1e3
     lowest = int(local[:, 2].argmin())
     there = (local if moved is None else moved(local))[lowest]
-    diagnose(findings.inclusion(there, 3.0), moved)
+    diagnose(letters.inclusion(there, 3.0), moved)
     before = stage.solve().peak_kpa
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     _, numbers, _ = effects()["inclusion"]
@@ -169,7 +169,7 @@ def test_an_inclusion_comes_to_lie_at_its_place_on_the_hand(diagnose, moved):
 
 
 def test_a_place_on_another_skin_is_not_guessed(diagnose):
-    diagnose(findings.inclusion((0.0, 0.0, 0.0), 3.0))
+    diagnose(letters.inclusion((0.0, 0.0, 0.0), 3.0))
     with pytest.raises(RuntimeError, match="[Cc]hoose the hand"):
         bpy.ops.thenar.apply_finding(index=0)
     stage.scene()
@@ -181,7 +181,7 @@ def test_a_place_on_another_skin_is_not_guessed(diagnose):
 
 def test_an_instrument_changes_nothing_on_the_skin(diagnose):
     stage.scene()
-    diagnose(findings.FINDINGS["instrument"])
+    diagnose(letters.FINDINGS["instrument"])
     before = stage.solve().input_hash
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     model = bpy.context.scene.thenar_diagnosis.model
@@ -201,7 +201,7 @@ def test_an_instrument_changes_nothing_on_the_skin(diagnose):
 )
 def test_what_has_no_name_is_not_switched_on(diagnose, verdict, index, reason):
     stage.scene()
-    diagnose(findings.FINDINGS[verdict])
+    diagnose(letters.FINDINGS[verdict])
     with pytest.raises(RuntimeError, match=reason):
         bpy.ops.thenar.apply_finding(index=index)
     assert not effects() and not len(bpy.context.scene.thenar_diagnosis.model)
@@ -209,7 +209,7 @@ def test_what_has_no_name_is_not_switched_on(diagnose, verdict, index, reason):
 
 def test_a_named_effect_with_a_rival_is_not_switched_on(diagnose):
     stage.scene()
-    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["cannot_tell"] = [["bone", "stiffening_law"]]
     diagnose(found)
     with pytest.raises(RuntimeError, match="cannot tell bone from stiffening law"):
@@ -220,7 +220,7 @@ def test_a_named_effect_with_a_rival_is_not_switched_on(diagnose):
 
 def test_a_finding_in_another_unit_is_refused(diagnose):
     stage.scene()
-    found = json.loads(json.dumps(findings.FINDINGS["missing_physics"]))
+    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["findings"][1]["parameters"]["thickness_mm"]["unit"] = "m"
     diagnose(found)
     with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar wants mm"):
@@ -230,7 +230,7 @@ def test_a_finding_in_another_unit_is_refused(diagnose):
 
 def test_the_file_keeps_the_diagnosis(diagnose, tmp_path):
     stage.scene()
-    diagnose(findings.FINDINGS["missing_physics"])
+    diagnose(letters.FINDINGS["missing_physics"])
     before, path = told(), str(tmp_path / "kept.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
@@ -243,7 +243,7 @@ def test_the_file_keeps_the_diagnosis(diagnose, tmp_path):
 
 def test_findings_of_a_study_that_changed_are_called_old(diagnose, tmp_path):
     stage.scene()
-    diagnose(findings.FINDINGS["missing_physics"])
+    diagnose(letters.FINDINGS["missing_physics"])
     state = bpy.context.scene.thenar_diagnosis
     (tmp_path / "report.html").write_text("a report beside the study is no change")
     freshness.forget()
@@ -262,28 +262,28 @@ def test_findings_of_a_study_that_changed_are_called_old(diagnose, tmp_path):
 
 def test_reports_take_the_diagnosis_or_the_comparison(diagnose, tmp_path):
     stage.scene()
-    diagnose(findings.FINDINGS["cannot_tell"])
+    diagnose(letters.FINDINGS["cannot_tell"])
     page, numbers = tmp_path / "diagnosis.html", tmp_path / "findings.json"
     assert bpy.ops.thenar.report(filepath=str(page)) == {"FINISHED"}
-    assert findings.FINDINGS["cannot_tell"]["sentence"] in page.read_text()
+    assert letters.FINDINGS["cannot_tell"]["sentence"] in page.read_text()
     assert bpy.ops.thenar.report(filepath=str(numbers)) == {"FINISHED"}
-    assert json.loads(numbers.read_text()) == findings.FINDINGS["cannot_tell"]
+    assert json.loads(numbers.read_text()) == letters.FINDINGS["cannot_tell"]
     with pytest.raises(RuntimeError, match="nothing to report"):
         bpy.ops.thenar.report(filepath=str(page), kind="COMPARISON")
     bpy.context.scene.thenar_diagnosis.stamp = "1"
     assert bpy.ops.thenar.report(filepath=str(numbers)) == {"FINISHED"}, "the file keeps the findings themselves"
-    assert json.loads(numbers.read_text()) == findings.FINDINGS["cannot_tell"]
+    assert json.loads(numbers.read_text()) == letters.FINDINGS["cannot_tell"]
     with pytest.raises(RuntimeError, match="press Diagnose again"):
         bpy.ops.thenar.report(filepath=str(page))
 
 
 def test_a_diagnosis_that_fails_leaves_the_last_one(diagnose):
-    diagnose(findings.FINDINGS["instrument"])
+    diagnose(letters.FINDINGS["instrument"])
     before = told()
     with pytest.raises(RuntimeError, match="No press is long enough"):
         diagnose(native.module.RecordingError("no press is long enough"))
     with pytest.raises(RuntimeError, match="unknown verdict 'guess'"):
-        diagnose(findings.FINDINGS["instrument"] | {"verdict": "guess"})
+        diagnose(letters.FINDINGS["instrument"] | {"verdict": "guess"})
     assert told() == before
 
 
@@ -315,7 +315,7 @@ def test_the_library_is_asked_beside_the_window(monkeypatch, tmp_path):
 
     def diagnosed(study, progress=None, cancel=None):
         seen.update(progress=progress, cancel=cancel)
-        return findings.Answer(findings.FINDINGS["nothing_missing"])
+        return letters.Answer(letters.FINDINGS["nothing_missing"])
 
     monkeypatch.setattr(native.module, "diagnose", diagnosed, raising=False)
     bpy.ops.thenar.load_recording(filepath=str(small_studies.write(tmp_path, small_studies.flat_skin())))

@@ -1,0 +1,184 @@
+"""Every panel is drawn on a layout that only listens: names exist, and no text is longer than its place."""
+
+from types import SimpleNamespace
+
+import bpy
+import letters
+import pytest
+import stage
+from thenar_blender import diagnosis, hand, panels, recordings, status
+from thenar_blender.diagnosis import settings as kept
+from thenar_blender.panels import text
+
+SIDEBAR = 291
+"""Width of Blender's sidebar as it opens, pixels."""
+SLACK = 1.2
+"""Letters are counted wider than most are; an icon, or a name beside numbers, takes about this much more."""
+
+
+class Layout:
+    """What a panel draws on; `letters` is the room of a line, `said` all texts with their room."""
+
+    def __init__(self, letters, said, factor=None):
+        self.__dict__.update(letters=letters, said=said, factor=factor, count=0)
+
+    def __setattr__(self, name, value):
+        assert name in {
+            "active",
+            "alert",
+            "alignment",
+            "scale_y",
+            "use_property_split",
+            "use_property_decorate",
+        }, name
+
+    def _child(self, **_):
+        share = 1.0 if self.factor is None else self.factor if self.count == 0 else 1.0 - self.factor
+        self.__dict__["count"] += 1
+        return Layout(self.letters * share, self.said)
+
+    row = column = box = grid_flow = _child
+
+    def split(self, factor=0.5, align=False):
+        return Layout(self._child().letters, self.said, factor)
+
+    def separator(self, factor=1.0):
+        pass
+
+    def _say(self, words):
+        self.said.append((words, self._child().letters))
+
+    def label(self, text="", icon="NONE"):
+        assert icon in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
+        self._say(text)
+
+    def progress(self, factor=0.0, text=""):
+        assert 0.0 <= factor <= 1.0
+        self._say(text)
+
+    def operator(self, name, text=None, icon="NONE", depress=False, emboss=True):
+        area, _, verb = name.partition(".")
+        kind = getattr(getattr(bpy.ops, area), verb).get_rna_type()
+        self._say(kind.name if text is None else text)
+        return _Properties(kind)
+
+    def operator_menu_enum(self, name, prop, text="", icon="NONE"):
+        assert prop in self.operator(name, text).kind.properties
+
+    def prop(self, data, name, text=None, index=-1, **_):
+        assert name in data.bl_rna.properties, f"{data} has no '{name}'"
+        told = data.bl_rna.properties[name].name if text is None else text
+        self._say(told if data.bl_rna.properties[name].type != "ENUM" else "")
+
+    def prop_search(self, data, name, where, listed, icon="NONE", **_):
+        assert listed in where.bl_rna.properties
+        self.prop(data, name)
+
+    def template_list(self, kind, _, data, name, active_data, active_name, rows=1):  # noqa: PLR0913 - Blender's
+        assert hasattr(bpy.types, kind) and hasattr(data, name) and hasattr(active_data, active_name)
+        for item in getattr(data, name):
+            getattr(bpy.types, kind).draw_item(
+                SimpleNamespace(), bpy.context, self._child(), data, item, 0, None, "", *_index(kind)
+            )
+
+
+class _Properties:
+    """What an operator's button sets."""
+
+    def __init__(self, kind):
+        self.__dict__["kind"] = kind
+
+    def __setattr__(self, name, value):
+        assert name in self.kind.properties, f"{self.kind.identifier} has no '{name}'"
+
+
+class Context:
+    """Blender's context as the sidebar has it."""
+
+    region = SimpleNamespace(width=SIDEBAR)
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+
+    def __getattr__(self, name):
+        return getattr(bpy.context, name)
+
+
+def _index(kind):
+    return (0,) if kind == "THENAR_UL_regions" else ()
+
+
+def draw():
+    """Draw every panel that shows now. Returns {panel: [(text, room)]}."""
+    context, drawn = Context(), {}
+    for module in (*panels._MODULES, hand.panel, recordings.panel, diagnosis.panel):
+        for cls in module.CLASSES:
+            if issubclass(cls, bpy.types.Panel) and (not hasattr(cls, "poll") or cls.poll(context)):
+                said = drawn.setdefault(cls.__name__, [])
+                cls.draw(SimpleNamespace(layout=Layout(text.width(context), said)), context)
+    return drawn
+
+
+def too_long(drawn):
+    """Texts that a sidebar of default width would cut."""
+    return [
+        (panel, words, round(room, 1))
+        for panel, said in drawn.items()
+        for words, room in said
+        if words and len(words) > SLACK * room
+    ]
+
+
+def test_an_empty_scene_is_drawn():
+    drawn = draw()
+    assert {"THENAR_PT_main", "THENAR_PT_recordings", "THENAR_PT_diagnosis"} <= set(drawn)
+    assert not too_long(drawn)
+
+
+def test_a_solved_scene_with_effects_is_drawn():
+    stage.scene()
+    for kind in ("bone", "stiffening_law", "friction"):
+        bpy.ops.thenar.effect_add(kind=kind)
+    bpy.context.scene.thenar.comfort.rule = "BLOOD_FLOW"
+    stage.solve()
+    drawn = draw()
+    assert {"THENAR_PT_regions", "THENAR_PT_comfort", "THENAR_PT_quality", "THENAR_PT_effects"} <= set(drawn)
+    assert not too_long(drawn)
+
+
+@pytest.mark.parametrize("verdict", sorted(letters.FINDINGS))
+def test_every_letter_is_drawn(verdict, tmp_path):
+    stage.scene()
+    answer = letters.Answer(letters.FINDINGS[verdict])
+    kept.fill(bpy.context.scene.thenar_diagnosis, answer.to_json(), ("A study of that name", str(tmp_path), ""))
+    drawn = draw()
+    told = " ".join(words for words, _ in drawn["THENAR_PT_diagnosis"])
+    assert letters.FINDINGS[verdict]["sentence"] in told and "The study is no longer at" in told
+    assert ("THENAR_PT_findings" in drawn) == bool(letters.FINDINGS[verdict]["findings"])
+    assert not too_long(drawn)
+
+
+def test_findings_that_cannot_be_read_are_told():
+    state = bpy.context.scene.thenar_diagnosis
+    state.is_valid, state.findings = True, "{"
+    drawn = draw()
+    assert any("Findings kept" in words or "findings kept" in words for words, _ in drawn["THENAR_PT_diagnosis"])
+    assert "THENAR_PT_findings" not in drawn
+
+
+def test_a_run_shows_its_progress_wherever_one_can_be_begun():
+    bpy.context.scene.thenar_recordings.items.add().kind = recordings.settings.STUDY
+    status.run.stage, status.run.fraction = "refit", 0.25
+    try:
+        drawn = draw()
+    finally:
+        status.run.stage, status.run.fraction = "", 0.0
+    for panel in ("THENAR_PT_main", "THENAR_PT_recordings", "THENAR_PT_diagnosis"):
+        assert "Refit 25% · Esc cancels" in [words for words, _ in drawn[panel]], panel
+
+
+def test_paragraphs_keep_numbers_with_their_units():
+    lines = text.wrapped("Press with a ball of 16 mm or more and hold it for 30 s, twice, at 5 % less.", 20)
+    assert " ".join(lines).startswith("Press with a ball of 16 mm") and max(map(len, lines)) <= 20
+    for pair in ("16 mm", "30 s,", "5 %"):
+        assert any(pair in line for line in lines), lines
+    assert text.wrapped("", 20) == [""]
+    assert text.wrapped("/a/very/long/folder/of/studies is gone", 20) == ["/a/very/long/folder/", "of/studies is gone"]
