@@ -456,6 +456,30 @@ def compare(
 ) -> Comparison:
     """Fits a study's parameters to its recordings and compares what is left. Raises `RecordingError`, `Cancelled`."""
 
+@final
+class Diagnosis:
+    """What a study's recordings show that the model leaves out."""
+
+    def to_json(self) -> str:
+        """findings.json, schema 1."""
+    def report_html(self) -> str:
+        """A self-contained page: the diagnosis, then the comparison that it started from."""
+    @property
+    def sentence(self) -> str:
+        """What a designer reads first."""
+    @property
+    def verdict(self) -> str:
+        """The verdict's word, as in findings.json."""
+
+def diagnose(
+    study: Study,
+    progress: _Progress | None = None,
+    cancel: _Cancel | None = None,
+    *,
+    seed: int = 1,
+) -> Diagnosis:
+    """Says what physics a study's recordings show that the model leaves out. Raises `RecordingError`, `Cancelled`."""
+
 def place_mat(
     file: str | PathLike[str],
     on: Literal["plane", "cylinder"],

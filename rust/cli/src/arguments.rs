@@ -19,6 +19,8 @@ pub enum Command {
     Read(ReadArguments),
     /// Fits a study's parameters to its recordings and writes report.html, comparison.json and, for mats, residual.csv.
     Compare(CompareArguments),
+    /// Says what physics a study's recordings show that the model leaves out; writes findings.json, report.html and comparison.json.
+    Diagnose(CompareArguments),
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod compare;
+mod diagnose;
 mod effects;
 mod fault;
 mod interrupt;
@@ -62,6 +63,7 @@ fn run() -> Result<(), Fault> {
     match thenar.command {
         Command::Press(arguments) => press::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Read(arguments) => {
             tell(&read::told(&arguments.file)?);
             Ok(())

@@ -16,9 +16,11 @@ mod location;
 mod words;
 pub mod comparison;
 pub mod report;
+pub mod diagnose;
 mod compare;
 
 pub use compare::compare;
+pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, findings_json};
 pub use errors::DiagnosisError;
 pub use fit::{EffectFit, Estimate, Fit, Fitting, Found, Free, Options, Target, fit_study};
 pub use location::{Carrier, Location, Mismatch, Place, Search, Shown, When, locate};

@@ -19,6 +19,7 @@ mod recordings;
 mod study;
 mod placing;
 mod comparison;
+mod diagnosis;
 mod parquet_table;
 mod about;
 
@@ -41,6 +42,8 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<contact::Contact>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<comparison::Comparison>()?;
+    module.add_class::<diagnosis::Diagnosis>()?;
+    module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
     module.add_function(wrap_pyfunction!(recordings::read_recording, module)?)?;
     module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;

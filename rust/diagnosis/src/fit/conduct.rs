@@ -53,7 +53,7 @@ impl Default for Options {
 
 /// A study made ready to be fitted again and again; presses are kept from fit to fit.
 pub struct Fitting {
-    replay: Replay,
+    pub(crate) replay: Replay,
     instrument: Option<thenar_recordings::study::Instrument>,
 }
 

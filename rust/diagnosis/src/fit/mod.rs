@@ -11,6 +11,7 @@ mod problem;
 mod setting;
 mod start;
 
+pub(crate) use adequacy::blocks;
 pub use conduct::{Fitting, Options, fit_study};
 pub use effects::{EffectFit, Found, Free};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Keep, Material};
 
-use super::press_table::{Basis, PressTable, press_table};
+use super::press_table::{Basis, PressTable, RUNGS, press_table};
 use super::reading::misplaced;
 use super::shown::AtSkin;
 use super::{Key, Nuisance, Replay};
@@ -88,15 +88,15 @@ impl Replay {
             return Ok((basis.clone(), weights));
         }
         let basis = match is_linear {
-            false => Basis::whole(self.press(at, &key.materials, control)?),
+            false => Basis::whole(self.press((at, RUNGS), &key.materials, control)?),
             true => {
                 let unit = key.materials[0];
                 let twice = Material {
                     g_lim_mpa: 2.0 * unit.g0_mpa,
                     ..unit
                 };
-                let one = self.press(at, &[unit], control)?;
-                let two = self.press(at, &[twice], control)?;
+                let one = self.press((at, RUNGS), &[unit], control)?;
+                let two = self.press((at, RUNGS), &[twice], control)?;
                 Basis::linear(one, two, unit.g0_mpa)
             }
         };
@@ -106,6 +106,19 @@ impl Replay {
         }
         kept.push((key, basis.clone()));
         Ok((basis, weights))
+    }
+
+    /// The tool of a place (by number) pressed to a ladder of that many depths, with the effects switched on that do not remember.
+    ///
+    /// # Errors
+    /// What the contact model says of a press, or `Cancelled`.
+    pub fn ladder(
+        &mut self,
+        place: (usize, usize),
+        materials: &[Material],
+        control: &Control<'_>,
+    ) -> Result<PressTable, DiagnosisError> {
+        self.press(place, materials, control)
     }
 
     /// True if force and pressure are linear in G0 and Glim: one region, and no effect with a stiffness of its own.
@@ -122,7 +135,7 @@ impl Replay {
 
     fn press(
         &mut self,
-        at: usize,
+        (at, rungs): (usize, usize),
         materials: &[Material],
         control: &Control<'_>,
     ) -> Result<PressTable, DiagnosisError> {
@@ -145,7 +158,7 @@ impl Replay {
         press_table(
             &mut self.tissue.skin,
             (&place.tool, place.direction),
-            (place.deepest, keep),
+            (place.deepest, rungs, keep),
             (&title, &quiet),
         )
     }

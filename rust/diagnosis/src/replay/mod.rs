@@ -19,7 +19,9 @@ use thenar_surface::{Product, Vec3};
 
 use crate::DiagnosisError;
 use crate::observe::{Measured, Observed};
+pub(crate) use interpolation::Table;
 use press_table::Basis;
+pub(crate) use press_table::PressTable;
 use reading::Reader;
 use shown::AtSkin;
 pub use tissue::Tissue;
@@ -225,6 +227,11 @@ impl Replay {
             changed.map_err(DiagnosisError::of_contact(what))?;
         }
         Ok(())
+    }
+
+    /// Number of tools at places.
+    pub fn places(&self) -> usize {
+        self.places.len()
     }
 
     /// Depth that a recording's ladder reaches, mm.

@@ -8,7 +8,7 @@ use super::interpolation::Table;
 use crate::DiagnosisError;
 
 /// Depths of the ladder. With 24, a Hertz curve is joined to 1e-4 of its peak.
-const RUNGS: usize = 24;
+pub const RUNGS: usize = 24;
 
 /// A press at each depth of a ladder, which grows as the square: near first touch force, area and pressure are smooth in the
 /// root of the depth.
@@ -26,18 +26,18 @@ pub struct PressTable {
     pub touched: Vec<bool>,
 }
 
-/// Presses `tool` along `direction` to `deepest`, mm, in steps.
+/// Presses `tool` along `direction` to `deepest`, mm, in `rungs` steps.
 ///
 /// # Errors
 /// What the contact model says, of `what`.
 pub fn press_table(
     skin: &mut Skin,
     (tool, direction): (&Product, Vec3),
-    (deepest, keep): (f64, Keep),
+    (deepest, rungs, keep): (f64, usize, Keep),
     (what, control): (&str, &Control<'_>),
 ) -> Result<PressTable, DiagnosisError> {
-    let roots: Vec<f64> = (0..=RUNGS)
-        .map(|k| deepest.sqrt() * k as f64 / RUNGS as f64)
+    let roots: Vec<f64> = (0..=rungs)
+        .map(|k| deepest.sqrt() * k as f64 / rungs as f64)
         .collect();
     let row = |(k, root): (usize, &f64)| Row {
         time_s: k as f64,

@@ -14,6 +14,8 @@ mod tables;
 mod sections;
 mod page;
 mod json;
+mod diagnosis;
 
+pub use diagnosis::diagnosis_html;
 pub use json::comparison_json;
 pub use page::comparison_html;

@@ -31,6 +31,11 @@ ol,ul{margin:.3em 0;padding-left:1.25em}li{margin:.22em 0}\
 
 /// A self-contained page, UTF-8.
 pub fn comparison_html(comparison: &Comparison) -> String {
+    page(comparison, "")
+}
+
+/// The page with what stands before the comparison.
+pub fn page(comparison: &Comparison, before: &str) -> String {
     let title = match comparison.title.is_empty() {
         true => "Recordings and simulation",
         false => comparison.title.as_str(),
@@ -44,7 +49,7 @@ pub fn comparison_html(comparison: &Comparison) -> String {
 <meta name='viewport' content='width=device-width, initial-scale=1'>\
 <meta name='generator' content='Thenar {}'><title>{title}</title>\n<style>{STYLE}</style></head>\n<body>\n\
 <header><p class='maker'>Thenar \u{00b7} recordings beside simulation</p><h1>{title}</h1>\n\
-<p class='lead'>{}</p></header>\n{}{}{}{recordings}{}</body></html>\n",
+<p class='lead'>{}</p></header>\n{before}{}{}{}{recordings}{}</body></html>\n",
         env!("CARGO_PKG_VERSION"),
         escaped(&comparison.sentence),
         tables::overview(comparison),

@@ -1,0 +1,168 @@
+//! What mechanisms do to a recording: load that fades, skin that clings, stiffness that is used up, and the instrument.
+
+use super::course::Course;
+use super::elastic::{Tabled, radius};
+use super::mechanism::{Acts, Clock};
+use super::memory::fade;
+use super::model::{Model, Setting};
+use super::screen::Screen;
+
+impl Screen<'_> {
+    /// By branch of every mechanism that fades, its decay over each row's step.
+    pub(super) fn fades(
+        &self,
+        model: &Model<'_>,
+        (one, depths): (&Course, &[f64]),
+    ) -> Vec<Vec<(f64, f64)>> {
+        let mut all = Vec::new();
+        let table = &self.elastic.places[one.place];
+        for mechanism in model.mechanisms {
+            let Acts::Fades { clock, periods } = &mechanism.acts else {
+                continue;
+            };
+            let step = |n: usize| {
+                let seconds = one.rows[n].time_s - one.rows[n - 1].time_s;
+                match clock {
+                    Clock::Time => seconds,
+                    Clock::Travel => (depths[n].max(0.0) - depths[n - 1].max(0.0)).abs(),
+                    Clock::Area { reference_mm } => {
+                        let middle = 0.5 * (depths[n].max(0.0) + depths[n - 1].max(0.0));
+                        let least = 0.1 * reference_mm;
+                        seconds * (reference_mm / radius(table, middle).max(least)).powi(2)
+                    }
+                }
+            };
+            let steps: Vec<f64> = (0..depths.len())
+                .map(|n| if n == 0 { 0.0 } else { step(n) })
+                .collect();
+            for period in periods {
+                let over: Vec<f64> = steps.iter().map(|s| s / period).collect();
+                all.push(fade(&over));
+            }
+        }
+        all
+    }
+
+    /// Shares of all branches at a place.
+    ///
+    /// What drains leaves tissue that gives up volume, and that matters the more, the larger the contact is against the thickness: the
+    /// share of drainage is in proportion to what compressibility takes from the tool's force.
+    pub(super) fn shares(&self, model: &Model<'_>, set: &Setting, place: usize) -> Vec<f64> {
+        let mut shares = Vec::new();
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            let Acts::Fades { clock, .. } = &mechanism.acts else {
+                continue;
+            };
+            let factor = match clock {
+                Clock::Area { .. } => self.elastic.drained[place],
+                _ => 1.0,
+            };
+            shares.extend(
+                set.of[number]
+                    .iter()
+                    .map(|share| (share * factor).min(0.95)),
+            );
+        }
+        shares
+    }
+
+    /// How far each spring may be stretched, mm; empty without adhesion.
+    pub(super) fn holds(&self, model: &Model<'_>, set: &Setting, table: &Tabled) -> Vec<f64> {
+        let mut found = Vec::new();
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            if matches!(mechanism.acts, Acts::Clings { .. }) {
+                let factor = set.of[number][0];
+                let deepest = radius(table, self.most.1).max(1e-9);
+                let hold = |a: &f64| factor * self.most.1.sqrt() * (a / deepest).sqrt();
+                found = table.radius.iter().map(hold).collect();
+            }
+        }
+        found
+    }
+
+    /// Stiffness that use took away.
+    pub(super) fn soften(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        ((one, depths), forces): ((&Course, &[f64]), &mut [f64]),
+    ) {
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            let Acts::Softens {
+                travel_mm,
+                recovery_s,
+            } = mechanism.acts
+            else {
+                continue;
+            };
+            let share = set.of[number][0];
+            let (mut used, mut last, mut time) = (0.0, 0.0, one.rows[0].time_s);
+            for (n, force) in forces.iter_mut().enumerate() {
+                let depth = depths[n].max(0.0);
+                if depth <= 0.0 {
+                    used *= libm::exp(-(one.rows[n].time_s - time) / recovery_s);
+                }
+                used = 1.0 - (1.0 - used) * libm::exp(-(depth - last).max(0.0) / travel_mm);
+                (last, time) = (depth, one.rows[n].time_s);
+                *force *= 1.0 - share * used;
+            }
+        }
+    }
+
+    /// What the instrument makes of the forces.
+    pub(super) fn read(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (one, forces): (&Course, &mut Vec<f64>),
+    ) {
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            if !mechanism.is_instrument() {
+                continue;
+            }
+            let value = set.of[number][0];
+            match &mechanism.acts {
+                Acts::GainStep { from } if one.order >= *from => {
+                    forces.iter_mut().for_each(|f| *f *= libm::exp(value));
+                }
+                Acts::Offset => forces.iter_mut().for_each(|f| *f += value),
+                Acts::Drifts { time_s } => {
+                    let start = one.rows[0].time_s;
+                    for (force, row) in forces.iter_mut().zip(&one.rows) {
+                        *force += value * libm::log1p((row.time_s - start) / time_s);
+                    }
+                }
+                Acts::Saturates => {
+                    let ceiling = self.most.0 * libm::exp(value);
+                    for force in forces.iter_mut() {
+                        *force = ceiling - soft(ceiling - *force, 0.02 * ceiling);
+                    }
+                }
+                Acts::Blind => {
+                    let floor = value * self.least_peak;
+                    let width = 0.01 * self.least_peak;
+                    for force in forces.iter_mut() {
+                        let x = ((*force - floor) / width).clamp(-40.0, 40.0);
+                        *force *= 1.0 / (1.0 + libm::exp(-x));
+                    }
+                }
+                Acts::Late => {
+                    let times: Vec<f64> = one.rows.iter().map(|row| row.time_s).collect();
+                    let meant: Vec<f64> = times.iter().map(|t| t - value).collect();
+                    *forces = crate::observe::interpolated(&times, forces, &meant);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// A value below `x` and below none: `x` for large x, 0 for small, smooth over `width`.
+fn soft(x: f64, width: f64) -> f64 {
+    let y = x / width;
+    if y > 30.0 {
+        x
+    } else {
+        width * libm::log1p(libm::exp(y.max(-700.0)))
+    }
+}

@@ -1,0 +1,273 @@
+//! Elastic answers of every tool at its site, with and without what changes the response: tables that screening looks up.
+
+use thenar_contact::effects::Effect;
+use thenar_contact::{ActiveEffect, Control, Material};
+
+use crate::DiagnosisError;
+use crate::fit::Fitting;
+use crate::replay::{PressTable, Table};
+
+/// Thickness over the base's at which bone is tabulated.
+const THICKNESSES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.8];
+/// Poisson's ratios at which compressibility is tabulated, from the base's.
+const POISSON: [f64; 3] = [0.49, 0.46, 0.4];
+/// Bending stiffness of a skin over that of the catalogue's skin, at which a stiff skin is tabulated.
+const SKINS: [f64; 3] = [0.02, 0.15, 1.0];
+
+/// Depths at which a table is pressed, and at which what changes it: their ratio is smooth.
+const RUNGS: (usize, usize) = (20, 5);
+
+/// How a table was changed, and by how much at each of its knots.
+#[derive(Debug, Clone)]
+pub struct Variant {
+    /// What changes it.
+    pub effect: Effect,
+    /// Coordinate of each knot: logarithm of the thickness over the base's, lost part of Poisson's ratio, logarithm-like stiffness.
+    pub knots: Vec<f64>,
+    /// By place, knot and rung (as many as the base has): logarithm of the force over the base's.
+    pub log_ratio: Vec<Vec<Vec<f64>>>,
+}
+
+/// A tool at a site: force for a modulus of 1 MPa, and contact radius, by the root of depth.
+#[derive(Debug, Clone)]
+pub struct Tabled {
+    /// Roots of the depths, mm^0.5.
+    pub roots: Vec<f64>,
+    /// Force over the modulus, mm2.
+    pub force: Table,
+    /// The same at the rungs.
+    pub rungs: Vec<f64>,
+    /// Contact radius at the rungs, mm.
+    pub radius: Vec<f64>,
+    /// Deepest depth that was recorded, mm.
+    pub deepest: f64,
+}
+
+/// All tables of a study.
+#[derive(Debug, Clone)]
+pub struct Elastic {
+    /// By place.
+    pub places: Vec<Tabled>,
+    /// What changes them.
+    pub variants: Vec<Variant>,
+    /// Depth at which the modulus stops growing, mm.
+    pub limit_depth: f64,
+    /// By place: what tissue that gives up volume loses of the force, over the mean of all places; 1 where it is not known.
+    pub drained: Vec<f64>,
+}
+
+impl Elastic {
+    /// Presses every tool at its site, at the modulus `g_mpa`.
+    ///
+    /// # Errors
+    /// What the contact model says of a press, or `Cancelled`.
+    pub fn new(
+        fitting: &mut Fitting,
+        g_mpa: f64,
+        control: &Control<'_>,
+    ) -> Result<Elastic, DiagnosisError> {
+        let start = fitting.replay.tissue.materials.clone();
+        let flat = flattened(&start, g_mpa);
+        let places = fitting.replay.places();
+        let base = tables(fitting, (&[], &flat, RUNGS.0), control)?;
+        let mut variants = Vec::new();
+        for (effect, knots) in plan(&start[0]) {
+            let mut log_ratio = vec![Vec::new(); places];
+            for (_, changed) in &knots {
+                let tabled = match changed {
+                    None => base.clone(),
+                    Some(effect) => tables(
+                        fitting,
+                        (std::slice::from_ref(effect), &flat, RUNGS.1),
+                        control,
+                    )?,
+                };
+                for (place, (with, without)) in tabled.iter().zip(&base).enumerate() {
+                    log_ratio[place].push(ratios(with, without));
+                }
+            }
+            let knots = knots.into_iter().map(|(knot, _)| knot).collect();
+            variants.push(Variant {
+                effect,
+                knots,
+                log_ratio,
+            });
+        }
+        fitting.replay.set_effects(&[], control)?;
+        let drained = drained(&variants, places);
+        Ok(Elastic {
+            drained,
+            places: base.into_iter().map(|table| tabled(table, g_mpa)).collect(),
+            variants,
+            limit_depth: start[0].d_lim_mm,
+        })
+    }
+
+    /// The variant of an effect.
+    pub fn variant(&self, effect: Effect) -> Option<&Variant> {
+        self.variants.iter().find(|v| v.effect == effect)
+    }
+}
+
+impl Variant {
+    /// Knot below a coordinate, and the share of the way to the next.
+    pub fn between(&self, at: f64) -> (usize, f64) {
+        let last = self.knots.len() - 2;
+        let k = self
+            .knots
+            .partition_point(|knot| *knot <= at)
+            .clamp(1, last + 1)
+            - 1;
+        (
+            k,
+            (at - self.knots[k]) / (self.knots[k + 1] - self.knots[k]),
+        )
+    }
+}
+
+/// By place, part of the force that is lost with the smallest Poisson's ratio, over the mean of all.
+fn drained(variants: &[Variant], places: usize) -> Vec<f64> {
+    let softer = variants
+        .iter()
+        .find(|v| v.effect == Effect::Compressibility);
+    let lost = |place: usize| {
+        let ratio = softer.and_then(|v| v.log_ratio[place].last()?.last().copied());
+        1.0 - libm::exp(ratio.unwrap_or(0.0))
+    };
+    let all: Vec<f64> = (0..places).map(lost).collect();
+    let mean = all.iter().sum::<f64>() / places.max(1) as f64;
+    let over = |lost: &f64| {
+        if mean > 0.0 {
+            (lost / mean).max(0.05)
+        } else {
+            1.0
+        }
+    };
+    all.iter().map(over).collect()
+}
+
+/// Coordinate of a knot, and what is switched on there; None: the base.
+type Knot = (f64, Option<ActiveEffect>);
+
+/// Effects to tabulate, by effect and knot.
+fn plan(base: &Material) -> Vec<(Effect, Vec<Knot>)> {
+    let mut all = Vec::new();
+    let with = |effect: Effect, number: usize, value: f64| {
+        let mut active = ActiveEffect::new(effect, 1.0);
+        active.shape[number] = value;
+        active
+    };
+    if base.thickness_mm.is_finite() {
+        let knot = |share: &f64| {
+            let changed = with(Effect::Bone, 0, base.thickness_mm * share);
+            (libm::log(*share), (*share != 1.0).then_some(changed))
+        };
+        all.push((Effect::Bone, THICKNESSES.iter().map(knot).collect()));
+    }
+    let given_up = POISSON
+        .iter()
+        .filter(|nu| **nu < base.poisson_ratio - 0.005);
+    let mut knots: Vec<Knot> = vec![(0.0, None)];
+    knots.extend(given_up.map(|nu| {
+        let lost = base.poisson_ratio - nu;
+        (lost, Some(with(Effect::Compressibility, 0, *nu)))
+    }));
+    if knots.len() > 1 {
+        all.push((Effect::Compressibility, knots));
+    }
+    let mut knots = vec![(0.0, None)];
+    knots.extend(SKINS.iter().enumerate().map(|(k, share)| {
+        let mut skin = ActiveEffect::new(Effect::StiffSkin, *share);
+        skin.amplitude = *share;
+        ((k + 1) as f64, Some(skin))
+    }));
+    all.push((Effect::StiffSkin, knots));
+    all
+}
+
+/// The stiffness of a skin at a coordinate of its variant, over that of the catalogue's skin.
+pub fn skin_share(at: f64) -> f64 {
+    if at <= 1.0 {
+        return SKINS[0] * at;
+    }
+    let k = (at.floor() as usize).min(SKINS.len() - 1);
+    let share = at - k as f64;
+    libm::exp(libm::log(SKINS[k - 1]) * (1.0 - share) + libm::log(SKINS[k]) * share)
+}
+
+/// Materials with one modulus at every depth: that of the first region, the others in proportion.
+fn flattened(start: &[Material], g_mpa: f64) -> Vec<Material> {
+    let scale = g_mpa / start[0].g0_mpa;
+    let one = |m: &Material| Material {
+        g0_mpa: m.g0_mpa * scale,
+        g_lim_mpa: m.g0_mpa * scale,
+        ..*m
+    };
+    start.iter().map(one).collect()
+}
+
+fn tables(
+    fitting: &mut Fitting,
+    (effects, materials, rungs): (&[ActiveEffect], &[Material], usize),
+    control: &Control<'_>,
+) -> Result<Vec<PressTable>, DiagnosisError> {
+    fitting.replay.set_effects(effects, control)?;
+    (0..fitting.replay.places())
+        .map(|at| {
+            control.check().map_err(|_| DiagnosisError::Cancelled)?;
+            fitting.replay.ladder((at, rungs), materials, control)
+        })
+        .collect()
+}
+
+/// Logarithm of one table's force over another's at the latter's rungs; at first touch, where both vanish, as at the first rung.
+fn ratios(with: &PressTable, without: &PressTable) -> Vec<f64> {
+    let stride = (without.roots.len() - 1) / (with.roots.len() - 1);
+    let one = |(k, a): (usize, &f64)| {
+        let b = without.force[k * stride];
+        if *a > 0.0 && b > 0.0 {
+            libm::log(a / b)
+        } else {
+            f64::NAN
+        }
+    };
+    let mut few: Vec<f64> = with.force.iter().enumerate().map(one).collect();
+    for k in (0..few.len()).rev() {
+        if few[k].is_nan() {
+            few[k] = few.get(k + 1).copied().unwrap_or(0.0);
+        }
+    }
+    let smooth = Table::new(&with.roots, few);
+    without.roots.iter().map(|root| smooth.at(*root)).collect()
+}
+
+fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
+    let rungs: Vec<f64> = table.force.iter().map(|f| f / g_mpa).collect();
+    let radius = table
+        .area
+        .iter()
+        .map(|a| (a.max(0.0) / std::f64::consts::PI).sqrt());
+    let last = table.roots.last().copied().unwrap_or(0.0);
+    Tabled {
+        force: Table::new(&table.roots, rungs.clone()),
+        radius: radius.collect(),
+        deepest: last * last,
+        rungs,
+        roots: table.roots,
+    }
+}
+
+/// Rung below a depth, and the share of the way to the next, along the root of depth.
+pub fn rung(table: &Tabled, depth: f64) -> (usize, f64) {
+    let last = table.roots.len() - 1;
+    let root = depth.max(0.0).sqrt();
+    let next = table.roots.partition_point(|r| *r <= root).clamp(1, last);
+    let share = (root - table.roots[next - 1]) / (table.roots[next] - table.roots[next - 1]);
+    (next - 1, share.min(1.0))
+}
+
+/// Contact radius at a depth, mm.
+pub fn radius(table: &Tabled, depth: f64) -> f64 {
+    let (k, share) = rung(table, depth);
+    table.radius[k] * (1.0 - share) + table.radius[k + 1] * share
+}

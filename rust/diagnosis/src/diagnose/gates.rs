@@ -1,0 +1,244 @@
+//! Decides what may be said: detection, adequacy, rivals within reach, and what the recordings could test at all.
+
+use thenar_contact::effects::Effect;
+
+use super::findings::Verdict;
+use super::ladder::{Rungs, Scored};
+use super::prepare::Prepared;
+
+/// Evidence, nats, from which anything is said to be missing.
+pub const DETECTED: f64 = 7.0;
+/// Lead in evidence, nats, over every rival that bears another name.
+pub const LEAD: f64 = 3.0;
+/// Evidence that a second mechanism must add.
+const SECOND: f64 = 7.0;
+/// Part of the coherent misfit that a name may leave.
+const LEFT: f64 = 0.3;
+/// Coherent misfit per sample, in variances of the noise, below which nothing is left to explain.
+const QUIET: f64 = 0.12;
+/// Coherent misfit per sample that no name explains, from which something unlisted is there.
+const UNLISTED: f64 = 0.25;
+/// Noise under load over that without, from which the skin itself is unsteady.
+const UNSTEADY: f64 = 1.45;
+
+/// What may be said.
+#[derive(Debug, Clone)]
+pub struct Decision<'a> {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What is named; None: nothing.
+    pub named: Option<&'a Scored>,
+    /// Pairs of names within reach of one another.
+    pub cannot_tell: Vec<[&'static str; 2]>,
+    /// Why, for the notes.
+    pub reason: String,
+}
+
+/// Decides from what the rungs found.
+pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
+    let silent = |verdict, reason: &str| Decision {
+        verdict,
+        named: None,
+        cannot_tell: Vec::new(),
+        reason: reason.to_owned(),
+    };
+    if ready.noise.degrees.is_none() {
+        return silent(
+            Verdict::InsufficientData,
+            "no protocol was repeated, so that noise cannot be told from what is missing",
+        );
+    }
+    let best = rungs.singles.first();
+    let is_detected = best.is_some_and(|b| b.evidence >= DETECTED);
+    if rungs.unsteady.is_some_and(|u| u.ratio > UNSTEADY)
+        && !best.is_some_and(|b| b.evidence > 60.0)
+    {
+        return silent(
+            Verdict::Unlisted,
+            "repeats of one protocol differ more under load than without, by more than gain and first touch",
+        );
+    }
+    let Some(best) = best.filter(|_| is_detected) else {
+        let left = rungs.base.coherent / rungs.samples as f64;
+        if left > UNLISTED {
+            return silent(
+                Verdict::Unlisted,
+                "repeats agree on a misfit that parameters leave and no listed effect takes up",
+            );
+        }
+        return silent(
+            nothing(ready, rungs),
+            "no listed effect explains more than noise would",
+        );
+    };
+    if let Some(pair) = rungs.pairs.first()
+        && is_pair(pair, rungs)
+    {
+        let names = pair.names();
+        let mut rivals = Vec::new();
+        for rival in rungs.pairs.iter().skip(1).filter(|r| within(pair, r)) {
+            for (a, b) in differing(&names, &rival.names()) {
+                rivals.push([a, b]);
+            }
+        }
+        if rivals.is_empty() {
+            return named(pair, "two effects together, each of which is needed");
+        }
+        return unsettled(
+            rivals,
+            "several pairs of effects explain the recordings alike",
+        );
+    }
+    let is_adequate = is_adequate(best, rungs);
+    if !is_adequate {
+        return silent(
+            Verdict::Unlisted,
+            "the best listed effect leaves too much of what repeats agree on",
+        );
+    }
+    let rivals: Vec<&Scored> = rungs.singles[1..]
+        .iter()
+        .filter(|r| within(best, r) && is_adequate_beside(r, best))
+        .collect();
+    if !rivals.is_empty() {
+        let first = best.mechanisms[0].effect.name();
+        let mut pairs: Vec<[&'static str; 2]> = rivals
+            .iter()
+            .map(|r| [first, r.mechanisms[0].effect.name()])
+            .collect();
+        for (i, a) in rivals.iter().enumerate() {
+            for b in &rivals[i + 1..] {
+                pairs.push([a.mechanisms[0].effect.name(), b.mechanisms[0].effect.name()]);
+            }
+        }
+        return unsettled(pairs, "several effects explain the recordings alike");
+    }
+    named(
+        best,
+        "one effect explains what parameters cannot, and no other does",
+    )
+}
+
+/// Nothing is missing, with the study's own parameters or with others.
+fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
+    let at = &rungs.base.refit.at;
+    let moved = (0..2).any(|k| {
+        let start = ready.shared[k].start;
+        let error = rungs.base.refit.covariance[(k, k)].max(0.0).sqrt();
+        (at[k] - start).abs() > 3.0 * error.max(0.02)
+    });
+    if moved {
+        Verdict::Parameters
+    } else {
+        Verdict::NothingMissing
+    }
+}
+
+/// True if a rival's evidence is within reach.
+fn within(best: &Scored, rival: &Scored) -> bool {
+    best.evidence - rival.evidence < LEAD
+}
+
+fn is_adequate_beside(rival: &Scored, best: &Scored) -> bool {
+    rival.evidence > 0.5 * best.evidence
+}
+
+fn is_adequate(best: &Scored, rungs: &Rungs) -> bool {
+    let quiet = QUIET * rungs.samples as f64;
+    best.coherent <= quiet || best.coherent <= LEFT * rungs.base.coherent
+}
+
+/// True if both of a pair are needed, and together they suffice.
+fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
+    let alone = |k: usize| {
+        let of = |s: &&Scored| s.mechanisms[0].effect == pair.mechanisms[k].effect;
+        rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
+    };
+    pair.mechanisms[0].effect != pair.mechanisms[1].effect
+        && pair.evidence - alone(0) >= SECOND
+        && pair.evidence - alone(1) >= SECOND
+        && rungs
+            .singles
+            .first()
+            .is_some_and(|s| pair.evidence - s.evidence >= SECOND)
+        && is_adequate(pair, rungs)
+}
+
+fn differing(names: &[&'static str], others: &[&'static str]) -> Vec<(&'static str, &'static str)> {
+    let only = |a: &[&'static str], b: &[&'static str]| -> Vec<&'static str> {
+        a.iter().copied().filter(|n| !b.contains(n)).collect()
+    };
+    let (ours, theirs) = (only(names, others), only(others, names));
+    ours.iter()
+        .flat_map(|a| theirs.iter().map(move |b| (*a, *b)))
+        .collect()
+}
+
+fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
+    let is_tissue = scored.mechanisms.iter().any(|m| !m.is_instrument());
+    Decision {
+        verdict: if is_tissue {
+            Verdict::MissingPhysics
+        } else {
+            Verdict::Instrument
+        },
+        named: Some(scored),
+        cannot_tell: Vec::new(),
+        reason: reason.to_owned(),
+    }
+}
+
+fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a> {
+    let mut seen: Vec<[&'static str; 2]> = Vec::new();
+    for pair in &mut pairs {
+        pair.sort_by_key(|name| Effect::named(name));
+        if !seen.contains(pair) {
+            seen.push(*pair);
+        }
+    }
+    Decision {
+        verdict: Verdict::CannotTell,
+        named: None,
+        cannot_tell: seen,
+        reason: reason.to_owned(),
+    }
+}
+
+/// Probabilities of the base and of everything that was tried, by evidence over `temperature`.
+pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
+    let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), DETECTED - 2.0)];
+    for scored in rungs.singles.iter().chain(&rungs.pairs) {
+        let names = scored.names();
+        match all.iter_mut().find(|(other, _)| *other == names) {
+            Some((_, evidence)) => *evidence = evidence.max(scored.evidence),
+            None => all.push((names, scored.evidence)),
+        }
+    }
+    let most = all
+        .iter()
+        .fold(f64::NEG_INFINITY, |most, (_, e)| most.max(*e));
+    let weight = |e: f64| libm::exp((e - most) / TEMPERATURE);
+    let sum: f64 = all.iter().map(|(_, e)| weight(*e)).sum();
+    let mut all: Vec<(Vec<&'static str>, f64)> = all
+        .into_iter()
+        .map(|(names, e)| (names, weight(e) / sum))
+        .collect();
+    all.sort_by(|a, b| b.1.total_cmp(&a.1));
+    all
+}
+
+/// What evidence is divided by before it becomes a probability: models are not true.
+const TEMPERATURE: f64 = 2.0;
+
+/// Names, most probable first, until they hold 90 %.
+pub fn names_90(probabilities: &[(Vec<&'static str>, f64)]) -> Vec<Vec<&'static str>> {
+    let (mut kept, mut sum) = (Vec::new(), 0.0);
+    for (names, p) in probabilities {
+        if sum >= 0.9 {
+            break;
+        }
+        kept.push(names.clone());
+        sum += p;
+    }
+    kept
+}

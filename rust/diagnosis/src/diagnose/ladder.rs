@@ -1,0 +1,239 @@
+//! The ladder: parameters, instrument and tissue one by one, pairs, and what no listed name explains; it stops at the first
+//! rung that suffices.
+
+use thenar_contact::effects::Effect;
+
+use super::checks::{GainStep, Unsteady, gain_step, unsteady};
+use super::mechanism::{Acts, Mechanism, singles};
+use super::model::{Kind, Model};
+use super::prepare::Prepared;
+use super::refit::{Refit, refit};
+use super::screen::Screen;
+use crate::fit::blocks;
+use crate::{DiagnosisError, Measured, Phase};
+use thenar_contact::Control;
+
+/// A hypothesis that was fitted.
+#[derive(Debug, Clone)]
+pub struct Scored {
+    /// What it adds to the base; nothing for the base itself.
+    pub mechanisms: Vec<Mechanism>,
+    /// Its fit.
+    pub refit: Refit,
+    /// Logarithm of the evidence over that of the base: half of what the deviance falls by, tempered, less the price of its numbers.
+    pub evidence: f64,
+    /// Misfit that is the same in every repeat, beyond what noise adds up to.
+    pub coherent: f64,
+}
+
+impl Scored {
+    /// Names, in the catalogue's order, each once.
+    pub fn names(&self) -> Vec<&'static str> {
+        let mut effects: Vec<Effect> = self.mechanisms.iter().map(|m| m.effect).collect();
+        effects.sort_unstable();
+        effects.dedup();
+        effects.into_iter().map(Effect::name).collect()
+    }
+}
+
+/// What every rung found.
+pub struct Rungs {
+    /// The base.
+    pub base: Scored,
+    /// One mechanism each, the best variant of every name, best first.
+    pub singles: Vec<Scored>,
+    /// Two mechanisms, best first; empty where one suffices.
+    pub pairs: Vec<Scored>,
+    /// How repeats deviate under load and without.
+    pub unsteady: Option<Unsteady>,
+    /// The clearest step of the session's gain.
+    pub gain_step: Option<GainStep>,
+    /// Number of screened samples.
+    pub samples: usize,
+    /// What deviances are divided by: how much more than the noise the best model leaves.
+    pub temper: f64,
+}
+
+/// Price of one free number in nats.
+const PRICE: f64 = 1.0;
+/// Names among which all pairs are tried.
+const PAIRED: usize = 6;
+/// Part of a deviance's fall that leaves nothing for a second mechanism to explain: below it, pairs are tried.
+pub const ADEQUATE: f64 = 0.12;
+
+/// Climbs the ladder.
+///
+/// # Errors
+/// `Cancelled`.
+pub fn climb(
+    ready: &Prepared,
+    measured: &[Measured],
+    control: &Control<'_>,
+) -> Result<Rungs, DiagnosisError> {
+    let screen = ready.screen();
+    let step = |share: f64| {
+        let step = control.step("trying explanations", share);
+        step.map_err(|_| DiagnosisError::Cancelled)
+    };
+    let blocks = blocks(measured);
+    let samples = ready
+        .courses
+        .iter()
+        .flat_map(|c| &c.rows)
+        .filter(|r| r.sample.is_some())
+        .count();
+    let score = |mechanisms: &[Mechanism], from: &[f64]| {
+        let model = Model::new(&screen, mechanisms);
+        let refit = refit(&screen, &model, from);
+        Scored {
+            coherent: coherent(&screen, &refit.residual, &blocks),
+            mechanisms: mechanisms.to_vec(),
+            refit,
+            evidence: 0.0,
+        }
+    };
+    let mut base = score(&[], &[]);
+    let from = base.refit.at.clone();
+    let mut tried = singles(ready.scales);
+    let step_found = gain_step(&ready.courses, &log_gains(ready, &base));
+    if let Some(found) = step_found.filter(|f| f.t > STEP) {
+        let acts = Acts::GainStep { from: found.from };
+        tried.push(Mechanism {
+            effect: Effect::Gain,
+            acts,
+        });
+    }
+    let mut all = Vec::new();
+    for (k, mechanism) in tried.iter().enumerate() {
+        step(0.6 * k as f64 / tried.len() as f64)?;
+        all.push(score(std::slice::from_ref(mechanism), &from));
+    }
+    let least = all
+        .iter()
+        .map(|s| s.refit.deviance)
+        .fold(base.refit.deviance, f64::min);
+    let temper = (least / samples.max(1) as f64).max(1.0);
+    let base_deviance = base.refit.deviance;
+    let judge = |scored: &mut Scored| {
+        let numbers: usize = scored.mechanisms.iter().map(Mechanism::count).sum();
+        let fall = base_deviance - scored.refit.deviance;
+        scored.evidence = 0.5 * fall / temper - PRICE * numbers as f64;
+    };
+    judge(&mut base);
+    all.iter_mut().for_each(judge);
+    let found = step_found.filter(|f| f.t > STEP);
+    for scored in all
+        .iter_mut()
+        .filter(|s| s.mechanisms[0].effect == Effect::Gain)
+    {
+        // The scatter of gains was judged with the step in it: what the step explains is told by the repeats' gains alone.
+        let t = found.map_or(0.0, |f| f.t * f.t / f.degrees);
+        let n = ready.courses.len() as f64;
+        scored.evidence = scored.evidence.max(0.25 * n * libm::log1p(t));
+    }
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let mut best: Vec<Scored> = Vec::new();
+    for scored in all {
+        if !best
+            .iter()
+            .any(|b| b.mechanisms[0].effect == scored.mechanisms[0].effect)
+        {
+            best.push(scored);
+        }
+    }
+    let mut pairs = Vec::new();
+    let wants_pairs = best.first().is_some_and(|b| {
+        let fall = base.coherent - b.coherent;
+        b.evidence > 5.0 && b.coherent > ADEQUATE * fall
+    });
+    if wants_pairs {
+        let among: Vec<Mechanism> = best
+            .iter()
+            .filter(|s| s.evidence > 1.0)
+            .take(PAIRED)
+            .map(|s| s.mechanisms[0].clone())
+            .collect();
+        let mut others: Vec<Mechanism> = best.iter().map(|s| s.mechanisms[0].clone()).collect();
+        others.truncate(12);
+        let mut sets = Vec::new();
+        for (i, a) in others.iter().enumerate() {
+            for b in &others[i + 1..] {
+                let leads = among.first().is_some_and(|lead| a == lead || b == lead);
+                if leads || (among.contains(a) && among.contains(b)) {
+                    sets.push([a.clone(), b.clone()]);
+                }
+            }
+        }
+        for (k, set) in sets.iter().enumerate() {
+            step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
+            pairs.push(score(set, &from));
+        }
+        pairs.iter_mut().for_each(judge);
+        pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    }
+    let unsteady = unsteady(&screen, &base.refit.residual);
+    Ok(Rungs {
+        base,
+        singles: best,
+        pairs,
+        unsteady,
+        gain_step: step_found,
+        samples,
+        temper,
+    })
+}
+
+/// Standard errors from which a step of the gain is looked into.
+const STEP: f64 = 3.0;
+
+/// Logarithm of each recording's gain: what the fit with its prior gave, and what it left.
+fn log_gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
+    ready
+        .courses
+        .iter()
+        .map(|course| {
+            let (mut over, mut under) = (0.0, 0.0);
+            for row in course.rows.iter().filter(|r| r.phase != Phase::Apart) {
+                if let Some(sample) = row.sample {
+                    let simulated = base.refit.simulated[sample];
+                    over += (row.force_n - simulated) * simulated;
+                    under += simulated * simulated;
+                }
+            }
+            over / f64::max(under, 1e-30)
+        })
+        .zip(gains(ready, base))
+        .map(|(rest, gain)| gain + libm::log1p(rest.max(-0.9)))
+        .collect()
+}
+
+fn gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
+    let of = |course: usize| {
+        let place = ready
+            .shared
+            .iter()
+            .position(|c| c.kind == Kind::Gain(course));
+        place.map_or(0.0, |k| base.refit.at[k])
+    };
+    (0..ready.courses.len()).map(of).collect()
+}
+
+/// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
+fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
+    let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
+    let mut sums = vec![(0.0, 0.0f64, 0.0); count];
+    for (sample, _, _) in screen.phases() {
+        let r = residual[sample].clamp(-6.0, 6.0);
+        let sum = &mut sums[blocks[sample]];
+        *sum = (sum.0 + r, sum.1 + 1.0, sum.2 + r * r);
+    }
+    let used: Vec<_> = sums.iter().filter(|s| s.1 > 1.0).collect();
+    let own: f64 = used
+        .iter()
+        .map(|(sum, n, squares)| squares - sum * sum / n)
+        .sum();
+    let degrees: f64 = used.iter().map(|s| s.1 - 1.0).sum();
+    let variance = if degrees > 0.0 { own / degrees } else { 1.0 };
+    let between: f64 = used.iter().map(|(sum, n, _)| sum * sum / n).sum();
+    (between - variance * used.len() as f64).max(0.0)
+}

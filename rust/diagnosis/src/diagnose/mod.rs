@@ -1,0 +1,154 @@
+//! Stages 7 to 10: from what the parameters leave to a diagnosis.
+//!
+//! Conducts the ladder noise, parameters, instrument, one effect, two effects, unlisted. Screening models the force of every recording
+//! by tables of elastic presses and springs that remember (`memory.rs`), under the same noise and priors as the fit.
+
+mod acting;
+mod checks;
+mod course;
+mod elastic;
+mod findings;
+mod findings_json;
+mod gain;
+mod gates;
+mod ladder;
+mod local;
+mod mechanism;
+mod memory;
+mod model;
+mod next_record;
+mod numbers;
+mod prepare;
+mod refit;
+mod screen;
+mod sentence;
+mod shown;
+mod stiffness;
+
+pub use findings::{
+    Curve, Diagnosis, Finding, Gain, Number, Rival, Spread, Suggestion, Switched, Verdict, When,
+    Where,
+};
+pub use findings_json::findings_json;
+
+use thenar_contact::Control;
+use thenar_recordings::Study;
+
+use crate::comparison::Comparison;
+use crate::fit::Fitting;
+use crate::{DiagnosisError, Options, compare};
+use gates::Decision;
+use ladder::Rungs;
+use prepare::{Prepared, prepare};
+
+/// What a diagnosis is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DiagnoseOptions {
+    /// Seed of all that is drawn: the same seed gives the same bytes.
+    pub seed: u64,
+}
+
+impl Default for DiagnoseOptions {
+    fn default() -> Self {
+        DiagnoseOptions { seed: 1 }
+    }
+}
+
+/// Says what a study's recordings show that the model leaves out.
+///
+/// # Errors
+/// [`DiagnosisError`]: skin, tools or mats that cannot be used, presses that fail, too few samples, or `Cancelled`.
+pub fn diagnose(
+    study: &Study,
+    options: &DiagnoseOptions,
+    control: &Control<'_>,
+) -> Result<Diagnosis, DiagnosisError> {
+    let part = |from: f64, to: f64| {
+        move |stage: &str, share: f64| (control.progress)(stage, from + (to - from) * share)
+    };
+    let progress = part(0.0, 0.3);
+    let within = Control {
+        cancelled: control.cancelled,
+        progress: &progress,
+    };
+    let asked = Options {
+        seed: options.seed,
+        ..Options::default()
+    };
+    let comparison = compare(study, &asked, &within)?;
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
+    let mut fitting = Fitting::new(study, &quiet)?;
+    control
+        .step("pressing the tools", 0.3)
+        .map_err(|_| DiagnosisError::Cancelled)?;
+    let ready = prepare(study, &mut fitting, &quiet)?;
+    let progress = part(0.4, 0.95);
+    let within = Control {
+        cancelled: control.cancelled,
+        progress: &progress,
+    };
+    let rungs = match &ready {
+        Some(ready) => Some(ladder::climb(ready, fitting.measured(), &within)?),
+        None => None,
+    };
+    let found = match (&ready, &rungs) {
+        (Some(ready), Some(rungs)) => {
+            let decision = gates::decide(ready, rungs);
+            told(
+                study,
+                (comparison, &fitting),
+                (ready, rungs, decision),
+                options,
+            )
+        }
+        _ => local::without_curves(study, comparison),
+    };
+    control
+        .step("diagnosing", 1.0)
+        .map_err(|_| DiagnosisError::Cancelled)?;
+    Ok(found)
+}
+
+/// All that is said, from what was found.
+fn told(
+    study: &Study,
+    (comparison, fitting): (Comparison, &Fitting),
+    (ready, rungs, decision): (&Prepared, &Rungs, Decision<'_>),
+    options: &DiagnoseOptions,
+) -> Diagnosis {
+    let probabilities = gates::probabilities(rungs);
+    let gain = decision
+        .named
+        .and_then(|named| gain::gain(ready, fitting.measured(), named, options.seed));
+    let mut found = Diagnosis {
+        comparison,
+        verdict: decision.verdict,
+        sentence: String::new(),
+        findings: shown::findings(study, (ready, rungs), &decision, &probabilities),
+        names_90: gates::names_90(&probabilities),
+        cannot_tell: decision.cannot_tell.clone(),
+        gain,
+        smallest_seen: shown::smallest_seen(ready, rungs),
+        record_next: next_record::suggestions(study, &ready.courses, &decision.cannot_tell),
+        materials: shown::materials(fitting, (ready, rungs), &decision),
+        effects: shown::effects(ready, &decision),
+        rivals: shown::rivals(ready, rungs, &probabilities),
+        curves: shown::curves(ready, rungs, &decision),
+        evidence: shown::evidence(ready, rungs),
+        notes: vec![decision.reason.clone()],
+    };
+    if found.verdict == Verdict::InsufficientData {
+        found.names_90 = Vec::new();
+    }
+    local::add_place(study, &mut found);
+    found.sentence = sentence::sentence(
+        found.verdict,
+        (&found.findings, found.gain.as_ref()),
+        (&found.cannot_tell, &found.record_next),
+        &decision.reason,
+    );
+    found
+}

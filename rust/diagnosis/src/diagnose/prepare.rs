@@ -1,0 +1,242 @@
+//! Makes a study ready to be screened: which recordings, their noise, tables, and what is free in every model.
+
+use nalgebra::Vector3;
+use thenar_contact::{Control, Material};
+use thenar_recordings::Study;
+use thenar_recordings::study::Shape;
+
+use super::course::{Course, courses};
+use super::elastic::{Elastic, radius};
+use super::mechanism::Scales;
+use super::model::{Coordinate, Kind};
+use super::screen::Screen;
+use crate::DiagnosisError;
+use crate::fit::Fitting;
+use crate::noise::{Noise, Whitening, noise};
+use crate::replay::KNOTS;
+
+/// Standard deviation of the factor by which the model's form may be off at each knot of depth, for each tool at each site: on flat
+/// skin, and on any other.
+///
+/// Against the finite elements of the calibration's flat pads without effects the layer is off by up to 2 % at a quarter of the depth
+/// and 1 % beyond, after two moduli (`tests/trial`); on the round fingertip of `tests/proof` by up to 9 %.
+const FORM_ERROR: [[f64; KNOTS]; 2] = [[0.02, 0.012, 0.01, 0.01], [0.05; KNOTS]];
+/// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
+const FLAT: (f64, f64) = (0.03, 1.5);
+/// Standard deviation of first touch as an operator judges it, mm, as the fit takes it.
+const TOUCH: f64 = 0.05;
+/// Part of a recording's depth that first touch may be off by where it is read from the force.
+const UNKNOWN_TOUCH: f64 = 0.15;
+/// Bounds of a modulus against the study's own, as logarithms.
+const MODULUS: f64 = 3.0;
+/// Bounds in standard deviations.
+const MOST: f64 = 6.0;
+
+/// A study that is ready.
+pub struct Prepared {
+    /// Recordings of force over depth.
+    pub courses: Vec<Course>,
+    /// Tables.
+    pub elastic: Elastic,
+    /// The noise that repeats show.
+    pub noise: Noise,
+    /// How residuals are whitened.
+    pub whitening: Whitening,
+    /// Measured values, stacked.
+    pub values: Vec<f64>,
+    /// Standard deviations of the noise, stacked.
+    pub sigma: Vec<f64>,
+    /// What is free in every model.
+    pub shared: Vec<Coordinate>,
+    /// Sizes from which variants are chosen.
+    pub scales: Scales,
+    /// The study's own material, of the first region.
+    pub base_material: Material,
+}
+
+/// Observes, judges the noise and presses the tables; None where no recording gives force over depth.
+///
+/// # Errors
+/// What the contact model says, or `Cancelled`.
+pub fn prepare(
+    study: &Study,
+    fitting: &mut Fitting,
+    control: &Control<'_>,
+) -> Result<Option<Prepared>, DiagnosisError> {
+    let mut found = courses(study, fitting.measured(), &fitting.replay.place_of);
+    found.retain(|c| c.deepest() > 0.0 && c.most() > 0.0);
+    if found.is_empty() {
+        return Ok(None);
+    }
+    let is_screened: Vec<bool> = (0..fitting.measured().len())
+        .map(|r| found.iter().any(|c| c.recording == r))
+        .collect();
+    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
+    let elastic = Elastic::new(fitting, g0, control)?;
+    let noise = judged(study, fitting, ((&found, &elastic), &is_screened));
+    let whitening = Whitening::new(fitting.measured(), &noise, &is_screened);
+    let samples = fitting.measured().iter().flat_map(|m| &m.samples);
+    let values = samples.map(|s| s.value).collect();
+    let scales = scales(study, &found, &elastic);
+    let shared = shared((fitting, is_flat(study)), (&found, &elastic), &noise);
+    let sigma = noise.sigma.concat();
+    Ok(Some(Prepared {
+        courses: found,
+        elastic,
+        noise,
+        whitening,
+        values,
+        sigma,
+        shared,
+        scales,
+        base_material: fitting.replay.tissue.materials[0],
+    }))
+}
+
+/// The noise, from repeats along what gain and contact zero do to them.
+fn judged(
+    study: &Study,
+    fitting: &Fitting,
+    ((courses, elastic), is_screened): ((&[Course], &Elastic), &[bool]),
+) -> Noise {
+    let measured = fitting.measured();
+    let nothing = || -> Vec<Vec<f64>> {
+        measured
+            .iter()
+            .map(|m| vec![0.0; m.samples.len()])
+            .collect()
+    };
+    let (mut simulated, mut slopes) = (nothing(), nothing());
+    let material = fitting.replay.tissue.materials[0];
+    for course in courses {
+        let table = &elastic.places[course.place];
+        let force = |d: f64| match d > 0.0 {
+            true => table.force.at(d.sqrt()) * material.shear_modulus(d),
+            false => 0.0,
+        };
+        let step = 5e-3 * table.deepest;
+        for row in &course.rows {
+            if let Some(sample) = row.sample {
+                let at = sample - course.samples.0;
+                let here = force(row.depth_mm);
+                simulated[course.recording][at] = here;
+                slopes[course.recording][at] = (force(row.depth_mm + step) - here) / step;
+            }
+        }
+    }
+    let noise_n = study.instrument.as_ref().and_then(|i| i.noise_n);
+    noise(measured, (&simulated, &slopes), is_screened, noise_n)
+}
+
+impl Prepared {
+    /// The screen of these recordings.
+    pub fn screen(&self) -> Screen<'_> {
+        Screen {
+            courses: &self.courses,
+            elastic: &self.elastic,
+            whitening: &self.whitening,
+            measured: &self.values,
+            shared: self.shared.clone(),
+            most: (self.scales.forces.1, self.scales.deepest),
+            least_peak: self.scales.forces.0,
+        }
+    }
+}
+
+fn scales(study: &Study, courses: &[Course], elastic: &Elastic) -> Scales {
+    let peaks = courses.iter().map(Course::most);
+    let forces = peaks.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), f| {
+        (low.min(f), high.max(f))
+    });
+    let deepest = courses.iter().map(Course::deepest).fold(0.0, f64::max);
+    let logs = elastic
+        .places
+        .iter()
+        .map(|p| libm::log(radius(p, deepest).max(1e-3)));
+    let has_strain = courses.iter().any(|c| {
+        let name = &study.recordings[c.recording].indenter;
+        let tool = study.indenters.iter().find(|i| i.name == *name);
+        tool.is_some_and(|t| matches!(t.shape, Shape::Sphere { .. } | Shape::Cylinder { .. }))
+    });
+    Scales {
+        deepest,
+        radius: libm::exp(logs.sum::<f64>() / elastic.places.len() as f64),
+        forces,
+        has_bone: elastic
+            .variant(thenar_contact::effects::Effect::Bone)
+            .is_some(),
+        has_strain,
+    }
+}
+
+/// True if the skin is a plane about every site.
+fn is_flat(study: &Study) -> bool {
+    let thickness = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
+    let thickness = thickness.fold(f64::INFINITY, f64::min);
+    if !thickness.is_finite() {
+        return false;
+    }
+    study.sites.iter().all(|site| {
+        let (point, along): (Vector3<f64>, Vector3<f64>) =
+            (site.point_mm.into(), site.direction.into());
+        study.skin.mesh.positions.iter().all(|p| {
+            let off = p - point;
+            off.norm() > FLAT.1 * thickness || off.dot(&along).abs() < FLAT.0 * thickness
+        })
+    })
+}
+
+/// Moduli, first touch, gain, and the model's form.
+fn shared(
+    (fitting, is_flat): (&Fitting, bool),
+    (courses, elastic): (&[Course], &Elastic),
+    noise: &Noise,
+) -> Vec<Coordinate> {
+    let form = usize::from(!is_flat);
+    let material = fitting.replay.tissue.materials[0];
+    let known = &fitting.replay.observed.is_touch_known;
+    let modulus = |kind, start: f64| Coordinate {
+        kind,
+        start: libm::log(start),
+        bounds: (libm::log(start) - MODULUS, libm::log(start) + MODULUS),
+        prior: None,
+        step: 1e-3,
+    };
+    let mut all = vec![
+        modulus(Kind::First, material.g0_mpa),
+        modulus(Kind::Limit, material.g_lim_mpa),
+    ];
+    let about = |kind, sd: f64, step: f64| Coordinate {
+        kind,
+        start: 0.0,
+        bounds: (-MOST * sd, MOST * sd),
+        prior: Some(sd),
+        step,
+    };
+    for place in 0..elastic.places.len() {
+        let own: Vec<usize> = (0..courses.len())
+            .filter(|&c| courses[c].place == place)
+            .collect();
+        let Some(first) = own.first() else {
+            continue;
+        };
+        let deep = courses[*first].deepest();
+        let judged = match known[courses[*first].recording] {
+            true => TOUCH.min(0.25 * deep),
+            false => UNKNOWN_TOUCH * deep,
+        };
+        all.push(about(Kind::Touch(place), judged, 1e-3 * deep));
+        if fitting.replay.tissue.regions.len() > 1 {
+            all.push(about(Kind::Scale(place), 0.5, 1e-3));
+        }
+        all.extend((0..KNOTS).map(|k| about(Kind::Form(place, k), FORM_ERROR[form][k], 1e-3)));
+    }
+    for (c, course) in courses.iter().enumerate() {
+        let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
+        all.push(about(Kind::Zero(c), zero, 1e-3 * course.deepest()));
+        if noise.gain > 0.0 {
+            all.push(about(Kind::Gain(c), noise.gain, 1e-4));
+        }
+    }
+    all
+}

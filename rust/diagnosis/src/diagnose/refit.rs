@@ -1,0 +1,215 @@
+//! Fits of screened models: bounded Gauss-Newton with damping on Huber's function, from the base's optimum.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::model::Model;
+use super::screen::Screen;
+use crate::noise::Whitened;
+
+/// Residuals beyond this many standard deviations pull with a constant force.
+pub const HUBER: f64 = 3.0;
+/// Most steps.
+const MOST_STEPS: usize = 25;
+/// Gain of the deviance below which a fit has settled.
+const SETTLED: f64 = 0.02;
+
+/// A screened model at its optimum.
+#[derive(Debug, Clone)]
+pub struct Refit {
+    /// Coordinates.
+    pub at: Vec<f64>,
+    /// Sum of Huber's function over residuals and priors.
+    pub deviance: f64,
+    /// Whitened residuals of all samples, stacked.
+    pub residual: Vec<f64>,
+    /// Predictions of all samples, stacked.
+    pub simulated: Vec<f64>,
+    /// Inverse of the normal matrix with priors.
+    pub covariance: DMatrix<f64>,
+}
+
+struct Here {
+    at: Vec<f64>,
+    forces: Vec<Vec<f64>>,
+    simulated: Vec<f64>,
+    whitened: Whitened,
+    deviance: f64,
+}
+
+fn here(screen: &Screen<'_>, model: &Model<'_>, at: Vec<f64>) -> Here {
+    let forces = screen.all_forces(model, &at);
+    let simulated = screen.stacked(&forces);
+    let whitened = screen.whitening.residuals(&simulated);
+    let misfit: f64 = whitened.residual.iter().map(|r| huber(*r)).sum();
+    let prior = model.coordinates.iter().zip(&at);
+    let prior: f64 = prior
+        .filter_map(|(c, x)| c.prior.map(|sd| (x / sd).powi(2)))
+        .sum();
+    let deviance = match misfit.is_finite() {
+        true => misfit + prior,
+        false => f64::INFINITY,
+    };
+    Here {
+        at,
+        forces,
+        simulated,
+        whitened,
+        deviance,
+    }
+}
+
+/// Huber's function: the square, and beyond the threshold a straight line.
+pub fn huber(r: f64) -> f64 {
+    match r.abs() <= HUBER {
+        true => r * r,
+        false => HUBER * (2.0 * r.abs() - HUBER),
+    }
+}
+
+/// Fits a model; `start` gives the first coordinates, the others begin where the model says.
+pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
+    let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
+    let shared = start.len().min(at.len());
+    at[..shared].copy_from_slice(&start[..shared]);
+    for (x, c) in at.iter_mut().zip(&model.coordinates) {
+        *x = x.clamp(c.bounds.0, c.bounds.1);
+    }
+    let mut now = here(screen, model, at);
+    let mut jacobian = slopes(screen, model, &now);
+    let (mut damping, mut small) = (1e-3, 0);
+    for _ in 0..MOST_STEPS {
+        let (normal, downhill) = system(model, &now, &jacobian);
+        let Some(next) = step(model, (&now.at, &normal, &downhill), damping) else {
+            break;
+        };
+        let next = here(screen, model, next);
+        let gain = now.deviance - next.deviance;
+        if gain > 0.0 {
+            now = next;
+            jacobian = slopes(screen, model, &now);
+            damping = f64::max(damping * 0.2, 1e-9);
+            small = if gain < SETTLED { small + 1 } else { 0 };
+            if small >= 2 {
+                break;
+            }
+        } else {
+            damping *= 10.0;
+            if damping > 1e6 || gain > -1e-9 {
+                break;
+            }
+        }
+    }
+    let (normal, _) = system(model, &now, &jacobian);
+    Refit {
+        covariance: inverse(&normal),
+        at: now.at,
+        deviance: now.deviance,
+        residual: now.whitened.residual,
+        simulated: now.simulated,
+    }
+}
+
+/// Whitened derivatives of the predictions.
+fn slopes(screen: &Screen<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
+    let mut raw = DMatrix::zeros(now.simulated.len(), model.coordinates.len());
+    for number in 0..model.coordinates.len() {
+        for (c, course) in screen.courses.iter().enumerate() {
+            let found = screen.slopes((model, &now.at), (number, c), &now.forces[c]);
+            let Some(slopes) = found else {
+                continue;
+            };
+            for (row, slope) in course.rows.iter().zip(slopes) {
+                if let Some(sample) = row.sample {
+                    raw[(sample, number)] = slope;
+                }
+            }
+        }
+    }
+    screen.whitening.derivatives(&raw, &now.whitened)
+}
+
+fn system(model: &Model<'_>, now: &Here, whitened: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    let residual = &now.whitened.residual;
+    let mut weighted = whitened.clone();
+    for (k, r) in residual.iter().enumerate() {
+        if r.abs() > HUBER {
+            weighted.row_mut(k).scale_mut(HUBER / r.abs());
+        }
+    }
+    let mut normal = whitened.tr_mul(&weighted);
+    let mut downhill = weighted.tr_mul(&DVector::from_column_slice(residual));
+    for (k, c) in model.coordinates.iter().enumerate() {
+        if let Some(sd) = c.prior {
+            normal[(k, k)] += 1.0 / (sd * sd);
+            downhill[k] -= now.at[k] / (sd * sd);
+        }
+    }
+    (normal, downhill)
+}
+
+/// The damped step within the bounds: what meets one stays there, and the rest is solved again.
+fn step(
+    model: &Model<'_>,
+    (from, normal, downhill): (&[f64], &DMatrix<f64>, &DVector<f64>),
+    damping: f64,
+) -> Option<Vec<f64>> {
+    let bounds: Vec<(f64, f64)> = model.coordinates.iter().map(|c| c.bounds).collect();
+    let mut free: Vec<usize> = (0..from.len())
+        .filter(|&k| {
+            let leads_out = (from[k] <= bounds[k].0 && downhill[k] < 0.0)
+                || (from[k] >= bounds[k].1 && downhill[k] > 0.0);
+            !leads_out && normal[(k, k)] > 0.0
+        })
+        .collect();
+    let mut at = from.to_vec();
+    while !free.is_empty() {
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
+            let value = normal[(free[a], free[b])];
+            if a == b {
+                value * (1.0 + damping)
+            } else {
+                value
+            }
+        });
+        let mut side = DVector::from_fn(free.len(), |a, _| downhill[free[a]]);
+        for k in (0..from.len()).filter(|k| !free.contains(k)) {
+            let moved = at[k] - from[k];
+            if moved != 0.0 {
+                for (a, row) in free.iter().enumerate() {
+                    side[a] -= normal[(*row, k)] * moved;
+                }
+            }
+        }
+        let step = matrix.cholesky()?.solve(&side);
+        let mut met = Vec::new();
+        for (a, k) in free.iter().enumerate() {
+            let next = from[*k] + step[a];
+            if next < bounds[*k].0 || next > bounds[*k].1 {
+                met.push(*k);
+            }
+            at[*k] = next.clamp(bounds[*k].0, bounds[*k].1);
+        }
+        if met.is_empty() {
+            break;
+        }
+        free.retain(|k| !met.contains(k));
+    }
+    (at != from).then_some(at)
+}
+
+/// Inverse of a normal matrix, scaled; directions without information get a large variance.
+fn inverse(normal: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = normal.nrows();
+    let scale: Vec<f64> = (0..n).map(|k| normal[(k, k)].max(1e-12).sqrt()).collect();
+    let scaled = DMatrix::from_fn(n, n, |i, j| {
+        let value = normal[(i, j)] / (scale[i] * scale[j]);
+        if i == j { value + 1e-9 } else { value }
+    });
+    match scaled.cholesky() {
+        Some(factor) => {
+            let inverse = factor.inverse();
+            DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] / (scale[i] * scale[j]))
+        }
+        None => DMatrix::from_diagonal_element(n, n, 1e6),
+    }
+}

@@ -1,0 +1,225 @@
+//! The model that candidates are screened with: elastic tables, memory by springs, and an instrument, for all recordings at once.
+//!
+//! It shares tables, noise and priors with the fit, and answers a hundred times faster than a protocol that is followed
+//! moment by moment on the skin's mesh.
+
+use super::course::{Course, Row};
+use super::elastic::Elastic;
+use super::mechanism::Acts;
+use super::memory::{Way, lost};
+use super::model::{Coordinate, Kind, Model, Setting};
+use super::stiffness::knots;
+use crate::Phase;
+use crate::noise::Whitening;
+
+/// Rounds in which the force is sought to which a stage yields.
+const YIELDS: usize = 5;
+
+/// What all screened models of a study share.
+pub struct Screen<'a> {
+    /// Recordings.
+    pub courses: &'a [Course],
+    /// Tables.
+    pub elastic: &'a Elastic,
+    /// How residuals are whitened.
+    pub whitening: &'a Whitening,
+    /// Measured values of all samples, stacked; those that are not screened stand for their own simulation.
+    pub measured: &'a [f64],
+    /// What is free in every model.
+    pub shared: Vec<Coordinate>,
+    /// Largest force and depth of the study.
+    pub most: (f64, f64),
+    /// Smallest peak force of a recording, N.
+    pub least_peak: f64,
+}
+
+/// What a tool at its site answers for the numbers of a model.
+struct Answer {
+    /// Stiffness of the springs, N/mm.
+    springs: Vec<f64>,
+    /// Depths at which they touch, mm.
+    touches: Vec<f64>,
+}
+
+impl Screen<'_> {
+    /// Forces of one recording's rows, N.
+    pub fn forces(&self, model: &Model<'_>, set: &Setting, course: usize) -> Vec<f64> {
+        let mut forces: Vec<f64> = self.courses[course]
+            .rows
+            .iter()
+            .map(|r| r.force_n)
+            .collect();
+        let yields = model.mechanisms.iter().any(|m| m.acts == Acts::Yields);
+        // A stage that yields moves by the true force, which is sought; the measured one is only where the search begins.
+        for _ in 0..if yields { YIELDS } else { 1 } {
+            forces = self.pressed(model, set, (course, &forces));
+        }
+        let gain = libm::exp(set.gain[course]);
+        forces.iter_mut().for_each(|f| *f *= gain);
+        self.read(model, set, (&self.courses[course], &mut forces));
+        forces
+    }
+
+    /// Forces on the tool of one recording, where the stage yields to forces that are known.
+    fn pressed(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, known): (usize, &[f64]),
+    ) -> Vec<f64> {
+        let one = &self.courses[course];
+        let table = &self.elastic.places[one.place];
+        let depths = self.depths(model, set, (course, known));
+        let answer = self.answer(model, set, one.place);
+        let elastic = |d: &f64| match *d > 0.0 {
+            true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
+            false => 0.0,
+        };
+        let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
+        let fades = self.fades(model, (one, &depths));
+        let shares = self.shares(model, set, one.place);
+        let holds = self.holds(model, set, table);
+        if !fades.is_empty() || !holds.is_empty() {
+            let way = Way {
+                depths: &depths,
+                touches: &answer.touches,
+                fades: &fades,
+                shares: &shares,
+                holds: &holds,
+            };
+            let more = lost(&way, &answer.springs);
+            forces.iter_mut().zip(more).for_each(|(f, m)| *f += m);
+        }
+        self.soften(model, set, ((one, &depths), &mut forces));
+        forces
+    }
+
+    /// True depths of a recording's rows, mm.
+    fn depths(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, known): (usize, &[f64]),
+    ) -> Vec<f64> {
+        let one = &self.courses[course];
+        let zero = set.zero[course] + set.touch[one.place];
+        let mut yields = 0.0;
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            if mechanism.acts == Acts::Yields {
+                yields += set.of[number][0];
+            }
+        }
+        let depth = |(row, force): (&Row, &f64)| row.depth_mm - zero - yields * force.max(0.0);
+        one.rows.iter().zip(known).map(depth).collect()
+    }
+
+    fn answer(&self, model: &Model<'_>, set: &Setting, place: usize) -> Answer {
+        let table = &self.elastic.places[place];
+        let depths: Vec<f64> = table.roots.iter().map(|r| r * r).collect();
+        let force = |(d, f): (&f64, &f64)| f * self.factor(model, set, (place, *d));
+        let rungs: Vec<f64> = depths.iter().zip(&table.rungs).map(force).collect();
+        let secant = |k: usize| (rungs[k + 1] - rungs[k]) / (depths[k + 1] - depths[k]);
+        let springs = (0..rungs.len() - 1)
+            .map(|k| secant(k) - if k > 0 { secant(k - 1) } else { 0.0 })
+            .collect();
+        Answer {
+            springs,
+            touches: depths,
+        }
+    }
+
+    /// Stacked predictions of all samples; those that are not screened are what was measured.
+    pub fn stacked(&self, forces: &[Vec<f64>]) -> Vec<f64> {
+        let mut all = self.measured.to_vec();
+        for (course, forces) in self.courses.iter().zip(forces) {
+            for (row, force) in course.rows.iter().zip(forces) {
+                if let Some(sample) = row.sample {
+                    all[sample] = *force;
+                }
+            }
+        }
+        all
+    }
+
+    /// Forces of all recordings.
+    pub fn all_forces(&self, model: &Model<'_>, at: &[f64]) -> Vec<Vec<f64>> {
+        let set = model.setting(self, at);
+        (0..self.courses.len())
+            .map(|c| self.forces(model, &set, c))
+            .collect()
+    }
+
+    /// Derivative of one recording's forces by a coordinate, or None where it does not matter.
+    pub fn slopes(
+        &self,
+        (model, at): (&Model<'_>, &[f64]),
+        (number, course): (usize, usize),
+        forces: &[f64],
+    ) -> Option<Vec<f64>> {
+        let coordinate = &model.coordinates[number];
+        let one = &self.courses[course];
+        let matters = match coordinate.kind {
+            Kind::Zero(c) | Kind::Gain(c) => c == course,
+            Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
+            Kind::Of(of, _) => match &model.mechanisms[of].acts {
+                Acts::GainStep { from } => one.order >= *from,
+                _ => true,
+            },
+            Kind::First | Kind::Limit => true,
+        };
+        if !matters {
+            return None;
+        }
+        match coordinate.kind {
+            Kind::Gain(_) | Kind::Scale(_) => return Some(forces.to_vec()),
+            Kind::Form(_, knot) => {
+                let table = &self.elastic.places[one.place];
+                let depths = self.depths(model, &model.setting(self, at), (course, forces));
+                let weight = |d: f64| {
+                    knots(table, d)
+                        .iter()
+                        .filter(|k| k.0 == knot)
+                        .map(|k| k.1)
+                        .sum::<f64>()
+                };
+                return Some(
+                    depths
+                        .iter()
+                        .zip(forces)
+                        .map(|(d, f)| f * weight(*d))
+                        .collect(),
+                );
+            }
+            _ => {}
+        }
+        let (low, high) = coordinate.bounds;
+        let step = match high - at[number] > at[number] - low {
+            true => coordinate.step,
+            false => -coordinate.step,
+        };
+        let mut moved = at.to_vec();
+        moved[number] += step;
+        let moved = self.forces(model, &model.setting(self, &moved), course);
+        Some(
+            moved
+                .iter()
+                .zip(forces)
+                .map(|(b, a)| (b - a) / step)
+                .collect(),
+        )
+    }
+
+    /// Phase of every screened sample, and the course it belongs to.
+    pub fn phases(&self) -> Vec<(usize, usize, Phase)> {
+        let mut all = Vec::new();
+        for (c, course) in self.courses.iter().enumerate() {
+            all.extend(
+                course
+                    .rows
+                    .iter()
+                    .filter_map(|r| r.sample.map(|s| (s, c, r.phase))),
+            );
+        }
+        all
+    }
+}

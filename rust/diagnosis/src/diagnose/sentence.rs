@@ -1,0 +1,85 @@
+//! The sentence that a designer reads first.
+
+use super::findings::{Finding, Gain, Suggestion, Verdict};
+
+/// Words for an effect.
+pub fn words(effect: &str) -> String {
+    match effect {
+        "bone" => "another thickness of the tissue over bone".into(),
+        "stiff_skin" => "a stiff skin over soft pulp".into(),
+        "stiffening_law" => "another law of stiffening".into(),
+        "inclusion" => "a place that is stiffer or softer".into(),
+        "compressibility" => "tissue that gives up volume".into(),
+        "drift" => "drift of the sensor".into(),
+        "offset" => "a zero error of the sensor".into(),
+        "gain" => "a step in the sensor's gain".into(),
+        "saturation" => "a sensor that saturates".into(),
+        "threshold" => "a sensor that is blind to small forces".into(),
+        "timing" => "a clock that is late".into(),
+        other => other.replace('_', " "),
+    }
+}
+
+/// The verdict in one sentence.
+pub fn sentence(
+    verdict: Verdict,
+    (findings, gain): (&[Finding], Option<&Gain>),
+    (pairs, next): (&[[&'static str; 2]], &[Suggestion]),
+    reason: &str,
+) -> String {
+    let names: Vec<String> = findings.iter().map(|f| words(f.effect)).collect();
+    let names = names.join(" and ");
+    let sure = findings.iter().map(|f| f.confidence).fold(1.0, f64::min);
+    match verdict {
+        Verdict::NothingMissing => {
+            "Nothing is missing at this noise: the study's own parameters explain the recordings."
+                .into()
+        }
+        Verdict::Parameters => {
+            "Only the parameters were off: with the fitted moduli nothing is missing at this noise."
+                .into()
+        }
+        Verdict::InsufficientData => {
+            format!("Too little was recorded to say what is missing: {reason}.")
+        }
+        Verdict::Unlisted => {
+            format!("Something is missing that is not in the list of effects: {reason}.")
+        }
+        Verdict::CannotTell => {
+            let told: Vec<String> = pairs
+                .iter()
+                .map(|[a, b]| format!("{} and {}", words(a), words(b)))
+                .collect();
+            let settled = match next.first() {
+                Some(next) => format!(" Record next: {}.", next.text),
+                None => String::new(),
+            };
+            format!(
+                "These recordings cannot tell {} apart.{settled}",
+                told.join(", nor ")
+            )
+        }
+        Verdict::Instrument => {
+            format!(
+                "It is the instrument: {names} ({:.0} % sure).",
+                100.0 * sure
+            )
+        }
+        Verdict::MissingPhysics => {
+            let when = findings.first().and_then(|f| f.when.as_ref());
+            let when = when.map_or(String::new(), |w| {
+                format!(", seen most in the {} phase", w.phase)
+            });
+            let gained = gain.map_or(String::new(), |g| {
+                format!(
+                    "; with it {:.0} % of the reducible error of held-out recordings goes away",
+                    100.0 * g.removed.max(0.0)
+                )
+            });
+            format!(
+                "What is missing is {names} ({:.0} % sure){when}{gained}.",
+                100.0 * sure
+            )
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! How much stiffer a tool's answer is than its table: modulus, the model's form, and what changes the response.
+
+use thenar_contact::effects::Effect;
+
+use super::elastic::{Tabled, radius, rung};
+use super::mechanism::{Acts, Measure};
+use super::model::{Model, Setting};
+use super::screen::Screen;
+use crate::replay::KNOTS;
+
+impl Screen<'_> {
+    /// Modulus, form and changed response at a depth: force over the table's.
+    pub(super) fn factor(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (place, depth): (usize, f64),
+    ) -> f64 {
+        let table = &self.elastic.places[place];
+        let share = (depth / self.elastic.limit_depth).clamp(0.0, 1.0);
+        let modulus = set.first * (1.0 - share) + set.limit * share;
+        let mut log = set.scale[place];
+        for (knot, weight) in knots(table, depth) {
+            log += weight * set.form[place][knot];
+        }
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            match &mechanism.acts {
+                Acts::Tabled => {
+                    let value = set.of[number][0];
+                    log += self.tabled(mechanism.effect, value, (place, depth));
+                }
+                Acts::Stiffens(measure) => {
+                    let rate = set.of[number][0];
+                    log += rate * self.measure(*measure, (place, depth));
+                }
+                _ => {}
+            }
+        }
+        modulus * libm::exp(log)
+    }
+
+    fn tabled(&self, effect: Effect, value: f64, (place, depth): (usize, f64)) -> f64 {
+        let Some(variant) = self.elastic.variant(effect) else {
+            return 0.0;
+        };
+        let table = &self.elastic.places[place];
+        let (knot, share) = variant.between(value);
+        let (rung, between) = rung(table, depth);
+        let at = |knot: usize| {
+            let log = &variant.log_ratio[place][knot];
+            log[rung] * (1.0 - between) + log[rung + 1] * between
+        };
+        at(knot) * (1.0 - share) + at(knot + 1) * share
+    }
+
+    fn measure(&self, measure: Measure, (place, depth): (usize, f64)) -> f64 {
+        match measure {
+            Measure::Depth => depth / self.most.1,
+            Measure::Strain => self.strain((place, depth)) / self.largest_strain(),
+        }
+    }
+
+    /// a/R of a sphere of radius R at depth d is d/a, so that the table's own contact radius tells it.
+    fn strain(&self, (place, depth): (usize, f64)) -> f64 {
+        depth / radius(&self.elastic.places[place], depth).max(1e-9)
+    }
+
+    /// Largest strain of any tool at the study's largest depth.
+    pub fn largest_strain(&self) -> f64 {
+        let places = 0..self.elastic.places.len();
+        let all = places.map(|place| self.strain((place, self.most.1)));
+        all.fold(f64::MIN_POSITIVE, f64::max)
+    }
+}
+
+/// Knots of the form between which a depth lies, with their weights; 0 at first touch, as the fit has it.
+pub(super) fn knots(table: &Tabled, depth: f64) -> Vec<(usize, f64)> {
+    let at = (KNOTS as f64 * depth.max(0.0) / table.deepest).min(KNOTS as f64);
+    let below = at.floor() as usize;
+    let share = at - below as f64;
+    let mut found = Vec::with_capacity(2);
+    if below > 0 {
+        found.push((below - 1, 1.0 - share));
+    }
+    if below < KNOTS && share > 0.0 {
+        found.push((below, share));
+    }
+    found
+}

@@ -1,0 +1,203 @@
+//! The page of a diagnosis: the sentence, rivals, ledger by phase, curves before and after, and what to record next; then the comparison.
+
+use super::page::page;
+use super::svg::escaped;
+use crate::diagnose::{Curve, Diagnosis, Gain, Rival};
+use std::fmt::Write;
+
+/// Width and height of a plot, px.
+const PLOT: (f64, f64) = (470.0, 250.0);
+/// Margins left, right, top and bottom, px.
+const MARGIN: [f64; 4] = [52.0, 12.0, 24.0, 34.0];
+/// Recordings that are drawn.
+const MOST_CURVES: usize = 6;
+
+/// A self-contained page, UTF-8: the diagnosis first, then the comparison that it started from.
+pub fn diagnosis_html(found: &Diagnosis) -> String {
+    let mut html = format!(
+        "<section class='diagnosis'><h2>Diagnosis</h2><p class='lead'>{}</p>\n",
+        escaped(&found.sentence)
+    );
+    html += &findings(found);
+    if let Some(gain) = &found.gain {
+        html += &gained(gain);
+    }
+    html += &next(found);
+    html += &rivals(&found.rivals);
+    html += &curves(found);
+    html += &smallest(found);
+    let notes: String = found
+        .notes
+        .iter()
+        .map(|note| format!("<li>{}</li>", escaped(note)))
+        .collect();
+    let _ = writeln!(
+        html,
+        "<h3>What stands behind it</h3><ul>{notes}</ul></section>"
+    );
+    page(&found.comparison, &html)
+}
+
+fn findings(found: &Diagnosis) -> String {
+    let mut html = String::new();
+    for finding in &found.findings {
+        let _ = write!(
+            html,
+            "<h3>{} ({:.0} % sure)</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
+            escaped(&finding.effect.replace('_', " ")),
+            100.0 * finding.confidence
+        );
+        for number in &finding.numbers {
+            let _ = write!(
+                html,
+                "<tr><td class='left'>{}</td><td>{:.4}</td><td>{:.4} to {:.4}</td><td class='left'>{}</td></tr>",
+                number.name, number.value, number.interval.0, number.interval.1, number.unit
+            );
+        }
+        html += "</table>\n";
+        for (sentence, holds) in &finding.consequences {
+            let mark = if *holds { "holds" } else { "does not hold" };
+            let _ = write!(html, "<p class='meta'>{}: {mark}</p>", escaped(sentence));
+        }
+    }
+    html
+}
+
+fn gained(gain: &Gain) -> String {
+    format!(
+        "<p>Predictions of recordings that were held out, protocol by protocol: {:.2} standard deviations of the noise before, {:.2} \
+after; repeats predict one another to {:.2}. Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %).</p>\n",
+        gain.before.rms,
+        gain.after.rms,
+        gain.floor.rms,
+        100.0 * gain.removed,
+        100.0 * gain.interval.0,
+        100.0 * gain.interval.1
+    )
+}
+
+fn next(found: &Diagnosis) -> String {
+    if found.record_next.is_empty() {
+        return String::new();
+    }
+    let one = |next: &crate::diagnose::Suggestion| {
+        format!(
+            "<li>{} (settles it with a probability of {:.0} %, about {:.0} minutes)</li>",
+            escaped(&next.text),
+            100.0 * next.probability,
+            next.minutes
+        )
+    };
+    let list: String = found.record_next.iter().map(one).collect();
+    format!("<h3>Record next</h3><ol>{list}</ol>\n")
+}
+
+fn rivals(all: &[Rival]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut html = "<h3>What was tried</h3><table><tr><th class='left'>explanation</th><th>evidence, nats</th><th>probability</th>\
+<th>shared misfit left</th><th>load</th><th>hold</th><th>unload</th><th>rest</th></tr>"
+        .to_owned();
+    for rival in all.iter().take(12) {
+        let names = rival.effects.join(" + ").replace('_', " ");
+        let _ = write!(
+            html,
+            "<tr><td class='left'>{}</td><td>{:.1}</td><td>{:.0} %</td><td>{:.0} %</td>",
+            escaped(&names),
+            rival.evidence,
+            100.0 * rival.probability,
+            100.0 * rival.left
+        );
+        for part in rival.ledger {
+            let _ = write!(html, "<td>{part:.1}</td>");
+        }
+        html += "</tr>";
+    }
+    html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued.</p>\n"
+}
+
+fn smallest(found: &Diagnosis) -> String {
+    if found.smallest_seen.is_empty() {
+        return String::new();
+    }
+    let row = |(name, value, unit): &(&'static str, f64, &'static str)| {
+        format!(
+            "<tr><td class='left'>{}</td><td>{value:.3}</td><td class='left'>{}</td></tr>",
+            escaped(&name.replace('_', " ")),
+            escaped(unit)
+        )
+    };
+    let rows: String = found.smallest_seen.iter().map(row).collect();
+    format!(
+        "<h3>Smallest effect that would have been seen</h3><table><tr><th class='left'>effect</th><th>size</th><th class='left'>unit</th></tr>{rows}</table>\n"
+    )
+}
+
+fn curves(found: &Diagnosis) -> String {
+    if found.findings.is_empty() || found.curves.is_empty() {
+        return String::new();
+    }
+    let plots: String = found.curves.iter().take(MOST_CURVES).map(plot).collect();
+    format!(
+        "<h3>Before and after</h3><div class='pair'>{plots}</div><p class='meta'>Force over time: dots measured, orange with parameters alone, \
+blue with what was found.</p>\n"
+    )
+}
+
+fn plot(curve: &Curve) -> String {
+    let range = |lists: &[&Vec<f64>]| {
+        lists
+            .iter()
+            .flat_map(|l| l.iter())
+            .fold((0.0, f64::MIN_POSITIVE), |(low, high): (f64, f64), v| {
+                (low.min(*v), high.max(*v))
+            })
+    };
+    let (t0, t1) = range(&[&curve.time_s]);
+    let (low, high) = range(&[&curve.measured_n, &curve.before_n, &curve.after_n]);
+    let [left, right, top, bottom] = MARGIN;
+    let x = |t: f64| left + (PLOT.0 - left - right) * (t - t0) / (t1 - t0).max(1e-12);
+    let y =
+        |f: f64| PLOT.1 - bottom - (PLOT.1 - top - bottom) * (f - low) / (high - low).max(1e-12);
+    let line = |values: &Vec<f64>, color: &str| {
+        let points: String = curve
+            .time_s
+            .iter()
+            .zip(values)
+            .map(|(t, f)| format!("{:.1},{:.1} ", x(*t), y(*f)))
+            .collect();
+        format!(
+            "<polyline points='{}' fill='none' stroke='{color}' stroke-width='1.6'/>",
+            points.trim_end()
+        )
+    };
+    let dots: String = curve
+        .time_s
+        .iter()
+        .zip(&curve.measured_n)
+        .map(|(t, f)| {
+            format!(
+                "<circle cx='{:.1}' cy='{:.1}' r='1.7' fill='#5c6770'/>",
+                x(*t),
+                y(*f)
+            )
+        })
+        .collect();
+    format!(
+        "<figure><svg viewBox='0 0 {w} {h}' width='{w}' role='img' aria-label='{name}'><text x='{left}' y='15' font-size='12'>{name}</text>\
+<line x1='{left}' y1='{base}' x2='{end}' y2='{base}' stroke='#9aa4ac'/><line x1='{left}' y1='{top}' x2='{left}' y2='{base}' stroke='#9aa4ac'/>\
+<text x='{end}' y='{under}' font-size='11' text-anchor='end'>{t1:.1} s</text><text x='{beside}' y='{upper}' font-size='11' text-anchor='end'>{high:.3} N</text>\
+{dots}{}{}</svg></figure>",
+        line(&curve.before_n, "#e69f00"),
+        line(&curve.after_n, "#0072b2"),
+        w = PLOT.0,
+        h = PLOT.1,
+        name = escaped(&curve.recording),
+        base = PLOT.1 - bottom,
+        end = PLOT.0 - right,
+        under = PLOT.1 - 14.0,
+        beside = left - 4.0,
+        upper = top + 8.0,
+    )
+}
