@@ -7,8 +7,10 @@ import numpy as np
 
 from ..views import legend
 
-_WIDTH, _CAPTION = 320, 34
-"""Pixels of one picture's width, and of the height of the text below it."""
+_WIDTH, _CAPTION, _GAP = 320, 38, 10
+"""Pixels of one picture's width, of the height of the text below it, and of the paper around both."""
+_LONGEST = (46, 54)
+"""Letters of a name, and of the line below it, that fit."""
 _PAPER, _INK = 0.97, 0.12
 MOST_PICTURES = 400
 """The sheet shows the first so many: a picture larger than 32,000 pixels opens nowhere."""
@@ -21,15 +23,15 @@ def make(out, table, stems):
     if not shown:
         return
     tiles = [_tile(path, name, row) for path, name, row in shown]
-    height = max(tile.shape[0] for tile in tiles)
-    columns = math.ceil(math.sqrt(len(tiles) * height / _WIDTH))
+    height, width = max(tile.shape[0] for tile in tiles) + _GAP, _WIDTH + _GAP
+    columns = math.ceil(math.sqrt(len(tiles) * height / width))
     lines = math.ceil(len(tiles) / columns)
-    page = np.full((lines * height, columns * _WIDTH, 4), _PAPER, np.float32)
+    page = np.full((lines * height + _GAP, columns * width + _GAP, 4), _PAPER, np.float32)
     page[..., 3] = 1.0
     for place, tile in enumerate(tiles):
         line, column = divmod(place, columns)
-        top = page.shape[0] - line * height
-        page[top - tile.shape[0] : top, column * _WIDTH : (column + 1) * _WIDTH] = tile
+        top, left = page.shape[0] - _GAP - line * height, _GAP + column * width
+        page[top - tile.shape[0] : top, left : left + _WIDTH] = tile
     _save(page, out / "sheet.png")
 
 
@@ -44,11 +46,16 @@ def _tile(path, name, row):
     finally:
         bpy.data.images.remove(image)
     numbers = row["message"] if row["status"] == "failed" else _told(row)
-    texts = ((6, 20, 12, name[:44]), (6, 6, 11, numbers[:52]))
+    words = [_cut(text, longest) for text, longest in zip((name, numbers), _LONGEST, strict=True)]
+    texts = [(0, y, size, text) for y, size, text in zip((22, 7), (13, 11), words, strict=True)]
     ink = legend.ink(texts, _WIDTH, _CAPTION)[..., None]
     caption = np.ones((_CAPTION, _WIDTH, 4), np.float32)
     caption[..., :3] = _PAPER * (1.0 - ink) + _INK * ink
     return np.concatenate([caption, picture])
+
+
+def _cut(text, longest):
+    return text if len(text) <= longest else text[: longest - 3].rstrip() + "..."
 
 
 def _told(row):

@@ -73,7 +73,7 @@ def test_batch_resumes_and_survives_a_bad_case(grip, tmp_path):
     assert "no object 'Paw'" in rows["bad"]["message"]
     assert json.loads((out / "two_newtons.json").read_text())["force_n"] == float(rows["two newtons"]["force_n"])
     sheet = bpy.data.images.load(str(out / "sheet.png"))
-    assert sheet.size[0] == 320 and np.ptp(np.array(sheet.pixels[:]).reshape(-1, 4)[:, :3]) > 0.3
+    assert 320 <= sheet.size[0] < 360 and np.ptp(np.array(sheet.pixels[:]).reshape(-1, 4)[:, :3]) > 0.3
     jobs.write_text(jobs.read_text().replace("2.0", "3.0").replace("Paw", "Pad"))
     code, told = run(jobs, "--out", out, "--workers", 1)
     assert code == 0 and "1 of 3 cases kept" in told, told
