@@ -48,7 +48,7 @@ def apply(context, index):
         _to_model(state, finding)
         return Taken(f"{title} is the instrument's: nothing on the skin is changed; it is in the study's model", doubt)
     hand = _hand(context)
-    wanted = _wanted(context, finding, row, hand)
+    wanted = _wanted(context, found, finding, row)
     effect = _switch_on(hand, wanted)
     _to_model(state, finding)
     where = f"for '{effect.region}'" if effect.region else "for all skin"
@@ -90,9 +90,19 @@ def _hand(context):
     return hand
 
 
-def _wanted(context, finding, row, hand):
+def _switched(found, effect):
+    """Amplitude, numbers and choices that the findings' own model gives the effect; those of the finding go before."""
+    listed = (found.get("model") or {}).get("effects") or ()
+    told = dict(next((each for each in listed if each.get("name") == effect), {}))
+    told.pop("name", None)
+    amplitude = told.pop("amplitude", None)
+    texts = {name: value for name, value in told.items() if isinstance(value, str)}
+    return amplitude, {name: told[name] for name in told if name not in texts and told[name] is not None}, texts
+
+
+def _wanted(context, found, finding, row):
     """The finding in the terms of the hand's properties. Raises `Refusal`."""
-    numbers, choices, amplitude = {}, {}, None
+    amplitude, numbers, choices = _switched(found, finding["effect"])
     shapes = {shape["name"]: shape["unit"] for shape in row["shape"]}
     options = {choice["name"]: choice["options"] for choice in row["choices"]}
     for name, told in (finding.get("parameters") or {}).items():
@@ -103,10 +113,12 @@ def _wanted(context, finding, row, hand):
             if unit != shapes[name]:
                 raise Refusal(f"the finding gives {name} in {unit} and Thenar wants {shapes[name]}; diagnose again")
             numbers[name] = _checked(value, (finding, name))
-        elif name in options and value in options[name]:
+        elif name in options:
             choices[name] = value
+    numbers = {name: value for name, value in numbers.items() if name in shapes}
+    choices = {name: value for name, value in choices.items() if value in options.get(name, ())}
     numbers |= _placed(context, finding, shapes)
-    return _Wanted(row, _region(finding, hand), amplitude, numbers, choices)
+    return _Wanted(row, _region(finding, context.scene.thenar.hand), amplitude, numbers, choices)
 
 
 def _checked(value, about):

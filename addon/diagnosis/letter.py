@@ -27,8 +27,8 @@ class Row:
 class Entry:
     """One finding.
 
-    `index` is its number, `sureness` 0 to 1 or None, `rows` its numbers, `story` where and when it shows, and
-    `has_place` whether the skin can show it.
+    `index` is its number, `sureness` 0 to 1 or None, `rows` its numbers, `story` where and when it shows, `signs` what
+    must show in the recordings if it is there, with whether it does, and `has_place` whether the skin can show it.
     """
 
     index: int
@@ -39,6 +39,7 @@ class Entry:
     meaning: str
     rows: tuple
     story: str
+    signs: tuple
     has_place: bool
 
 
@@ -68,11 +69,13 @@ class Letter:
     heading: str
     sentence: str
     entries: tuple
+    phases: tuple
     rivals: tuple
     bars: tuple
     gain: tuple
     advice: tuple
     smallest: tuple
+    notes: tuple
 
 
 def write(found):
@@ -83,6 +86,7 @@ def write(found):
         heading=HEADINGS[found["verdict"]],
         sentence=found.get("sentence") or "",
         entries=tuple(_entry(index, finding) for index, finding in enumerate(found.get("findings", ()))),
+        phases=tuple(_phases(found)),
         rivals=tuple(_rivals(found)),
         bars=bars,
         gain=gain,
@@ -91,6 +95,7 @@ def write(found):
             Row(wording.title(effect), wording.value(seen))
             for effect, seen in (found.get("smallest_seen") or {}).items()
         ),
+        notes=tuple(text[:1].upper() + text[1:].rstrip(".") + "." for text in found.get("notes") or () if text),
     )
 
 
@@ -103,6 +108,8 @@ def lines(letter):
         yield f"{entry.index + 1}. {entry.title}{sure}"
         yield from (f"   {text}" for text in (entry.meaning, entry.story) if text)
         yield from (f"   {row.label}: {row.text}" for row in entry.rows)
+        yield from (f"   {'Seen' if holds else 'Not seen'}: {sign}" for sign, holds in entry.signs)
+    yield from (f"Evidence {bar.label}: {bar.text}" for bar in letter.phases)
     yield from letter.rivals
     yield from (f"{bar.label}: {bar.text}" for bar in letter.bars)
     yield from letter.gain
@@ -110,6 +117,7 @@ def lines(letter):
         yield f"Record next: {advice.text}"
         yield from (text for text in (advice.settles, advice.outlook) if text)
     yield from (f"{row.label}: seen from {row.text}" for row in letter.smallest)
+    yield from letter.notes
 
 
 def _entry(index, finding):
@@ -125,8 +133,20 @@ def _entry(index, finding):
         meaning=wording.meaning(finding["effect"]),
         rows=tuple(rows),
         story=" ".join(text for text in story if text),
-        has_place=bool(where.get("center_mm") or where.get("vertices") or where.get("region")),
+        signs=tuple((each["sentence"], bool(each["holds"])) for each in finding.get("consequences") or ()),
+        has_place=bool(where.get("center_mm") or where.get("vertices_csv") or where.get("region")),
     )
+
+
+def _phases(found):
+    """The share of the evidence for what was named that stands in each phase."""
+    named = sorted(finding["effect"] for finding in found.get("findings", ()))
+    tried = (each for each in found.get("rivals") or () if sorted(each.get("effects") or ()) == named and named)
+    ledger = (next(tried, None) or {}).get("ledger") or {}
+    gained = {phase: value for phase, value in ledger.items() if value is not None and value > 0.0}
+    whole = sum(gained.values())
+    for phase, value in gained.items():
+        yield Bar(wording.PHASES.get(phase, phase), wording.share(value / whole), value / whole)
 
 
 def _rivals(found):

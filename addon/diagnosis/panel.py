@@ -100,6 +100,20 @@ class THENAR_PT_findings(_Part, bpy.types.Panel):
             _draw_entry(self.layout, context, entry)
 
 
+class THENAR_PT_phases(_Part, bpy.types.Panel):
+    """In which phase of the recordings the evidence stands."""
+
+    bl_label = "Where the Evidence Stands"
+
+    @staticmethod
+    def said(told):
+        """A bar for each phase."""
+        return told.phases
+
+    def draw(self, context):
+        _draw_bars(self.layout, _letter(context).phases, 0.5)
+
+
 class THENAR_PT_gain(_Part, bpy.types.Panel):
     """The error on recordings held out, before and after."""
 
@@ -113,12 +127,8 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
     def draw(self, context):
         layout, told = self.layout, _letter(context)
         if told.bars:
-            text.faint(layout, context, "Error on recordings held out, rms, with its interval")
-        column = layout.column(align=True)
-        for bar in told.bars:
-            split = column.split(factor=0.34)
-            split.label(text=bar.label)
-            split.progress(factor=bar.share, text=bar.text)
+            text.faint(layout, context, "Error (rms) on recordings held out; σ: the noise's standard deviation")
+        _draw_bars(layout, told.bars, 0.34)
         for sentence in told.gain:
             text.paragraph(layout, context, sentence)
 
@@ -162,6 +172,30 @@ class THENAR_PT_smallest(_Part, bpy.types.Panel):
             _draw_row(column, context, row)
 
 
+class THENAR_PT_reasons(_Part, bpy.types.Panel):
+    """What else a reader should know."""
+
+    bl_label = "Notes"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @staticmethod
+    def said(told):
+        """Sentences."""
+        return told.notes
+
+    def draw(self, context):
+        for sentence in _letter(context).notes:
+            text.paragraph(self.layout, context, sentence, "DOT")
+
+
+def _draw_bars(layout, bars, share):
+    column = layout.column(align=True)
+    for bar in bars:
+        split = column.split(factor=share)
+        split.label(text=bar.label[:1].upper() + bar.label[1:])
+        split.progress(factor=bar.share, text=bar.text)
+
+
 def _draw_button(layout):
     if text.progress(layout):
         return
@@ -184,6 +218,8 @@ def _draw_entry(layout, context, entry):
         _draw_row(box, context, row)
     if entry.story:
         text.paragraph(box, context, entry.story)
+    for sign, holds in entry.signs:
+        text.paragraph(box, context, sign, "CHECKMARK" if holds else "X")
     box.separator(factor=0.5)
     buttons = box.row(align=True)
     if entry.has_place:
@@ -214,7 +250,9 @@ def _draw_row(column, context, row):
 CLASSES = (
     THENAR_PT_diagnosis,
     THENAR_PT_findings,
+    THENAR_PT_phases,
     THENAR_PT_gain,
     THENAR_PT_rivals,
     THENAR_PT_smallest,
+    THENAR_PT_reasons,
 )

@@ -12,8 +12,8 @@ def vertices(context, index):
     state, hand = context.scene.thenar_diagnosis, context.scene.thenar.hand
     finding = reading.finding(reading.parse(state.findings), index)
     where = finding.get("where") or {}
-    if where.get("vertices"):
-        found = _listed(applying.on_hand(context), where["vertices"])
+    if where.get("vertices_csv"):
+        found = _listed(applying.on_hand(context), where["vertices_csv"])
     elif where.get("center_mm") and where.get("radius_mm"):
         place = applying.on_hand(context).point_mm(where["center_mm"])
         apart = np.linalg.norm(read.rest_mm(context, hand) - place, axis=1)
@@ -25,8 +25,12 @@ def vertices(context, index):
     return found
 
 
-def _listed(match, told):
-    if max(told) >= len(match.hand_of_other) or min(told) < 0:
+def _listed(match, text):
+    try:
+        told = [int(number) for number in text.split(",") if number.strip()]
+    except ValueError:
+        raise Refusal("the finding does not list vertices by number; diagnose again") from None
+    if not told or max(told) >= len(match.hand_of_other) or min(told) < 0:
         raise Refusal("the finding lists vertices that the study's skin has not; diagnose again")
     return match.on_hand(told)
 

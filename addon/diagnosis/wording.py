@@ -11,6 +11,8 @@ PHASES = {
     "slide": "while sliding",
     "rest": "at rest",
 }
+UNITS = {"1": "", "J/m2": "J/m²", "mm2/s": "mm²/s", "standard deviations of the noise": "σ"}
+"""Units that are shown shorter than the library tells them."""
 DEPENDS = {
     "time": "time",
     "rate": "speed",
@@ -49,8 +51,8 @@ def number(value):
 
 
 def interval(low, high):
-    """`0.31–0.37`; with `to` where a minus sign would be read as a dash. Empty where it is not known."""
-    if low is None or high is None or not (isfinite(low) and isfinite(high)):
+    """`0.31–0.37`; with `to` where a minus sign would be read as a dash. Empty where there is none that is known."""
+    if low is None or high is None or low == high or not (isfinite(low) and isfinite(high)):
         return ""
     return f"{number(low)} to {number(high)}" if low < 0.0 else f"{number(low)}–{number(high)}"
 
@@ -59,8 +61,8 @@ def value(told):
     """A value with its unit and, in brackets, its interval: `1.4 s (0.9–2.2)`."""
     if isinstance(told.get("value"), str):
         return told["value"]
-    unit = told.get("unit") or ""
-    text = number(told.get("value")) + (f" {unit}" if unit not in {"", "1"} else "")
+    unit = UNITS.get(told.get("unit"), told.get("unit") or "")
+    text = number(told.get("value")) + (f" {unit}" if unit else "")
     between = interval(told.get("low"), told.get("high"))
     return f"{text} ({between})" if between else text
 
@@ -93,9 +95,10 @@ def moment(when):
     phases = when.get("phase") or []
     phases = phases.replace("|", ",").split(",") if isinstance(phases, str) else phases
     parts = [PHASES.get(phase.strip(), phase.strip()) for phase in phases]
-    for key, told in (("time_s", "at {} s"), ("depth_mm", "at {} mm depth"), ("cycles", "in presses {}")):
-        span = when.get(key)
-        if span and len(span) == 2 and None not in span:
+    cycles = [cycle + 1 for cycle in when.get("cycles") or () if cycle is not None]
+    spans = (when.get("time_s"), "at {} s"), (when.get("depth_mm"), "at {} mm depth"), (cycles, "in presses {}")
+    for span, told in spans:
+        if span and len(span) == 2 and None not in span and (span is not cycles or cycles[1] > 1):
             parts.append(told.format(number(span[0]) if span[0] == span[1] else interval(*span)))
     if when.get("recordings"):
         parts.append(f"in {some(when['recordings'])}")

@@ -25,6 +25,10 @@ FINDINGS = {
                     "cycles": None,
                 },
                 "depends_on": ["time", "rate"],
+                "consequences": [
+                    {"sentence": "force at held depth falls with time", "holds": True},
+                    {"sentence": "fast presses need more force than slow ones", "holds": False},
+                ],
             },
             {
                 "effect": "bone",
@@ -47,7 +51,19 @@ FINDINGS = {
         },
         "smallest_seen": {"adhesion": {"value": 0.02, "unit": "J/m2"}, "stiff_skin": {"value": 0.3, "unit": "MPa"}},
         "record_next": [],
-        "model": {"materials": {"default": {"g0_mpa": 0.02}}, "effects": []},
+        "model": {
+            "materials": {"default": {"g0_mpa": 0.02}},
+            "effects": [{"name": "relaxation", "amplitude": 0.34, "time_2_s": 0.5, "time_3_s": 9.0}],
+        },
+        "rivals": [
+            {"effects": ["relaxation"], "evidence": 9.0, "ledger": {"load": 1.0, "hold": 1.0}},
+            {
+                "effects": ["bone", "relaxation"],
+                "evidence": 30.0,
+                "ledger": {"load": 5.0, "hold": 15.0, "unload": -2.0, "rest": None},
+            },
+        ],
+        "notes": ["the evidence leads by 21 nats"],
     },
     "cannot_tell": {
         "schema": 1,

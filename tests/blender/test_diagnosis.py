@@ -83,7 +83,12 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "Noise floor: 0.03 N (0.02–0.04)",
         "96 % (91 % to > 99 %) of the error that could be removed is gone.",
         "Judged on 2 recordings that the fit did not use: 'sphere 1' and 'sphere 2'.",
-        "Adhesion: seen from 0.02 J/m2",
+        "Adhesion: seen from 0.02 J/m²",
+        "   Seen: force at held depth falls with time",
+        "   Not seen: fast presses need more force than slow ones",
+        "Evidence while pressing in: 25 %",
+        "Evidence while holding: 75 %",
+        "The evidence leads by 21 nats.",
     ):
         assert line in lines, lines
     bars = letter.write(letters.FINDINGS["missing_physics"]).bars
@@ -118,6 +123,7 @@ def test_what_acts_over_time_says_that_it_needs_a_bake(diagnose):
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     amplitude, numbers, _ = effects()["relaxation"]
     assert amplitude == pytest.approx(0.34) and numbers["time_3_s"] == pytest.approx(1.9)
+    assert numbers["time_2_s"] == 0.5, "what the finding does not tell comes from the findings' own model"
     stage.solve()
     assert any("bake to see it" in text.name for text in bpy.context.scene.thenar.result.warnings)
 
