@@ -125,3 +125,13 @@ def test_refused_ranges(tmp_path):
         bpy.ops.thenar.bake(frame_start=1, frame_end=2)
     with pytest.raises(RuntimeError, match="before it starts"):
         bpy.ops.thenar.bake(frame_start=3, frame_end=2)
+
+
+def test_a_bake_takes_fields_of_the_press_before_it_away(tmp_path):
+    hand, _ = animated(tmp_path)
+    stage.solve()
+    of_one_press = ("contact_force_n", "contact_displacement_mm")
+    assert set(of_one_press) <= set(hand.data.attributes.keys())
+    assert bpy.ops.thenar.bake(frame_start=1, frame_end=2) == {"FINISHED"}
+    assert not set(of_one_press) & set(hand.data.attributes.keys()), "they are of another moment than the one shown"
+    assert {"pressure_kpa", "contact_depth_mm"} <= set(hand.data.attributes.keys())

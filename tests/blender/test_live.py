@@ -279,3 +279,14 @@ def resident_mb():
     ctypes.CDLL(None).malloc_trim(0)
     with open("/proc/self/statm") as file:
         return int(file.read().split()[1]) * 4096 / 2**20
+
+
+def test_skin_that_is_let_go_is_bare_again(scene):
+    hand, product = stage.scene()
+    switch(True)
+    painted = stage.attribute(hand, names.COLOR).copy()
+    product.location.z -= 5.0 * MM
+    assert follow()
+    assert force() == 0.0
+    colors = stage.attribute(hand, names.COLOR)
+    assert np.abs(painted - painted[-1]).max() > 0.1 and np.abs(colors - colors[0]).max() < 1e-6

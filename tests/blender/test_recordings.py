@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import small_studies
 import stage
+from thenar_blender import colormap
 
 SIDE, PITCH = 9, 1.5
 DULL = (5, 3)
@@ -242,3 +243,72 @@ def test_what_cannot_be_done_says_why(tmp_path):
         bpy.ops.thenar.compare()
     assert bpy.ops.thenar.remove_recording() == {"FINISHED"}
     assert len(bpy.context.scene.thenar_recordings.items) == 0
+
+
+@pytest.mark.parametrize(
+    ("turn", "mirrored", "along_columns", "along_rows"),
+    [(0.0, False, (1, 0), (0, 1)), (90.0, False, (0, 1), (-1, 0)), (0.0, True, (-1, 0), (0, 1))],
+)
+def test_a_flat_mat_turns_and_mirrors(tmp_path, turn, mirrored, along_columns, along_rows):
+    stage.scene()
+    bpy.ops.thenar.load_recording(filepath=write_asf(tmp_path / "mat.asf", np.ones((1, 3, 5))))
+    placing = bpy.context.scene.thenar_recordings.items[0].placing
+    placing.on, placing.axis, placing.turn_deg, placing.is_mirrored = "PLANE", "+Z", turn, mirrored
+    assert bpy.ops.thenar.outline_mat() == {"FINISHED"}
+    mat = bpy.data.objects["Thenar Mat"]
+    corners = stage.evaluated(mat)[:, :2].reshape(3, 5, 4, 2)
+    centers = corners.mean(axis=2)
+    assert np.allclose(centers[0, 1] - centers[0, 0], PITCH * np.array(along_columns), atol=1e-3)
+    assert np.allclose(centers[1, 0] - centers[0, 0], PITCH * np.array(along_rows), atol=1e-3)
+    assert np.allclose(np.ptp(corners, axis=2), 0.9 * PITCH, atol=1e-3), "sensels are drawn a tenth smaller"
+
+
+def test_the_rule_chooses_the_frame(compared):
+    item = bpy.context.scene.thenar_recordings.items[0]
+    forces = {}
+    for rule, number in (("MEAN", 1), ("LARGEST", 1), ("NUMBER", 1)):
+        item.frame_rule, item.frame = rule, number
+        assert bpy.ops.thenar.compare() == {"FINISHED"}
+        forces[rule] = float(measure("Force")[0])
+    assert forces["LARGEST"] == pytest.approx(1.5 * forces["MEAN"], rel=1e-3)
+    assert forces["NUMBER"] == pytest.approx(0.5 * forces["MEAN"], rel=1e-3)
+
+
+def test_a_product_that_moves_to_its_force_takes_the_mat_along(compared):
+    """The mat lies on the product as it stands; the skin is seen from there however far the product moved."""
+    settings = bpy.context.scene.thenar
+    plate = settings.product
+    plate.location.z += 3.0 * stage.MM
+    settings.use_force, settings.force_n = True, settings.result.force_n
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    assert abs(settings.result.offset_mm) == pytest.approx(3.0, abs=0.3), "the product goes back to where it was"
+    _, simulated = map(float, measure("Force"))
+    assert simulated == pytest.approx(settings.result.force_n, rel=0.03)
+    assert bpy.context.scene.thenar_recordings.comparison.worst[0].name == f"row {DULL[0]}, column {DULL[1]}"
+
+
+def test_the_residual_is_white_where_there_is_none_and_red_above(compared):
+    hand, _ = compared
+    high = bpy.context.scene.thenar.maps.residual_kpa
+    residual, on_mat = stage.attribute(hand, "residual_kpa"), stage.attribute(hand, "on_mat")
+    shown = stage.attribute(hand, "Thenar Map")[:, :3]
+    below = on_mat == 1.0
+    wanted = colormap.to_linear(colormap.srgb("COOLWARM", 0.5 + 0.5 * residual[below] / high))
+    assert np.abs(shown[below] - wanted).max() < 2e-3
+    assert residual.min() < -0.5 * high, "the dull sensel stands out"
+
+
+def test_what_clips_counts_as_the_ceiling_on_both_sides(compared, tmp_path):
+    """A mat whose range ends below the peak does not differ there by what it cannot show."""
+    hand, _ = compared
+    frame = read_by_hand(hand)
+    ceiling = 0.5 * frame.max()
+    path = write_asf(tmp_path / "low.asf", [np.minimum(frame, ceiling)])
+    text = (tmp_path / "low.asf").read_text().replace("UNITS", f"SATURATION_PRESSURE {ceiling:.3f} KPa\nUNITS")
+    (tmp_path / "low.asf").write_text(text)
+    bpy.ops.thenar.load_recording(filepath=path)
+    placing = bpy.context.scene.thenar_recordings.items[1].placing
+    placing.on, placing.axis = "PLANE", "+Z"
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    residual = stage.attribute(hand, "residual_kpa")
+    assert np.abs(residual).max() < 0.3 * ceiling
