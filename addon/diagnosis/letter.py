@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..scene.units import KPA_PER_MPA
 from . import wording
 
 HEADINGS = {
@@ -75,6 +76,7 @@ class Letter:
     gain: tuple
     advice: tuple
     smallest: tuple
+    moduli: tuple
     notes: tuple
 
 
@@ -95,6 +97,7 @@ def write(found):
             Row(wording.title(effect), wording.value(seen))
             for effect, seen in (found.get("smallest_seen") or {}).items()
         ),
+        moduli=tuple(_moduli(found)),
         notes=tuple(text[:1].upper() + text[1:].rstrip(".") + "." for text in found.get("notes") or () if text),
     )
 
@@ -117,6 +120,7 @@ def lines(letter):
         yield f"Record next: {advice.text}"
         yield from (text for text in (advice.settles, advice.outlook) if text)
     yield from (f"{row.label}: seen from {row.text}" for row in letter.smallest)
+    yield from (f"Fitted, {row.label}: {row.text}" for row in letter.moduli)
     yield from letter.notes
 
 
@@ -169,6 +173,15 @@ def _fit(fit):
         for label, each in told
     )
     return bars, tuple(_gain(fit))
+
+
+def _moduli(found):
+    """Both shear moduli of each region of the study's skin as they were fitted, kPa."""
+    for region, numbers in ((found.get("model") or {}).get("materials") or {}).items():
+        both = [numbers.get(name) for name in ("g0_mpa", "g_lim_mpa")]
+        told = [wording.number(KPA_PER_MPA * value) for value in both if value is not None]
+        if told:
+            yield Row(wording.title(region), f"G {' to '.join(told)} kPa")
 
 
 def _gain(fit):

@@ -172,6 +172,23 @@ class THENAR_PT_smallest(_Part, bpy.types.Panel):
             _draw_row(column, context, row)
 
 
+class THENAR_PT_moduli(_Part, bpy.types.Panel):
+    """The shear modulus of the study's skin as fitted, from first touch to where it grows no more."""
+
+    bl_label = "Fitted Moduli"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @staticmethod
+    def said(told):
+        """Rows by region."""
+        return told.moduli
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        for row in _letter(context).moduli:
+            _draw_row(column, context, row)
+
+
 class THENAR_PT_reasons(_Part, bpy.types.Panel):
     """What else a reader should know."""
 
@@ -254,5 +271,6 @@ CLASSES = (
     THENAR_PT_gain,
     THENAR_PT_rivals,
     THENAR_PT_smallest,
+    THENAR_PT_moduli,
     THENAR_PT_reasons,
 )

@@ -52,7 +52,7 @@ FINDINGS = {
         "smallest_seen": {"adhesion": {"value": 0.02, "unit": "J/m2"}, "stiff_skin": {"value": 0.3, "unit": "MPa"}},
         "record_next": [],
         "model": {
-            "materials": {"default": {"g0_mpa": 0.02}},
+            "materials": {"default": {"g0_mpa": 0.0203, "g_lim_mpa": 0.09}},
             "effects": [{"name": "relaxation", "amplitude": 0.34, "time_2_s": 0.5, "time_3_s": 9.0}],
         },
         "rivals": [

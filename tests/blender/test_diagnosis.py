@@ -88,6 +88,7 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "   Not seen: fast presses need more force than slow ones",
         "Evidence while pressing in: 25 %",
         "Evidence while holding: 75 %",
+        "Fitted, Default: G 20.3 to 90 kPa",
         "The evidence leads by 21 nats.",
     ):
         assert line in lines, lines
