@@ -54,7 +54,9 @@ def _measure(row, measure, group):
 
 def _worst(row, place, about):
     prefix, recording = about
-    unit = {"Pressure": "kPa" if recording.is_calibrated else "counts", "Contact area": "mm²"}.get(place.quantity, "N")
+    pressure = "kPa" if recording.is_calibrated else "counts"
+    unit = {"Pressure": pressure, "Contact area": "mm²", "Scanned height over the skin at rest": "mm"}
+    unit = unit.get(place.quantity, "N")
     if place.row is not None:
         where = f"row {place.row}, column {place.column}"
     elif place.sensel is not None:

@@ -445,7 +445,7 @@ class Comparison:
     def estimates(self) -> list[Record]: ...
     @property
     def recordings(self) -> list[Record]:
-        """By recording: sentence, measures, series by name, mat, frames, worst, residual_kpa by vertex, unknown."""
+        """By recording: sentence, measures, series, mat, frames, scan, worst, residual_kpa by vertex, unknown."""
 
 def compare(
     study: Study,

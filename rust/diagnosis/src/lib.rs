@@ -24,4 +24,4 @@ pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, findings_json};
 pub use errors::DiagnosisError;
 pub use fit::{EffectFit, Estimate, Fit, Fitting, Found, Free, Options, Target, fit_study};
 pub use location::{Carrier, Location, Mismatch, Place, Search, Shown, When, locate};
-pub use observe::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
+pub use observe::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint};

@@ -1,7 +1,8 @@
 //! `thenar.compare` and `thenar.compare_map`: recordings beside simulation, as records of arrays, JSON and a page.
 
-use crate::arrays::{Argument, column, rows};
+use crate::arrays::{Argument, column};
 use crate::errors::RecordingError;
+use crate::readings::{frame, mat, scan};
 use crate::record::record;
 use crate::running::{Hooks, run};
 use crate::study::Study;
@@ -9,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use thenar_diagnosis::comparison::{
-    Frame, Measure, RecordingComparison, Series, Still, WorstPlace, compare_still, on_skin,
+    Measure, RecordingComparison, Series, Still, WorstPlace, compare_still, on_skin,
 };
 use thenar_diagnosis::report::{comparison_html, comparison_json};
 use thenar_diagnosis::{Estimate, Mat, Options, Target};
@@ -225,7 +226,7 @@ impl Comparison {
             .collect()
     }
 
-    /// Records: name, sentence, indenter, site, protocol, is_calibrated, has_noise, measures, series by name, mat, frames, worst,
+    /// Records: name, sentence, indenter, site, protocol, is_calibrated, has_noise, measures, series by name, mat, frames, scan, worst,
     /// residual_kpa (one per skin vertex, NaN away from the mat, or None), unknown.
     #[getter]
     fn recordings(&self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
@@ -291,6 +292,8 @@ fn recording(py: Python<'_>, recording: &RecordingComparison) -> PyResult<Py<PyA
         .iter()
         .map(|each| frame(py, recording, each));
     entries.set_item("frames", frames.collect::<PyResult<Vec<_>>>()?)?;
+    let seen = recording.scan.as_ref().map(|each| scan(py, each));
+    entries.set_item("scan", seen.transpose()?)?;
     entries.set_item("worst", list(py, &recording.worst, worst)?)?;
     let residual =
         (!recording.residual_kpa.is_empty()).then(|| column(py, recording.residual_kpa.clone()));
@@ -340,36 +343,6 @@ fn series(py: Python<'_>, recording: &RecordingComparison, series: &Series) -> P
     entries.set_item("simulated", column(py, series.simulated.clone()))?;
     entries.set_item("simulated_before", column(py, series.before.clone()))?;
     entries.set_item("noise", column(py, series.sigma.clone()))?;
-    record(entries)
-}
-
-fn mat(py: Python<'_>, mat: &Mat) -> PyResult<Py<PyAny>> {
-    let entries = PyDict::new(py);
-    let place = |axis: usize| {
-        let place = mat.places.iter();
-        place
-            .map(|place| place.map_or(-1, |place| i64::from(place[axis])))
-            .collect()
-    };
-    entries.set_item("center_mm", rows(py, &mat.centers)?)?;
-    entries.set_item("normal", rows(py, &mat.normals)?)?;
-    entries.set_item("area_mm2", column(py, mat.areas.clone()))?;
-    entries.set_item("row", column::<i64>(py, place(0)))?;
-    entries.set_item("column", column::<i64>(py, place(1)))?;
-    record(entries)
-}
-
-fn frame(py: Python<'_>, recording: &RecordingComparison, frame: &Frame) -> PyResult<Py<PyAny>> {
-    let entries = PyDict::new(py);
-    let moment = &recording.moments[frame.moment as usize];
-    entries.set_item("why", frame.why.clone())?;
-    entries.set_item("time_s", moment.time_s)?;
-    entries.set_item("depth_mm", moment.depth_mm)?;
-    entries.set_item("measured", column(py, frame.measured.clone()))?;
-    entries.set_item("simulated", column(py, frame.simulated.clone()))?;
-    entries.set_item("residual", column(py, frame.residual.clone()))?;
-    entries.set_item("residual_sigmas", column(py, frame.sigmas.clone()))?;
-    entries.set_item("contact_from", frame.contact_from)?;
     record(entries)
 }
 

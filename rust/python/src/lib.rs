@@ -2,6 +2,7 @@
 
 mod errors;
 mod arrays;
+mod readings;
 mod record;
 mod running;
 mod material;

@@ -33,7 +33,7 @@ pub struct Study {
     #[pyo3(get)]
     sites: Py<PyAny>,
     /// List of records: name, kind, file, indenter, site, protocol, subject, day, temperature_c, rest_s, order, and by kind
-    /// `curve`, `map` with `sensels` and `motion`, or `vertices_mm`, `triangles`, `at_time_s`.
+    /// `curve`, `map` with `sensels` and `motion`, or `vertices_mm`, `triangles`, `at_time_s`, `depth_mm`, `motion`.
     #[pyo3(get)]
     recordings: Py<PyAny>,
     /// Record of the data sheet, or None.
@@ -225,9 +225,17 @@ fn recording(py: Python<'_>, recording: &StudyRecording) -> PyResult<Py<PyAny>> 
             )?;
             "pressure_map"
         }
-        Data::Scan { mesh, at_time_s } => {
+        Data::Scan {
+            mesh,
+            at_time_s,
+            depth_mm,
+            motion,
+        } => {
             put_mesh(py, mesh, &entries)?;
             entries.set_item("at_time_s", *at_time_s)?;
+            entries.set_item("depth_mm", *depth_mm)?;
+            let motion = motion.as_ref().map(|curve| curve_record(py, curve));
+            entries.set_item("motion", motion.transpose()?)?;
             "scan"
         }
     };

@@ -3,7 +3,7 @@
 use super::instrument::{self, Shown};
 use super::standing::Standing;
 use super::{Frame, Series};
-use crate::{Mat, Quantity};
+use crate::Mat;
 use nalgebra::Vector3;
 
 const N_PER_KPA_MM2: f64 = 1e-3;
@@ -32,7 +32,7 @@ pub struct Measure {
 /// Every measure of the recording.
 pub(super) fn table(standing: &Standing, series: &[Series], frames: &[Frame]) -> Vec<Measure> {
     let mut table: Vec<Measure> = series.iter().flat_map(of_series).collect();
-    table.extend(of_scan(standing));
+    table.extend(super::scanned::measures(standing));
     let Some(mat) = &standing.measured.mat else {
         return table;
     };
@@ -119,32 +119,6 @@ fn of_series(series: &Series) -> [Measure; 2] {
             noise,
         ),
     ]
-}
-
-fn of_scan(standing: &Standing) -> Option<Measure> {
-    let samples = standing.measured.samples.iter().enumerate();
-    let heights: Vec<usize> = samples
-        .filter(|(_, sample)| matches!(sample.quantity, Quantity::Scan(_)))
-        .map(|(k, _)| k)
-        .collect();
-    if heights.is_empty() {
-        return None;
-    }
-    let rms = |value: &dyn Fn(usize) -> f64| {
-        let squares: f64 = heights.iter().map(|k| value(*k).powi(2)).sum();
-        (squares / heights.len() as f64).sqrt()
-    };
-    let value = |k: usize| standing.measured.samples[k].value;
-    Some(Measure {
-        name: "scan_rms_residual_mm",
-        label: "Distance of scan and simulation, rms",
-        unit: "mm",
-        of: "whole recording",
-        measured: f64::NAN,
-        before: rms(&|k| value(k) - standing.before[k]),
-        after: rms(&|k| value(k) - standing.simulated[k]),
-        noise: rms(&|k| standing.sigma[k]),
-    })
 }
 
 /// Peak, mean, force, area, center and overlap of a calibrated frame.

@@ -11,6 +11,7 @@ mod measures;
 mod trends;
 mod frames;
 mod worst;
+mod scanned;
 mod surface;
 mod sentence;
 mod still;
@@ -20,6 +21,7 @@ use nalgebra::Vector3;
 use standing::Standing;
 
 pub use measures::Measure;
+pub use scanned::Scanned;
 pub use still::{Still, compare_still};
 pub use surface::on_skin;
 pub use trends::{Bin, Trend, Variable};
@@ -89,6 +91,8 @@ pub struct RecordingComparison {
     pub mat: Option<Mat>,
     /// Frames of the mat that are shown.
     pub frames: Vec<Frame>,
+    /// Heights of a scan, place by place.
+    pub scan: Option<Scanned>,
     /// Table of measures.
     pub measures: Vec<Measure>,
     /// Residual against what it may depend on.
@@ -197,6 +201,7 @@ fn recording(compared: &Compared, standing: &Standing, trends: Vec<Trend>) -> Re
         residual_kpa: surface::worst_frame(compared, standing, &frames),
         series,
         mat: measured.mat.clone(),
+        scan: scanned::of(standing),
         frames,
         unknown: measured.unknown.clone(),
     };
@@ -228,7 +233,7 @@ pub enum Kind {
     Area,
     /// Mean pressure over a sensel, kPa or counts.
     Pressure,
-    /// Height of a scanned point over the simulated skin, mm.
+    /// Height of the scanned surface over the skin at rest, mm.
     Scan,
 }
 
@@ -260,7 +265,7 @@ impl Kind {
             Kind::TangentialForce => "Tangential force",
             Kind::Area => "Contact area",
             Kind::Pressure => "Pressure",
-            Kind::Scan => "Height over the simulated skin",
+            Kind::Scan => "Scanned height over the skin at rest",
         }
     }
 

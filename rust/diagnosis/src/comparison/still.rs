@@ -142,6 +142,7 @@ fn measured(still: &Still<'_>, samples: Vec<Sample>) -> Measured {
         }],
         samples,
         mat: Some(still.mat.clone()),
+        scan: None,
         is_calibrated: still.is_calibrated,
         unknown: still.unknown.clone(),
     }

@@ -198,9 +198,15 @@ fn value(standing: &Standing, variable: Variable, k: usize) -> f64 {
         Variable::Cycle => f64::from(moment.cycle),
         Variable::SensorRow => place(0),
         Variable::SensorColumn => place(1),
-        Variable::Skin(axis) => on_mat().map_or(f64::NAN, |(mat, sensel)| {
-            mat.centers[sensel][axis] + moment.slide_mm[axis]
-        }),
+        Variable::Skin(axis) => match (sample.quantity, &standing.measured.scan) {
+            (Quantity::Scan(place), Some(scan)) => {
+                let place = scan.places.get(place as usize);
+                place.map_or(f64::NAN, |place| place[axis])
+            }
+            _ => on_mat().map_or(f64::NAN, |(mat, sensel)| {
+                mat.centers[sensel][axis] + moment.slide_mm[axis]
+            }),
+        },
     }
 }
 

@@ -107,7 +107,10 @@ fn row(compared: &Compared, standing: &Standing, k: usize) -> WorstPlace {
     };
     let (position, reach) = match (on_mat, sample.quantity) {
         (Some((mat, center, sensel)), _) => (Some(center), reach(mat, sensel)),
-        (None, Quantity::Scan(_)) => (None, 0.0),
+        (None, Quantity::Scan(place)) => measured.scan.as_ref().map_or((None, 0.0), |scan| {
+            let center = scan.places.get(place as usize).copied();
+            (center, 0.5 * scan.spacing)
+        }),
         _ => (site(), 0.0),
     };
     WorstPlace {

@@ -9,6 +9,7 @@ use super::effects::{EffectFit, Found, Free, effects_at, free_parameters};
 use super::form::form_parameters;
 use super::intervals::estimates;
 use super::parameters::{Case, Kind, Parameter, parameters, touches};
+use super::poses::settle;
 use super::problem::{HUBER, Point, Problem};
 use super::setting::setting;
 use super::start::scaled_start;
@@ -112,7 +113,7 @@ impl Fitting {
         let place_of = &self.replay.place_of;
         parameters.extend(form_parameters(options.form_error, place_of, &is_used));
         parameters.extend(free_parameters(free, &options.effects));
-        let before = self.simulate(&options.effects, control)?;
+        let mut before = self.simulate(&options.effects, control)?;
         let whitening = Whitening::new(&self.replay.observed.measured, &noise, &is_used);
         if whitening.used() <= parameters.len() {
             return Err(DiagnosisError::TooFewSamples {
@@ -139,9 +140,13 @@ impl Fitting {
         let is_effect = |(kind, _): &(Kind, Estimate)| matches!(kind, Kind::Effect(..));
         let (of_effects, mut others): (Vec<_>, Vec<_>) = estimates.into_iter().partition(is_effect);
         others.retain(|(kind, _)| !matches!(kind, Kind::Form(..)));
+        let mut measured = self.replay.observed.measured.clone();
+        let mut simulated = descent.point.simulated;
+        let found_at = (&parameters[..], &descent.point.at[..]);
+        settle(&mut measured, [&mut simulated, &mut before], found_at);
         let fit = Fit {
-            measured: self.replay.observed.measured.clone(),
-            simulated: descent.point.simulated,
+            measured,
+            simulated,
             before,
             sigma: noise.sigma,
             projected: left.projected,

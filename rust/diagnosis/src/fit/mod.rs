@@ -7,6 +7,7 @@ mod effects;
 mod form;
 mod intervals;
 mod parameters;
+mod poses;
 mod problem;
 mod setting;
 mod start;

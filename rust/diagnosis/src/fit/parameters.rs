@@ -4,6 +4,7 @@ use thenar_contact::Material;
 use thenar_recordings::study::Instrument;
 
 use super::effects::Scale;
+use super::poses::{MOST_POSITION, poses};
 use crate::noise::Noise;
 use crate::observe::{Measured, Quantity};
 use crate::replay::Tissue;
@@ -25,12 +26,6 @@ const TOUCH: f64 = 0.05;
 const UNKNOWN_TOUCH: f64 = 0.15;
 /// First touch may lie this many standard deviations off.
 const MOST_TOUCH: f64 = 6.0;
-/// Standard deviation of where a mat lies, mm, where the data sheet does not say.
-const POSITION: f64 = 1.0;
-/// Standard deviation of how a mat is turned, rad: 2 degrees, as mats that are taped on by hand.
-const TURN: f64 = 0.035;
-/// A mat may lie this many standard deviations off.
-const MOST_POSITION: f64 = 4.0;
 /// Standard deviation of a load cell's zero as a part of the largest force, where the recording itself had to tell it.
 const FORCE_ZERO: f64 = 0.01;
 /// Bounds of counts per kPa as logarithms.
@@ -51,6 +46,8 @@ pub enum Kind {
     InstrumentGain,
     /// Shift of a recording's mat along its first (0) or second (1) direction, or its turn (2).
     Pose(usize, usize),
+    /// Shift of a scan along x, y, z (0 to 2, mm), or its turn about them (3 to 5, rad).
+    Scan(usize, usize),
     /// What a recording's load cell shows without load.
     ForceZero(usize),
     /// Logarithm of counts per kPa of a recording.
@@ -137,6 +134,7 @@ impl Parameter {
             Kind::Zero(_)
                 | Kind::Touch(_)
                 | Kind::Pose(..)
+                | Kind::Scan(..)
                 | Kind::ForceZero(_)
                 | Kind::Form(..)
                 | Kind::Effect(_, _, Scale::Plain)
@@ -159,6 +157,7 @@ impl Parameter {
             Kind::Zero(r)
             | Kind::Gain(r)
             | Kind::Pose(r, _)
+            | Kind::Scan(r, _)
             | Kind::ForceZero(r)
             | Kind::Counts(r) => Some(r),
             Kind::Tissue(..)
@@ -230,10 +229,7 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
                 step: 1e-4,
             });
         }
-        if measured.mat.is_some() {
-            let sd = sheet.and_then(|s| s.position_mm).unwrap_or(POSITION);
-            all.extend(pose(recording, target(), sd));
-        }
+        all.extend(poses(recording, measured, sheet));
     }
     all
 }
@@ -255,25 +251,6 @@ fn force_zero(recording: usize, measured: &Measured) -> Option<Parameter> {
         prior: Some(sd),
         step: sd,
     })
-}
-
-/// Where a mat lies: two shifts, in mm about `sd`, and a turn.
-fn pose(recording: usize, target: Target, sd: f64) -> [Parameter; 3] {
-    let one = |(axis, name, sd, step): (usize, &'static str, f64, f64)| Parameter {
-        kind: Kind::Pose(recording, axis),
-        name,
-        target: target.clone(),
-        start: 0.0,
-        bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
-        prior: Some(sd),
-        step,
-    };
-    [
-        (0, "pose_x_mm", sd, 0.05),
-        (1, "pose_y_mm", sd, 0.05),
-        (2, "pose_turn_rad", TURN, 0.01),
-    ]
-    .map(one)
 }
 
 fn carries_force(measured: &Measured) -> bool {
@@ -372,7 +349,7 @@ fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
     all
 }
 
-/// True if some sample was taken with the tool on the skin.
+/// True if some sample was taken with the tool on the skin, or is of the skin alone.
 pub fn touches(measured: &Measured) -> bool {
-    measured.moments.iter().any(|m| m.phase != Phase::Apart)
+    measured.scan.is_some() || measured.moments.iter().any(|m| m.phase != Phase::Apart)
 }

@@ -221,6 +221,7 @@ impl Problem<'_> {
             | Kind::Touch(_)
             | Kind::Pose(..)
             | Kind::Form(..)
+            | Kind::Scan(..)
             | Kind::Effect(..) => {}
         }
         let step = inward(parameter, point.at[column]);

@@ -26,6 +26,7 @@ pub fn setting(
             Kind::InstrumentGain => nuisances.iter_mut().for_each(|n| n.log_gain += at),
             Kind::Pose(r, 2) => nuisances[r].placement.turn_rad = *at,
             Kind::Pose(r, axis) => nuisances[r].placement.shift_mm[axis] = *at,
+            Kind::Scan(r, axis) => nuisances[r].scan[axis] = *at,
             Kind::Counts(r) => nuisances[r].log_counts = *at,
             Kind::Effect(..) => {}
             Kind::Form(place, knot) => {

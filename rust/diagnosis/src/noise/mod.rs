@@ -3,6 +3,7 @@
 mod alike;
 mod frames;
 mod repeats;
+mod scans;
 mod whitening;
 #[cfg(test)]
 mod tests;
@@ -136,6 +137,12 @@ fn sigma(
         let samples = measured.samples.iter().filter(|s| is_it(s.quantity));
         let values: Vec<f64> = samples.map(|s| s.value).collect();
         let most = values.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
+        if channel == Channel::Scan {
+            // In mm: a scanner's noise does not grow with how far the skin was moved.
+            let single = measured.scan.as_ref().map_or(0.0, |scan| scan.scatter_mm);
+            let repeats = scatter[channel as usize].as_ref();
+            return (repeats.map_or(single, |s| s.share_of(recording)), 0.0);
+        }
         let (share, proportional) = match &scatter[channel as usize] {
             Some(scatter) => (scatter.share_of(recording), scatter.proportional),
             None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),

@@ -127,8 +127,10 @@ impl Repeats {
         measured: &[Measured],
         (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
     ) -> Option<Scatter> {
-        if self.channel == Channel::Pressure {
-            return super::frames::scatter(&self.groups, measured);
+        match self.channel {
+            Channel::Pressure => return super::frames::scatter(&self.groups, measured),
+            Channel::Scan => return super::scans::scatter(&self.groups, measured),
+            _ => {}
         }
         let told = |&k: &usize| Told {
             measured: &measured[k],

@@ -65,6 +65,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
         moments,
         samples,
         mat: None,
+        scan: None,
         is_calibrated: true,
         unknown: Vec::new(),
     }

@@ -13,7 +13,8 @@ pub enum Quantity {
     Area,
     /// Mean pressure over the sensel of this number, kPa.
     Pressure(u32),
-    /// Height of the scanned point of this number over the simulated skin, along its normal, mm.
+    /// Height of the scanned surface over the skin at rest around the [`Scan`]'s place of this number, mm. Measured minus simulated is
+    /// the distance of the scan from the simulated skin, > 0 outside.
     Scan(u32),
 }
 
@@ -88,6 +89,38 @@ pub struct Mat {
     pub places: Vec<Option<[u32; 2]>>,
 }
 
+/// A scanned point that counts: on the skin, and away from the tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanPoint {
+    /// Where it was seen, mm, skin coordinates, after the first laying.
+    pub position: Vector3<f64>,
+    /// Number of its place.
+    pub place: u32,
+    /// Triangle of the skin next to it.
+    pub triangle: u32,
+}
+
+/// A scan, summed up around places of the skin that all scans of a site share.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scan {
+    /// The places, mm: vertices of the skin at rest.
+    pub places: Vec<Vector3<f64>>,
+    /// Their vertices.
+    pub vertices: Vec<u32>,
+    /// Skin normals there.
+    pub normals: Vec<Vector3<f64>>,
+    /// Distance from a place to the next, mm.
+    pub spacing: f64,
+    /// What was seen around them.
+    pub points: Vec<ScanPoint>,
+    /// About which the scan turns, mm: the mean of the points as the file has them.
+    pub center: Vector3<f64>,
+    /// How it was first laid on the skin: shift (mm), and turn about the center as a rotation vector (rad).
+    pub laid: [f64; 6],
+    /// Standard deviation of a place's mean height as its points scatter, mm.
+    pub scatter_mm: f64,
+}
+
 /// A recording as the comparison sees it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -105,6 +138,8 @@ pub struct Measured {
     pub samples: Vec<Sample>,
     /// The mat whose sensels the samples number, if the recording is of one and placed.
     pub mat: Option<Mat>,
+    /// The scan, if the recording is one.
+    pub scan: Option<Scan>,
     /// False if values are counts: then only shape and relative size count.
     pub is_calibrated: bool,
     /// What cannot be known from this recording, a sentence each.

@@ -5,11 +5,13 @@ pub(crate) mod scatter;
 mod curve;
 mod map;
 mod measured;
+pub(crate) mod laying;
+mod scan;
 mod thinning;
 mod touch;
 
 pub(crate) use map::interpolated;
-pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
+pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint};
 
 use nalgebra::Vector3;
 use thenar_recordings::Study;
@@ -55,6 +57,7 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
         moments: Vec::new(),
         samples: Vec::new(),
         mat: None,
+        scan: None,
         is_calibrated: true,
         unknown: Vec::new(),
     };
@@ -85,11 +88,24 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
             let is_touch_known = map::observe(&seen, &mut measured, MOST_FRAMES);
             (measured, is_touch_known)
         }
-        Data::Scan { .. } => {
-            measured.unknown.push(
-                "scans are read and shown, but not compared: a scan's own pose against the skin is not known"
-                    .to_owned(),
-            );
+        Data::Scan {
+            mesh,
+            at_time_s,
+            depth_mm,
+            motion,
+        } => {
+            let seen = scan::Seen {
+                points: &mesh.positions,
+                when: (*at_time_s, *depth_mm, motion.as_deref()),
+                across: across(direction),
+                direction,
+                site,
+                indenter: study
+                    .indenters
+                    .iter()
+                    .find(|i| i.name == recording.indenter),
+            };
+            scan::observe(&seen, &study.skin.mesh, &mut measured);
             (measured, true)
         }
     }

@@ -185,6 +185,10 @@ impl Replay {
             tangential: steps.iter().map(|step| step.shear.dot(&x)).collect(),
             area: steps.iter().map(|step| step.area).collect(),
             frames,
+            displacement: match measured.scan {
+                Some(_) => course.last.displacement.clone(),
+                None => Vec::new(),
+            },
         })
     }
 }

@@ -32,6 +32,8 @@ impl Replay {
                 true => basis.depth_at(&weights, moment.demand_n),
             })
             .collect();
+        let last = known.last().copied().unwrap_or(0.0);
+        let displacement = self.displacement(recording, (materials, last), control)?;
         let placement = misplaced(nuisance.placement, &self.instrument);
         let frames = match &mut self.readers[recording] {
             Some(reader) => {
@@ -54,6 +56,7 @@ impl Replay {
             tangential: vec![0.0; depths.len()],
             area: depths.iter().map(|d| basis.area_at(*d)).collect(),
             frames,
+            displacement,
         })
     }
 
@@ -65,25 +68,11 @@ impl Replay {
         control: &Control<'_>,
     ) -> Result<(Arc<Basis>, Vec<f64>), DiagnosisError> {
         let is_linear = self.is_linear(materials);
-        let (key, weights) = match is_linear {
-            true => {
-                let start = self.tissue.materials[0].g0_mpa;
-                let unit = Material {
-                    g0_mpa: start,
-                    g_lim_mpa: start,
-                    ..materials[0]
-                };
-                (
-                    vec![unit],
-                    vec![materials[0].g0_mpa, materials[0].g_lim_mpa],
-                )
-            }
-            false => (materials.to_vec(), vec![1.0]),
+        let weights = match is_linear {
+            true => vec![materials[0].g0_mpa, materials[0].g_lim_mpa],
+            false => vec![1.0],
         };
-        let key = Key {
-            materials: key,
-            effects: self.lasting(),
-        };
+        let key = self.key(materials);
         if let Some((_, basis)) = self.places[at].kept.iter().find(|(kept, _)| *kept == key) {
             return Ok((basis.clone(), weights));
         }
@@ -119,6 +108,23 @@ impl Replay {
         control: &Control<'_>,
     ) -> Result<PressTable, DiagnosisError> {
         self.press(place, materials, control)
+    }
+
+    /// What a ladder depends on: where all is linear in the moduli, those of the start stand for all.
+    pub(super) fn key(&self, materials: &[Material]) -> Key {
+        let start = self.tissue.materials[0].g0_mpa;
+        let unit = |material: &Material| Material {
+            g0_mpa: start,
+            g_lim_mpa: start,
+            ..*material
+        };
+        Key {
+            materials: match self.is_linear(materials) {
+                true => materials.iter().map(unit).collect(),
+                false => materials.to_vec(),
+            },
+            effects: self.lasting(),
+        }
     }
 
     /// True if force and pressure are linear in G0 and Glim: one region, and no effect with a stiffness of its own.

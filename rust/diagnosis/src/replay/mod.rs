@@ -5,6 +5,7 @@ mod ladders;
 mod followed;
 mod press_table;
 mod reading;
+mod scanned;
 mod shown;
 mod tissue;
 mod tool;
@@ -23,8 +24,10 @@ pub(crate) use interpolation::Table;
 use press_table::Basis;
 pub(crate) use press_table::PressTable;
 use reading::Reader;
+use scanned::{Scanned, Shapes};
 use shown::AtSkin;
 pub use tissue::Tissue;
+pub use tool::tool as tool_at;
 
 /// Depth that is added to the deepest of a ladder for a contact zero that moves, mm and share.
 const DEPTH_MARGIN: (f64, f64) = (0.1, 0.05);
@@ -49,6 +52,8 @@ pub struct Nuisance {
     pub placement: Placement,
     /// Natural logarithm of counts per kPa; 0 on a calibrated mat.
     pub log_counts: f64,
+    /// How a scan lies otherwise than it was first laid: shift (mm), and turn (rad) about its own center.
+    pub scan: [f64; 6],
 }
 
 /// Materials by region, and what belongs to one recording.
@@ -64,6 +69,7 @@ impl Nuisance {
             form: [0.0; KNOTS],
             placement: Placement::default(),
             log_counts: 0.0,
+            scan: [0.0; 6],
         }
     }
 }
@@ -78,6 +84,7 @@ struct Place {
     /// mm; of all its recordings.
     deepest: f64,
     kept: Vec<(Key, Arc<Basis>)>,
+    shapes: Shapes,
 }
 
 /// What a protocol was followed with, and what came of it.
@@ -105,6 +112,8 @@ pub struct Replay {
     /// By recording: number of its tool at its site.
     pub place_of: Vec<usize>,
     readers: Vec<Option<Reader>>,
+    /// The skin as scans are held against it, if there are any.
+    scanned: Option<Scanned>,
     /// Effects on the skin.
     effects: Vec<ActiveEffect>,
     /// By recording: protocols followed, the last ones last.
@@ -160,6 +169,9 @@ impl Replay {
             place.deepest =
                 place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
         }
+        let has_scan = observed.measured.iter().any(|m| m.scan.is_some());
+        let mesh = &study.skin.mesh;
+        let scanned = has_scan.then(|| Scanned::new(&mesh.positions, &mesh.triangles));
         let followed = observed.measured.iter().map(|_| Vec::new()).collect();
         Ok(Replay {
             tissue,
@@ -168,6 +180,7 @@ impl Replay {
             places,
             place_of,
             readers,
+            scanned: scanned.transpose()?,
             effects: Vec::new(),
             instrument: Vec::new(),
         })
@@ -332,5 +345,6 @@ fn place(study: &Study, measured: &Measured, extent: f64) -> Result<Place, Diagn
         direction: site.direction.into(),
         deepest: 0.0,
         kept: Vec::new(),
+        shapes: Shapes::default(),
     })
 }

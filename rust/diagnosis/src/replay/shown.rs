@@ -3,6 +3,7 @@
 use thenar_contact::ActiveEffect;
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::{Signals, observe};
+use thenar_surface::Vec3;
 
 use super::{KNOTS, Nuisance, Replay};
 use crate::DiagnosisError;
@@ -22,6 +23,8 @@ pub struct AtSkin {
     pub area: Vec<f64>,
     /// What the mat reads, kPa; empty without a mat.
     pub frames: Vec<Vec<f64>>,
+    /// Displacement of the skin at the last moment, mm; empty where nothing is scanned.
+    pub displacement: Vec<Vec3>,
 }
 
 impl AtSkin {
@@ -54,6 +57,9 @@ impl AtSkin {
                 *value += share * (to.frames[k][cell] - from.frames[k][cell]);
             }
         }
+        for (k, moved) in self.displacement.iter_mut().enumerate() {
+            *moved += to.displacement[k] - from.displacement[k];
+        }
         self
     }
 }
@@ -70,6 +76,7 @@ impl Replay {
         at_skin: AtSkin,
     ) -> Result<Vec<f64>, DiagnosisError> {
         let measured = &self.observed.measured[recording];
+        let heights = self.seen(recording, nuisance, &at_skin.displacement);
         let at_skin = self.of_form(recording, nuisance, at_skin);
         let shown = self.through_instrument(recording, at_skin)?;
         let gain = libm::exp(nuisance.log_gain);
@@ -82,7 +89,7 @@ impl Replay {
                 Some(frame) => counts * frame[sensel as usize],
                 None => 0.0,
             },
-            Quantity::Scan(_) => 0.0,
+            Quantity::Scan(place) => heights[place as usize],
         };
         let samples = measured.samples.iter();
         Ok(samples
@@ -143,6 +150,7 @@ impl Replay {
             loads: Vec::new(),
             frames: at_skin.frames,
         };
+        let displacement = at_skin.displacement;
         let mat = self.readers[recording]
             .as_ref()
             .map(|reader| reader.sensels());
@@ -153,6 +161,7 @@ impl Replay {
             tangential: shown.tangential_force_n,
             area: shown.area_mm2,
             frames: shown.frames,
+            displacement,
         })
     }
 

@@ -1,8 +1,8 @@
 //! comparison.json: every number with its unit in its name, null for what is not known, keys in order.
 
 use crate::comparison::{
-    Bin, Comparison, Frame, Kind, Measure, RecordingComparison, SIGNIFICANT, Series, Trend,
-    WorstPlace,
+    Bin, Comparison, Frame, Kind, Measure, RecordingComparison, SIGNIFICANT, Scanned, Series,
+    Trend, WorstPlace,
 };
 use crate::{Carrier, Estimate, Location, Mat, Mismatch, Moment, Place, Target};
 use serde_json::{Value, json};
@@ -118,6 +118,7 @@ fn recording(recording: &RecordingComparison) -> Value {
         "measures": recording.measures.iter().map(measure).collect::<Vec<_>>(),
         "series": recording.series.iter().map(|each| series(recording, each)).collect::<Vec<_>>(),
         "mat": recording.mat.as_ref().map(mat),
+        "scan": recording.scan.as_ref().map(|each| scan(recording, each)),
         "frames": recording.frames.iter().map(|each| frame(recording, each)).collect::<Vec<_>>(),
         "trends": recording.trends.iter().map(|each| trend(each, is_calibrated)).collect::<Vec<_>>(),
         "worst": recording.worst.iter().map(|each| place(each, is_calibrated)).collect::<Vec<_>>(),
@@ -155,10 +156,26 @@ fn series(recording: &RecordingComparison, series: &Series) -> Value {
     })
 }
 
+fn rows(points: &[nalgebra::Vector3<f64>]) -> Vec<[f64; 3]> {
+    points.iter().map(|point| (*point).into()).collect()
+}
+
+/// Heights over the skin at rest by place, and the distance of scan and simulated skin.
+fn scan(recording: &RecordingComparison, scan: &Scanned) -> Value {
+    let moment = &recording.moments[scan.moment as usize];
+    json!({
+        "time_s": moment.time_s,
+        "depth_mm": moment.depth_mm,
+        "position_mm": rows(&scan.places),
+        "vertex": scan.vertices,
+        "measured_mm": scan.measured,
+        "simulated_mm": scan.simulated,
+        "residual_mm": scan.residual,
+        "noise_mm": scan.sigma,
+    })
+}
+
 fn mat(mat: &Mat) -> Value {
-    let rows = |points: &[nalgebra::Vector3<f64>]| -> Vec<[f64; 3]> {
-        points.iter().map(|point| (*point).into()).collect()
-    };
     let place = |axis: usize| -> Vec<Option<u32>> {
         mat.places
             .iter()

@@ -1,10 +1,10 @@
-//! Frames of a mat: measured, simulated and residual side by side, sensels true to their pitch.
+//! Frames of a mat and scans: measured, simulated and residual side by side, sensels true to their pitch.
 
 use super::colors::{diverging, viridis};
 use super::svg::{Anchor, Svg, Type};
 use super::ticks::{round_up, ticks};
 use crate::Mat;
-use crate::comparison::Frame;
+use crate::comparison::{Frame, Scanned};
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest width and height of one map, px.
@@ -39,10 +39,6 @@ pub struct Mark {
 /// One frame; `unit` is that of the values.
 pub fn frame(mat: &Mat, (frame, marks): (&Frame, &[Mark]), unit: &str, label: &str) -> String {
     let layout = layout(mat);
-    let [width, height] = layout.size;
-    let second = width + GAP;
-    let third = 2.0 * width + GAP + SCALE + GAP;
-    let mut svg = Svg::new(third + width + SCALE, TOP + height.max(120.0) + 34.0, label);
     let top = round_up(
         frame
             .measured
@@ -66,15 +62,83 @@ pub fn frame(mat: &Mat, (frame, marks): (&Frame, &[Mark]), unit: &str, label: &s
         }
     };
     let residual = |value: f64| diverging(value / most);
+    let to_share = |share: f64| diverging(2.0 * share - 1.0);
+    let mut svg = triptych(
+        &layout,
+        [&frame.measured, &frame.simulated, &frame.residual],
+        [
+            (&pressure, (0.0, top), &viridis),
+            (&residual, (-most, most), &to_share),
+        ],
+        (unit, label),
+    );
+    let width = layout.size[0];
+    for left in [0.0, width + GAP, third(width)] {
+        outline(&mut svg, mat, &layout, (left, &frame.measured));
+    }
+    for mark in marks {
+        ring(&mut svg, mat, &layout, (third(width), mark));
+    }
+    svg.finish()
+}
+
+/// A scan: heights measured and simulated on one diverging scale, and their difference on its own.
+pub fn scan(scan: &Scanned, label: &str) -> String {
+    let seen = Mat {
+        centers: scan.places.clone(),
+        normals: scan.normals.clone(),
+        areas: vec![scan.spacing * scan.spacing; scan.places.len()],
+        places: vec![None; scan.places.len()],
+    };
+    let largest = |lists: &[&Vec<f64>]| {
+        let all = lists.iter().flat_map(|list| list.iter());
+        round_up(all.fold(0.0, |most, value| f64::max(most, value.abs())))
+    };
+    let (top, most) = (
+        largest(&[&scan.measured, &scan.simulated]),
+        largest(&[&scan.residual]),
+    );
+    let height = |value: f64| diverging(value / top);
+    let residual = |value: f64| diverging(value / most);
+    let to_share = |share: f64| diverging(2.0 * share - 1.0);
+    let svg = triptych(
+        &layout(&seen),
+        [&scan.measured, &scan.simulated, &scan.residual],
+        [
+            (&height, (-top, top), &to_share),
+            (&residual, (-most, most), &to_share),
+        ],
+        ("mm", label),
+    );
+    svg.finish()
+}
+
+/// Left edge of the third of three maps of a width.
+fn third(width: f64) -> f64 {
+    2.0 * width + GAP + SCALE + GAP
+}
+
+/// Color of a value, ends of its scale, and color of a share of that scale.
+type Look<'a> = (
+    &'a dyn Fn(f64) -> String,
+    (f64, f64),
+    &'a dyn Fn(f64) -> String,
+);
+
+/// Measured, simulated and residual side by side, the first two in one look.
+fn triptych(
+    layout: &Layout,
+    values: [&[f64]; 3],
+    [both, left_over]: [Look<'_>; 2],
+    (unit, label): (&str, &str),
+) -> Svg {
+    let [width, height] = layout.size;
+    let third = third(width);
+    let mut svg = Svg::new(third + width + SCALE, TOP + height.max(120.0) + 34.0, label);
     let panels: [Panel; 3] = [
-        (0.0, "Measured", &frame.measured, &pressure),
-        (second, "Simulated", &frame.simulated, &pressure),
-        (
-            third,
-            "Measured \u{2212} simulated",
-            &frame.residual,
-            &residual,
-        ),
+        (0.0, "Measured", values[0], both.0),
+        (width + GAP, "Simulated", values[1], both.0),
+        (third, "Measured \u{2212} simulated", values[2], left_over.0),
     ];
     for (left, title, values, color) in panels {
         svg.text([left, TOP - 10.0], Anchor::Start, Type::Title, title);
@@ -87,29 +151,14 @@ pub fn frame(mat: &Mat, (frame, marks): (&Frame, &[Mark]), unit: &str, label: &s
             let corner = [left + cell[0], TOP + cell[1]];
             svg.rect(corner, [cell[2], cell[3]], &color(*value));
         }
-        outline(&mut svg, mat, &layout, (left, &frame.measured));
         svg.frame([left, TOP], layout.size, "#c3cad0");
     }
-    for mark in marks {
-        ring(&mut svg, mat, &layout, (third, mark));
-    }
-    scale(
-        &mut svg,
-        [2.0 * width + GAP + 10.0, height],
-        (0.0, top),
-        unit,
-        &|share| viridis(share),
-    );
-    let to_share = |share: f64| diverging(2.0 * share - 1.0);
-    scale(
-        &mut svg,
-        [third + width + 10.0, height],
-        (-most, most),
-        unit,
-        &to_share,
-    );
-    ruler(&mut svg, &layout);
-    svg.finish()
+    let first = [2.0 * width + GAP + 10.0, height];
+    scale(&mut svg, first, both.1, unit, both.2);
+    let second = [third + width + 10.0, height];
+    scale(&mut svg, second, left_over.1, unit, left_over.2);
+    ruler(&mut svg, layout);
+    svg
 }
 
 /// A ring around the sensel next to a mark.

@@ -5,7 +5,7 @@ use super::maps::{self, Mark};
 use super::svg::escaped;
 use super::{bars, tables};
 use crate::Place;
-use crate::comparison::{Comparison, Frame, RecordingComparison, Trend};
+use crate::comparison::{Comparison, Frame, RecordingComparison, Scanned, Trend};
 use crate::words::{capital, number};
 use std::fmt::Write;
 
@@ -51,6 +51,9 @@ pub fn recording(number: usize, comparison: &Comparison) -> String {
             );
         }
     }
+    if let Some(scan) = &recording.scan {
+        html += &scanned(recording, scan);
+    }
     if !recording.measures.is_empty() {
         html += &format!("<h3>Measures</h3>{}", tables::measures(&recording.measures));
     }
@@ -60,6 +63,21 @@ pub fn recording(number: usize, comparison: &Comparison) -> String {
     html += &trends(recording);
     html += &list("What cannot be known from it", &recording.unknown);
     html + "</section>\n"
+}
+
+fn scanned(recording: &RecordingComparison, scan: &Scanned) -> String {
+    let moment = &recording.moments[scan.moment as usize];
+    let caption = format!(
+        "Height over the skin at rest at a depth of {} mm, and distance of the scan from the simulated skin, seen along the skin\u{2019}s mean \
+         normal; {} places, each the mean of the points around it. Empty: under the tool, or not scanned.",
+        number(moment.depth_mm),
+        scan.places.len()
+    );
+    let drawn = maps::scan(scan, &format!("{}: {caption}", recording.name));
+    format!(
+        "<figure class='map'>{drawn}<figcaption>{}</figcaption></figure>\n",
+        escaped(&caption)
+    )
 }
 
 /// Discs on the mat of a recording that stand out.
@@ -177,6 +195,7 @@ pub fn method(comparison: &Comparison) -> String {
 <li><b>A mat</b> is compared as its instrument would show it: what lies under its threshold counts as nothing on both sides, and where sensels clip both sides count the ceiling. Contact area is the area of the sensels in contact; overlap is the area where both touch over the area where either does. Mean pressure is force over contact area.</li>\
 <li><b>Frame of mean force</b> is the frame whose force is nearest to the mean over all frames that carry any.</li>\
 <li><b>A map that is not calibrated</b> is scaled to the sum of the reading: force and pressure cannot be told from it.</li>\
+<li><b>A scan</b> is laid on the skin as a rigid body, with its pose among the fitted numbers. What lies on the tool or next to it is left out. The residual is the distance from the scanned points to the simulated skin, along its normal, positive outside.</li>\
 <li><b>Noise</b> of a sum over sensels takes the sensels\u{2019} noise as independent.</li>\
 <li><b>Intervals</b> hold the true number in 90 of 100 studies if the model is right; they say nothing of what the model leaves out.</li>\
 </ul></section>\n"

@@ -66,6 +66,7 @@ pub fn indentation(name: &str, measured: &[f64]) -> Measured {
         moments: ramp_and_hold(measured.len()),
         samples: samples.collect(),
         mat: None,
+        scan: None,
         is_calibrated: true,
         unknown: Vec::new(),
     }

@@ -233,6 +233,7 @@ fn recording(name: String, moments: &[Moment], samples: Vec<Sample>, mat: Option
         moments: moments.to_vec(),
         samples,
         mat,
+        scan: None,
         is_calibrated: true,
         unknown: Vec::new(),
     }

@@ -1,5 +1,6 @@
-//! Mesh files (OBJ, PLY, STL) to vertices and triangles; knows nothing of units: numbers come out as written.
+//! Mesh files (OBJ, PLY, STL) and point clouds to vertices and triangles; knows nothing of units: numbers come out as written.
 
+mod cloud;
 mod obj;
 mod ply;
 mod ply_header;
@@ -53,14 +54,48 @@ impl Format {
 /// [`RecordingError`] if the file cannot be read, is larger than [`LARGEST_FILE`], breaks its format, holds a number
 /// that is not finite, an index without a vertex, or no triangle.
 pub fn read(file: &Path) -> Result<MeshFile, RecordingError> {
-    let named = |fault: Fault| fault.in_file(file);
-    let Some(format) = Format::of(file) else {
+    let format = known(file, Format::of(file), "save it as .obj, .ply or .stl")?;
+    let bytes = bytes_of(file)?;
+    parse(&bytes, format).map_err(|fault| fault.in_file(file))
+}
+
+/// Reads the points of a scan: a mesh, a mesh file without faces, or a table of x, y, z (`.csv`, `.txt`, `.xyz`), whose columns
+/// are `x_mm`, `y_mm`, `z_mm` or, without names, the first three.
+///
+/// # Errors
+/// As [`read`], but for faces, which need not be there.
+pub fn read_points(file: &Path) -> Result<MeshFile, RecordingError> {
+    let ending = file.extension().and_then(|ending| ending.to_str());
+    let is_table = ending.is_some_and(|ending| {
+        ["csv", "txt", "xyz"].contains(&ending.to_ascii_lowercase().as_str())
+    });
+    let format = match is_table {
+        true => None,
+        false => Some(known(
+            file,
+            Format::of(file),
+            "save it as .ply, .obj, .stl, .csv or .xyz",
+        )?),
+    };
+    let bytes = bytes_of(file)?;
+    let points = match format {
+        Some(format) => points(&bytes, format),
+        None => cloud::parse(&bytes).and_then(filled),
+    };
+    points.map_err(|fault| fault.in_file(file))
+}
+
+fn known<T>(file: &Path, format: Option<T>, remedy: &'static str) -> Result<T, RecordingError> {
+    format.ok_or_else(|| {
         let found = file
             .extension()
             .map_or("no ending".into(), |e| format!(".{}", e.display()));
         let problem = format!("not a mesh format that is known ({found})");
-        return Err(named(Fault::file(problem, "save it as .obj, .ply or .stl")));
-    };
+        Fault::file(problem, remedy).in_file(file)
+    })
+}
+
+fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordingError> {
     let unreadable = |source| RecordingError::Unreadable {
         file: file.to_path_buf(),
         source,
@@ -68,10 +103,9 @@ pub fn read(file: &Path) -> Result<MeshFile, RecordingError> {
     let size = std::fs::metadata(file).map_err(unreadable)?.len();
     if size > LARGEST_FILE {
         let problem = format!("{size} bytes are more than the {LARGEST_FILE} that are read");
-        return Err(named(Fault::file(problem, "decimate the mesh")));
+        return Err(Fault::file(problem, "decimate the mesh").in_file(file));
     }
-    let bytes = std::fs::read(file).map_err(unreadable)?;
-    parse(&bytes, format).map_err(named)
+    std::fs::read(file).map_err(unreadable)
 }
 
 /// Reads a mesh from the bytes of a file that is called `file` in messages.
@@ -82,18 +116,27 @@ pub fn read_bytes(bytes: &[u8], format: Format, file: &Path) -> Result<MeshFile,
     parse(bytes, format).map_err(|fault| fault.in_file(file))
 }
 
-fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
-    let mesh = match format {
+/// A mesh with or without faces.
+fn points(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    filled(match format {
         Format::Obj => obj::parse(bytes)?,
         Format::Ply => ply::parse(bytes)?,
         Format::Stl => stl::parse(bytes)?,
-    };
-    if mesh.positions.is_empty() {
-        return Err(Fault::file(
+    })
+}
+
+fn filled(mesh: MeshFile) -> Result<MeshFile, Fault> {
+    match mesh.positions.is_empty() {
+        true => Err(Fault::file(
             "it holds no vertices".into(),
             "export the mesh again",
-        ));
+        )),
+        false => Ok(mesh),
     }
+}
+
+fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    let mesh = points(bytes, format)?;
     if mesh.triangles.is_empty() {
         return Err(Fault::file(
             "it holds no faces".into(),

@@ -54,12 +54,16 @@ pub enum Data {
         /// The indentation that goes with it.
         motion: Option<Box<Curve>>,
     },
-    /// A surface under load.
+    /// A surface under load, or before it.
     Scan {
-        /// The deformed surface, mm.
+        /// The deformed surface, mm; a point cloud has no triangles.
         mesh: MeshFile,
         /// Time of the scan, s.
         at_time_s: Option<f64>,
+        /// How deep the tool stood, mm; 0 before touch and after it.
+        depth_mm: Option<f64>,
+        /// The indentation during which it was taken.
+        motion: Option<Box<Curve>>,
     },
 }
 
@@ -184,10 +188,7 @@ fn read_data(section: &mut Section, folder: &Folder) -> Result<(PathBuf, Data), 
     let file = folder.file(&file)?;
     let data = match kind.as_str() {
         "indentation" => Data::Indentation(read_curve(&file)?),
-        "scan" => Data::Scan {
-            mesh: meshes::read(&file)?,
-            at_time_s: section.number("at_time_s").map_err(here)?,
-        },
+        "scan" => read_scan(section, &file, folder)?,
         _ => read_map(section, &file, folder)?,
     };
     Ok((file, data))
@@ -251,18 +252,50 @@ fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data,
             .push("not calibrated: only shape and relative size are used".into());
     }
     let sensels = read_places(section, &map, folder)?;
-    let motion = section
-        .get("motion")
-        .map(|entry| folder.file(&entry))
-        .transpose()?;
-    let motion = motion
-        .map(|file| read_curve(&file).map(Box::new))
-        .transpose()?;
     Ok(Data::PressureMap {
         map: Box::new(map),
         sensels,
-        motion,
+        motion: read_motion(section, folder)?,
     })
+}
+
+/// The indentation that goes with a map or a scan.
+fn read_motion(
+    section: &mut Section,
+    folder: &Folder,
+) -> Result<Option<Box<Curve>>, RecordingError> {
+    let entry = section.get("motion");
+    let file = entry.map(|entry| folder.file(&entry)).transpose()?;
+    file.map(|file| read_curve(&file).map(Box::new)).transpose()
+}
+
+fn read_scan(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data, RecordingError> {
+    let here = |fault: Fault| folder.fault(fault);
+    let mesh = meshes::read_points(file)?;
+    let at_time_s = section.number("at_time_s").map_err(here)?;
+    let depth_mm = section.number("depth_mm").map_err(here)?;
+    let motion = read_motion(section, folder)?;
+    let known = motion.as_ref().and_then(|curve| curve.channel("time_s"));
+    match (known, at_time_s) {
+        (Some(_), None) => Err(here(section.needs(
+            "at_time_s",
+            "give the time of the scan in the indentation that motion names",
+        ))),
+        (Some([first, .., last]), Some(at)) if !(*first..=*last).contains(&at) => {
+            let problem = format!(
+                "{} was taken at {at} s, and its motion lasts from {first} to {last} s",
+                section.name
+            );
+            let remedy = "count at_time_s as the indentation does";
+            Err(here(section.fault(problem, remedy)))
+        }
+        _ => Ok(Data::Scan {
+            mesh,
+            at_time_s,
+            depth_mm,
+            motion,
+        }),
+    }
 }
 
 /// Where the sensels lie: as a file lists them, or as the mat is laid on a plane or a cylinder.
