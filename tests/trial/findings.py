@@ -143,7 +143,7 @@ def _of_fit(fit):
         return []
     if not isinstance(fit, dict) or not isinstance(fit.get("held_out", []), list):
         return ["fit: it is no object with a list held_out"]
-    told = [(name, fit[name]) for name in ERRORS if fit.get(name) is not None]
+    told = [(name, fit[name]) for name in ERRORS if fit.get(name) and fit[name].get("value", 0.0) is not None]
     return [f"fit.{name}: {text}" for name, value in told for text in _of_interval(value)]
 
 

@@ -33,13 +33,13 @@ def at_random(case):
 
 
 def distance(case, name, wanted):
-    """How far a protocol is from the one wanted: octaves of radius, half octaves of speed, the hold, the cycles."""
+    """How far a protocol is from the one wanted: octaves of radius, a quarter of speed's, hold, cycles."""
     about = described(case, name)
     wanted = wanted | (wanted.get("indenter") if isinstance(wanted.get("indenter"), dict) else {})
     away = 0.0
     if wanted.get("shape", "sphere") != "sphere":
         return math.inf
-    for key, weight in (("radius_mm", 1.0), ("speed_mm_s", 0.5)):
+    for key, weight in (("radius_mm", 1.0), ("speed_mm_s", 0.25)):
         if wanted.get(key):
             away += weight * abs(math.log2(about[key] / wanted[key]))
     if wanted.get("hold_s") is not None:

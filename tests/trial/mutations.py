@@ -14,7 +14,7 @@ NOTICE = {"gates": ("nulls", "wrong"), "labels": ("severe", "wrong"), "severity"
 
 def leading(verdict):
     """The effect that a verdict holds for the most likely although it does not name it; None if it tells of none."""
-    told = [one.get("effect") for one in verdict.get("rivals", [])]
+    told = [name for one in verdict.get("rivals", []) for name in one["effects"]]
     told += [name for names in verdict.get("names_90", []) + verdict.get("cannot_tell", []) for name in names]
     return next((name for name in told if name), None)
 

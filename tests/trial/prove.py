@@ -43,6 +43,10 @@ class Who:
     def __init__(self, name, program=None):
         self.name, self.program = name, program
 
+    def reads(self, names):
+        """The cases that it can be asked about: the baselines know nothing of mats."""
+        return [name for name in names if self.name == THENAR or "mat" not in cases.index()[name]]
+
     def folder(self, out):
         """Where its verdicts are kept."""
         return out if self.name == THENAR else out / self.name
@@ -113,10 +117,13 @@ def main():
     running.clear(asked.out)
     everyone = takes_part(asked)
     for who in everyone:
-        running.each(functools.partial(job, who, who.folder(asked.out)), names, asked.workers, who.name)
+        ask = functools.partial(job, who, who.folder(asked.out))
+        running.each(ask, who.reads(names), asked.workers, who.name)
     sealed = {name: label for name, label in score.labels(asked.split).items() if name in set(names)}
     told = {who.name: answers(who, asked.out, names) for who in everyone}
-    tables = {name: counts.table(sealed, told[name]) for name in told}
+    tables = {}
+    for who in everyone:
+        tables[who.name] = counts.table({name: sealed[name] for name in who.reads(sealed)}, told[who.name])
     raise SystemExit(_tell(asked, everyone, sealed, told, tables))
 
 

@@ -76,7 +76,7 @@ def read(study):
 @functools.lru_cache(64)
 def pressed(skin, thickness, radius, deepest):
     """Force over depth of a sphere on a layer of UNIT_MPA, N; zero above the skin."""
-    vertices, triangles = _surface(skin)
+    vertices, triangles = surface(skin)
     soft = thenar.Material(g0_mpa=UNIT_MPA, g_lim_mpa=UNIT_MPA, d_lim_mm=1.0, thickness_mm=thickness)
     skin = thenar.Skin(vertices, triangles, materials=[soft])
     reach = min(2.2 * np.sqrt(2.0 * radius * deepest), 1.4 * radius)
@@ -86,7 +86,7 @@ def pressed(skin, thickness, radius, deepest):
     return PchipInterpolator(np.concatenate([[-10.0 * deepest], depths]), np.concatenate([[0.0], course.force_n]))
 
 
-def _surface(text):
+def surface(text):
     """Vertices and triangles of an ASCII PLY file."""
     head, body = text.split("end_header\n")
     count = int(head.split("element vertex ")[1].split()[0])

@@ -1,7 +1,7 @@
 """Least squares of base and effects on curves, in the noise of the repeats: what curve fitter and process stand on.
 
-Noise of a recording: white of `sigma` (a share of its largest force) plus a gain and a zero of their own, whose spreads
-come from the repeats, if there are any; residuals are whitened by that.
+Noise of a recording: `sigma` (a share of its largest force), which forgets within a time, plus a gain and a zero of
+their own, whose spreads come from the repeats, if there are any; residuals are whitened by that.
 """
 
 from dataclasses import dataclass, field
@@ -12,6 +12,7 @@ from trial.baselines import forms
 from trial.baselines.curves import UNIT_MPA
 
 GAIN, ZERO_MM, SIGMA = 0.04, 0.02, 0.02  # where no repeats tell
+MEMORY_S = (0.02, 0.05, 0.1, 0.2, 0.4, 0.8)
 LEAST = (0.01, 0.005, 0.003)
 
 
@@ -73,8 +74,15 @@ class Problem:
         out = []
         for number, (basis, shrink) in enumerate(self.white):
             row = (residual[number] / self.scale[number] / self.noise[2])[self.there[number]]
+            row = self._fresh(row, number)
             out.append(row - basis @ (shrink * (basis.T @ row)))
         return np.concatenate(out)
+
+    def _fresh(self, rows, number):
+        """What of every sample the one before does not foretell, for noise that forgets in the recording's time."""
+        keep = np.exp(-np.diff(self.motion.time[number][self.there[number]]) / self.noise[3])
+        keep = keep.reshape((-1,) + (1,) * (rows.ndim - 1))
+        return np.concatenate([rows[:1], (rows[1:] - keep * rows[:-1]) / np.sqrt(1.0 - keep**2)])
 
     def _least(self, start, effects, fixed, plain):
         low, high = [-4.0, -4.0], [5.0, 5.0]
@@ -102,12 +110,12 @@ class Problem:
 
     def _whiten(self, model):
         """By recording: a basis of its nuisances, and how much of each is taken off."""
-        gain, zero, sigma = self.noise
+        gain, zero, sigma, _ = self.noise
         self.white = []
         for number in range(len(model)):
             here = self.there[number]
             columns = np.stack([gain * model[number], zero * _slope(model[number], self.motion, number)], axis=1)
-            columns = columns[here] / self.scale[number] / sigma
+            columns = self._fresh(columns[here] / self.scale[number] / sigma, number)
             basis, strength, _ = np.linalg.svd(columns, full_matrices=False)
             self.white.append((basis, 1.0 - 1.0 / np.sqrt(1.0 + strength**2)))
 
@@ -123,8 +131,8 @@ def _slope(force, motion, number):
 
 
 def _noise(problem, model):
-    """(gain, zero mm, sigma) from repeats of protocols; the usual where there are none."""
-    gains, zeros, rest = [], [], []
+    """(gain, zero mm, sigma, memory s) from repeats of protocols; the usual where there are none."""
+    gains, zeros, rest, steps = [], [], [], []
     protocols = np.array(problem.curves.protocols)
     for protocol in sorted(set(protocols)):
         rows = np.flatnonzero(protocols == protocol)
@@ -137,8 +145,24 @@ def _noise(problem, model):
             found = np.linalg.lstsq(columns, gap, rcond=None)[0]
             gains.append(found[0])
             zeros.append(found[1] - np.median(shift))
-            rest.append(np.std(gap - columns @ found) / np.sqrt(2.0))
+            rest.append((gap - columns @ found) / np.sqrt(2.0))
+            steps.append(np.diff(problem.motion.time[one][here]))
     if not gains:
-        return GAIN, ZERO_MM, SIGMA
+        return GAIN, ZERO_MM, SIGMA, MEMORY_S[0]
     spread = [np.sqrt(np.mean(np.square(values)) / 2.0) for values in (gains, zeros)]
-    return tuple(np.maximum([*spread, np.median(rest)], LEAST))
+    sigma = np.median([one.std() for one in rest])
+    return (*np.maximum([*spread, sigma], LEAST), _memory(rest, steps))
+
+
+def _memory(rest, steps):
+    """The time in which noise forgets, s: the likeliest of MEMORY_S."""
+
+    def cost(memory):
+        total = 0.0
+        for left, step in zip(rest, steps, strict=True):
+            keep = np.exp(-step / memory)
+            fresh = (left[1:] - keep * left[:-1]) / left.std()
+            total += (fresh**2 / (1.0 - keep**2) + np.log(1.0 - keep**2)).sum()
+        return total
+
+    return min(MEMORY_S, key=cost)

@@ -12,6 +12,10 @@ import numpy as np
 from scipy.special import expit
 
 TIMES_S = (0.1, 1.0, 5.0)
+SPREAD = (0.25, 1.0, 4.0)  # of the times of a relaxation
+# Hu et al. 2010, sphere on a poroelastic half space: 0.491 exp(-0.908 sqrt(x)) + 0.509 exp(-1.679 x), the first term as
+# exponentials (rate, share; within 0.02).
+MASTER = ((1.679, 0.509), (0.08, 0.06), (0.45, 0.223), (3.0, 0.139), (30.0, 0.069))
 SHORTEST_S = 0.04  # so that no recording lasts more than 700 of it
 
 
@@ -53,9 +57,8 @@ def layer(motion, thickness, poisson):
     nu, chi = poisson, np.sqrt(motion.radius * np.maximum(motion.depth, 0.0)) / thickness
     a = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1.0 - nu) / np.pi
     b = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1.0 - nu) / np.pi
-    c = 4.0 * np.pi**2 / 15.0
-    series = 1.0 - 2.0 * a * chi + 4.0 * a**2 * chi**2 - 8.0 * (a**3 + c * b) * chi**3
-    series = series + 16.0 * a * (a**3 + 0.6 * c * b) * chi**4
+    series = 1.0 - 2.0 * a * chi + 4.0 * a**2 * chi**2 - 8.0 * (a**3 + 4.0 / 15.0 * b) * chi**3
+    series = series + 16.0 * a * (a**3 + 0.6 * b) * chi**4
     return series * 0.5 / (1.0 - nu)
 
 
@@ -77,12 +80,14 @@ def stiffening_law(force, motion, p):
 
 
 def relaxation(force, motion, p):
-    return force - p[0] * _faded(force, motion.time, np.exp(p[1]))
+    parts = (_faded(force, motion.time, np.exp(p[1]) * factor) for factor in SPREAD)
+    return np.maximum(force - p[0] * sum(parts) / len(SPREAD), 0.0)  # the skin lags behind a tool that leaves
 
 
 def drainage(force, motion, p):
-    area = motion.radius * motion.depth.max(axis=1, keepdims=True)
-    return force - p[0] * _faded(force, motion.time, np.exp(p[1]) * area[:, 0])
+    area = motion.radius[:, 0] * motion.depth.max(axis=1)
+    parts = (share * _faded(force, motion.time, np.exp(p[1]) * area / rate) for rate, share in MASTER)
+    return np.maximum(force - p[0] * sum(parts), 0.0)
 
 
 def cycle_softening(force, motion, p):
@@ -101,8 +106,11 @@ def rate_independent_loss(force, motion, p):
 
 
 def adhesion(force, motion, p):
-    back = np.diff(motion.depth, axis=1, prepend=motion.depth[:, :1]) < 0.0
-    return force - p[0] * motion.radius * back * np.clip(1.0 + motion.depth / np.exp(p[1]), 0.0, 1.0)
+    """On the way out and above the skin, a tension as large as the tool's radius, until it lets go."""
+    deepest = np.maximum(np.maximum.accumulate(motion.depth, axis=1), 1e-6)
+    free = 1.0 - np.exp(10.0 * (np.minimum(motion.depth / deepest, 1.0) - 1.0))
+    after = np.maximum.accumulate(motion.depth, axis=1) > 0.0
+    return force - p[0] * after * free * motion.radius * np.clip(1.0 + motion.depth / np.exp(p[1]), 0.0, 1.0)
 
 
 def gain(force, motion, p):
@@ -155,7 +163,7 @@ FORMS = {
     "relaxation": Form(relaxation, (0.0, -5.0), (0.95, 4.0), _SLOW, 2),
     "drainage": Form(drainage, (0.0, -8.0), (0.95, 3.0), tuple((0.1, np.log(t / 10.0)) for t in TIMES_S), 2),
     "rate_independent_loss": Form(rate_independent_loss, (0.0, -5.0), (0.9, 1.0), ((0.1, -2.0), (0.1, -0.5)), 2),
-    "adhesion": Form(adhesion, (0.0, -5.0), (1.0, -1.0), ((1e-4, -3.0),), 3),
+    "adhesion": Form(adhesion, (0.0, -5.0), (1.0, 1.0), ((1e-4, -1.0),), 3),
     "gain": Form(gain, (-0.9, 0.0), (2.0, 100.0), (), 4),
     "offset": Form(offset, (-0.5,), (0.5,), ((0.001,),), 4),
     "drift": Form(drift, (-0.1,), (0.1,), ((0.0005,),), 4),

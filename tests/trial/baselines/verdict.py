@@ -33,6 +33,12 @@ def unlisted(reason):
     return _whole("unlisted", reason, [])
 
 
+def undecided(first, second):
+    """Two that cannot be told apart."""
+    found = _whole("cannot_tell", f"It cannot tell {first} from {second}.", [])
+    return found | {"cannot_tell": [[first, second]]}
+
+
 def _whole(verdict, sentence, findings):
     whole = {"schema": 1, "verdict": verdict, "sentence": sentence, "findings": findings}
     return whole | {"names_90": [], "cannot_tell": [], "record_next": []}
