@@ -5,6 +5,11 @@
 A case's folder is a study (recordings' format in README): curves of force over depth on a flat pad, each
 protocol twice. `follow_up(case, protocol, folder)` adds a protocol that the case holds back, as if it had been
 recorded next; `held_back(case)` names those. Cases `local_...` hold the maps of a mat, on the pads of studies.py.
+
+What is in: nine tissue effects, six pairs, seven instrument errors, four mixtures, three causes on no list, spots under
+a mat, nulls of five kinds of scatter, studies that are ambiguous or too poor by design. What is not: friction, coupling
+across creases, crosstalk and misregistration as causes, fibres, sliding, scans, the 2 mm punch; nothing is proved of
+these. How to read severities and the sets of ambiguous cases is told in page.py.
 """
 
 import functools

@@ -4,7 +4,7 @@ import hashlib
 
 from trial import cases
 
-MANY = 4  # of pads with all five protocols
+MANY = 5  # of pads with all five protocols
 SPOTTED = 2  # of each kind of mat
 FEW = 1  # of every other kind
 
