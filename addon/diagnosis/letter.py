@@ -16,6 +16,12 @@ HEADINGS = {
 }
 
 
+_NOTHING = {"nothing_missing", "parameters"}
+"""Verdicts after which the list of what it might still be says nothing: whatever is small enough is on it."""
+_SETS = 4
+"""Sets of names that are told."""
+
+
 @dataclass(frozen=True)
 class Row:
     """A word and what stands beside it."""
@@ -158,9 +164,10 @@ def _rivals(found):
     for effects in found.get("cannot_tell", ()):
         yield f"These recordings cannot tell {wording.apart(effects)}."
     sets = found.get("names_90") or []
-    if len(sets) > 1:
+    if len(sets) > 1 and found["verdict"] not in _NOTHING:
         words = [wording.listed(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
-        yield f"At 90 % it is one of: {'; '.join(words)}."
+        more = f"; and {len(words) - _SETS} more" if len(words) > _SETS else ""
+        yield f"At 90 % it is one of: {'; '.join(words[:_SETS])}{more}."
 
 
 def _fit(fit):

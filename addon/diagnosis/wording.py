@@ -13,6 +13,8 @@ PHASES = {
 }
 UNITS = {"1": "", "J/m2": "J/m²", "mm2/s": "mm²/s", "standard deviations of the noise": "σ"}
 """Units that are shown shorter than the library tells them."""
+_SHARE = "share "
+"""What the library's unit begins with where a value is a part of something."""
 DEPENDS = {
     "time": "time",
     "rate": "speed",
@@ -62,6 +64,8 @@ def value(told):
     if isinstance(told.get("value"), str):
         return told["value"]
     unit = UNITS.get(told.get("unit"), told.get("unit") or "")
+    if unit.startswith(_SHARE) and told.get("low") is None and told.get("value") is not None:
+        return f"{number(100 * told['value'])} % {unit.removeprefix(_SHARE)}"
     text = number(told.get("value")) + (f" {unit}" if unit else "")
     between = interval(told.get("low"), told.get("high"))
     return f"{text} ({between})" if between else text
@@ -96,13 +100,22 @@ def moment(when):
     phases = phases.replace("|", ",").split(",") if isinstance(phases, str) else phases
     parts = [PHASES.get(phase.strip(), phase.strip()) for phase in phases]
     cycles = [cycle + 1 for cycle in when.get("cycles") or () if cycle is not None]
-    spans = (when.get("time_s"), "at {} s"), (when.get("depth_mm"), "at {} mm depth"), (cycles, "in presses {}")
-    for span, told in spans:
-        if span and len(span) == 2 and None not in span and (span is not cycles or cycles[1] > 1):
-            parts.append(told.format(number(span[0]) if span[0] == span[1] else interval(*span)))
+    parts += [_span(when.get("time_s"), "s"), _span(when.get("depth_mm"), "mm depth")]
+    if len(cycles) == 2 and cycles[1] > 1:
+        parts.append(f"in presses {cycles[0]}–{cycles[1]}" if cycles[1] > cycles[0] else f"in press {cycles[1]}")
+    parts = [part for part in parts if part]
     if when.get("recordings"):
         parts.append(f"in {some(when['recordings'])}")
     return f"It shows {', '.join(parts)}." if parts else ""
+
+
+def _span(ends, unit):
+    """`at 0.8–30 s`, or `up to 2 mm depth` from before first touch. Empty where it is not known."""
+    if not ends or len(ends) != 2 or None in ends:
+        return ""
+    if ends[0] <= 0.0:
+        return f"up to {number(ends[1])} {unit}"
+    return f"at {number(ends[0]) if ends[0] == ends[1] else interval(*ends)} {unit}"
 
 
 def depends(words):

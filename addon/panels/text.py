@@ -6,6 +6,8 @@ from .. import status
 
 _UNIT = re.compile(r"(?<=\d) (?=(?:%|[kM]?Pa|mm²?|cm²|s|N|min|Hz)(?:\W|$))")
 """The blank between a number and its unit, at which no line ends."""
+_ICON = 3
+"""Letters that an icon takes the place of."""
 
 
 def width(context):
@@ -28,7 +30,8 @@ def wrapped(text, letters):
 def paragraph(layout, context, text, icon=""):
     """The text on as many lines as it needs, with a capital first, and its icon before it. Returns the column."""
     column = layout.column(align=True)
-    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], width(context))):
+    letters = width(context) - (_ICON if icon else 0)
+    for number, line in enumerate(wrapped(text[:1].upper() + text[1:], letters)):
         if icon:
             column.label(text=line, icon=icon if number == 0 else "BLANK1")
         else:

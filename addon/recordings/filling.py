@@ -8,13 +8,15 @@ _SHOWN = {
     "force_n": "Force",
     "area_mm2": "Area",
     "overlap": "Overlap",
-    "center_distance_mm": "Centres apart",
+    "center_distance_mm": "Off centre",
     "peak_over_mean": "Peak / mean",
     "largest_force_n": "Largest force",
-    "force_rms_residual_n": "Force off, rms",
-    "scan_rms_residual_mm": "Scan off, rms",
+    "force_rms_residual_n": "Force rms",
+    "scan_rms_residual_mm": "Scan rms",
 }
 """The measures that the panel shows, and what it calls them: there is little room."""
+_HEIGHT = "Scanned height over the skin at rest"
+"""What the library calls the quantity of a scan."""
 
 
 def fill(state, comparison, about):
@@ -35,7 +37,8 @@ def fill(state, comparison, about):
             if measure.name in _SHOWN:
                 _measure(state.measures.add(), measure, prefix + measure.of)
         for place in recording.worst[:3] if several else recording.worst:
-            _worst(state.worst.add(), place, (prefix, recording))
+            _worst(state.worst.add(), place, recording)
+            state.worst[-1].group = recording.name if several else ""
             vertices = place.vertices if match is None else match.on_hand(place.vertices)
             state.worst[-1].vertices = ",".join(map(str, vertices))
         for text in recording.unknown:
@@ -52,18 +55,16 @@ def _measure(row, measure, group):
     row.simulated = _text(measure.simulated, is_share)
 
 
-def _worst(row, place, about):
-    prefix, recording = about
+def _worst(row, place, recording):
     pressure = "kPa" if recording.is_calibrated else "counts"
-    unit = {"Pressure": pressure, "Contact area": "mm²", "Scanned height over the skin at rest": "mm"}
-    unit = unit.get(place.quantity, "N")
+    unit = {"Pressure": pressure, "Contact area": "mm²", _HEIGHT: "mm"}.get(place.quantity, "N")
     if place.row is not None:
-        where = f"row {place.row}, column {place.column}"
+        row.name = f"row {place.row}, column {place.column}"
     elif place.sensel is not None:
-        where = f"sensel {place.sensel}"
+        row.name = f"sensel {place.sensel}"
     else:
-        where = f"{place.quantity.lower()} at {place.time_s:.3g} s"
-    row.name = prefix + where
+        brief = {"Contact area": "area", _HEIGHT: "height"}.get(place.quantity, place.quantity.lower())
+        row.name = f"{brief} at {place.time_s:.3g} s"
     sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
     row.residual = f"{place.residual:+.3g} {unit}{sigmas}"
 

@@ -7,7 +7,8 @@ from ..panels import text
 from ..panels.main import Tab
 from . import settings
 
-SHARE = 0.47
+SHARE, PLACE_SHARE = 0.5, 0.45
+"""Of a row's width, what the name of a measure, and of a worst place, takes."""
 
 
 class THENAR_UL_recordings(bpy.types.UIList):
@@ -84,23 +85,26 @@ class THENAR_PT_comparison(Tab, bpy.types.Panel):
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings.comparison
         text.paragraph(layout, context, state.sentence)
-        _draw_measures(layout, state)
+        _draw_measures(layout, context, state)
         if len(state.worst):
             layout.label(text="Worst places: click to select")
-        column = layout.column(align=True)
+        column, group = layout.column(align=True), ""
         for number, place in enumerate(state.worst):
-            split = column.split(factor=SHARE, align=True)
-            split.operator("thenar.select_place", text=place.name, icon="RESTRICT_SELECT_OFF").index = number
+            if place.group != group:
+                group = place.group
+                text.paragraph(column, context, group)
+            split = column.split(factor=PLACE_SHARE, align=True)
+            split.operator("thenar.select_place", text=place.name).index = number
             split.label(text=place.residual)
         layout.operator("thenar.report", icon="TEXT").kind = "COMPARISON"
 
 
-def _draw_measures(layout, state):
+def _draw_measures(layout, context, state):
     column, group = layout.box().column(align=True), None
     for row in state.measures:
         if row.group != group:
             group = row.group
-            column.label(text=group[:1].upper() + group[1:])
+            text.paragraph(column, context, group)
             split = column.split(factor=SHARE)
             split.label(text="")
             _numbers(split, ("read", "simulated"))

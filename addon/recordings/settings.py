@@ -78,8 +78,9 @@ class ThenarMeasure(bpy.types.PropertyGroup):
 
 
 class ThenarWorst(bpy.types.PropertyGroup):
-    """A place where measured and simulated differ most; `name` says where."""
+    """A place where measured and simulated differ most; `name` says where, `group` in which of several recordings."""
 
+    group: StringProperty()
     residual: StringProperty()
     vertices: StringProperty()
 

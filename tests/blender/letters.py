@@ -49,7 +49,10 @@ FINDINGS = {
             "noise_floor": {"rms": 0.03, "unit": "N", "low": 0.02, "high": 0.04},
             "reducible_error_removed": {"value": 0.96, "low": 0.91, "high": 0.998},
         },
-        "smallest_seen": {"adhesion": {"value": 0.02, "unit": "J/m2"}, "stiff_skin": {"value": 0.3, "unit": "MPa"}},
+        "smallest_seen": {
+            "adhesion": {"value": 0.02, "unit": "J/m2"},
+            "bone": {"value": 0.172, "unit": "share of the thickness"},
+        },
         "record_next": [],
         "model": {
             "materials": {"default": {"g0_mpa": 0.0203, "g_lim_mpa": 0.09}},

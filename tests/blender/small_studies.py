@@ -76,3 +76,62 @@ def write_mat(folder, skin, point_mm, dull):
         'motion = "motion.csv"\nindenter = "plate"\nsite = "low"\n'
     )
     return path
+
+
+def write_relaxing(folder, share, seed=1):
+    """A study of two balls at two speeds, each held and pressed twice, on skin whose force fades by `share` in 1.4 s.
+
+    Force by superposition of Hertz's over a Prony series of one term (Fung 1993, 7.6), with 1 % noise and repeats that
+    differ by 2 % in gain. Returns study.toml.
+    """
+    noise = np.random.default_rng(seed)
+    write_skin(folder / "skin.obj", *flat_skin(half=9))
+    head = (
+        '[study]\ntitle = "Fading"\n[skin]\nmesh = "skin.obj"\n[skin.materials.default]\ng0_mpa = 0.02\n'
+        'g_lim_mpa = 0.02\nd_lim_mm = 4.0\nthickness_mm = "inf"\n[sites.middle]\npoint_mm = [0.0, 0.0, 0.0]\n'
+        "direction = [0.0, 0.0, -1.0]\n"
+    )
+    parts = [head]
+    for name, radius in (("small", 4.0), ("large", 10.0)):
+        parts.append(f'[indenters.{name}]\nshape = "sphere"\nradius_mm = {radius}\n')
+    for tool, radius in (("small", 4.0), ("large", 10.0)):
+        for speed in (0.5, 5.0):
+            for repeat in (1, 2):
+                time, depth = _press_and_hold(speed, 0.8)
+                elastic = hertz_n(np.maximum(depth, 0.0), radius)
+                force = _faded(time, elastic, (share, 1.4)) * (1 + 0.02 * noise.standard_normal())
+                force += 0.01 * elastic.max() * noise.standard_normal(len(time))
+                file = f"{tool}-{speed:g}-{repeat}.csv"
+                rows = "".join(f"{t:.4f},{d:.5f},{f:.6f}\n" for t, d, f in zip(time, depth, force, strict=True))
+                (folder / file).write_text("time_s,depth_mm,force_n\n" + rows)
+                parts.append(
+                    f'[[recordings]]\nname = "{tool}, {speed:g} mm/s, repeat {repeat}"\nkind = "indentation"\n'
+                    f'file = "{file}"\nindenter = "{tool}"\nsite = "middle"\nprotocol = "{tool}, {speed:g} mm/s"\n'
+                    "rest_s = 300.0\n"
+                )
+    path = folder / "study.toml"
+    path.write_text("".join(parts))
+    return path
+
+
+def _press_and_hold(speed_mm_s, deepest_mm):
+    """Times and depths: 0.3 s above the skin, pressed in, held for 6 s, drawn back, 0.3 s above the skin."""
+    down = deepest_mm / speed_mm_s
+    corners = [0.0, 0.3, 0.3 + down, 6.3 + down, 6.3 + 2 * down, 6.6 + 2 * down]
+    depths = [-0.05, 0.0, deepest_mm, deepest_mm, 0.0, -0.05]
+    time = np.unique(np.concatenate([np.linspace(a, b, 16) for a, b in zip(corners, corners[1:], strict=False)]))
+    return time + 0.1, np.interp(time, corners, depths)
+
+
+def _faded(time, elastic, series):
+    """Force of skin that forgets `share` of every step of the elastic force in `tau` s."""
+    share, tau = series
+    fine = np.linspace(time[0], time[-1], 4000)
+    steps = np.diff(np.interp(fine, time, elastic), prepend=0.0)
+    kept, out, step = 0.0, np.empty_like(fine), fine[1] - fine[0]
+    total = 0.0
+    for place, change in enumerate(steps):
+        kept = kept * np.exp(-step / tau) + change
+        total += change
+        out[place] = (1 - share) * total + share * kept
+    return np.interp(time, fine, out)

@@ -84,6 +84,7 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "96 % (91 % to > 99 %) of the error that could be removed is gone.",
         "Judged on 2 recordings that the fit did not use: 'sphere 1' and 'sphere 2'.",
         "Adhesion: seen from 0.02 J/m²",
+        "Bone: seen from 17.2 % of the thickness",
         "   Seen: force at held depth falls with time",
         "   Not seen: fast presses need more force than slow ones",
         "Evidence while pressing in: 25 %",

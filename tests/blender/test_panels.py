@@ -4,7 +4,9 @@ from types import SimpleNamespace
 
 import bpy
 import letters
+import numpy as np
 import pytest
+import small_studies
 import stage
 from thenar_blender import diagnosis, hand, panels, recordings, status
 from thenar_blender.diagnosis import settings as kept
@@ -12,8 +14,8 @@ from thenar_blender.panels import text
 
 SIDEBAR = 291
 """Width of Blender's sidebar as it opens, pixels."""
-SLACK = 1.2
-"""Letters are counted wider than most are; an icon, or a name beside numbers, takes about this much more."""
+ICON = 3
+"""Letters that an icon takes the place of."""
 
 
 class Layout:
@@ -45,12 +47,12 @@ class Layout:
     def separator(self, factor=1.0):
         pass
 
-    def _say(self, words):
-        self.said.append((words, self._child().letters))
+    def _say(self, words, icon="NONE"):
+        self.said.append((words, self._child().letters - ICON * (icon != "NONE")))
 
     def label(self, text="", icon="NONE"):
         assert icon in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
-        self._say(text)
+        self._say(text, icon)
 
     def progress(self, factor=0.0, text=""):
         assert 0.0 <= factor <= 1.0
@@ -59,7 +61,7 @@ class Layout:
     def operator(self, name, text=None, icon="NONE", depress=False, emboss=True):
         area, _, verb = name.partition(".")
         kind = getattr(getattr(bpy.ops, area), verb).get_rna_type()
-        self._say(kind.name if text is None else text)
+        self._say(kind.name if text is None else text, icon)
         return _Properties(kind)
 
     def operator_menu_enum(self, name, prop, text="", icon="NONE"):
@@ -123,7 +125,7 @@ def too_long(drawn):
         (panel, words, round(room, 1))
         for panel, said in drawn.items()
         for words, room in said
-        if words and len(words) > SLACK * room
+        if words and len(words) > room
     ]
 
 
@@ -142,6 +144,24 @@ def test_a_solved_scene_with_effects_is_drawn():
     drawn = draw()
     assert {"THENAR_PT_regions", "THENAR_PT_comfort", "THENAR_PT_quality", "THENAR_PT_effects"} <= set(drawn)
     assert not too_long(drawn)
+
+
+def test_comparisons_are_drawn(tmp_path):
+    hand, _ = stage.scene()
+    hand.data.calc_loop_triangles()
+    triangles = np.array([list(each.vertices) for each in hand.data.loop_triangles])
+    local = np.array([vertex.co for vertex in hand.data.vertices]) * 1e3
+    path = small_studies.write_mat(tmp_path, (local, triangles), local[local[:, 2].argmin()], (4, 2))
+    bpy.ops.thenar.load_recording(filepath=str(path))
+    bpy.ops.thenar.compare()
+    drawn = draw()
+    assert "row 4, column 2" in [words for words, _ in drawn["THENAR_PT_comparison"]]
+    assert not too_long(drawn)
+    curves = tmp_path / "curves"
+    curves.mkdir()
+    bpy.ops.thenar.load_recording(filepath=str(small_studies.write(curves, small_studies.flat_skin())))
+    bpy.ops.thenar.compare()
+    assert not too_long(draw())
 
 
 @pytest.mark.parametrize("verdict", sorted(letters.FINDINGS))
