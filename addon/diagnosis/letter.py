@@ -100,7 +100,7 @@ def write(found):
         gain=gain,
         advice=tuple(_advice(each) for each in found.get("record_next", ())),
         smallest=tuple(
-            Row(wording.title(effect), wording.value(seen))
+            Row(wording.title(effect), "at no size" if seen.get("value") is None else wording.value(seen))
             for effect, seen in (found.get("smallest_seen") or {}).items()
         ),
         moduli=tuple(_moduli(found)),

@@ -19,7 +19,7 @@ DEPENDS = {
     "time": "time",
     "rate": "speed",
     "cycle": "count of presses",
-    "direction": "direction of sliding",
+    "direction": "direction of motion",
     "radius": "size of the tool",
     "skin_position": "place on the skin",
     "sensor_position": "place on the sensor",

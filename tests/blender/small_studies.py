@@ -134,4 +134,4 @@ def _faded(time, elastic, series):
         kept = kept * np.exp(-step / tau) + change
         total += change
         out[place] = (1 - share) * total + share * kept
-    return np.interp(time, fine, out)
+    return np.maximum(np.interp(time, fine, out), 0.0)  # nothing holds skin and tool together
