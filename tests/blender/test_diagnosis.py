@@ -144,6 +144,9 @@ def test_a_finding_of_one_region_stays_there(diagnose):
     assert bpy.ops.thenar.show_finding(index=1) == {"FINISHED"}
     bpy.ops.object.mode_set(mode="OBJECT")
     assert {vertex.index for vertex in hand.data.vertices if vertex.select} == set(np.flatnonzero(points[:, 0] < 0.0))
+    hand.thenar.effects[0].region = "right"
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    assert [effect.region for effect in hand.thenar.effects] == ["right", "left"], "each region has its own"
     hand.thenar.effects.clear()
     hand.thenar.materials["left"].name = "other"
     with pytest.raises(RuntimeError, match="region 'left', which 'Pad' does not list"):

@@ -285,7 +285,7 @@ def test_skin_that_is_let_go_is_bare_again(scene):
     hand, product = stage.scene()
     switch(True)
     painted = stage.attribute(hand, names.COLOR).copy()
-    product.location.z -= 5.0 * MM
+    hand.location.z += 5.0 * MM
     assert follow()
     assert force() == 0.0
     colors = stage.attribute(hand, names.COLOR)
