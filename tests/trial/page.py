@@ -34,6 +34,13 @@ LACKS = (
     "elements, leaves less than 0.3 of the noise; only the closest is in the label. A verdict that tells of three that "
     "cannot be told apart is right only if that pair is told too. Between 0.3 and about 0.5 an effect is listed as "
     "one to be named although little separates it from its rival.",
+    "Pairs, mixtures and instrument errors are not checked for rivals, and the 4 % of gain from press to press hides "
+    "what only scales a tool or a half of the session: `python -m trial.ceiling` (in tests) tells how much an oracle "
+    "could name that knows every form and the noise. Of single effects with a severity of 1 or more that is about four "
+    "of five: most bones, half of the stiff skins and any compressibility are below what these recordings show.",
+    "There is one salt for all labels: cases with maps whose labels are alike have the same hash, so the index tells "
+    "which these are. The diagnosis reads study folders and never the index. What locating allows for was set on nulls "
+    "of the same six shapes of pad, with other seeds, moduli and mountings.",
     "Real skin is no pad of elements: the truth's base is one that the base model can hold to 1 %.",
 )
 

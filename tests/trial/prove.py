@@ -132,7 +132,7 @@ def _tell(asked, everyone, sealed, told, tables):
     columns = {name: _able(name, table) for name, table in tables.items()}
     first, *others = columns
     beside = {name: {row.key: row for row in columns[name]} for name in others}
-    print(f"{first}, {asked.split}, {len(sealed)} cases\n{score.shown(columns[first], beside)}")
+    print(f"{first}, {asked.split}, {len(everyone[0].reads(sealed))} cases\n{score.shown(columns[first], beside)}")
     faults = {who.name: wrong_endings(who, asked.out, sealed) for who in everyone}
     for name, sentences in faults.items():
         print("\n".join(f"{name}: {sentence}" for sentence in sentences))

@@ -1,0 +1,43 @@
+"""What an oracle could answer: against the closed form of a gain that changes, and the properties of a length."""
+
+import numpy as np
+import pytest
+from trial import ceiling, make_cases, score
+
+SEALED = score.labels("calibration")
+
+
+def first(test):
+    return next((name, label) for name, label in SEALED.items() if test(label))
+
+
+def test_a_changed_gain_is_seen_as_well_as_its_scatter_allows():
+    """Two halves of n presses that differ by a, each press of spread s: a sqrt(n) / (2 s); noise takes off."""
+    for name, label in SEALED.items():
+        if label["stratum"] == "decoy" and label["distortion"] == "gain":
+            bound = label["amplitudes"][1] * np.sqrt(10.0) / 2.0 / make_cases.REPEAT_GAIN
+            detect, _ = ceiling.separations(name, label)
+            assert 0.6 * bound < detect < 1.02 * bound
+
+
+def test_separation_grows_with_the_amplitude_and_is_none_without():
+    name, label = first(lambda one: one["stratum"] == "single" and one["effect"] == "relaxation")
+    case, amplitude = ceiling.Case(name, label), label["amplitudes"][0]
+    none, half, whole = (
+        np.linalg.norm(case.signature("relaxation", label["variant"], share * amplitude)) for share in (0.0, 0.5, 1.0)
+    )
+    assert none == 0.0 and half == pytest.approx(0.5 * whole, rel=0.1)
+
+
+def test_a_name_is_never_easier_than_its_detection_and_parameters_are_no_cause():
+    name, label = first(lambda one: one["stratum"] == "single" and one["effect"] == "drainage")
+    detect, told = ceiling.separations(name, label)
+    assert 0.0 < told <= detect
+    case = ceiling.Case(name, label)
+    stiffer = [1.3 * case.rest[k].force for k in case.kept]
+    assert np.linalg.norm(case._free(stiffer)) < 0.02 * np.linalg.norm(case._white(stiffer))
+
+
+def test_chances_at_the_thresholds_are_even():
+    assert ceiling.chance(ceiling.SEEN, None) == pytest.approx(0.5)
+    assert ceiling.chance(99.0, ceiling.TOLD) == pytest.approx(0.5)
