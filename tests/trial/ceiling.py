@@ -19,15 +19,21 @@ from trial import cases, counts, make_cases, observing, protocols, score
 SEEN, LEAD = 3.3, 5.0
 TOLD = (2.0 * LEAD) ** 0.5
 STEP_MM = 1e-3
+ROWS = {
+    "severe": "one effect, kappa >= 1",
+    "mild": "one effect, kappa 0.5",
+    "instrument": "decoys",
+    "followed": "  with the best recording",
+}
 
 
 class Case:
     """A case's recordings in the units of their noise, with what is refitted taken out."""
 
-    def __init__(self, name, label):
+    def __init__(self, name, label, more=()):
         about = cases.index()[name]
         self.label, self.pad = label, about["pad"]
-        self.growth, published = label["g_mpa"], set(about["published"])
+        self.growth, published = label["g_mpa"], {*about["published"], *more}
         self.kept = [k for k, press in enumerate(self._presses("none", 0.0)) if press.protocol in published]
         self.rest = self._presses("none", 0.0)
         truth = make_cases.truth_of(self.pad, "none", 0)
@@ -84,9 +90,9 @@ def _apply(sigma, keep, basis, shrink, column):
     return rows[:, 0] if np.ndim(column) == 1 else rows
 
 
-def separations(name, label):
-    """(detect, name) of a case of one effect; of an instrument's error (detect, None)."""
-    case = Case(name, label)
+def separations(name, label, more=()):
+    """(detect, name) of a case of one effect with protocols added; of an instrument's error (detect, None)."""
+    case = Case(name, label, more)
     if label["stratum"] == "decoy":
         return float(np.linalg.norm(case.distortion(label["distortion"], label["amplitudes"][1]))), None
     own = case.signature(label["effect"], label["variant"], label["amplitudes"][0])
@@ -106,33 +112,52 @@ def chance(detect, name):
     return min(norm.cdf(detect - SEEN), told)
 
 
+def settled(name, label):
+    """(detect, name) with the protocol held back that tells best, and with all of them."""
+    held = cases.held_back(name)
+    best = max((separations(name, label, [one]) for one in held), key=lambda pair: pair[1])
+    return best, separations(name, label, held)
+
+
+def groups(sealed):
+    """Separations by group of cases."""
+    found, severe = {}, {}
+    for name, label in sealed.items():
+        if label["stratum"] == "single":
+            big, kind = label["kappa"] >= counts.REACHED, separations(name, label)
+            found.setdefault("one effect, kappa >= 1" if big else "one effect, kappa 0.5", []).append(kind)
+            severe.setdefault(f"  {label['effect']}" if big else "  at kappa 0.5", []).append(kind)
+        elif label["stratum"] == "decoy":
+            found.setdefault("decoys", []).append(separations(name, label))
+            severe.setdefault(f"  {label['distortion']}", []).append(found["decoys"][-1])
+        elif label["stratum"] == "ambiguous" and cases.held_back(name):
+            best, whole = settled(name, label)
+            found.setdefault("ambiguous", []).append(separations(name, label))
+            found.setdefault("  with the best recording", []).append(best)
+            found.setdefault("  with all held back", []).append(whole)
+    return found | {name: severe[name] for name in sorted(severe)}
+
+
+def column(sealed):
+    """What the oracle would reach in the rows of the table that it can be asked about."""
+    found = groups(sealed)
+    expected = {key: [chance(*one) for one in found[group]] for key, group in ROWS.items() if group in found}
+    nothing = (float("nan"), float("nan"))
+    return [counts.Row(key, key, float(np.mean(of)), len(of), nothing) for key, of in expected.items()]
+
+
 def main():
-    """Prints shares by stratum."""
+    """Prints shares by group."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--split", default="trial", choices=score.SPLITS)
-    sealed = score.labels(parser.parse_args().split)
-    groups = {
-        "one effect, kappa >= 1": lambda one: one["stratum"] == "single" and one["kappa"] >= counts.REACHED,
-        "one effect, kappa 0.5": lambda one: one["stratum"] == "single" and one["kappa"] < counts.REACHED,
-        "decoys": lambda one: one["stratum"] == "decoy",
-        **{f"  {what}": lambda one, what=what: one.get("distortion") == what and one["stratum"] == "decoy"
-           for what in observing.INSTRUMENT},
-        **{f"  {effect}": lambda one, effect=effect: one["stratum"] == "single" and one["kappa"] >= counts.REACHED
-           and one["effect"] == effect for effect in protocols.SINGLE},
-    }  # fmt: skip
-    wanted = [name for name, label in sealed.items() if label["stratum"] in ("single", "decoy")]
-    found = {name: separations(name, sealed[name]) for name in wanted}
-    print(f"{'':30s} {'of':>4s} {'seen':>6s} {'and told':>9s} {'expected':>9s} {'median detect':>14s} {'name':>6s}")
-    for group, belongs in groups.items():
-        of = [found[name] for name in wanted if belongs(sealed[name])]
-        if of:
-            seen = np.mean([one >= SEEN for one, _ in of])
-            told = np.mean([one >= SEEN and (two is None or two >= TOLD) for one, two in of])
-            expected = np.mean([chance(*one) for one in of])
-            names = [two for _, two in of if two is not None]
-            middle = np.median([one for one, _ in of])
-            tail = f"{np.median(names):6.1f}" if names else ""
-            print(f"{group:30s} {len(of):4d} {seen:6.2f} {told:9.2f} {expected:9.2f} {middle:14.1f} {tail}")
+    head = ("of", "seen", "and told", "expected", "detect", "name")
+    print(f"{'':28s}" + "".join(f"{one:>10s}" for one in head))
+    for group, of in groups(score.labels(parser.parse_args().split)).items():
+        seen = np.mean([one >= SEEN for one, _ in of])
+        told = np.mean([one >= SEEN and (two is None or two >= TOLD) for one, two in of])
+        detect, names = np.median([one for one, _ in of]), [two for _, two in of if two is not None]
+        shares = f"{seen:10.2f}{told:10.2f}{np.mean([chance(*one) for one in of]):10.2f}{detect:10.1f}"
+        print(f"{group:28s}{len(of):10d}{shares}" + (f"{np.median(names):10.1f}" if names else ""))
 
 
 if __name__ == "__main__":

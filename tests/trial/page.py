@@ -50,7 +50,8 @@ def page(split, tables, strata, faults):
     first, *others = tables
     parts = [
         f"<h1>The blind trial: {html.escape(first)}, {html.escape(split)}</h1>",
-        "<p>Bars are 95 % bounds (Wilson's for shares).</p>",
+        "<p>Bars are 95 % bounds (Wilson's for shares). The baselines were asked about curves only, not about mats. "
+        "The oracle knows every cause's form and the noise, and only weighs (ceiling.py).</p>",
         _table(tables[first], {name: {row.key: row for row in tables[name]} for name in others}),
         "<h2>By kind and severity</h2>",
         _strata(strata),

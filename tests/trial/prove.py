@@ -16,7 +16,7 @@ import os
 import shutil
 from pathlib import Path
 
-from trial import cases, counts, findings, following, mutations, page, running, score, subset
+from trial import cases, ceiling, counts, findings, following, mutations, page, running, score, subset
 from trial.baselines.peers import BASELINES
 
 ROOT = Path(__file__).parents[2]
@@ -129,7 +129,7 @@ def main():
 
 def _tell(asked, everyone, sealed, told, tables):
     """Prints and writes; returns the exit code."""
-    columns = {name: _able(name, table) for name, table in tables.items()}
+    columns = {name: _able(name, table) for name, table in tables.items()} | {"oracle": ceiling.column(sealed)}
     first, *others = columns
     beside = {name: {row.key: row for row in columns[name]} for name in others}
     print(f"{first}, {asked.split}, {len(everyone[0].reads(sealed))} cases\n{score.shown(columns[first], beside)}")
@@ -137,7 +137,9 @@ def _tell(asked, everyone, sealed, told, tables):
     for name, sentences in faults.items():
         print("\n".join(f"{name}: {sentence}" for sentence in sentences))
     plain = {name: score.as_json(table) for name, table in columns.items()}
-    (asked.out / "table.json").write_text(json.dumps({"split": asked.split, "tables": plain}, indent=1) + "\n")
+    (asked.out / "table.json").write_text(
+        json.dumps({"split": asked.split, "tables": plain}, indent=1, allow_nan=False) + "\n"
+    )
     strata = counts.by_stratum(sealed, told[first].said)
     (asked.out / "page.html").write_text(page.page(asked.split, columns, strata, faults))
     print(f"written: {asked.out / 'table.json'}, {asked.out / 'page.html'}")

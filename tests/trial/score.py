@@ -10,6 +10,7 @@ label against the salted hash in the public index first. A case without a verdic
 import argparse
 import hashlib
 import json
+import math
 from pathlib import Path
 
 from trial import counts
@@ -80,7 +81,7 @@ def as_json(table):
             "value": row.value if row.of else None,
             "of": row.of,
             "hits": row.hits,
-            "bounds": list(row.bounds) if row.of else None,
+            "bounds": [None if math.isnan(bound) else bound for bound in row.bounds],
             "must": row.must,
             "goal": row.goal,
             "is_ceiling": row.is_ceiling,

@@ -41,3 +41,15 @@ def test_a_name_is_never_easier_than_its_detection_and_parameters_are_no_cause()
 def test_chances_at_the_thresholds_are_even():
     assert ceiling.chance(ceiling.SEEN, None) == pytest.approx(0.5)
     assert ceiling.chance(99.0, ceiling.TOLD) == pytest.approx(0.5)
+
+
+def test_more_recordings_never_tell_less():
+    name, label = first(lambda one: one["stratum"] == "ambiguous" and one.get("effect") == "relaxation")
+    before, (best, whole) = ceiling.separations(name, label), ceiling.settled(name, label)
+    assert before[1] < ceiling.TOLD and before[1] <= best[1] <= whole[1] + 1e-9
+
+
+def test_the_column_has_a_share_for_every_row_that_it_can_be_asked_about():
+    some = {name: label for name, label in SEALED.items() if label["stratum"] in ("single", "decoy")}
+    found = {row.key: row for row in ceiling.column(dict(list(some.items())[:12]))}
+    assert found.keys() <= set(ceiling.ROWS) and all(0.0 <= row.value <= 1.0 for row in found.values())
