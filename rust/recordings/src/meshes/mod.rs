@@ -85,6 +85,26 @@ pub fn read_points(file: &Path) -> Result<MeshFile, RecordingError> {
     points.map_err(|fault| fault.in_file(file))
 }
 
+/// A mesh whose triangles lie in a map.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Charted {
+    /// The mesh.
+    pub mesh: MeshFile,
+    /// By triangle, texture coordinates of its corners.
+    pub charts: Vec<[[f64; 2]; 3]>,
+}
+
+/// Reads an OBJ with the texture coordinates of every corner.
+///
+/// # Errors
+/// As [`read`], and for a corner without texture coordinates or another format, which has none.
+pub fn read_charts(file: &Path) -> Result<Charted, RecordingError> {
+    let format = Format::of(file).filter(|format| *format == Format::Obj);
+    known(file, format, "save it as .obj with UVs")?;
+    let charted = obj::parse_charts(&bytes_of(file)?);
+    charted.map_err(|fault| fault.in_file(file))
+}
+
 fn known<T>(file: &Path, format: Option<T>, remedy: &'static str) -> Result<T, RecordingError> {
     format.ok_or_else(|| {
         let found = file

@@ -1,7 +1,7 @@
 //! Wavefront OBJ: `v` and `f` lines; everything else (normals, groups, materials, curves) is passed over.
 
-use super::{MeshFile, position};
-use crate::fault::{Fault, shown, words};
+use super::{Charted, MeshFile, filled, position};
+use crate::fault::{Fault, number, shown, words};
 use std::borrow::Cow;
 
 const AGAIN: &str = "export the mesh again";
@@ -49,6 +49,55 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         return Err(Fault::line(line, problem, AGAIN));
     }
     Ok(mesh)
+}
+
+/// The same with the texture coordinates (`vt`) of every corner.
+pub(super) fn parse_charts(bytes: &[u8]) -> Result<Charted, Fault> {
+    let mesh = filled(parse(bytes)?)?;
+    let (mut coordinates, mut charts) = (Vec::<[f64; 2]>::new(), Vec::new());
+    for (line, text) in lines(bytes) {
+        let mut words = words(&text);
+        let again = |problem: String| Fault::line(line, problem, AGAIN);
+        match words.next() {
+            Some(b"vt") => {
+                let mut next = || words.next().map_or(Ok(0.0), number).map_err(again);
+                coordinates.push([next()?, next()?]);
+            }
+            Some(b"f") => {
+                let corner = |word: &[u8]| {
+                    let second = word.split(|&byte| byte == b'/').nth(1).unwrap_or_default();
+                    let bare = || {
+                        let problem = "a face has no texture coordinates".to_string();
+                        Fault::line(line, problem, "unwrap the mesh and export it with UVs")
+                    };
+                    let at = match second.is_empty() {
+                        true => return Err(bare()),
+                        false => self::corner(second, coordinates.len()).map_err(again)?,
+                    };
+                    let found = coordinates.get(at as usize).copied();
+                    found.ok_or_else(|| {
+                        again(format!(
+                            "a face uses texture coordinate {}, {} were read before it",
+                            at + 1,
+                            coordinates.len()
+                        ))
+                    })
+                };
+                let corners: Vec<[f64; 2]> = words.map(corner).collect::<Result<_, _>>()?;
+                for pair in corners[1..].windows(2) {
+                    charts.push([corners[0], pair[0], pair[1]]);
+                }
+            }
+            _ => {}
+        }
+    }
+    match mesh.triangles.is_empty() {
+        true => Err(Fault::file(
+            "it holds no faces".into(),
+            "export the surface",
+        )),
+        false => Ok(Charted { mesh, charts }),
+    }
 }
 
 /// Numbered lines (from 1) with comments cut off and lines that end in a backslash joined.

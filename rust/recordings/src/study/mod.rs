@@ -12,6 +12,20 @@
 //! diameter_mm = 48           # on which the sensels lie
 //! turn = "right"             # columns go around by the right-hand rule; "left" against it
 //! ```
+//!
+//! or on any mesh by its UV map, sensel by sensel:
+//!
+//! ```toml
+//! [recordings.placing]
+//! on = "mesh"
+//! file = "product.obj"       # in skin coordinates at first touch, with texture coordinates (vt)
+//! corner_uv = [0, 0]         # where the corner before the first row and column lies; the default
+//! columns_uv = [1, 0]        # from there to the corner after the last column; the default
+//! rows_uv = [0, 1]           # from there to the corner after the last row; the default
+//! ```
+//!
+//! A sensel lies on the one triangle whose chart holds its center, and looks along that triangle's normal. Its area is the maker's; where
+//! the file states none, that of its patch of the chart on the mesh.
 
 mod toml_tree;
 mod place;
@@ -20,6 +34,7 @@ mod indenters;
 mod sites;
 mod sensels;
 mod seat;
+mod charts;
 mod recordings;
 mod instrument;
 

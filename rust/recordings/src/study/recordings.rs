@@ -1,5 +1,6 @@
 //! The recordings that a study lists, with what they were taken from.
 
+use super::charts;
 use super::indenters::Indenter;
 use super::place::Folder;
 use super::seat;
@@ -316,10 +317,16 @@ fn read_places(
         let problem = format!("{} has both sensels and placing", section.name);
         return Err(here(section.fault(problem, "leave one of them out")));
     }
-    let seat = seat::read(&mut placing).map_err(here)?;
-    let placed = seat
-        .place(map)
-        .map_err(|(problem, remedy)| here(placing.fault(problem, remedy)))?;
+    let is_on_mesh =
+        matches!(placing.get("on"), Some(entry) if entry.text().is_ok_and(|on| on == "mesh"));
+    let placed = match is_on_mesh {
+        true => charts::place(&mut placing, map, folder)?,
+        false => {
+            let seat = seat::read(&mut placing).map_err(here)?;
+            let placed = seat.place(map);
+            placed.map_err(|(problem, remedy)| here(placing.fault(problem, remedy)))?
+        }
+    };
     placing.finish().map_err(here)?;
     Ok(Some(placed))
 }

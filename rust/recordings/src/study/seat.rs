@@ -119,6 +119,19 @@ fn flat_centers(map: &PressureMap) -> Result<Vec<[f64; 2]>, (String, &'static st
     let Some([row_pitch, column_pitch]) = map.pitch_mm else {
         return Err(("the file states no pitch of its sensels".into(), GIVE));
     };
+    let steps = steps(map)?;
+    let center = |[column, row]: [f64; 2]| [column_pitch * column, row_pitch * row];
+    Ok(steps.centers.into_iter().map(center).collect())
+}
+
+/// A flat mat counted in cells: centers from its corner along columns and rows, and the number of columns and rows.
+pub(super) struct Steps {
+    pub centers: Vec<[f64; 2]>,
+    pub count: [f64; 2],
+}
+
+/// Counts a map's cells; mirrored mats are turned back.
+pub(super) fn steps(map: &PressureMap) -> Result<Steps, (String, &'static str)> {
     let places: Option<Vec<[u32; 2]>> = map.sensels.iter().map(|sensel| sensel.place).collect();
     let places = places.ok_or((
         "the file does not number rows and columns".to_string(),
@@ -135,19 +148,23 @@ fn flat_centers(map: &PressureMap) -> Result<Vec<[f64; 2]>, (String, &'static st
             _ => f64::from(number - first) + 0.5,
         };
     let [rows_mirrored, columns_mirrored] = map.is_mirrored;
-    let center = |[row, column]: [u32; 2]| {
+    let step = |[row, column]: &[u32; 2]| {
         [
-            column_pitch * along(column, columns, columns_mirrored),
-            row_pitch * along(row, rows, rows_mirrored),
+            along(*column, columns, columns_mirrored),
+            along(*row, rows, rows_mirrored),
         ]
     };
-    Ok(places.into_iter().map(center).collect())
+    let count = |(first, last): (u32, u32)| f64::from(last - first) + 1.0;
+    Ok(Steps {
+        centers: places.iter().map(step).collect(),
+        count: [count(columns), count(rows)],
+    })
 }
 
 /// Reads the table `placing` of a recording.
 pub(super) fn read(section: &mut Section) -> Result<Seat, Fault> {
     let Some(entry) = section.get("on") else {
-        return Err(section.needs("on", "give plane or cylinder"));
+        return Err(section.needs("on", "give plane, cylinder or mesh"));
     };
     let kind = entry.text()?;
     if kind != "plane" && kind != "cylinder" {

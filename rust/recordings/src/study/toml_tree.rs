@@ -103,6 +103,11 @@ impl<'d> Section<'d> {
         self.get(key).map(|entry| entry.vector()).transpose()
     }
 
+    /// Two numbers.
+    pub fn pair(&mut self, key: &'static str) -> Result<Option<[f64; 2]>, Fault> {
+        self.get(key).map(|entry| entry.pair()).transpose()
+    }
+
     /// A table of this table.
     pub fn section(&mut self, key: &'static str) -> Result<Option<Section<'d>>, Fault> {
         match self.get(key) {
@@ -283,6 +288,13 @@ impl Entry<'_> {
                 "write it as [x, y, z]",
             )
         };
+        parts.try_into().map_err(wrong)
+    }
+
+    pub fn pair(&self) -> Result<[f64; 2], Fault> {
+        let parts = self.parts()?;
+        let parts: Vec<f64> = parts.iter().map(Entry::finite).collect::<Result<_, _>>()?;
+        let wrong = |_| self.fault("is no list of two numbers".into(), "write it as [u, v]");
         parts.try_into().map_err(wrong)
     }
 
