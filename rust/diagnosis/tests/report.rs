@@ -7,12 +7,16 @@ use made::{
 };
 use nalgebra::DMatrix;
 use serde_json::Value;
-use thenar_diagnosis::comparison::Comparison;
+use thenar_diagnosis::comparison::{Compared, Comparison, compare_fit};
 use thenar_diagnosis::report::{comparison_html, comparison_json};
-use thenar_diagnosis::{Measured, Phase, Target};
+use thenar_diagnosis::{Fit, Location, Measured, Phase, Target};
 
 /// Two presses, one of which relaxes, and a mat on which the simulation sits one row off.
 fn study() -> Comparison {
+    compared(&loaded())
+}
+
+fn loaded() -> Fit {
     let mut normal = Normal(11);
     let moments = ramp_and_hold(240);
     let simulated: Vec<f64> = moments
@@ -51,7 +55,7 @@ fn study() -> Comparison {
     fit.estimates.push(zero);
     fit.lack_of_fit_p = Some(0.0004);
     fit.notes = vec!["Noise is told by 2 repeats of 2 protocols.".into()];
-    compared(&fit)
+    fit
 }
 
 fn mat_recording() -> (Measured, Vec<f64>) {
@@ -195,5 +199,63 @@ fn the_first_sentence_names_what_stands_out() {
         comparison.recordings[2].sentence.contains("overlap by"),
         "{}",
         comparison.recordings[2].sentence
+    );
+}
+
+/// Without repeats a recording has its own roughness and no noise: no probability is told of it.
+#[test]
+fn roughness_is_not_called_noise() {
+    let mut fit = loaded();
+    fit.lack_of_fit_p = None;
+    let comparison = compared(&fit);
+    let relaxing = &comparison.recordings[1];
+    assert!(!relaxing.is_noise_told && relaxing.has_noise);
+    for sentence in [&comparison.sentence, &relaxing.sentence] {
+        assert!(
+            !sentence.contains("p <") && !sentence.contains("standard errors"),
+            "{sentence}"
+        );
+    }
+    let told = "times what the recording's own roughness leaves; no repeats tell the noise";
+    assert!(relaxing.sentence.contains(told), "{}", relaxing.sentence);
+    assert!(
+        comparison.recordings[0]
+            .sentence
+            .contains("no repeats tell the noise")
+    );
+    assert!(
+        study()
+            .recordings
+            .iter()
+            .all(|recording| recording.is_noise_told)
+    );
+}
+
+/// More than noise is left, but nothing stands out of what the simulation may itself be off by: both are said.
+#[test]
+fn the_simulations_own_error_is_told_beside_the_noise() {
+    let fit = loaded();
+    let silent = Location {
+        mismatches: Vec::new(),
+        p: Some(0.4),
+        looks: 12,
+        sentence: String::new(),
+        notes: Vec::new(),
+    };
+    let comparison = compare_fit(&Compared {
+        title: "",
+        skin: &[],
+        sites: &[],
+        fit: &fit,
+        location: Some(&silent),
+    });
+    let said = &comparison.sentence;
+    assert!(
+        said.starts_with("Parameters within their bounds, fitted to all 3 recordings, leave more than noise alone does (p < 0.001)"),
+        "{said}"
+    );
+    assert!(
+        said.contains("8.0 % of the largest value") && !said.contains("do not explain"),
+        "{said}"
     );
 }

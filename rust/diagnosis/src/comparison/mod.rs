@@ -81,8 +81,10 @@ pub struct RecordingComparison {
     pub sentence: String,
     /// False if only shape and relative size could be compared.
     pub is_calibrated: bool,
-    /// True if the noise is known.
+    /// True if the noise has a number, be it only the recording's own roughness.
     pub has_noise: bool,
+    /// True if repeats, or the user, tell the noise.
+    pub is_noise_told: bool,
     /// Instants.
     pub moments: Vec<Moment>,
     /// Quantities of which the recording has one value per moment.
@@ -194,6 +196,8 @@ fn recording(compared: &Compared, standing: &Standing, trends: Vec<Trend>) -> Re
         sentence: String::new(),
         is_calibrated: measured.is_calibrated,
         has_noise: standing.has_noise(),
+        // A frame that is compared with a contact as it stands has the noise that was stated, or none.
+        is_noise_told: compared.fit.lack_of_fit_p.is_some() || compared.fit.estimates.is_empty(),
         moments: measured.moments.clone(),
         measures: measures::table(standing, &series, &frames),
         trends,

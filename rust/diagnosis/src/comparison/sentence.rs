@@ -5,10 +5,20 @@ use crate::location::MODEL_ERROR;
 use crate::words::{chance, number, percent};
 use crate::{Estimate, Fit, Location};
 
-/// Said where nothing was located.
-fn within_the_model() -> String {
+/// The recordings of which something is left.
+fn left_of(count: usize) -> String {
+    match count {
+        1 => "Parameters within their bounds".into(),
+        _ => format!("Parameters within their bounds, fitted to all {count} recordings,"),
+    }
+}
+
+/// Said where nothing was located though more than noise is left: the simulation's own error is allowed for then, as locating does.
+fn within_the_model(all: &str, p: f64) -> String {
     format!(
-        " No place is off by more than the {} of the largest value that the model itself may be.",
+        "{all} leave more than noise alone does ({}), but no place or time stands out once the simulation may be off by smooth factors and \
+         by {} of the largest value, as finite elements show of it: smaller differences cannot be called real.",
+        chance(p),
         percent(MODEL_ERROR)
     )
 }
@@ -45,15 +55,16 @@ pub(super) fn of_study(
                 "Parameters within their bounds do not explain the recordings: noise alone leaves as much with {}.",
                 chance(p)
             );
-            match (location, worst) {
-                (Some(found), _) if !found.mismatches.is_empty() => {
+            let named = worst.map_or_else(String::new, |worst| format!(" {}", named(worst)));
+            match location {
+                Some(found) if !found.mismatches.is_empty() => {
                     format!("{start} {}", found.sentence)
                 }
-                (found, worst) => {
-                    let named =
-                        worst.map_or_else(String::new, |worst| format!(" {}", named(worst)));
-                    start + &named + &found.map_or_else(String::new, |_| within_the_model())
+                // Places on the skin are no looks of its: what a scan leaves is not judged by it.
+                Some(_) if !compared.iter().any(|recording| recording.scan.is_some()) => {
+                    within_the_model(&left_of(count), p)
                 }
+                _ => start + &named,
             }
         }
         None => {
@@ -164,17 +175,22 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
         Some(largest) => format!(" ({} of the largest)", percent(bin.mean.abs() / largest)),
         None => String::new(),
     };
+    let looks: usize = recording.trends.iter().map(|trend| trend.bins.len()).sum();
+    let sure = match recording.is_noise_told {
+        true => format!(
+            "{} standard errors apart ({} after {looks} looks)",
+            number(bin.standings()),
+            chance(bin.p)
+        ),
+        false => format!(
+            "{} times what the recording's own roughness leaves; no repeats tell the noise",
+            number(bin.standings())
+        ),
+    };
     format!(
-        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {} standard errors apart ({} after {} looks).",
+        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {sure}.",
         trend.kind.label().to_lowercase(),
         place(trend.variable, bin),
-        number(bin.standings()),
-        chance(bin.p),
-        recording
-            .trends
-            .iter()
-            .map(|trend| trend.bins.len())
-            .sum::<usize>(),
     )
 }
 
@@ -234,6 +250,10 @@ fn rest(recording: &RecordingComparison) -> String {
     });
     let share = share.unwrap_or_default();
     match recording.has_noise {
+        true if !recording.is_noise_told => format!(
+            "Measured and simulated {what} differ by {} {unit} rms{share}; no repeats tell the noise.",
+            number(left)
+        ),
         true if left > 1.5 * noise => format!(
             "Measured and simulated {what} differ by {} {unit} rms{share}, {} times the noise, and no range of time, depth or place stands out.",
             number(left),

@@ -153,7 +153,7 @@ impl Telling<'_> {
         }
         let looks = self.scan.count();
         Location {
-            sentence: summary(&mismatches, first, looks),
+            sentence: summary(&mismatches, (first, looks), self.search),
             mismatches,
             p: first,
             looks,
@@ -322,11 +322,19 @@ impl Telling<'_> {
     }
 }
 
-fn summary(mismatches: &[Mismatch], p: Option<f64>, looks: usize) -> String {
+fn summary(
+    mismatches: &[Mismatch],
+    (p, looks): (Option<f64>, usize),
+    search: &Search<'_>,
+) -> String {
+    let allowed = match search.model_error {
+        Some(_) => "noise and the simulation's own error would",
+        None => "noise would",
+    };
     match (mismatches.first(), p) {
         (Some(first), _) => first.sentence.clone(),
         (None, Some(p)) => format!(
-            "No place or time carries more than noise would: p = {} over {looks} looks.",
+            "No place or time carries more than {allowed}: p = {} over {looks} looks.",
             sentence::figure(p)
         ),
         (None, None) => "Nothing can be located: no recording has a sample that shows its value and that parameters do not absorb.".to_owned(),

@@ -69,6 +69,12 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
             measured.moments = seen.moments;
             measured.samples = seen.samples;
             measured.unknown = seen.unknown;
+            if curve.unknown.iter().any(|text| text.contains("of the tip")) {
+                measured.unknown.push(format!(
+                    "the tool '{}' is the study's assumption and not the recording's: the moduli hold for that tool alone",
+                    recording.indenter
+                ));
+            }
             (measured, seen.is_touch_known)
         }
         Data::PressureMap {

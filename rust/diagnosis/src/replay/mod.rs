@@ -5,6 +5,7 @@ mod ladders;
 mod followed;
 mod press_table;
 mod reading;
+mod rim;
 mod scanned;
 mod shown;
 mod tissue;
@@ -132,7 +133,7 @@ impl Replay {
         observed: Observed,
         control: &Control<'_>,
     ) -> Result<Replay, DiagnosisError> {
-        let tissue = tissue::tissue(&study.skin, control)?;
+        let mut tissue = tissue::tissue(&study.skin, control)?;
         let (mut places, mut place_of) = (Vec::<Place>::new(), Vec::new());
         for measured in &observed.measured {
             let at = places
@@ -169,8 +170,18 @@ impl Replay {
             place.deepest =
                 place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
         }
-        let has_scan = observed.measured.iter().any(|m| m.scan.is_some());
         let mesh = &study.skin.mesh;
+        for place in &places {
+            let pressed = (&place.tool, place.direction * place.deepest);
+            if rim::presses_rim((&mesh.positions, &mesh.triangles), pressed) {
+                tissue.notes.push(format!(
+                    "{} presses the rim of the study's skin: the model's tissue goes on beyond it, and where the sample ends there its \
+                     free sides make it softer than its modulus",
+                    place.title
+                ));
+            }
+        }
+        let has_scan = observed.measured.iter().any(|m| m.scan.is_some());
         let scanned = has_scan.then(|| Scanned::new(&mesh.positions, &mesh.triangles));
         let followed = observed.measured.iter().map(|_| Vec::new()).collect();
         Ok(Replay {

@@ -115,6 +115,7 @@ fn recording(recording: &RecordingComparison) -> Value {
         "sentence": recording.sentence,
         "is_calibrated": is_calibrated,
         "has_noise": recording.has_noise,
+        "is_noise_told": recording.is_noise_told,
         "measures": recording.measures.iter().map(measure).collect::<Vec<_>>(),
         "series": recording.series.iter().map(|each| series(recording, each)).collect::<Vec<_>>(),
         "mat": recording.mat.as_ref().map(mat),

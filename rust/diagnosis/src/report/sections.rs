@@ -190,7 +190,7 @@ pub fn method(comparison: &Comparison) -> String {
     let looks = comparison.looks;
     format!(
         "<section><h2>How to read this</h2><ul>\
-<li><b>Residual</b> is measured minus simulated. \u{03c3} is the standard deviation of the noise that repeats of a protocol show; the band marks \u{00b1}2\u{03c3}.</li>\
+<li><b>Residual</b> is measured minus simulated. \u{03c3} is the standard deviation of the noise that repeats of a protocol show; without repeats it is only how rough the recording itself is, and what stands out of that may still be noise. The band marks \u{00b1}2\u{03c3}.</li>\
 <li><b>Bars</b> are means over a range, in the quantity\u{2019}s unit. A bar is vermillion if noise alone gives a mean as far from zero with a chance below 1 % in any of the {looks} ranges looked at (Bonferroni). Both the mean as read and the mean of the whitened residual, with all taken out that the fitted parameters can absorb, must lie that far off; so a bar may be large and still be explained by parameters, or by noise that repeats share.</li>\
 <li><b>A mat</b> is compared as its instrument would show it: what lies under its threshold counts as nothing on both sides, and where sensels clip both sides count the ceiling. Contact area is the area of the sensels in contact; overlap is the area where both touch over the area where either does. Mean pressure is force over contact area.</li>\
 <li><b>Frame of mean force</b> is the frame whose force is nearest to the mean over all frames that carry any.</li>\

@@ -1,5 +1,8 @@
 //! Round numbers on an axis.
 
+/// Power of ten of a last digit below which ticks are written with one.
+const SMALLEST_POWER: i32 = -4;
+
 /// Places of round ticks (1, 2 or 5 times a power of ten) within a range, at most about `most` of them, and their texts.
 pub fn ticks(low: f64, high: f64, most: usize) -> Vec<(f64, String)> {
     if !(low.is_finite() && high.is_finite() && high > low) {
@@ -7,17 +10,35 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<(f64, String)> {
     }
     let (step, power) = step((high - low) / most.max(1) as f64);
     let decimals = (-power).max(0) as usize;
+    // Beyond this the digits leave no room for the axis: a power of ten says it.
+    let is_small = power < SMALLEST_POWER;
     let (first, last) = (
         (low / step - 1e-9).ceil() as i64,
         (high / step + 1e-9).floor() as i64,
     );
     let tick = |k: i64| {
         let value = k as f64 * step;
-        let text = format!("{:.decimals$}", value.abs());
+        let text = match is_small && k != 0 {
+            true => in_powers(value.abs()),
+            false if is_small => "0".into(),
+            false => format!("{:.decimals$}", value.abs()),
+        };
         let sign = if k < 0 { "\u{2212}" } else { "" };
         (value, format!("{sign}{text}"))
     };
     (first..=last).map(tick).collect()
+}
+
+/// A tick as a power of ten, `5×10⁻⁹`: its digits are few, since ticks are round.
+fn in_powers(value: f64) -> String {
+    let text = crate::words::number(value);
+    match text.split_once('\u{00d7}') {
+        Some((digits, power)) if digits.contains('.') => {
+            let digits = digits.trim_end_matches('0').trim_end_matches('.');
+            format!("{digits}\u{00d7}{power}")
+        }
+        _ => text,
+    }
 }
 
 /// The next round step that is no smaller, and the power of ten of its last digit.
@@ -66,6 +87,10 @@ mod tests {
         assert_eq!(
             texts(0.0, 260.0, 6),
             ["0", "50", "100", "150", "200", "250"]
+        );
+        assert_eq!(
+            texts(-1e-8, 1e-8, 4),
+            ["−1×10⁻⁸", "−5×10⁻⁹", "0", "5×10⁻⁹", "1×10⁻⁸"]
         );
         assert!(ticks(1.0, 1.0, 5).is_empty() && ticks(f64::NAN, 1.0, 5).is_empty());
     }

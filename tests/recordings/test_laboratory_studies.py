@@ -1,0 +1,65 @@
+"""Real laboratory recordings as studies: compared, with what cannot be known said and not guessed."""
+
+import json
+
+import laboratory_studies
+import pytest
+import thenar
+
+
+def compared(name, shared, folder):
+    """The comparison of one study, and its JSON read again."""
+    found = thenar.compare(thenar.Study.load(laboratory_studies.write(name, shared, folder)))
+    told = json.loads(found.to_json())
+    print(found.sentence)
+    for recording in told["recordings"]:
+        print(recording["name"], recording["sentence"], recording["unknown"])
+    assert found.report_html().startswith("<!DOCTYPE html>")
+    return told
+
+
+def bins(recording, variable):
+    """Mean residual by range of a variable."""
+    trends = (trend for trend in recording["trends"] if trend["variable"] == variable)
+    return {each["label"] or each["low"]: each["mean"] for each in next(trends)["bins"]}
+
+
+def test_force_ramps_say_that_the_tip_is_not_known(shared, tmp_path):
+    told = compared("force_ramps", shared, tmp_path)
+    assert len(told["recordings"]) == 4
+    assert "without repeats of two protocols nobody can say" in told["sentence"] and told["lack_of_fit_p"] is None
+    assert "standard errors" not in told["sentence"] and "p <" not in told["sentence"]
+    for recording in told["recordings"]:
+        said = " ".join(recording["unknown"])
+        for what in (
+            "shape and size of the tip",
+            "the tool 'tip' is the study's assumption",
+            "no point of first touch",
+        ):
+            assert what in said
+        assert "never unloads" not in said and not recording["is_noise_told"]
+        # Half of the work that goes in does not come back: an elastic model is too low on the way in and too high on the way out.
+        by_phase = bins(recording, "phase")
+        assert by_phase["load"] > 0 > by_phase["unload"]
+
+
+def test_a_gel_clings_and_no_modulus_is_told_without_a_tip(shared, tmp_path):
+    told = compared("gel_creep", shared, tmp_path)
+    (recording,) = told["recordings"]
+    said = " ".join(recording["unknown"])
+    assert "no modulus without assuming one" in said and "the moduli hold for that tool alone" in said
+    # It pulls at the tip with 11.29 nN where a model that does not cling pulls with nothing.
+    (series,) = recording["series"]
+    assert min(series["measured"]) < -9e-9 and min(series["simulated"]) > -1e-9
+    assert bins(recording, "phase")["unload"] < 0
+    assert recording["worst"][0]["phase"] == "unload"
+
+
+def test_silicone_never_unloads_and_ends_where_the_plate_does(shared, tmp_path):
+    told = compared("silicone", shared, tmp_path)
+    assert all("it never unloads" in " ".join(recording["unknown"]) for recording in told["recordings"])
+    assert any("presses the rim of the study's skin" in note for note in told["notes"])
+    # Its sides are free: a layer that goes on needs less than the 60.6 kPa / 3 that the cylinder has.
+    modulus = next(each for each in told["estimates"] if each["name"] == "g0_mpa")
+    assert modulus["high"] < 0.0606 / 3
+    assert told["lack_of_fit_p"] == pytest.approx(0.001)
