@@ -1,4 +1,4 @@
-"""Study folders made of the shared laboratory recordings: what each was taken with where its source says so, and said to be assumed where not.
+"""Study folders made of the shared laboratory recordings, with what their sources leave open assumed and said to be.
 
     write(name, shared, folder) -> Path        # name of STUDIES
 
@@ -31,7 +31,7 @@ def force_ramps(shared, folder):
     _skin(folder, 14.0, 1.0)
     names = [(f"to {target} mN", f"{target}.ddf", f"ramp to {target} mN") for target in targets]
     tool = f'shape = "sphere"\nradius_mm = {TIP_MM}'
-    _study(folder, "Force ramps on skin, tip assumed", (0.01, 0.1, 4.0, "12.0"), tool, names)
+    _study(folder, "Force ramps on skin, tip assumed", (0.01, 0.1, 4.0, "12.0", '["g0_mpa", "g_lim_mpa"]'), tool, names)
 
 
 def gel_creep(shared, folder):
@@ -39,8 +39,8 @@ def gel_creep(shared, folder):
     shutil.copy(shared / "afm_gel_and_soft_matrix/polymer_gel_creep.jpk-force", folder / "gel.jpk-force")
     _skin(folder, 0.012, 0.001)
     tool = f'shape = "sphere"\nradius_mm = {GEL_TIP_MM}'
-    numbers = (1e-4, 1e-4, 1000.0, '"inf"')
-    _study(folder, "Polymer gel, tip assumed", numbers, tool, [("gel", "gel.jpk-force", "creep")], fit='["g0_mpa"]')
+    numbers = (1e-4, 1e-4, 1000.0, '"inf"', '["g0_mpa"]')
+    _study(folder, "Polymer gel, tip assumed", numbers, tool, [("gel", "gel.jpk-force", "creep")])
 
 
 def silicone(shared, folder):
@@ -54,8 +54,8 @@ def silicone(shared, folder):
         (folder / f"{sample}.csv").write_text("time_s,depth_mm,force_n\n" + "\n".join(text) + "\n")
         names.append((f"EF10 0T, {sample}", f"{sample}.csv", "compression"))
     _disc(folder, 25.0, 1.5)
-    numbers = (0.02, 0.02, 1000.0, "30.0")
-    _study(folder, "Ecoflex 00-10 cylinders", numbers, 'shape = "plane"', names, fit='["g0_mpa"]')
+    numbers = (0.02, 0.02, 1000.0, "30.0", '["g0_mpa"]')
+    _study(folder, "Ecoflex 00-10 cylinders", numbers, 'shape = "plane"', names)
 
 
 STUDIES = {"force_ramps": force_ramps, "gel_creep": gel_creep, "silicone": silicone}
@@ -99,8 +99,8 @@ def _mesh(folder, points, faces):
     (folder / "skin.obj").write_text("\n".join(text + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]) + "\n")
 
 
-def _study(folder, title, numbers, tool, names, fit='["g0_mpa", "g_lim_mpa"]'):
-    g0, g_lim, d_lim, thickness = numbers
+def _study(folder, title, numbers, tool, names):
+    g0, g_lim, d_lim, thickness, fit = numbers
     text = f"""[study]
 title = "{title}"
 [skin]

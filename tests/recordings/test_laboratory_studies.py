@@ -31,14 +31,11 @@ def test_force_ramps_say_that_the_tip_is_not_known(shared, tmp_path):
     assert "standard errors" not in told["sentence"] and "p <" not in told["sentence"]
     for recording in told["recordings"]:
         said = " ".join(recording["unknown"])
-        for what in (
-            "shape and size of the tip",
-            "the tool 'tip' is the study's assumption",
-            "no point of first touch",
-        ):
+        lacks = ("shape and size of the tip", "the tool 'tip' is the study's assumption", "no point of first touch")
+        for what in lacks:
             assert what in said
         assert "never unloads" not in said and not recording["is_noise_told"]
-        # Half of the work that goes in does not come back: an elastic model is too low on the way in and too high on the way out.
+        # Half of the work does not come back: an elastic model is too low on the way in and too high on the way out.
         by_phase = bins(recording, "phase")
         assert by_phase["load"] > 0 > by_phase["unload"]
 
