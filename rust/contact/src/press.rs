@@ -93,7 +93,7 @@ pub enum Start {
 /// How a solve ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Convergence {
-    /// True if complementarity and penetration are within their tolerances.
+    /// True if complementarity and penetration, and adhesion where it acts, are within their tolerances.
     pub has_converged: bool,
     /// Re-linearisations of the gap in the last press.
     pub passes: usize,

@@ -8,7 +8,7 @@ use crate::effects::stiffening_law::shear_moduli;
 use crate::force_control::find_offset;
 use crate::history::recalled::{Moved, moved, restore};
 use crate::history::state::Recall;
-use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull};
+use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull, steady};
 use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
 use crate::memory::{Last, Trail};
@@ -57,11 +57,18 @@ struct State<'a> {
 #[derive(Clone)]
 pub(crate) struct Recalled {
     pub recall: Recall,
-    /// What each site of the zone bears in the elastic tissue's terms, N.
+    /// What each site of the zone bears, and what attraction pulls at, in the elastic tissue's terms, N.
     pub bearing: Vec<(u32, Vec3)>,
+    /// True where attraction holds skin and product together, by region.
+    pub clings: Vec<bool>,
 }
 
 impl Pressed {
+    /// True if the contact is within its tolerances, and the attraction with it.
+    pub fn has_converged(&self) -> bool {
+        self.solved.convergence.has_converged && self.clinging.is_settled
+    }
+
     /// Force on the skin along `direction`, N.
     pub fn force_along(&self, direction: &Vec3) -> f64 {
         self.force_on_skin().dot(direction)
@@ -158,7 +165,7 @@ impl Skin {
         let effective = self.effective_moduli(&shear_modulus, &truth);
         let (mut weight, mut modulus_at) = self.weights(&effective);
         self.tissue.scale(&mut weight, &mut modulus_at);
-        let attraction = Attraction::new(self, &weight);
+        let attraction = Attraction::new(self);
         add_time(seconds, "response", started);
         let started = Instant::now();
         let state = State {
@@ -172,8 +179,17 @@ impl Skin {
             Some(attraction) => self.solve_clinging(attraction, &state, control)?,
         };
         let recalled = recall.map(|recall| {
-            let bearing = restore(self, &mut solved, &mut modulus_at, &recall);
-            Recalled { recall, bearing }
+            let mut bearing = restore(self, &mut solved, &mut modulus_at, &recall);
+            let mut clings = vec![false; recall.at_once.len()];
+            for pull in &clinging.pulls {
+                bearing.push(self.elastic(pull, &recall));
+                clings[self.sites.home_region(pull.site as usize) as usize] = true;
+            }
+            Recalled {
+                recall,
+                bearing,
+                clings,
+            }
         });
         add_time(seconds, "solve", started);
         Ok(Pressed {
@@ -230,16 +246,22 @@ impl Skin {
             .recall
             .map_or_else(Vec::new, |recall| recall.loads.clone());
         for pull in pulls {
-            // What pulls now counts in full, whatever the tissue then lets go of.
-            let region = self.sites.home_region(pull.site as usize) as usize;
-            let at_once = state.recall.map_or(1.0, |recall| recall.at_once[region]);
-            loads.push((pull.site, -pull.normal * (pull.newton / at_once)));
+            loads.push(match state.recall {
+                Some(recall) => self.elastic(pull, recall),
+                None => (pull.site, pull.load()),
+            });
         }
         let mut moved = moved(self, state.product, (state.truth, &loads), state.weight);
         if !pulls.is_empty() {
             moved.detection.deepen(self);
         }
         Some(moved)
+    }
+
+    /// What an attraction is in the elastic tissue's terms: borne at once by what has not yet faded, N.
+    fn elastic(&self, pull: &Pull, recall: &Recall) -> (u32, Vec3) {
+        let region = self.sites.home_region(pull.site as usize) as usize;
+        (pull.site, pull.load() / recall.at_once[region])
     }
 
     /// Finds attraction and contact together, from the attraction of the step before.
@@ -252,7 +274,8 @@ impl Skin {
         let mut pulls = self.memory.trail.pulls.clone();
         for solve in 1.. {
             let solved = self.solve_moved(state, &pulls, control)?;
-            let next = attraction.pulls(self, state.truth, &solved);
+            let mut next = attraction.pulls(self, (state.product, state.truth), &solved);
+            steady(&pulls, &mut next, solve);
             let is_settled = attraction.is_settled(&pulls, &next);
             if is_settled || solve == MOST_SOLVES {
                 return Ok((solved, Clinging { pulls, is_settled }));
@@ -304,6 +327,14 @@ impl Skin {
             .zip(kept)
             .map(|(g, kept)| g * kept)
             .collect()
+    }
+
+    /// Response weight of every site of skin that nothing presses.
+    pub(crate) fn rest_weights(&self) -> Vec<f64> {
+        let moduli: Vec<f64> = self.tissue.materials.iter().map(|m| m.g0_mpa).collect();
+        let (mut weight, mut modulus_at) = self.weights(&moduli);
+        self.tissue.scale(&mut weight, &mut modulus_at);
+        weight
     }
 
     /// Response weight sqrt((1 - nu) / (2 pi G)) and modulus of every site; blended over creases in model layer.

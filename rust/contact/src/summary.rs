@@ -6,7 +6,7 @@ use crate::fields::contact_area::{EdgeData, contact_areas};
 use crate::fields::patch_peak::{Field, patch_peak};
 use crate::fields::product_side::product_pressure;
 use crate::interface::shear_fields::{shear_fields, shear_load};
-use crate::press::{Contact, RegionResult, Residual};
+use crate::press::{Contact, Convergence, RegionResult, Residual};
 use crate::remarks::remarks;
 use crate::simulate::Pressed;
 use crate::skin::Skin;
@@ -95,7 +95,10 @@ pub fn summarize(
             penetration_mm: solved.penetration,
             load_balance,
         },
-        convergence: solved.convergence,
+        convergence: Convergence {
+            has_converged: pressed.has_converged(),
+            ..solved.convergence
+        },
         warnings: remarks(skin, posed, product, pressed),
         seconds: Vec::new(),
     }

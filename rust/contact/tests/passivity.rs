@@ -3,6 +3,7 @@
 
 mod scenes;
 
+use rayon::prelude::*;
 use scenes::{Dice, flat_skin, paraboloid};
 use thenar_contact::{
     ActiveEffect, Control, Demand, Keep, Material, Model, Protocol, Row, Run, Skin,
@@ -111,36 +112,86 @@ fn gained(skin: &mut Skin, tool: &Product, protocol: &Protocol) -> f64 {
     -course.steps[course.steps.len() - 1].work / range
 }
 
-/// Runs random closed cycles; each must give no energy.
-///
-/// A tool that clings slides only where there is friction: without any, attraction pulls along normals of the skin as it lay
-/// before it yielded, and on a mesh as coarse as this one a cycle of 700 gave 2 % of its work.
-fn check(runs: usize) {
-    let (mut skin, mut dice) = (skin(), Dice(23));
-    let tool = paraboloid(8.0, 0.0, 8.0);
-    let mut worst = f64::NEG_INFINITY;
-    for count in 1..=runs {
-        let effects = draw(&mut dice);
-        skin.set_effects(effects.clone(), &Control::none()).unwrap();
-        let mut protocol = closed_path(&mut dice);
-        let names: Vec<&str> = effects.iter().map(|e| e.entry().name).collect();
-        if !names.contains(&"friction") {
-            protocol
-                .rows
-                .iter_mut()
-                .for_each(|row| row.slide = Vec3::zeros());
-        }
-        let gain = gained(&mut skin, &tool, &protocol);
-        let most = match names.contains(&"adhesion") {
-            true => CLINGING_TOLERANCE,
-            false => TOLERANCE,
-        };
-        assert!(gain <= most, "cycle {count} gives {gain:.1e}: {names:?}");
-        worst = worst.max(gain);
-        if count % 500 == 0 {
-            println!("{count} closed cycles, the most generous gives {worst:.1e} of its work");
-        }
+/// The cycle number `count` of a sequence: effects and path.
+struct Draw {
+    count: usize,
+    effects: Vec<ActiveEffect>,
+    protocol: Protocol,
+}
+
+fn draws(runs: usize) -> Vec<Draw> {
+    let mut dice = Dice(23);
+    let one = |count| Draw {
+        count,
+        effects: draw(&mut dice),
+        protocol: closed_path(&mut dice),
+    };
+    (1..=runs).map(one).collect()
+}
+
+/// The same path with its rows this much denser.
+const DENSER: u32 = 4;
+
+fn denser(protocol: &Protocol) -> Protocol {
+    let depth = |row: &Row| match row.demand {
+        Demand::Depth(depth) => depth,
+        _ => unreachable!("paths are of depth"),
+    };
+    let mut rows = vec![protocol.rows[0]];
+    for pair in protocol.rows.windows(2) {
+        rows.extend((1..=DENSER).map(|k| {
+            let between = |a: f64, b: f64| a + (b - a) * f64::from(k) / f64::from(DENSER);
+            Row {
+                time_s: between(pair[0].time_s, pair[1].time_s),
+                demand: Demand::Depth(between(depth(&pair[0]), depth(&pair[1]))),
+                slide: pair[0].slide.zip_map(&pair[1].slide, between),
+            }
+        }));
     }
+    Protocol { rows, ..*protocol }
+}
+
+/// Follows a drawn cycle, which must give no energy; returns what it gives.
+///
+/// The work is a sum of trapezoids. Where skin leaps on and off the product between rows, and softens on the way, they do not
+/// cancel: a cycle that clings and seems to give energy is followed again by denser rows, and must give none then.
+fn follow(skin: &mut Skin, tool: &Product, drawn: &Draw) -> f64 {
+    let names: Vec<&str> = drawn.effects.iter().map(|e| e.entry().name).collect();
+    skin.set_effects(drawn.effects.clone(), &Control::none())
+        .unwrap();
+    let clings = names.contains(&"adhesion");
+    let most = if clings {
+        CLINGING_TOLERANCE
+    } else {
+        TOLERANCE
+    };
+    let mut gain = gained(skin, tool, &drawn.protocol);
+    if clings && gain > most {
+        println!("cycle {} by denser rows: {gain:.1e} {names:?}", drawn.count);
+        gain = gained(skin, tool, &denser(&drawn.protocol));
+    }
+    let count = drawn.count;
+    assert!(gain <= most, "cycle {count} gives {gain:.1e}: {names:?}");
+    gain
+}
+
+/// Follows random closed cycles; each must give no energy.
+fn check(runs: usize) {
+    let (skin, tool) = (skin(), paraboloid(8.0, 0.0, 8.0));
+    let drawn = draws(runs);
+    let worst = |part: &[Draw]| {
+        let mut skin = skin.clone();
+        let gains = part.iter().map(|drawn| follow(&mut skin, &tool, drawn));
+        let worst = gains.fold(f64::NEG_INFINITY, f64::max);
+        println!("to {}: {worst:.1e} at most", part[part.len() - 1].count);
+        worst
+    };
+    let worst = drawn
+        .par_chunks(50)
+        .map(worst)
+        .reduce_with(f64::max)
+        .unwrap();
+    println!("{runs} closed cycles, the most generous gives {worst:.1e} of its work");
 }
 
 #[test]
@@ -148,11 +199,20 @@ fn closed_cycles_with_friction_and_adhesion_never_give_energy() {
     check(500);
 }
 
-/// Further on it does not hold: cycle 2845, which clings to tissue with relaxation and rate-independent loss and is hardly
-/// pressed, ends with work below zero. What pulls counts in full while the tissue lets go of it, so memory under attraction
-/// alone is not shown to be passive.
+/// Cycles that gave energy while attraction had no potential, forgot that tissue relaxes under it, or let it rest while it clung.
 #[test]
-#[ignore = "a quarter of an hour: run it when memory, friction or adhesion change"]
-fn two_thousand_five_hundred_closed_cycles_with_friction_and_adhesion_never_give_energy() {
-    check(2_500);
+fn the_cycles_that_are_hardest_on_adhesion_give_no_energy() {
+    let (mut skin, tool) = (skin(), paraboloid(8.0, 0.0, 8.0));
+    let drawn = draws(3485);
+    for count in [245, 492, 611, 1079, 1502, 2845, 3485] {
+        follow(&mut skin, &tool, &drawn[count - 1]);
+    }
+}
+
+/// As many as `PASSIVITY_CYCLES` says, or ten thousand.
+#[test]
+#[ignore = "an hour of one core: run it when memory, friction or adhesion change"]
+fn ten_thousand_closed_cycles_with_friction_and_adhesion_never_give_energy() {
+    let cycles = std::env::var("PASSIVITY_CYCLES");
+    check(cycles.map_or(10_000, |count| count.parse().unwrap()));
 }

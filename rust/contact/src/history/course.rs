@@ -43,7 +43,7 @@ pub struct Step {
     pub pressure: Vec<(u32, f64)>,
     /// What presses on the product, in its own frame; empty unless it was to be kept.
     pub loads: Vec<PointLoad>,
-    /// True if the solve converged.
+    /// True if the solve converged, and adhesion with it.
     pub has_converged: bool,
 }
 

@@ -31,6 +31,8 @@ pub struct History {
     depth: Vec<f64>,
     /// Last contact radius, by region, mm.
     radius: Vec<f64>,
+    /// True where skin clung to the product at the last step, by region.
+    clings: Vec<bool>,
     /// Length of the step being taken, s.
     pub seconds: f64,
 }
@@ -100,6 +102,7 @@ impl History {
             elastic: vec![Vec3::zeros(); sites],
             depth: vec![0.0; regions],
             radius: vec![0.0; regions],
+            clings: vec![false; regions],
             seconds: 0.0,
         })
     }
@@ -160,12 +163,12 @@ impl History {
         }
     }
 
-    /// Keeps a step: `bearing` is what each site of the zone bore in the elastic tissue's terms beyond the recalled loads, `area` the
-    /// contact area by region (mm2).
+    /// Keeps a step: `bearing` is what each site bore in the elastic tissue's terms beyond the recalled loads, `clings` where
+    /// attraction held it, `area` the contact area by region (mm2).
     pub fn commit(
         &mut self,
         recall: &Recall,
-        bearing: &[(u32, Vec3)],
+        (bearing, clings): (&[(u32, Vec3)], &[bool]),
         (sites, area): (&Sites, &[f64]),
     ) {
         let mut fresh: Vec<(u32, Vec3)> = recall.loads.clone();
@@ -199,6 +202,7 @@ impl History {
             softening.used.clone_from(used);
         }
         self.depth.clone_from(&recall.depth);
+        self.clings.copy_from_slice(clings);
         for (radius, area) in self
             .radius
             .iter_mut()
@@ -254,7 +258,8 @@ impl History {
     fn use_up(&self, softening: &Softening, depth: &[f64]) -> Vec<f64> {
         let after = |(region, used): (usize, &f64)| {
             let (last, now) = (self.depth[region], depth[region]);
-            let used = if now > 0.0 {
+            // Skin that clings bears load and does not rest: tissue that stiffened under load would give energy.
+            let used = if now > 0.0 || self.clings[region] {
                 *used
             } else {
                 cycle_softening::rested(&softening.effect, *used, self.seconds)

@@ -230,7 +230,8 @@ impl Walk {
         let shear = sheared.map_or_else(Vec3::zeros, Dragged::force);
         if let (Some(history), Some(recalled)) = (skin.history.as_mut(), &pressed.recalled) {
             let place = (&skin.sites, &totals.region_area[..]);
-            history.commit(&recalled.recall, &recalled.bearing, place);
+            let borne = (&recalled.bearing[..], &recalled.clings[..]);
+            history.commit(&recalled.recall, borne, place);
         }
         let mut step = Step {
             time_s: row.time_s,
@@ -248,7 +249,7 @@ impl Walk {
             work: 0.0,
             pressure: Vec::new(),
             loads: Vec::new(),
-            has_converged: pressed.solved.convergence.has_converged,
+            has_converged: pressed.has_converged(),
         };
         match self.keep {
             Keep::Totals => {}

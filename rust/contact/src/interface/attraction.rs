@@ -5,12 +5,12 @@
 //! attraction of the step before the iteration goes one way, to the nearest equilibrium on its side: the path in is not the
 //! path out. It ends where equilibria are stable and leaps where they are not.
 
-use thenar_surface::Vec3;
+use thenar_surface::{Gap, Product, Vec3};
 
 use crate::effects::{ActiveEffect, Effect, adhesion};
-use crate::linearize::Solved;
+use crate::linearize::{Solved, vertex};
 use crate::skin::Skin;
-use crate::zone::Detection;
+use crate::zone::{Detection, limits};
 
 /// Largest attraction of a vertex over `sqrt(2 w A / a)`, with A its area and a its own compliance.
 ///
@@ -25,9 +25,13 @@ const STEADY: f64 = 0.85;
 /// meshes pull-off is higher still; DMT's limit, a wide range, does not use this.
 const MESH_SHARE: f64 = 0.95;
 /// Change of attraction over its largest value that ends the iteration.
-const TOLERANCE: f64 = 3e-4;
+const TOLERANCE: f64 = 1e-5;
 /// Most solves of one press.
 pub const MOST_SOLVES: usize = 400;
+/// Solves in which attraction turns with the product's normal; then it turns ever less, since facets make it flicker.
+const SEEKING_SOLVES: usize = 8;
+/// Solves after which it turns no more.
+const TURNING_SOLVES: usize = 40;
 
 /// Attraction of one site.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +46,31 @@ pub struct Pull {
     pub newton: f64,
 }
 
-/// The law of every site of a skin in one state.
+impl Pull {
+    /// Load on the skin, N.
+    pub fn load(&self) -> Vec3 {
+        -self.normal * self.newton
+    }
+}
+
+/// Keeps the normals of `after` near those of the solve before, the longer the nearer: where they flicker their mean is left.
+pub fn steady(before: &[Pull], after: &mut [Pull], solve: usize) {
+    let share = match solve {
+        0..=SEEKING_SOLVES => return,
+        TURNING_SOLVES.. => 0.0,
+        _ => 1.0 / (solve - SEEKING_SOLVES + 1) as f64,
+    };
+    let mut known = before.iter().peekable();
+    for pull in after {
+        while known.next_if(|known| known.site < pull.site).is_some() {}
+        if let Some(known) = known.next_if(|known| known.site == pull.site) {
+            let mean = known.normal + (pull.normal - known.normal) * share;
+            pull.normal = mean.try_normalize(0.0).unwrap_or(known.normal);
+        }
+    }
+}
+
+/// The law of every site of a skin.
 pub(crate) struct Attraction {
     /// Largest attraction, N, and gap at which it ends, mm; by site, zero where there is none.
     law: Vec<(f64, f64)>,
@@ -51,8 +79,9 @@ pub(crate) struct Attraction {
 }
 
 impl Attraction {
-    /// The law of the skin under response weights; None without adhesion.
-    pub fn new(skin: &Skin, weight: &[f64]) -> Option<Attraction> {
+    /// The law of the skin by its response weights in rest, so that it stays the same whatever is pressed: attraction that
+    /// changed with the posture would do work of its own. None without adhesion.
+    pub fn new(skin: &Skin) -> Option<Attraction> {
         let active: Vec<&ActiveEffect> = skin
             .effects()
             .iter()
@@ -63,6 +92,7 @@ impl Attraction {
         if active.is_empty() {
             return None;
         }
+        let weight = skin.rest_weights();
         let law_at = |site: usize| {
             let region = skin.sites.home_region(site);
             let here = active
@@ -92,32 +122,53 @@ impl Attraction {
     }
 
     /// Attraction of the skin as a solve left it, from the true posture of `detection`.
-    pub fn pulls(&self, skin: &Skin, detection: &Detection, solved: &Solved) -> Vec<Pull> {
+    ///
+    /// It falls with the distance from where the skin now lies and pulls along the normal there, the distance's gradient: so it
+    /// has a potential.
+    pub fn pulls(
+        &self,
+        skin: &Skin,
+        (product, detection): (&Product, &Detection),
+        solved: &Solved,
+    ) -> Vec<Pull> {
         let mut pulls = Vec::new();
-        for (site, &(most, range)) in self.law.iter().enumerate() {
-            let vertex = skin.sites.vertex[site] as usize;
-            let Some(gap) = detection.gaps[vertex].as_ref().filter(|_| most > 0.0) else {
+        let (mut apart, mut points): (Vec<(usize, Gap)>, Vec<Vec3>) = (Vec::new(), Vec::new());
+        for site in (0..self.law.len()).filter(|&s| self.law[s].0 > 0.0) {
+            let vertex = vertex(skin, site as u32);
+            let Some(gap) = detection.gaps[vertex] else {
                 continue;
             };
             let moved = solved.displacement[site];
             if gap.distance - moved.norm() > self.farthest {
                 continue;
             }
-            let distance = match solved.zone.binary_search(&(site as u32)) {
-                Ok(k) => solved.slack[k],
-                Err(_) => gap.distance + moved.dot(&gap.normal),
-            };
-            let newton = most * (1.0 - distance.max(0.0) / range);
-            if newton > 0.0 {
-                pulls.push(Pull {
-                    site: site as u32,
-                    normal: gap.normal,
-                    closest: gap.closest,
-                    newton,
-                });
+            match solved.zone.binary_search(&(site as u32)) {
+                Ok(k) => pulls.extend(self.pull(site, &solved.touch[k], solved.slack[k])),
+                Err(_) => {
+                    apart.push((site, gap));
+                    points.push(detection.positions[vertex] + moved);
+                }
             }
         }
+        let facing: Vec<Vec3> = apart.iter().map(|(_, gap)| -gap.normal).collect();
+        let hints: Vec<u32> = apart.iter().map(|(_, gap)| gap.triangle).collect();
+        let gaps = product.gaps_near(&points, Some(&facing), limits(), &hints);
+        let reached = apart.iter().zip(gaps);
+        pulls.extend(reached.filter_map(|((site, _), gap)| self.pull(*site, &gap?, gap?.distance)));
+        pulls.sort_unstable_by_key(|pull| pull.site);
         pulls
+    }
+
+    /// Attraction of a site at a distance (mm) from where it touches or would.
+    fn pull(&self, site: usize, touch: &Gap, distance: f64) -> Option<Pull> {
+        let (most, range) = self.law[site];
+        let newton = most * (1.0 - distance.max(0.0) / range);
+        (newton > 0.0).then_some(Pull {
+            site: site as u32,
+            normal: touch.normal,
+            closest: touch.closest,
+            newton,
+        })
     }
 
     /// True if two attractions are the same within the tolerance.
@@ -128,7 +179,7 @@ impl Attraction {
             let change = match (a.peek(), b.peek()) {
                 (None, None) => return true,
                 (Some(x), Some(y)) if x.site == y.site => {
-                    let change = (x.newton - y.newton).abs();
+                    let change = (x.load() - y.load()).norm();
                     a.next();
                     b.next();
                     change
