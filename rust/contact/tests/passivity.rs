@@ -32,8 +32,6 @@ fn skin() -> Skin {
 
 /// Gain that counts as none: the solver's tolerance, elastic cycles reach 1e-8.
 const TOLERANCE: f64 = 1e-6;
-/// The same where the skin clings: attraction is found to 3e-4 of its largest.
-const CLINGING_TOLERANCE: f64 = 3e-4;
 
 /// Friction or adhesion or both, and any of the memories.
 fn draw(dice: &mut Dice) -> Vec<ActiveEffect> {
@@ -159,19 +157,16 @@ fn follow(skin: &mut Skin, tool: &Product, drawn: &Draw) -> f64 {
     let names: Vec<&str> = drawn.effects.iter().map(|e| e.entry().name).collect();
     skin.set_effects(drawn.effects.clone(), &Control::none())
         .unwrap();
-    let clings = names.contains(&"adhesion");
-    let most = if clings {
-        CLINGING_TOLERANCE
-    } else {
-        TOLERANCE
-    };
     let mut gain = gained(skin, tool, &drawn.protocol);
-    if clings && gain > most {
+    if names.contains(&"adhesion") && gain > TOLERANCE {
         println!("cycle {} by denser rows: {gain:.1e} {names:?}", drawn.count);
         gain = gained(skin, tool, &denser(&drawn.protocol));
     }
     let count = drawn.count;
-    assert!(gain <= most, "cycle {count} gives {gain:.1e}: {names:?}");
+    assert!(
+        gain <= TOLERANCE,
+        "cycle {count} gives {gain:.1e}: {names:?}"
+    );
     gain
 }
 
