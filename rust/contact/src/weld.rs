@@ -1,6 +1,7 @@
 //! Vertices that lie on one another, as at the seams of unwelded meshes, made one.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 use thenar_surface::{Mesh, MeshError, Vec3};
 
@@ -86,7 +87,8 @@ fn representatives(points: &[Vec3], radius: &[f64]) -> Vec<u32> {
         return (0..points.len() as u32).collect();
     }
     let cell = |p: &Vec3| [p.x, p.y, p.z].map(|c| (c / widest).floor() as i64);
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(points.len());
+    let mut cells: HashMap<[i64; 3], Vec<u32>, BuildHasherDefault<CellHasher>> =
+        HashMap::with_capacity_and_hasher(points.len(), BuildHasherDefault::default());
     let mut found = Vec::with_capacity(points.len());
     for (i, p) in points.iter().enumerate() {
         let home = cell(p);
@@ -109,6 +111,26 @@ fn representatives(points: &[Vec3], radius: &[f64]) -> Vec<u32> {
         found.push(best.unwrap_or(i as u32));
     }
     found
+}
+
+/// Hashes the numbers of a cell; the map is only asked, never listed, so that its order does not matter.
+#[derive(Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 29)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for eight in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..eight.len()].copy_from_slice(eight);
+            // Knuth's multiplicative hashing with the golden ratio in 64 bits.
+            let mixed = (self.0.rotate_left(23) ^ u64::from_le_bytes(word)).wrapping_add(1);
+            self.0 = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,14 +7,40 @@ use thenar_surface::{Adjacency, Vec3};
 /// A sensel of the paper's mat (4.2 sensors per cm2), mm2.
 pub const SENSEL_AREA: f64 = 24.0;
 
+/// Centers nearer than this to another one are left out, mm: a sensel's mean changes by less than a thousandth over it.
+const CENTER_SPACING: f64 = 0.25;
+
 /// Mean pressure over the `SENSEL_AREA` around each of `centers`; the largest, MPa. 0 without centers.
 ///
 /// The patch grows from its center over the mesh in order of distance until it has the area; the last vertex counts in part.
 pub fn patch_peak(centers: &[u32], field: Field<'_>) -> f64 {
-    centers
-        .iter()
-        .map(|&c| patch_mean(c, field))
-        .fold(0.0, f64::max)
+    let mut seen = vec![u32::MAX; field.area.len()];
+    let thinned = thinned(centers, field);
+    let means = thinned.iter().map(|&c| patch_mean(c, field, &mut seen));
+    means.fold(0.0, f64::max)
+}
+
+/// Centers of which none lies within [`CENTER_SPACING`] of an earlier one along the mesh.
+fn thinned(centers: &[u32], field: Field<'_>) -> Vec<u32> {
+    let mut is_covered = vec![false; field.area.len()];
+    let (mut kept, mut open) = (Vec::new(), Vec::new());
+    for &center in centers {
+        if is_covered[center as usize] {
+            continue;
+        }
+        kept.push(center);
+        open.push(center);
+        while let Some(v) = open.pop() {
+            for &next in field.adjacency.neighbors(v as usize) {
+                let off = field.positions[next as usize] - field.positions[center as usize];
+                if !is_covered[next as usize] && off.norm() < CENTER_SPACING {
+                    is_covered[next as usize] = true;
+                    open.push(next);
+                }
+            }
+        }
+    }
+    kept
 }
 
 /// A pressure field on a mesh.
@@ -53,13 +79,14 @@ impl PartialOrd for Reached {
     }
 }
 
-fn patch_mean(center: u32, field: Field<'_>) -> f64 {
+/// `seen` holds the center from which each vertex was last reached.
+fn patch_mean(center: u32, field: Field<'_>, seen: &mut [u32]) -> f64 {
     let origin = field.positions[center as usize];
     let mut queue = BinaryHeap::from([Reached {
         distance: 0.0,
         vertex: center,
     }]);
-    let mut seen = vec![center];
+    seen[center as usize] = center;
     let (mut area, mut force) = (0.0, 0.0);
     while let Some(Reached { vertex, .. }) = queue.pop() {
         let v = vertex as usize;
@@ -70,8 +97,8 @@ fn patch_mean(center: u32, field: Field<'_>) -> f64 {
             break;
         }
         for &next in field.adjacency.neighbors(v) {
-            if let Err(slot) = seen.binary_search(&next) {
-                seen.insert(slot, next);
+            if seen[next as usize] != center {
+                seen[next as usize] = center;
                 let distance = (field.positions[next as usize] - origin).norm();
                 queue.push(Reached {
                     distance,
