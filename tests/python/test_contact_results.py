@@ -48,7 +48,7 @@ def test_every_public_attribute_has_its_shape(contact):
         assert isinstance(getattr(contact, name), float)
     assert all(isinstance(sentence, str) for sentence in contact.warnings)
     assert contact.seconds and all(time >= 0 for time in contact.seconds.values())
-    assert set(contact.residual) == {"complementarity", "penetration_mm", "load_balance"}
+    assert set(contact.residual) == {"complementarity", "penetration_mm", "load_balance", "far_field"}
     assert "N on" in repr(contact)
 
 

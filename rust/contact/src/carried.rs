@@ -2,11 +2,12 @@
 
 use thenar_surface::{Gap, Vec3};
 
+use crate::hierarchy::Carried;
 use crate::linearize::{Setting, vertex};
-use crate::response::assembly::{Load, displacements};
+use crate::response::assembly::Load;
 use crate::skin::Skin;
 use crate::zone::limits;
-use crate::{Model, paper};
+use crate::{ContactError, Control, Model, paper};
 
 /// What a solve found, by site of its zone.
 pub struct Found<'a> {
@@ -24,10 +25,19 @@ pub struct Found<'a> {
     pub touch: &'a [Gap],
 }
 
-/// Displacement of every site.
-pub fn field(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>) -> Vec<Vec3> {
+/// Displacement of every site, and how far a large skin's is from the direct sum (0: not at all).
+///
+/// # Errors
+/// [`ContactError::Cancelled`].
+pub fn field(
+    skin: &Skin,
+    setting: &Setting<'_>,
+    found: &Found<'_>,
+    control: &Control,
+) -> Result<(Vec<Vec3>, f64), ContactError> {
     if skin.model == Model::Paper {
-        return paper::displacement(skin, setting, (found.zone, found.force, found.travel));
+        let field = paper::displacement(skin, setting, (found.zone, found.force, found.travel));
+        return Ok((field, 0.0));
     }
     let mut loads = Vec::new();
     for (k, &site) in found.zone.iter().enumerate() {
@@ -39,12 +49,15 @@ pub fn field(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>) -> Vec<Vec3>
             });
         }
     }
-    let mut field = displacements(&skin.response, &loads, &skin.sites);
+    let Carried {
+        mut field,
+        certificate,
+    } = skin.carry(loads, control)?;
     for (site, u) in field.iter_mut().enumerate() {
         *u *= setting.weight[site] * skin.sites.follow[site];
     }
     keep_out(skin, setting, found, &mut field);
-    field
+    Ok((field, certificate))
 }
 
 /// Puts skin in contact, and what the field would carry into the product, where the solve left it: along its direction.

@@ -45,6 +45,16 @@ pub enum ContactError {
         spacing_mm: f64,
         thickness_mm: f64,
     },
+    /// The zone that may touch needs more memory than a press may take.
+    #[error(
+        "{vertices} vertices of the hand may touch the product, and their response needs {needed_gib:.1} GiB, more than the \
+         {limit_gib:.0} GiB allowed; press less of the skin at once, or decimate the hand where it is finer than 0.1 mm"
+    )]
+    TooLarge {
+        vertices: usize,
+        needed_gib: f64,
+        limit_gib: f64,
+    },
     /// No vertex may carry contact.
     #[error(
         "no vertex belongs to a region: every region number is negative; number skin regions from 0"

@@ -14,6 +14,7 @@ mod errors;
 mod fields;
 mod interface;
 mod force_control;
+mod hierarchy;
 mod history;
 mod linearize;
 mod material;

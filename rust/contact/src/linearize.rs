@@ -6,10 +6,9 @@ use crate::carried::{Found, field, lifted_sites};
 use crate::direction::{LEAST_COSINE, yielding_directions};
 use crate::memory::Last;
 use crate::press::Convergence;
-use crate::response::assembly::{compliance, coupling};
+use crate::response::assembly::compliance;
 use crate::skin::Skin;
-use crate::solve::operator::Rows;
-use crate::solve::{Accuracy, solve_contact};
+use crate::solve::{Accuracy, Compliance, solve_contact};
 use crate::zone::{Detection, limits};
 use crate::{ContactError, Control, Model};
 
@@ -17,6 +16,8 @@ use crate::{ContactError, Control, Model};
 const OUTER_TOLERANCE: f64 = 0.008;
 /// The same relative to the largest penetration: shallow presses are resolved as finely as deep ones.
 const OUTER_SHARE: f64 = 5e-4;
+/// Largest certificate of a large skin's far field.
+const FAR_FIELD_TOLERANCE: f64 = 1e-4;
 /// Most re-linearizations.
 const MOST_PASSES: usize = 14;
 /// Most rounds in which sites lifted into the product join the zone.
@@ -43,6 +44,8 @@ pub struct Solved {
     pub penetration: f64,
     /// Complementarity of the last linear problem.
     pub complementarity: f64,
+    /// Largest difference of the displacement from the direct sum, on a sample of sites, relative to the largest.
+    pub far_field: f64,
     /// How it ended.
     pub convergence: Convergence,
 }
@@ -74,13 +77,13 @@ pub fn solve(
     let mut state = State::new(zone);
     let tolerance = OUTER_TOLERANCE.min(OUTER_SHARE * setting.detection.deepest());
     for round in 1.. {
-        remember_coupling(skin, &state.zone, control)?;
+        skin.couple(&state.zone, control)?;
         state.open(skin, setting);
         state.passes(skin, setting, (tolerance, control))?;
-        let field = field(skin, setting, &state.found());
+        let (field, far_field) = field(skin, setting, &state.found(), control)?;
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
         if lifted.is_empty() || round == MOST_ROUNDS {
-            return Ok(state.finish(field, worst, tolerance));
+            return Ok(state.finish((field, far_field), worst, tolerance));
         }
         state.extend(lifted);
     }
@@ -186,7 +189,10 @@ impl State {
         self.matrix(skin, setting);
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
-            self.solve_linear(&skin.memory.compliance, control)?;
+            match skin.directed() {
+                Some(matrix) => self.solve_linear(&matrix, control)?,
+                None => self.solve_linear(&skin.memory.compliance, control)?,
+            }
             self.convergence.passes = pass + 1;
             self.place(skin, setting);
             if self.misfit <= tolerance {
@@ -234,6 +240,11 @@ impl State {
         let weight = |(&site, cosine): (&u32, &f64)| setting.weight[site as usize] * cosine;
         let weights: Vec<f64> = self.zone.iter().zip(&self.cosine).map(weight).collect();
         let memory = &mut skin.memory;
+        if skin.hierarchy.is_some() {
+            let along = weights.iter().zip(&self.direction);
+            memory.along = along.map(|(w, t)| t * *w).collect();
+            return;
+        }
         match skin.model {
             Model::Layer => compliance(
                 &memory.coupling,
@@ -248,7 +259,11 @@ impl State {
         }
     }
 
-    fn solve_linear(&mut self, matrix: &Rows<f32>, control: &Control) -> Result<(), ContactError> {
+    fn solve_linear<M: Compliance>(
+        &mut self,
+        matrix: &M,
+        control: &Control,
+    ) -> Result<(), ContactError> {
         let gap: Vec<f64> = (0..self.zone.len())
             .map(|k| self.touch[k].distance - self.cosine[k] * self.travel[k])
             .collect();
@@ -308,8 +323,14 @@ impl State {
         self.force = self.zone.iter().map(find).collect();
     }
 
-    fn finish(mut self, displacement: Vec<Vec3>, worst: f64, tolerance: f64) -> Solved {
-        self.convergence.has_converged = self.misfit <= tolerance && self.complementarity <= 1e-10;
+    fn finish(
+        mut self,
+        (displacement, far_field): (Vec<Vec3>, f64),
+        worst: f64,
+        tolerance: f64,
+    ) -> Solved {
+        let is_solved = self.misfit <= tolerance && self.complementarity <= 1e-10;
+        self.convergence.has_converged = is_solved && far_field <= FAR_FIELD_TOLERANCE;
         let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
         let bearing = self.direction.iter().zip(&self.cosine);
         Solved {
@@ -322,6 +343,7 @@ impl State {
             displacement,
             penetration: deepest.max(0.0),
             complementarity: self.complementarity,
+            far_field,
             convergence: self.convergence,
         }
     }
@@ -330,19 +352,4 @@ impl State {
 /// The welded vertex of a site.
 pub fn vertex(skin: &Skin, site: u32) -> usize {
     skin.sites.vertex[site as usize] as usize
-}
-
-/// Makes the coupling of `zone`, or keeps the last one if it is the same.
-fn remember_coupling(skin: &mut Skin, zone: &[u32], control: &Control) -> Result<(), ContactError> {
-    if skin.memory.zone == zone && !zone.is_empty() {
-        return Ok(());
-    }
-    control.step("response", 0.0)?;
-    for part in zone.chunks(512) {
-        skin.response.make_rows(part, &skin.sites);
-        control.check()?;
-    }
-    skin.memory.coupling = coupling(&skin.response, zone, &skin.sites);
-    skin.memory.zone = zone.to_vec();
-    Ok(())
 }

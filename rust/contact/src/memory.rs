@@ -1,10 +1,12 @@
 //! What one press leaves for the next, so that small moves are cheap.
 
+use crate::hierarchy::Coupled;
 use crate::interface::attraction::Pull;
 use crate::interface::shear_kernel::ShearTables;
 use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
 use crate::solve::operator::Rows;
+use thenar_surface::Vec3;
 
 /// What one press leaves for the next.
 #[derive(Debug, Clone, Default)]
@@ -14,6 +16,9 @@ pub struct Memory {
     pub coupling: Rows<f32>,
     /// The compliance of that zone, kept for its storage.
     pub compliance: Rows<f32>,
+    /// In a large skin, the coupling of that zone, and response weight times direction at each of its sites.
+    pub coupled: Coupled,
+    pub along: Vec<Vec3>,
     /// Where the last solve ended.
     pub trail: Trail,
     /// Kernels of shear, once friction has needed them.

@@ -210,7 +210,7 @@ impl Skin {
         pulls: &[Pull],
         control: &Control,
     ) -> Result<Solved, ContactError> {
-        let moved = self.moved_posture(state, pulls);
+        let moved = self.moved_posture(state, pulls, control)?;
         let detection = moved.as_ref().map_or(state.truth, |moved| &moved.detection);
         let zone = self.zone(detection);
         check_resolution(self, &zone)?;
@@ -236,12 +236,19 @@ impl Skin {
         Ok(solved)
     }
 
-    fn moved_posture(&mut self, state: &State<'_>, pulls: &[Pull]) -> Option<Moved> {
+    fn moved_posture(
+        &mut self,
+        state: &State<'_>,
+        pulls: &[Pull],
+        control: &Control,
+    ) -> Result<Option<Moved>, ContactError> {
         if state.recall.is_none() && pulls.is_empty() {
-            return None;
+            return Ok(None);
         }
         let pulled: Vec<u32> = pulls.iter().map(|pull| pull.site).collect();
-        self.response.make_rows(&pulled, &self.sites);
+        if self.hierarchy.is_none() {
+            self.response.make_rows(&pulled, &self.sites);
+        }
         let mut loads = state
             .recall
             .map_or_else(Vec::new, |recall| recall.loads.clone());
@@ -251,11 +258,16 @@ impl Skin {
                 None => (pull.site, pull.load()),
             });
         }
-        let mut moved = moved(self, state.product, (state.truth, &loads), state.weight);
+        let mut moved = moved(
+            self,
+            state.product,
+            (state.truth, &loads),
+            (state.weight, control),
+        )?;
         if !pulls.is_empty() {
             moved.detection.deepen(self);
         }
-        Some(moved)
+        Ok(Some(moved))
     }
 
     /// What an attraction is in the elastic tissue's terms: borne at once by what has not yet faded, N.

@@ -3,6 +3,7 @@
 use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
 
 use crate::effects::tissue::{Place, Tissue};
+use crate::hierarchy::{Ground, Hierarchy};
 use crate::history::state::History;
 use crate::memory::Memory;
 use crate::response::grid::RANGE_IN_THICKNESSES;
@@ -35,6 +36,8 @@ pub struct Skin {
     /// Median edge, mm.
     pub(crate) spacing: f64,
     pub(crate) response: Response,
+    /// In a large skin, what stands for the response's rows.
+    pub(crate) hierarchy: Option<Hierarchy>,
     pub(crate) memory: Memory,
     /// What the tissue remembers, while a protocol is followed.
     pub(crate) history: Option<History>,
@@ -95,6 +98,11 @@ impl Skin {
         control.step("preparing", 0.8)?;
         let tissue = Tissue::bare(&materials);
         let response = Response::new(model, &tissue.geometry, &sites, &metric);
+        let ground = Ground {
+            response: &response,
+            sites: &sites,
+        };
+        let hierarchy = Hierarchy::new(model, ground);
         control.step("preparing", 1.0)?;
         let rest_area = vertex_areas(&welded.mesh);
         let memory = Memory::default();
@@ -113,6 +121,7 @@ impl Skin {
             rest_area,
             spacing,
             response,
+            hierarchy,
             memory,
             history: None,
             warnings,
@@ -217,6 +226,7 @@ impl Skin {
                 self.range = range;
             }
             self.response = Response::new(self.model, &tissue.geometry, &self.sites, &self.metric);
+            self.hierarchy = Hierarchy::new(self.model, self.ground());
             self.memory = Memory::default();
         }
         (self.tissue, self.effects) = (tissue, effects);

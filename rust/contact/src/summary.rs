@@ -94,6 +94,7 @@ pub fn summarize(
             complementarity: solved.complementarity,
             penetration_mm: solved.penetration,
             load_balance,
+            far_field: solved.far_field,
         },
         convergence: Convergence {
             has_converged: pressed.has_converged(),

@@ -56,7 +56,7 @@ pub struct Contact {
     /// A record of the drag, None without: total_force_n (3,) on the skin, slide_mm (3,), twist_rad (3,), dissipated_nmm,
     /// stored_nmm, residual.
     friction: Py<PyAny>,
-    /// A record: complementarity, penetration_mm, load_balance.
+    /// A record: complementarity, penetration_mm, load_balance, far_field.
     residual: Py<PyAny>,
     /// A record: has_converged, passes, pivots, cg_steps.
     convergence: Py<PyAny>,
@@ -214,6 +214,7 @@ fn residual_record(py: Python<'_>, residual: &thenar_contact::Residual) -> PyRes
     entries.set_item("complementarity", residual.complementarity)?;
     entries.set_item("penetration_mm", residual.penetration_mm)?;
     entries.set_item("load_balance", residual.load_balance)?;
+    entries.set_item("far_field", residual.far_field)?;
     record(entries)
 }
 

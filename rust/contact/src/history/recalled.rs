@@ -4,9 +4,10 @@ use thenar_surface::{Product, Vec3};
 
 use super::state::Recall;
 use crate::linearize::Solved;
-use crate::response::assembly::{Load, displacements};
+use crate::response::assembly::Load;
 use crate::skin::Skin;
 use crate::zone::{Detection, limits};
+use crate::{ContactError, Control};
 
 /// Skin nearer to the product than this, after it was moved, is measured anew, mm; farther skin keeps a first-order gap.
 const NEAR: f64 = 2.0;
@@ -32,18 +33,21 @@ impl Moved {
 }
 
 /// Moves the posture of `truth` by loads (N) on sites that have their rows of the response.
+///
+/// # Errors
+/// [`ContactError::Cancelled`].
 pub fn moved(
     skin: &Skin,
     product: &Product,
     (truth, loads): (&Detection, &[(u32, Vec3)]),
-    weight: &[f64],
-) -> Moved {
+    (weight, control): (&[f64], &Control),
+) -> Result<Moved, ContactError> {
     let load = |&(site, load): &(u32, Vec3)| Load {
         site,
         load: load * weight[site as usize],
     };
     let loads: Vec<Load> = loads.iter().map(load).collect();
-    let mut field = displacements(&skin.response, &loads, &skin.sites);
+    let mut field = skin.carry(loads, control)?.field;
     for (site, u) in field.iter_mut().enumerate() {
         *u *= weight[site] * skin.sites.follow[site];
     }
@@ -75,7 +79,7 @@ pub fn moved(
         gaps,
         max_penetration: truth.max_penetration.clone(),
     };
-    Moved { detection, field }
+    Ok(Moved { detection, field })
 }
 
 /// Turns the solution of the moved posture into that of the true one; returns what each site of the zone bears in the

@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod bonded_layer;
+pub mod entries;
 pub mod grid;
 pub mod kernel;
 pub mod stiff_skin;

@@ -3,8 +3,6 @@
 //! A row holds `K(r_ij)` (1/mm), so that `u_i = s_i s_j K_ij P_j` with `s = sqrt((1 - nu) / (2 pi G))`. It depends on the rest
 //! mesh and on thicknesses alone. The operator is symmetric: both members of a pair are computed by the same operations.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 use thenar_surface::SkinDistance;
 
@@ -58,13 +56,13 @@ pub struct Response {
     layers: Vec<Layer>,
     tables: KernelTables,
     /// Range of the response around each site, mm.
-    reach: Vec<f64>,
+    pub(super) reach: Vec<f64>,
     /// Two layers and the first one's weight, by site.
     mix: Vec<Mix>,
     /// Patches within range of each patch, ascending, with the offset of their sites in a row.
     near: Vec<Vec<(u32, u32)>>,
     /// Lower bounds of skin distance to those patches, mm.
-    at_least: Vec<Vec<f64>>,
+    pub(super) at_least: Vec<Vec<f64>>,
     cuts: Vec<Cut>,
     stiff: Option<StiffSkin>,
     rows: Vec<Option<Box<[f32]>>>,
@@ -137,7 +135,7 @@ impl Response {
     }
 
     /// Length of a row of `patch`.
-    fn row_length(&self, patch: u32, sites: &Sites) -> usize {
+    pub(super) fn row_length(&self, patch: u32, sites: &Sites) -> usize {
         let end = |&(p, offset): &(u32, u32)| {
             let (first, last) = sites.patch_range[p as usize];
             (offset + last - first) as usize
@@ -221,7 +219,13 @@ impl Response {
 
     /// `K_ij` of the layer, 1/mm.
     #[inline]
-    fn layer_entry(&self, (i, j): (usize, usize), r: f64, psi: f64, sites: &Sites) -> f64 {
+    pub(super) fn layer_entry(
+        &self,
+        (i, j): (usize, usize),
+        r: f64,
+        psi: f64,
+        sites: &Sites,
+    ) -> f64 {
         if let Some(stiff) = &self.stiff {
             let is_near = r < 0.5 * (self.reach[i] + self.reach[j]);
             let distance = if i == j { None } else { Some(r) };
@@ -242,10 +246,19 @@ impl Response {
     }
 
     /// Psi between the sites `there` and `j`, 1/mm; one table where all are of one layer.
-    fn find_psi(&self, there: Range<usize>, j: usize, distances: &[f64], out: &mut [f64]) {
+    pub(super) fn find_psi(
+        &self,
+        there: impl Iterator<Item = usize> + Clone,
+        j: usize,
+        distances: &[f64],
+        out: &mut [f64],
+    ) {
         let (a, b, _) = self.mix[j];
-        let (c, d, _) = self.mix[there.start];
-        let is_one = a == b && self.mix[there.clone()].iter().all(|m| m.0 == c && m.1 == c);
+        let (c, d, _) = there.clone().next().map_or(self.mix[j], |i| self.mix[i]);
+        let is_one = a == b
+            && there
+                .clone()
+                .all(|i| self.mix[i].0 == c && self.mix[i].1 == c);
         if is_one && c == d {
             self.tables
                 .psi_of_pair(a as usize, c as usize, distances, out);

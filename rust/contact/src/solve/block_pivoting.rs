@@ -4,8 +4,8 @@
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
+use super::half::Compliance;
 use super::kept::Kept;
-use super::operator::{Entry, Rows};
 use super::projection::mprgp;
 use crate::Control;
 
@@ -49,13 +49,13 @@ pub struct Solution {
 /// Solves the contact of `matrix` (mm/N) under `gap` (mm, negative: penetrating), starting from the forces `start`.
 ///
 /// Always ends; how well is in [`Solution::complementarity`]. When cancelled it ends early: check `control` afterwards.
-pub fn solve_contact<T: Entry>(
-    matrix: &Rows<T>,
+pub fn solve_contact<M: Compliance>(
+    matrix: &M,
     gap: &[f64],
     start: Option<&[f64]>,
     (accuracy, control): (Accuracy, &Control),
 ) -> Solution {
-    let n = matrix.len();
+    let n = matrix.diagonal().len();
     let scale = gap.iter().fold(0.0, |most, d| f64::max(most, -d));
     let mut run = Run {
         force: vec![0.0; n],
@@ -94,7 +94,7 @@ pub fn solve_contact<T: Entry>(
 }
 
 /// Largest |min(A_ii p_i, s_i)|, mm.
-fn natural_residual<T: Entry>(matrix: &Rows<T>, force: &[f64], slack: &[f64]) -> f64 {
+fn natural_residual<M: Compliance>(matrix: &M, force: &[f64], slack: &[f64]) -> f64 {
     let terms = force
         .iter()
         .zip(matrix.diagonal())
@@ -130,9 +130,9 @@ impl<'a> Run<'a> {
     }
 
     /// True if the set was found and the forces are tight.
-    fn pivot<T: Entry>(
+    fn pivot<M: Compliance>(
         &mut self,
-        matrix: &'a Rows<T>,
+        matrix: &'a M,
         gap: &[f64],
         (scale, accuracy): (f64, Accuracy),
         control: &Control,
@@ -193,9 +193,9 @@ impl<'a> Run<'a> {
         self.pivots += 1;
     }
 
-    fn solve_set<T: Entry>(
+    fn solve_set<M: Compliance>(
         &mut self,
-        matrix: &'a Rows<T>,
+        matrix: &'a M,
         gap: &[f64],
         (level, scale): (usize, f64),
     ) -> bool {
@@ -207,10 +207,10 @@ impl<'a> Run<'a> {
             steps: 40 + 6 * set.len(),
         };
         // Single precision suffices to find the set.
-        let is_narrow = level <= ROUGH_LEVEL && size_of::<T>() > 4;
+        let is_rough = level <= ROUGH_LEVEL;
         let kept = match self.kept.take() {
-            Some(kept) if kept.is_narrow == is_narrow && kept.holds(&set) => kept,
-            _ => Kept::new(matrix, &set, is_narrow),
+            Some(kept) if kept.is_narrow == matrix.is_narrow(is_rough) && kept.holds(&set) => kept,
+            _ => matrix.kept(&set, is_rough),
         };
         let right: Vec<f64> = kept.rows.iter().map(|&i| -gap[i as usize]).collect();
         let mut x: Vec<f64> = kept.rows.iter().map(|&i| self.force[i as usize]).collect();
@@ -226,7 +226,7 @@ impl<'a> Run<'a> {
         end == CgEnd::Converged
     }
 
-    fn find_slack<T: Entry>(&mut self, matrix: &Rows<T>, gap: &[f64]) {
+    fn find_slack<M: Compliance>(&mut self, matrix: &M, gap: &[f64]) {
         matrix.times(&self.force, &mut self.slack);
         for (s, d) in self.slack.iter_mut().zip(gap) {
             *s += d;
@@ -234,7 +234,7 @@ impl<'a> Run<'a> {
     }
 
     /// The slack outside the contact set, which is all that finding the set needs.
-    fn find_outer_slack<T: Entry>(&mut self, matrix: &Rows<T>, gap: &[f64]) {
+    fn find_outer_slack<M: Compliance>(&mut self, matrix: &M, gap: &[f64]) {
         let outer: Vec<u32> = (0..self.force.len() as u32)
             .filter(|&i| !self.in_contact[i as usize])
             .collect();
@@ -261,6 +261,7 @@ impl<'a> Run<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::operator::Rows;
 
     const FULL: (Accuracy, &Control<'static>) = (
         Accuracy::Full,

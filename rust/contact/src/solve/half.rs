@@ -1,5 +1,6 @@
 //! The lower half of a symmetric matrix: half the memory to read in a product, which is what a product's time goes to.
 
+use super::kept::Kept;
 use super::operator::{Entry, Rows, Run};
 
 /// A symmetric matrix as a linear map.
@@ -18,6 +19,42 @@ impl<T: Entry> Symmetric for Rows<T> {
 
     fn times(&self, x: &[f64], out: &mut [f64]) {
         Rows::times(self, x, out);
+    }
+}
+
+/// A compliance that contact is solved with, mm/N.
+pub trait Compliance: Symmetric {
+    /// Some rows of the matrix times `x`.
+    fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]);
+
+    /// A bound on the largest eigenvalue.
+    fn norm_bound(&self) -> f64;
+
+    /// The part that a contact set (ascending) is solved on; a rough solution may be had with less precision.
+    fn kept(&self, set: &[u32], is_rough: bool) -> Kept<'_>;
+
+    /// Whether that part has less precision than the matrix.
+    fn is_narrow(&self, is_rough: bool) -> bool;
+}
+
+impl<T: Entry> Compliance for Rows<T> {
+    fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
+        Rows::times_rows(self, rows, x, out);
+    }
+
+    /// Gershgorin's.
+    fn norm_bound(&self) -> f64 {
+        (0..self.len())
+            .map(|i| self.row(i).1.iter().map(|v| v.wide().abs()).sum())
+            .fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    fn kept(&self, set: &[u32], is_rough: bool) -> Kept<'_> {
+        Kept::new(self, set, Compliance::is_narrow(self, is_rough))
+    }
+
+    fn is_narrow(&self, is_rough: bool) -> bool {
+        is_rough && size_of::<T>() > 4
     }
 }
 

@@ -14,6 +14,8 @@ pub struct Kept<'a> {
     pub matrix: Box<dyn Symmetric + 'a>,
     /// Whether it is in single precision only.
     pub is_narrow: bool,
+    /// For which of the rows the matrix answers, where it is not for all.
+    answers: Option<Vec<bool>>,
 }
 
 impl<'a> Kept<'a> {
@@ -27,6 +29,7 @@ impl<'a> Kept<'a> {
                     rows,
                     matrix: Box::new(matrix),
                     is_narrow,
+                    answers: None,
                 };
             }
             if is_narrow {
@@ -43,11 +46,27 @@ impl<'a> Kept<'a> {
             rows,
             matrix,
             is_narrow,
+            answers: None,
+        }
+    }
+
+    /// All `unknowns`, of which the matrix answers for `set` (ascending) alone.
+    pub fn in_place(unknowns: usize, set: &[u32], matrix: Box<dyn Symmetric + 'a>) -> Self {
+        let mut answers = vec![false; unknowns];
+        set.iter().for_each(|&i| answers[i as usize] = true);
+        Kept {
+            rows: (0..unknowns as u32).collect(),
+            matrix,
+            is_narrow: false,
+            answers: Some(answers),
         }
     }
 
     /// Whether a set (ascending) lies within these rows.
     pub fn holds(&self, set: &[u32]) -> bool {
+        if let Some(answers) = &self.answers {
+            return set.iter().all(|&i| answers[i as usize]);
+        }
         let mut rows = self.rows.iter();
         set.iter().all(|i| rows.any(|j| j == i))
     }

@@ -11,3 +11,5 @@ mod projection;
 
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
+pub use half::{Compliance, Symmetric};
+pub use kept::Kept;

@@ -1,21 +1,21 @@
 //! The solver that always ends: modified proportioning with reduced gradient projections (MPRGP, Dostal & Schoeberl 2005).
 
-use super::operator::{Entry, Rows};
+use super::half::Compliance;
 use crate::Control;
 
 /// Minimizes `x A x / 2 + d x` over `x >= 0`, from the feasible part of the `x` given.
 ///
 /// Stops when the free and the chopped gradient are within `tolerance` (mm), or after `steps` products. Returns the steps.
-pub fn mprgp<T: Entry>(
-    matrix: &Rows<T>,
+pub fn mprgp<M: Compliance>(
+    matrix: &M,
     gap: &[f64],
     x: &mut [f64],
     limits: (f64, usize),
     control: &Control,
 ) -> usize {
     let (tolerance, steps) = limits;
-    let n = matrix.len();
-    let step_length = 1.0 / norm_bound(matrix);
+    let n = matrix.diagonal().len();
+    let step_length = 1.0 / matrix.norm_bound();
     for v in x.iter_mut() {
         *v = v.max(0.0);
     }
@@ -95,7 +95,7 @@ fn advance(x: &mut [f64], gradient: &mut [f64], direction: &[f64], image: &[f64]
     }
 }
 
-fn residual<T: Entry>(matrix: &Rows<T>, gap: &[f64], x: &[f64], out: &mut [f64]) {
+fn residual<M: Compliance>(matrix: &M, gap: &[f64], x: &[f64], out: &mut [f64]) {
     matrix.times(x, out);
     for (o, d) in out.iter_mut().zip(gap) {
         *o += d;
@@ -107,13 +107,6 @@ fn free_part(x: &[f64], gradient: &[f64]) -> Vec<f64> {
         .zip(gradient)
         .map(|(x, g)| if *x > 0.0 { *g } else { 0.0 })
         .collect()
-}
-
-/// Gershgorin's bound on the largest eigenvalue.
-fn norm_bound<T: Entry>(matrix: &Rows<T>) -> f64 {
-    (0..matrix.len())
-        .map(|i| matrix.row(i).1.iter().map(|v| v.wide().abs()).sum())
-        .fold(f64::MIN_POSITIVE, f64::max)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

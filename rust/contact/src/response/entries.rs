@@ -1,0 +1,70 @@
+//! Entries of the response between any sites: the very ones that its rows hold.
+
+use super::rows::Response;
+use super::skin_metric::{Site, arc_lengths};
+use crate::sites::Sites;
+
+/// What entries are made with, kept for its storage.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    distances: Vec<f64>,
+    psi: Vec<f64>,
+}
+
+/// Sites of one patch.
+#[derive(Clone, Copy)]
+pub struct Group<'a> {
+    /// The sites.
+    pub sites: &'a [u32],
+    /// Their rest positions and normals.
+    pub rest: &'a [Site],
+}
+
+impl Response {
+    /// Memory that the rows of `zone` and the coupling between them may take, bytes.
+    pub fn bytes(&self, zone: &[u32], sites: &Sites) -> f64 {
+        let row = |&site: &u32| self.row_length(sites.patch[site as usize], sites);
+        let entries: f64 = zone.iter().map(|site| row(site) as f64).sum();
+        // The coupling, and the compliance made of it, hold what lies within the zone.
+        let within: f64 = zone
+            .iter()
+            .map(|site| row(site).min(zone.len()) as f64)
+            .sum();
+        size_of::<f32>() as f64 * (entries + 2.0 * within)
+    }
+
+    /// The farthest that any site is felt, mm.
+    pub fn most_reach(&self) -> f64 {
+        self.reach.iter().fold(0.0, |most, r| f64::max(most, *r))
+    }
+
+    /// Patches within range of `patch`, each with the lower bound of its skin distance, mm.
+    pub fn bounds(&self, patch: u32) -> impl Iterator<Item = (u32, f64)> {
+        let bounds = self.at_least[patch as usize].iter();
+        self.near(patch).iter().map(|p| p.0).zip(bounds.copied())
+    }
+
+    /// `K` of model layer between the sites of a group and site `j`, 1/mm, as a row in memory holds it; `bound` is the two
+    /// patches' lower bound of the skin distance (mm), infinite where they do not feel each other.
+    pub fn entries(
+        &self,
+        there: Group<'_>,
+        (j, bound): (usize, f64),
+        (sites, scratch): (&Sites, &mut Scratch),
+        out: &mut [f32],
+    ) {
+        if bound == f64::INFINITY {
+            out.fill(0.0);
+            return;
+        }
+        let Scratch { distances, psi } = scratch;
+        distances.resize(out.len(), 0.0);
+        psi.resize(out.len(), 0.0);
+        arc_lengths(there.rest, &sites.rest[j], bound, distances);
+        let places = there.sites.iter().map(|&i| i as usize);
+        self.find_psi(places.clone(), j, distances, psi);
+        for ((i, out), (r, psi)) in places.zip(out).zip(distances.iter().zip(psi.iter())) {
+            *out = (self.layer_entry((i, j), *r, *psi, sites) * self.kept(i, j)) as f32;
+        }
+    }
+}
