@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import freshness, operators, panel, settings
+from . import curves, freshness, operators, panel, settings
 
 CLASSES = (*settings.CLASSES, *operators.CLASSES, *panel.CLASSES)
 
@@ -17,6 +17,7 @@ def register():
 def unregister():
     """Unregister them again."""
     freshness.forget()
+    curves.forget()
     settings.unregister_properties()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -6,7 +6,7 @@ from functools import partial
 from .. import native, reports
 from ..recordings import settings as recordings
 from ..scene.checks import Refusal
-from . import freshness, reading, settings
+from . import curves, freshness, reading, settings
 
 
 def steps(context):
@@ -21,6 +21,9 @@ def steps(context):
     result, told, study_hash = yield partial(_diagnose, path)
     found = reading.parse(told)
     settings.fill(state, told, (title, path, study_hash))
+    named = found.get("findings", ())
+    clearest = [name for finding in named for name in (finding.get("when") or {}).get("recordings", ())]
+    state.curves = curves.kept(result.curves, clearest) if named else ""
     state.stamp = reports.keep(result)
     freshness.forget()
     return found

@@ -9,7 +9,7 @@ from ..panels import text
 from ..panels.main import Tab
 from ..recordings import settings as recordings
 from ..scene.checks import Refusal
-from . import applying, freshness, letter, reading
+from . import applying, curves, freshness, letter, reading
 
 ICONS = {
     "nothing_missing": "CHECKMARK",
@@ -131,6 +131,12 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
         _draw_bars(layout, told.bars, 0.34)
         for sentence in told.gain:
             text.paragraph(layout, context, sentence)
+        kept = context.scene.thenar_diagnosis.curves
+        for number, curve in enumerate(curves.read(kept)):
+            text.paragraph(layout, context, f"Force over time in '{curve['recording']}'")
+            layout.template_icon(icon_value=curves.icon(kept, number), scale=9.0)
+        if kept:
+            text.faint(layout, context, "White: measured. Orange: before. Blue: after")
 
 
 class THENAR_PT_rivals(_Part, bpy.types.Panel):

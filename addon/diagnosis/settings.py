@@ -14,7 +14,10 @@ class ThenarModelEffect(bpy.types.PropertyGroup):
 
 
 class ThenarDiagnosis(bpy.types.PropertyGroup):
-    """`scene.thenar_diagnosis`: the last diagnosis of the scene. `findings` is the text of findings.json."""
+    """`scene.thenar_diagnosis`: the last diagnosis of the scene. `findings` is the text of findings.json.
+
+    `curves` is a text of `curves.py`: measured force, before and after.
+    """
 
     is_valid: BoolProperty()
     stamp: StringProperty()
@@ -22,6 +25,7 @@ class ThenarDiagnosis(bpy.types.PropertyGroup):
     path: StringProperty(subtype="FILE_PATH")
     study_hash: StringProperty()
     findings: StringProperty()
+    curves: StringProperty()
     made_with: StringProperty()
     model: CollectionProperty(type=ThenarModelEffect)
 

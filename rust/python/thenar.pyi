@@ -470,6 +470,9 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """The verdict's word, as in findings.json."""
+    @property
+    def curves(self) -> list[Record]:
+        """By recording: time_s, depth_mm, measured_n, before_n (parameters alone), after_n (with what was found)."""
 
 def diagnose(
     study: Study,

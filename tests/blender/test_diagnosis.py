@@ -10,7 +10,7 @@ import pytest
 import small_studies
 import stage
 from thenar_blender import native
-from thenar_blender.diagnosis import diagnosing, freshness, letter, reading
+from thenar_blender.diagnosis import curves, diagnosing, freshness, letter, reading
 from thenar_blender.scene.checks import Refusal
 
 
@@ -95,6 +95,27 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         assert line in lines, lines
     bars = letter.write(letters.FINDINGS["missing_physics"]).bars
     assert [round(bar.share, 3) for bar in bars] == [1.0, 0.238, 0.143]
+
+
+def test_curves_of_the_clearest_recordings_are_kept_and_drawn(diagnose):
+    diagnose(letters.FINDINGS["missing_physics"])
+    kept = curves.read(bpy.context.scene.thenar_diagnosis.curves)
+    assert [curve["recording"] for curve in kept] == ["slow 1", "hold"], "in the order in which the finding shows"
+    assert (kept[0]["time_s"][0], kept[0]["time_s"][-1], len(kept[0]["time_s"])) == (0.0, 19.9, 80)
+    image = curves.picture(kept[0])
+    for share, color in ((0.0, curves.MEASURED), (1.0, curves.MEASURED)):
+        x = round(10 + share * (curves.WIDTH - 20))
+        column = np.abs(image[:, x, :3] - color).sum(axis=1)
+        height = 10 + (1.0 + 1.99 * share) / 2.99 * (curves.HEIGHT - 20)
+        assert abs(column.argmin() - height) < 2 and column.min() < 0.05, "the first and the last reading"
+    before = np.abs(image[:, curves.WIDTH // 4, :3] - curves.BEFORE).sum(axis=1)
+    assert abs(before.argmin() - (10 + 2.0 / 2.99 * (curves.HEIGHT - 20))) < 2, "2 N, with parameters alone"
+    text = bpy.context.scene.thenar_diagnosis.curves
+    assert curves.icon(text, 1) == curves.icon(text, 1), "drawn once; background has no icons, so both are 0"
+    (preview,) = curves._held["previews"].values()
+    assert tuple(preview.image_size) == (curves.WIDTH, curves.HEIGHT)
+    diagnose(letters.FINDINGS["nothing_missing"])
+    assert bpy.context.scene.thenar_diagnosis.curves == ""
 
 
 def test_the_letter_names_rivals_and_the_recording_that_settles_it(diagnose):
@@ -360,6 +381,9 @@ def test_planted_relaxation_is_found_switched_on_and_reported(tmp_path):
     amplitude, numbers, region = effects()["relaxation"]
     parameters = found["findings"][0]["parameters"]
     assert amplitude == pytest.approx(parameters["amplitude"]["value"], rel=1e-5) and region == ""
+    curve = curves.read(bpy.context.scene.thenar_diagnosis.curves)[0]
+    off = {name: np.square(np.subtract(curve["measured_n"], curve[name])).mean() for name in ("before_n", "after_n")}
+    assert off["after_n"] < 0.5 * off["before_n"], "the picture shows the gain"
     for name in set(parameters) - {"amplitude"}:
         assert numbers[name] == pytest.approx(parameters[name]["value"], rel=1e-5)
     assert stage.solve().force_n > 0.0

@@ -54,6 +54,9 @@ class Layout:
         assert icon in bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
         self._say(text, icon)
 
+    def template_icon(self, icon_value=0, scale=1.0):
+        assert isinstance(icon_value, int) and scale > 1.0
+
     def progress(self, factor=0.0, text=""):
         assert 0.0 <= factor <= 1.0
         self._say(text)

@@ -1,9 +1,13 @@
 //! `thenar.diagnose`: what a study's recordings show that the model leaves out, as JSON and a page.
 
+use crate::arrays::column;
+use crate::record::record;
 use crate::running::{Hooks, run};
 use crate::study::Study;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
+use thenar_diagnosis::diagnose::Curve;
 use thenar_diagnosis::report::diagnosis_html;
 use thenar_diagnosis::{DiagnoseOptions, findings_json};
 
@@ -63,7 +67,32 @@ impl Diagnosis {
         self.inner.verdict.word()
     }
 
+    /// Records: recording, and by sample time_s, depth_mm, measured_n, before_n (parameters alone) and after_n (with what was found).
+    #[getter]
+    fn curves(&self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
+        self.inner
+            .curves
+            .iter()
+            .map(|each| curve(py, each))
+            .collect()
+    }
+
     fn __repr__(&self) -> String {
         format!("Diagnosis({})", self.inner.verdict.word())
     }
+}
+
+fn curve(py: Python<'_>, curve: &Curve) -> PyResult<Py<PyAny>> {
+    let entries = PyDict::new(py);
+    entries.set_item("recording", &curve.recording)?;
+    for (name, values) in [
+        ("time_s", &curve.time_s),
+        ("depth_mm", &curve.depth_mm),
+        ("measured_n", &curve.measured_n),
+        ("before_n", &curve.before_n),
+        ("after_n", &curve.after_n),
+    ] {
+        entries.set_item(name, column(py, values.clone()))?;
+    }
+    record(entries)
 }
