@@ -1,6 +1,7 @@
 """Force before and after as small pictures in the panel: kept as text, drawn by NumPy, held by Blender's previews."""
 
 import json
+import re
 from functools import lru_cache
 
 import bpy.utils.previews
@@ -14,13 +15,20 @@ _MARGIN, _PEN = 10, 1.6
 _PAPER, _AXIS = (0.13, 0.13, 0.13, 1.0), (0.34, 0.34, 0.34)
 MEASURED, BEFORE, AFTER = (0.92, 0.92, 0.92), (0.95, 0.55, 0.25), (0.35, 0.65, 1.0)
 """Colours, sRGB: readings are dots, the model is lines."""
+_REPEAT = re.compile(r"\d+\D*$")
 _held = {"previews": None}
 
 
 def kept(curves, recordings):
-    """The first of the library's curves in the order of `recordings`, thinned, as text; empty where there are none."""
+    """The first of the library's curves in the order of `recordings`, thinned, as text; empty where there are none.
+
+    Of recordings whose names differ in their last number only, one is kept: they repeat each other.
+    """
     order = {name: place for place, name in enumerate(dict.fromkeys(recordings))}
-    chosen = sorted(curves, key=lambda curve: order.get(curve["recording"], len(order)))[:_MOST]
+    chosen = {}
+    for curve in sorted(curves, key=lambda curve: order.get(curve["recording"], len(order))):
+        chosen.setdefault(_REPEAT.sub("", curve["recording"]), curve)
+    chosen = list(chosen.values())[:_MOST]
     return json.dumps([_thinned(curve) for curve in chosen], separators=(",", ":")) if chosen else ""
 
 

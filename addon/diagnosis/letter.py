@@ -153,10 +153,11 @@ def _phases(found):
     named = sorted(finding["effect"] for finding in found.get("findings", ()))
     tried = (each for each in found.get("rivals") or () if sorted(each.get("effects") or ()) == named and named)
     ledger = (next(tried, None) or {}).get("ledger") or {}
-    gained = {phase: value for phase, value in ledger.items() if value is not None and value > 0.0}
-    whole = sum(gained.values())
+    gained = {phase: ledger.get(phase) or 0.0 for phase in wording.PHASES}
+    whole = sum(value for value in gained.values() if value > 0.0)
     for phase, value in gained.items():
-        yield Bar(wording.PHASES.get(phase, phase), wording.share(value / whole), value / whole)
+        if value > 0.0:
+            yield Bar(wording.PHASES[phase], wording.share(value / whole), value / whole)
 
 
 def _rivals(found):

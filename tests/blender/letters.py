@@ -197,7 +197,7 @@ class Answer:
         time = [0.1 * k for k in range(200)]
         force = [1.0 + 0.01 * k for k in range(200)]
         rising = {"time_s": time, "measured_n": force, "before_n": [2.0] * 200, "after_n": force}
-        return [{"recording": name, **rising} for name in ("other", "hold", "slow 1")]
+        return [{"recording": name, **rising} for name in ("other", "hold", "slow 2", "slow 1")]
 
     def to_json(self):
         return json.dumps(self._found, indent=1)
