@@ -144,7 +144,8 @@ def _tell(asked, everyone, sealed, told, tables):
     (asked.out / "page.html").write_text(page.page(asked.split, columns, strata, faults))
     print(f"written: {asked.out / 'table.json'}, {asked.out / 'page.html'}")
     if asked.mutate:
-        return _mutate(asked.mutate, sealed, told[first], tables[first])
+        own = {name: sealed[name] for name in everyone[0].reads(sealed)}
+        return _mutate(asked.mutate, own, told[first], tables[first])
     return int(any(row.holds() is False for row in tables[first]))
 
 

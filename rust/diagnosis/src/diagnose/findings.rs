@@ -60,6 +60,8 @@ pub struct Where {
     pub center_mm: Option<[f64; 3]>,
     /// mm.
     pub radius_mm: Option<f64>,
+    /// Area of the sensels that hold the center with a probability of 90 %, mm2; of places that a mat found.
+    pub area_90_mm2: Option<f64>,
     /// Vertices of the skin.
     pub vertices: Vec<u32>,
 }

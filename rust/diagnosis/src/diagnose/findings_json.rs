@@ -85,6 +85,9 @@ fn finding(found: &Finding) -> Value {
         if let Some(radius) = place.radius_mm {
             at.insert("radius_mm".into(), json!(rounded(radius)));
         }
+        if let Some(area) = place.area_90_mm2 {
+            at.insert("area_90_mm2".into(), json!(rounded(area)));
+        }
         if !place.vertices.is_empty() {
             let list: Vec<String> = place.vertices.iter().map(u32::to_string).collect();
             at.insert("vertices_csv".into(), json!(list.join(",")));

@@ -69,6 +69,7 @@ fn inclusion(study: &Study, mismatch: &Mismatch) -> Finding {
             region: None,
             center_mm: center.or(place.map(|p| p.center_mm.into())),
             radius_mm: place.map(|p| p.radius_mm),
+            area_90_mm2: place.map(|p| p.area_90_mm2),
             vertices: place.map_or_else(Vec::new, |p| p.vertices.clone()),
         }),
         when: Some(When {

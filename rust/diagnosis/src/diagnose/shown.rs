@@ -39,6 +39,7 @@ pub fn findings(
                 region: study.skin.region_names.first().cloned(),
                 center_mm: None,
                 radius_mm: None,
+                area_90_mm2: None,
                 vertices: Vec::new(),
             }),
             when: when(ready, rungs, named),
