@@ -149,6 +149,29 @@ fn skin_beside_a_ball_is_where_hertz_says() {
     assert!(json.contains("\"residual_mm\"") && json.contains("scan_rms_residual_mm"));
     let html = comparison_html(&comparison);
     assert!(html.contains("Height over the skin at rest at a depth of 1 mm"));
+    assert!(
+        html.contains("Scanned height") && !html.contains("The noise of no recording is known")
+    );
+    assert!(html.contains("one moment"));
+}
+
+/// Without repeats the noise of a place is what its points scatter, over the root of their number.
+#[test]
+fn one_scan_tells_how_its_points_scatter() {
+    let mesh = pad(f64::INFINITY, 13.0, 0.6);
+    let shapes = vec![("ball", Shape::Sphere { radius_mm: BALL_MM })];
+    let mut study = study(mesh, material(0.01, 0.01, f64::INFINITY), shapes);
+    let scan = scanned(&|x, y| -hertz(x.hypot(y)), 8);
+    add_scan(&mut study, ("alone", "held"), scan, DEPTH_MM);
+    let comparison = compare(&study, &Options::default(), &Control::none()).unwrap();
+    let recording = &comparison.recordings[0];
+    assert!(comparison.lack_of_fit_p.is_none() && !recording.is_noise_told);
+    let noise = recording.scan.as_ref().unwrap().sigma[0];
+    println!("{noise} and {}", measure(recording, "scan_rms_residual_mm"));
+    assert!(
+        (0.7..1.5).contains(&(noise * 12f64.sqrt() / NOISE_MM)),
+        "{noise}"
+    );
 }
 
 /// The truth is a half space; a study that says 3 mm over bone predicts a bulge that no scan shows. No pose and no first touch hide it.
@@ -157,6 +180,12 @@ fn a_bulge_that_is_not_there_stands_out() {
     let comparison = under_a_ball(3.0, &|_, _| 0.0);
     println!("{}", comparison.sentence);
     assert!(comparison.lack_of_fit_p.unwrap() <= 0.01);
+    // What locating allows a simulation is of curves and mats: it excuses no scan.
+    assert!(
+        comparison.sentence.contains("do not explain"),
+        "{}",
+        comparison.sentence
+    );
     assert!(of(&comparison, "contact_zero_mm").all(|e| e.is_at_bound));
     for recording in &comparison.recordings {
         assert!(measure(recording, "scan_rms_residual_mm") > NOISE_MM);

@@ -337,6 +337,6 @@ fn summary(
             "No place or time carries more than {allowed}: p = {} over {looks} looks.",
             sentence::figure(p)
         ),
-        (None, None) => "Nothing can be located: no recording has a sample that shows its value and that parameters do not absorb.".to_owned(),
+        (None, None) => "Nothing can be located: no curve or mat has a sample that shows its value and that parameters do not absorb; scans are shown place by place.".to_owned(),
     }
 }

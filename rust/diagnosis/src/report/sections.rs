@@ -130,11 +130,10 @@ fn setting(recording: &RecordingComparison) -> String {
             recording.indenter, recording.site
         ),
         format!("protocol \u{201c}{}\u{201d}", recording.protocol),
-        format!(
-            "{} moments in {} s",
-            recording.moments.len(),
-            number(last - first)
-        ),
+        match recording.moments.len() {
+            1 => "one moment".to_string(),
+            count => format!("{count} moments in {} s", number(last - first)),
+        },
     ];
     if let Some(mat) = &recording.mat {
         parts.push(format!("mat of {} sensels", mat.centers.len()));

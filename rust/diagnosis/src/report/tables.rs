@@ -214,6 +214,26 @@ pub fn noise(comparison: &Comparison) -> String {
             ]);
         }
     }
+    for (recording, scan) in comparison
+        .recordings
+        .iter()
+        .filter_map(|r| Some((r, r.scan.as_ref()?)))
+    {
+        let (noise, left) = (root_mean(&scan.sigma), root_mean(&scan.residual));
+        let largest = scan
+            .measured
+            .iter()
+            .fold(0.0, |most: f64, h| most.max(h.abs()));
+        rows.push(vec![
+            escaped(&recording.name),
+            "Scanned height".into(),
+            number(noise),
+            "mm".into(),
+            percent(noise / largest),
+            number(left),
+            number(left / noise),
+        ]);
+    }
     match rows.is_empty() {
         true => {
             "<p>The noise of no recording is known: repeats of a protocol would tell it.</p>".into()
