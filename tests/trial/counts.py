@@ -80,7 +80,9 @@ def named(verdict):
 
 
 def blames_skin(verdict):
-    """Whether it claims that physics of the skin is missing."""
+    """Whether it claims that physics of the skin is missing, be it without telling which of several."""
+    if verdict["verdict"] == "cannot_tell" and any(set(one) <= TISSUE for one in verdict.get("cannot_tell", [])):
+        return True
     return verdict["verdict"] in ("missing_physics", "unlisted") or bool(named(verdict) & TISSUE)
 
 

@@ -124,3 +124,11 @@ def test_verdicts_are_read_by_case(tmp_path, sealed):
     (tmp_path / f"{two}.json").write_text('{"verdict": "unlisted", "findings": []}')
     said = score.verdicts(tmp_path, sealed)
     assert set(said) == {one, two} and scored.named(said[one]) == {"gain"}
+
+
+def test_a_choice_between_effects_of_the_skin_blames_the_skin():
+    def undecided(*names):
+        return {"verdict": "cannot_tell", "findings": [], "cannot_tell": [list(names)]}
+
+    assert scored.blames_skin(undecided("relaxation", "drainage"))
+    assert not scored.blames_skin(undecided("relaxation", "drift"))
