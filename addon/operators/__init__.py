@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import status
+from .. import reports, status
 from . import bake, clear, display, effects, export, regions, report, solve
 
 _MODULES = (solve, clear, display, regions, effects, export, bake, report)
@@ -24,3 +24,4 @@ def unregister():
     for module in reversed(_MODULES):
         for cls in reversed(module.CLASSES):
             bpy.utils.unregister_class(cls)
+    reports.forget()

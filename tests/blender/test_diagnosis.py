@@ -200,6 +200,28 @@ def test_an_inclusion_comes_to_lie_at_its_place_on_the_hand(diagnose, moved):
     assert chosen == set(np.flatnonzero(np.linalg.norm(local - local[lowest], axis=1) <= 3.0))
 
 
+def test_a_bone_slopes_along_the_hand_however_the_study_lay(diagnose):
+    stage.scene()
+    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
+    numbers = {"slope": 0.5, "direction_x": 0.0, "direction_y": 0.6, "direction_z": 0.8}
+    found["findings"][1]["parameters"] |= {name: {"value": value, "unit": "1"} for name, value in numbers.items()}
+    diagnose(found, turned)
+    assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
+    _, told_numbers, _ = effects()["bone"]
+    assert [told_numbers[f"direction_{axis}"] for axis in "xyz"] == pytest.approx([0.0, -0.8, 0.6], abs=1e-6)
+
+
+def test_another_study_begins_with_a_model_of_its_own(diagnose):
+    diagnose(letters.FINDINGS["instrument"])
+    assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
+    state = bpy.context.scene.thenar_diagnosis
+    diagnose(letters.FINDINGS["instrument"])
+    assert len(state.model) == 1, "the same study goes on with what was taken over"
+    state.path = "/another/study"
+    diagnose(letters.FINDINGS["instrument"])
+    assert len(state.model) == 0
+
+
 def test_a_place_on_another_skin_is_not_guessed(diagnose):
     diagnose(letters.inclusion((0.0, 0.0, 0.0), 3.0))
     with pytest.raises(RuntimeError, match="[Cc]hoose the hand"):
