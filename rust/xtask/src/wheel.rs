@@ -12,12 +12,14 @@ use std::process::Command;
 const SUFFIX: &str = "-cp311-abi3-manylinux_2_28_x86_64.whl";
 
 /// What the wheel is made of, from the top of the repository.
-const SOURCES: [&str; 6] = [
+const SOURCES: [&str; 8] = [
     "Cargo.toml",
     "Cargo.lock",
     "rust/surface",
     "rust/contact",
     "rust/hand",
+    "rust/recordings",
+    "rust/diagnosis",
     "rust/python",
 ];
 
@@ -131,4 +133,23 @@ fn site_packages(places: &Places, name: &str) -> Result<PathBuf> {
         "asking Python for its packages",
     )?;
     Ok(PathBuf::from(path.trim()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SOURCES;
+
+    #[test]
+    fn every_crate_in_the_wheel_is_a_source_of_it() {
+        let manifest = include_str!("../../python/Cargo.toml");
+        let ours: Vec<String> = manifest
+            .lines()
+            .filter_map(|line| line.strip_prefix("thenar-")?.split([' ', '.']).next())
+            .map(|name| format!("rust/{name}"))
+            .collect();
+        assert!(ours.len() > 3, "{ours:?}");
+        for name in ours {
+            assert!(SOURCES.contains(&name.as_str()), "{name} can change unseen");
+        }
+    }
 }
