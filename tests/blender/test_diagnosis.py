@@ -222,6 +222,24 @@ def test_another_study_begins_with_a_model_of_its_own(diagnose):
     assert len(state.model) == 0
 
 
+@pytest.mark.parametrize(
+    ("listed", "outcome"),
+    [("5,7,9", {5, 7, 9}), ("5,99999", "skin has not"), ("5,x", "list vertices by number")],
+)
+def test_vertices_that_a_finding_lists_are_selected(diagnose, listed, outcome):
+    hand, _ = stage.scene()
+    found = letters.inclusion((0.0, 0.0, 0.0), 3.0)
+    found["findings"][0]["where"]["vertices_csv"] = listed
+    diagnose(found)
+    if isinstance(outcome, str):
+        with pytest.raises(RuntimeError, match=outcome):
+            bpy.ops.thenar.show_finding(index=0)
+        return
+    assert bpy.ops.thenar.show_finding(index=0) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert {vertex.index for vertex in hand.data.vertices if vertex.select} == outcome
+
+
 def test_a_place_on_another_skin_is_not_guessed(diagnose):
     diagnose(letters.inclusion((0.0, 0.0, 0.0), 3.0))
     with pytest.raises(RuntimeError, match="[Cc]hoose the hand"):
