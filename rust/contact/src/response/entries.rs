@@ -21,6 +21,11 @@ pub struct Group<'a> {
 }
 
 impl Response {
+    /// Whether entries are those of a bare layer without cuts.
+    fn is_plain(&self) -> bool {
+        self.stiff.is_none() && self.cuts.is_empty()
+    }
+
     /// Memory that the rows of `zone` and the coupling between them may take, bytes.
     pub fn bytes(&self, zone: &[u32], sites: &Sites) -> f64 {
         let row = |&site: &u32| self.row_length(sites.patch[site as usize], sites);
@@ -63,6 +68,21 @@ impl Response {
         arc_lengths(there.rest, &sites.rest[j], bound, distances);
         let places = there.sites.iter().map(|&i| i as usize);
         self.find_psi(places.clone(), j, distances, psi);
+        if self.is_plain() {
+            // The same operations, without asking at every entry.
+            for ((i, out), (r, psi)) in places
+                .clone()
+                .zip(&mut *out)
+                .zip(distances.iter().zip(&*psi))
+            {
+                let is_near = *r < 0.5 * (self.reach[i] + self.reach[j]);
+                *out = if is_near { (1.0 / r - psi) as f32 } else { 0.0 };
+            }
+            if let Some(own) = places.clone().position(|i| i == j) {
+                out[own] = self.layer_entry((j, j), distances[own], psi[own], sites) as f32;
+            }
+            return;
+        }
         for ((i, out), (r, psi)) in places.zip(out).zip(distances.iter().zip(psi.iter())) {
             *out = (self.layer_entry((i, j), *r, *psi, sites) * self.kept(i, j)) as f32;
         }

@@ -63,8 +63,8 @@ pub struct Response {
     near: Vec<Vec<(u32, u32)>>,
     /// Lower bounds of skin distance to those patches, mm.
     pub(super) at_least: Vec<Vec<f64>>,
-    cuts: Vec<Cut>,
-    stiff: Option<StiffSkin>,
+    pub(super) cuts: Vec<Cut>,
+    pub(super) stiff: Option<StiffSkin>,
     rows: Vec<Option<Box<[f32]>>>,
 }
 

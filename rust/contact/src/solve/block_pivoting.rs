@@ -152,7 +152,7 @@ impl<'a> Run<'a> {
             if (control.cancelled)() {
                 return true;
             }
-            if !self.solve_set(matrix, gap, (level, scale)) {
+            if !self.solve_set(matrix, gap, (level, scale), control) {
                 return false;
             }
             if level < finest {
@@ -198,6 +198,7 @@ impl<'a> Run<'a> {
         matrix: &'a M,
         gap: &[f64],
         (level, scale): (usize, f64),
+        control: &Control,
     ) -> bool {
         let set: Vec<u32> = (0..self.force.len() as u32)
             .filter(|&i| self.in_contact[i as usize])
@@ -205,6 +206,7 @@ impl<'a> Run<'a> {
         let limits = CgLimits {
             tolerance: TOLERANCES[level] * scale,
             steps: 40 + 6 * set.len(),
+            cancelled: &control.cancelled,
         };
         // Single precision suffices to find the set.
         let is_rough = level <= ROUGH_LEVEL;

@@ -13,13 +13,18 @@ pub enum CgEnd {
     NotDefinite,
 }
 
+/// Steps between two looks at the caller's wish to stop.
+const AT_ONCE: usize = 8;
+
 /// When to stop.
-#[derive(Debug, Clone, Copy)]
-pub struct CgLimits {
+#[derive(Clone, Copy)]
+pub struct CgLimits<'a> {
     /// Largest residual entry, in the right-hand side's unit.
     pub tolerance: f64,
     /// Most steps.
     pub steps: usize,
+    /// Asked now and then; true ends the run as converged, for who asked knows better.
+    pub cancelled: &'a dyn Fn() -> bool,
 }
 
 /// Solves `matrix x = right` for the unknowns in `set` (ascending), from the `x` given; others are and stay zero.
@@ -29,7 +34,7 @@ pub fn conjugate_gradient(
     matrix: &dyn Symmetric,
     right: &[f64],
     (x, set): (&mut [f64], &[u32]),
-    limits: CgLimits,
+    limits: CgLimits<'_>,
 ) -> (CgEnd, usize) {
     let n = matrix.diagonal().len();
     let mut image = vec![0.0; n];
@@ -45,7 +50,8 @@ pub fn conjugate_gradient(
     let mut direction = vec![0.0; n];
     let mut weight = 0.0;
     for step in 0..limits.steps {
-        if largest(&residual) <= limits.tolerance {
+        let is_stopped = step > 0 && step % AT_ONCE == 0 && (limits.cancelled)();
+        if is_stopped || largest(&residual) <= limits.tolerance {
             return (CgEnd::Converged, step);
         }
         let previous = weight;
