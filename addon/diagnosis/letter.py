@@ -100,7 +100,7 @@ def write(found):
         gain=gain,
         advice=tuple(_advice(each) for each in found.get("record_next", ())),
         smallest=tuple(
-            Row(wording.title(effect), "at no size" if seen.get("value") is None else wording.value(seen))
+            Row(wording.title(effect), wording.least(seen))
             for effect, seen in (found.get("smallest_seen") or {}).items()
         ),
         moduli=tuple(_moduli(found)),
@@ -125,7 +125,7 @@ def lines(letter):
     for advice in letter.advice:
         yield f"Record next: {advice.text}"
         yield from (text for text in (advice.settles, advice.outlook) if text)
-    yield from (f"{row.label}: seen from {row.text}" for row in letter.smallest)
+    yield from (f"Would be seen, {row.label.lower()}: {row.text}" for row in letter.smallest)
     yield from (f"Fitted, {row.label}: {row.text}" for row in letter.moduli)
     yield from letter.notes
 

@@ -15,6 +15,8 @@ UNITS = {"1": "", "J/m2": "J/m²", "mm2/s": "mm²/s", "standard deviations of th
 """Units that are shown shorter than the library tells them."""
 _SHARE = "share "
 """What the library's unit begins with where a value is a part of something."""
+_OUT_OF_REASON = 1e3
+"""In every unit in which sizes are told (mm, N, s, mm/N) a hand has none of these."""
 DEPENDS = {
     "time": "time",
     "rate": "speed",
@@ -69,6 +71,13 @@ def value(told):
     text = number(told.get("value")) + (f" {unit}" if unit else "")
     between = interval(told.get("low"), told.get("high"))
     return f"{text} ({between})" if between else text
+
+
+def least(seen):
+    """The smallest size of an effect that would have been seen; `at no size` where it is out of reason or not known."""
+    size = seen.get("value")
+    whole = 1.0 if (seen.get("unit") or "").startswith(_SHARE) else _OUT_OF_REASON
+    return value(seen) if size is not None and size < whole else "at no size"
 
 
 def share(part):

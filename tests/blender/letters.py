@@ -52,6 +52,8 @@ FINDINGS = {
         "smallest_seen": {
             "adhesion": {"value": 0.02, "unit": "J/m2"},
             "bone": {"value": 0.172, "unit": "share of the thickness"},
+            "relaxation": {"value": 6.1, "unit": "share of the force"},
+            "saturation": {"value": None, "unit": "share of the force"},
         },
         "record_next": [],
         "model": {

@@ -54,3 +54,16 @@ def test_only_the_last_few_are_held(study):
         reports.keep(letters.Answer({}))
     with pytest.raises(RuntimeError, match="press Compare again"):
         bpy.ops.thenar.report(filepath=str(study))
+
+
+def test_the_file_keeps_the_findings_themselves(study):
+    bpy.ops.thenar.diagnose()
+    page = study.with_suffix(".html")
+    assert bpy.ops.thenar.report(filepath=str(page)) == {"FINISHED"}
+    assert letters.FINDINGS["instrument"]["sentence"] in page.read_text()
+    with pytest.raises(RuntimeError, match="nothing to report"):
+        bpy.ops.thenar.report(filepath=str(page), kind="COMPARISON")
+    reports.forget()
+    assert written(study) == letters.FINDINGS["instrument"]
+    with pytest.raises(RuntimeError, match="press Diagnose again"):
+        bpy.ops.thenar.report(filepath=str(page))
