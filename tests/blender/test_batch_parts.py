@@ -1,0 +1,52 @@
+"""Parts of a batch alone: what a case's digest depends on, what counts as done, fresh processes, stiffness."""
+
+import json
+import sys
+
+import pytest
+import stage
+from thenar_blender.batch import child, conductor, jobs, worker
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "grip.blend"
+    path.write_bytes(b"one")
+    return {"name": "grip", "blend": str(path), "force_n": 2.0}
+
+
+def test_the_digest_depends_on_settings_and_on_the_file(case, tmp_path):
+    first = jobs.case_hash(case, {})
+    assert jobs.case_hash(dict(case), {}) == first
+    assert jobs.case_hash(case | {"force_n": 3.0}, {}) != first
+    (tmp_path / "grip.blend").write_bytes(b"two")
+    assert jobs.case_hash(case, {}) != first, "the file was changed since"
+
+
+def test_a_case_is_done_once_all_it_asks_for_is_there(case, tmp_path):
+    summary = {"case_hash": "h", "force_n": 2.0, "warnings": []}
+    (tmp_path / "grip.json").write_text(json.dumps(summary))
+    wanted = case | {"save": False, "render": True}
+    assert conductor._kept(wanted, tmp_path, "h") is None, "its picture is missing"
+    (tmp_path / "grip.png").write_bytes(b"picture")
+    assert conductor._kept(wanted, tmp_path, "h")["status"] == "done"
+    assert conductor._kept(wanted, tmp_path, "other") is None
+    (tmp_path / "grip.json").write_text("{")
+    assert conductor._kept(wanted, tmp_path, "h") is None, "it was cut off while it was written"
+
+
+def test_a_process_is_replaced_after_so_many_cases(monkeypatch):
+    monkeypatch.setattr(child, "MOST_CASES", 2)
+    tell = "import os, sys, json\nfor line in sys.stdin: print(json.dumps(os.getpid()), flush=True)"
+    process = child.Child([sys.executable, "-c", tell], {})
+    numbers = [process.solve({}, 30.0) for _ in range(5)]
+    process.close()
+    assert numbers[0] == numbers[1] != numbers[2] == numbers[3] != numbers[4]
+
+
+def test_stiffness_is_a_factor_on_both_moduli():
+    hand, _ = stage.scene()
+    material = hand.thenar.default_material
+    before = material.g0_kpa, material.g_lim_kpa
+    worker._stiffen(hand, 1.5)
+    assert (material.g0_kpa, material.g_lim_kpa) == pytest.approx([1.5 * value for value in before])
