@@ -77,16 +77,24 @@ fn told(study: &Study, comparison: &Comparison, out: &Path) -> String {
     }
     for estimate in &comparison.estimates {
         text += &format!(
-            "{} {} = {:.4} ({:.4} to {:.4})\n",
+            "{} {} = {} ({} to {})\n",
             estimate.of_what(),
             estimate.name,
-            estimate.value,
-            estimate.low,
-            estimate.high
+            short(estimate.value),
+            short(estimate.low),
+            short(estimate.high)
         );
     }
     for note in study.warnings.iter().chain(&comparison.notes) {
         text += &format!("note: {note}\n");
     }
     text + &format!("written to {}\n", out.display())
+}
+
+/// Four decimals, or four digits of what they would not show.
+fn short(value: f64) -> String {
+    match value.abs() {
+        size if size > 0.0 && size < 1e-3 => format!("{value:.3e}"),
+        _ => format!("{value:.4}"),
+    }
 }
