@@ -158,6 +158,33 @@ fn without_work_it_is_the_base_model_and_with_it_totals_tell() {
 }
 
 #[test]
+fn what_pulls_turns_the_product_about_where_it_stands() {
+    let direction = Vec3::new(0.96, 0.0, -0.28);
+    let protocol = Protocol {
+        rows: vec![Row {
+            time_s: 0.0,
+            demand: Demand::Offset(0.12),
+            slide: Vec3::zeros(),
+        }],
+        direction: Some(direction),
+    };
+    let run = Run {
+        product: &paraboloid(RADIUS, 0.0, 3.0),
+        posed: None,
+        protocol: &protocol,
+        keep: Keep::Totals,
+    };
+    let mut skin = skin(1.0 / 6.0, 1.7, vec![adhesion(work(), 1e-5)]);
+    let contact = skin.run(&run, &Control::none()).unwrap().last;
+    let pull: f64 = contact.adhesion.iter().sum();
+    let axis = direction * 0.12;
+    // Push and pull nearly cancel, and both do so about the paraboloid's axis.
+    let off = contact.total_moment - axis.cross(&contact.total_force);
+    assert!(contact.total_force.norm() < 0.5 * pull, "{pull}");
+    assert!(off.norm() < 0.3 * axis.x * pull, "{off} {pull}");
+}
+
+#[test]
 fn bad_numbers_are_refused_in_a_sentence() {
     let mut skin = skin(0.5, 1.7, Vec::new());
     let refused = skin.set_effects(vec![adhesion(-1e-3, 0.02)], &Control::none());

@@ -9,6 +9,10 @@ use thenar_surface::Vec3;
 const SIDE: usize = 6;
 
 fn mat() -> Mat {
+    mat_of(|_| 25.0)
+}
+
+fn mat_of(area: impl Fn(usize) -> f64) -> Mat {
     let mut layout = MatLayout {
         along: Some(Vec3::x()),
         ..MatLayout::default()
@@ -19,7 +23,7 @@ fn mat() -> Mat {
             .centers
             .push(Vec3::new(5.0 * column - 12.5, 5.0 * row - 12.5, 0.0));
         layout.normals.push(Vec3::z());
-        layout.areas.push(25.0);
+        layout.areas.push(area(k));
     }
     Mat::new(layout).unwrap()
 }
@@ -146,6 +150,39 @@ fn effects_follow_one_another_as_documented() {
     assert!((read(&[saturation.clone(), offset, named("gain")]) - 112.0).abs() < 1e-9);
     let low = named("gain").with("error", -0.97).unwrap();
     assert_eq!(read(&[named("threshold"), saturation, low]), 0.0);
+}
+
+#[test]
+fn an_offset_is_added_to_the_force_and_half_a_threshold_halves() {
+    let offset = named("offset").choose("channel", "force").unwrap();
+    let more = offset.shape[1];
+    let signals = signals();
+    let read = observe(&signals, Some(&mat()), &[offset]).unwrap();
+    for (found, force) in read.force_n.iter().zip(&signals.force_n) {
+        assert!(more != 0.0 && (found - force - more).abs() < 1e-12);
+    }
+    let mut faint = Signals {
+        time_s: vec![0.0],
+        ..Signals::default()
+    };
+    faint.frames = vec![vec![1.0; SIDE * SIDE]];
+    let half = ready(Effect::Threshold, 0.5);
+    let read = observe(&faint, Some(&mat()), &[half]).unwrap();
+    assert!(read.frames[0].iter().all(|p| (p - 0.5).abs() < 1e-12));
+}
+
+#[test]
+fn crosstalk_keeps_the_force_of_sensels_of_any_size() {
+    let mat = mat_of(|k| 20.0 + (k % 4) as f64);
+    let signals = Signals {
+        time_s: vec![0.0],
+        frames: vec![(0..SIDE * SIDE).map(|k| (k % 7) as f64).collect()],
+        ..Signals::default()
+    };
+    let blurred = observe(&signals, Some(&mat), &[named("crosstalk")]).unwrap();
+    let (before, after) = (&signals.frames[0], &blurred.frames[0]);
+    assert!(before.iter().zip(after).any(|(a, b)| (a - b).abs() > 0.01));
+    assert!((mat.force_n(before) - mat.force_n(after)).abs() < 1e-12);
 }
 
 #[test]

@@ -163,10 +163,28 @@ fn a_hand_and_a_product_that_move_together_feel_nothing_of_it() {
         assert!((found - expected).norm() < 1e-6 * expected.norm());
         let center = motion.rotation * still.last.center_of_pressure + motion.translation.vector;
         assert!((contact.center_of_pressure - center).norm() < 1e-5);
+        let lever = motion.translation.vector.cross(&expected);
+        let moment = motion.rotation * still.last.total_moment + lever;
+        assert!((contact.total_moment - moment).norm() < 1e-5 * lever.norm());
         for (a, b) in contact.displacement.iter().zip(&still.last.displacement) {
             assert!((a - motion.rotation * b).norm() < 1e-5, "{a} {b}");
         }
     }
+}
+
+#[test]
+fn a_product_that_slid_is_borne_where_it_then_stands() {
+    let slide = Vec3::new(1.5, -0.8, 0.0);
+    let row = Row {
+        time_s: 0.0,
+        demand: Demand::Offset(0.8),
+        slide,
+    };
+    let contact = run(&mut skin(&[]), &paraboloid(8.0, 0.0, 9.0), vec![row]).last;
+    assert!((contact.center_of_pressure - slide).xy().norm() < 0.15);
+    let moment = slide.cross(&contact.total_force);
+    let off = (contact.total_moment - moment).norm();
+    assert!(off < 0.15 * moment.norm(), "{off} {moment}");
 }
 
 #[test]
