@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -95,7 +96,7 @@ def _key(diagnosis, study):
 def each(job, cases, workers, what):
     """`job(case)` for every case, side by side, with progress; a job that breaks ends the run with its error."""
     shown = Progress(len(cases), what)
-    pool = ProcessPoolExecutor(workers)
+    pool = ProcessPoolExecutor(workers, initializer=_end_with, initargs=(os.getpid(),))
     try:
         for done in as_completed([pool.submit(job, case) for case in cases]):
             done.result()
@@ -103,6 +104,17 @@ def each(job, cases, workers, what):
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
         shown.end()
+
+
+def _end_with(parent):
+    """Ends this worker when the run that started it was killed."""
+
+    def watch():
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def clear(root):

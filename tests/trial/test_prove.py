@@ -3,6 +3,9 @@
 import functools
 import json
 import stat
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -136,3 +139,32 @@ def test_the_page_stands_alone_and_shows_every_row():
     )
     assert "http" not in text and "&lt;bad&gt;" in text
     assert all(row.name.strip().replace(">", "&gt;").replace("<", "&lt;") in text for row in table)
+
+
+def test_workers_end_with_a_run_that_is_killed(tmp_path):
+    code = (
+        "import os, time\nfrom trial import running\n"
+        f"def job(k):\n    open({str(tmp_path)!r} + '/' + str(os.getpid()), 'w').close(); time.sleep(60)\n"
+        "if __name__ == '__main__':\n    running.each(job, [1], 1, 'sleep')\n"
+    )
+    run = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT / "tests", stderr=subprocess.DEVNULL)
+    worker = _soon(lambda: next((int(path.name) for path in tmp_path.iterdir()), None))
+    run.kill()
+    run.wait()
+    assert _soon(lambda: not _lives(worker))
+
+
+def _soon(test):
+    """What a test gives as soon as it gives something, within half a minute."""
+    end = time.monotonic() + 30.0
+    while not (found := test()) and time.monotonic() < end:
+        time.sleep(0.1)
+    return found
+
+
+def _lives(number):
+    """Whether a process is there and not only waiting to be buried."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
