@@ -1,11 +1,14 @@
 //! What mechanisms do to a recording: load that fades, skin that clings, stiffness that is used up, and the instrument.
 
 use super::course::Course;
-use super::elastic::{Tabled, radius};
+use super::elastic::radius;
 use super::mechanism::{Acts, Clock};
 use super::memory::fade;
 use super::model::{Model, Setting};
 use super::screen::Screen;
+
+/// Way over which skin lets go, over the largest depth.
+const RELEASE: f64 = 0.08;
 
 impl Screen<'_> {
     /// By branch of every mechanism that fades, its decay over each row's step.
@@ -66,18 +69,37 @@ impl Screen<'_> {
         shares
     }
 
-    /// How far each spring may be stretched, mm; empty without adhesion.
-    pub(super) fn holds(&self, model: &Model<'_>, set: &Setting, table: &Tabled) -> Vec<f64> {
-        let mut found = Vec::new();
+    /// What skin that clings takes off.
+    ///
+    /// In the limit of a grip of its own strength (Maugis 1992; Derjaguin, Muller & Toporov 1975) the pull does not ask how
+    /// deep the tool still is: it builds up as the tool turns round, and ends where the skin lets go.
+    pub(super) fn cling(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        ((one, depths), forces): ((&Course, &[f64]), &mut [f64]),
+    ) {
+        let area = |place: usize| radius(&self.elastic.places[place], self.most.1).powi(2);
+        let most = (0..self.elastic.places.len())
+            .map(area)
+            .fold(f64::MIN_POSITIVE, f64::max);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            if matches!(mechanism.acts, Acts::Clings { .. }) {
-                let factor = set.of[number][0];
-                let deepest = radius(table, self.most.1).max(1e-9);
-                let hold = |a: &f64| factor * self.most.1.sqrt() * (a / deepest).sqrt();
-                found = table.radius.iter().map(hold).collect();
+            let Acts::Clings { builds, lets_go } = mechanism.acts else {
+                continue;
+            };
+            let pull = set.of[number][0] * self.most.0 * area(one.place) / most;
+            let (mut grip, mut has_touched) = (0.0, false);
+            for n in 1..depths.len() {
+                has_touched |= depths[n] > 0.0;
+                let way = (depths[n - 1] - depths[n]) / (builds * self.most.1);
+                grip = f64::clamp(grip + way, 0.0, 1.0);
+                let over = (depths[n] / self.most.1 - lets_go) / RELEASE;
+                grip *= over.clamp(0.0, 1.0);
+                if has_touched {
+                    forces[n] -= pull * grip;
+                }
             }
         }
-        found
     }
 
     /// Stiffness that use took away.

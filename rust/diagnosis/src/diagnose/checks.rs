@@ -1,6 +1,8 @@
 //! What repeats say before any model is asked: whether the noise grows under load, and whether the session's gain has a step.
 
-use super::course::Course;
+use nalgebra::{Matrix2, Vector2};
+
+use super::course::{Course, Row};
 use super::screen::Screen;
 use crate::Phase;
 use crate::observe::scatter::median;
@@ -15,44 +17,127 @@ const OUTLIER: f64 = 5.0;
 pub struct Unsteady {
     /// Standard deviation under load over that without, of what differs between repeats beyond gain and first touch.
     pub ratio: f64,
-    /// Number of deviations under load and without.
-    pub counts: (usize, usize),
+    /// Ratio that noise of the same size everywhere exceeds once in some hundred studies.
+    pub least: f64,
 }
 
-/// Compares what is left of the repeats' residuals, over their noise, under load and without; None without repeats or rest.
+/// Standard deviations of the ratio's logarithm that noise alone does not exceed.
+const SURE: f64 = 3.0;
+/// Part of a recording's largest force from which a row counts as under load.
+const LOADED: f64 = 0.3;
+
+/// One recording's deviations from its repeat, over the noise.
+#[derive(Default)]
+struct Deviations {
+    under: Vec<f64>,
+    without: Vec<f64>,
+    /// What gain and first touch do, under load.
+    along: Vec<[f64; 2]>,
+    /// Seconds spent under load and without.
+    seconds: [f64; 2],
+}
+
+/// True if the force pulls where a fit with adhesion says so: a necessary sign, looked for in what was measured.
 ///
-/// Noise of an instrument does not ask whether the tool touches; what the skin does by itself needs contact to be seen.
-pub fn unsteady(screen: &Screen<'_>, residual: &[f64]) -> Option<Unsteady> {
-    let (mut under, mut without) = (Vec::new(), Vec::new());
+/// `simulated` are the predictions of that fit. Neighbors share their noise, so that so many count as one.
+pub fn pulls(courses: &[Course], (simulated, sigma): (&[f64], &[f64])) -> bool {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for row in courses.iter().flat_map(|c| &c.rows) {
+        let Some(sample) = row.sample else {
+            continue;
+        };
+        if simulated[sample] < -0.5 * sigma[sample] {
+            sum += (row.force_n / sigma[sample]).clamp(-6.0, 6.0);
+            count += 1.0;
+        }
+    }
+    count > 0.0 && sum / f64::sqrt(SHARED * count) < -PULLS
+}
+
+/// Neighboring samples that count as one where nothing is known of their noise's memory.
+const SHARED: f64 = 3.0;
+/// Standard errors below none that a pull must reach.
+const PULLS: f64 = 2.5;
+
+/// Compares what differs between repeats under load and without; None without repeats or rest.
+///
+/// Noise of an instrument does not ask whether the tool touches; what the skin does by itself needs contact to be seen. `memory_s` is
+/// the time over which noise forgets itself: so many deviations count as one.
+pub fn unsteady(
+    screen: &Screen<'_>,
+    (simulated, sigma): (&[f64], &[f64]),
+    memory_s: f64,
+) -> Option<Unsteady> {
+    let (mut under, mut without, mut worth) = (Vec::new(), Vec::new(), [0.0, 0.0]);
     for (c, one) in screen.courses.iter().enumerate() {
         for other in &screen.courses[c + 1..] {
-            if one.protocol != other.protocol
-                || one.place != other.place
-                || one.rows.len() != other.rows.len()
-            {
+            let repeats = one.protocol == other.protocol && one.place == other.place;
+            if !repeats || one.rows.len() != other.rows.len() {
                 continue;
             }
-            for (a, b) in one.rows.iter().zip(&other.rows) {
-                let (Some(i), Some(j)) = (a.sample, b.sample) else {
-                    continue;
-                };
-                let off = (residual[i] - residual[j]) / 2f64.sqrt();
-                match (a.phase, b.phase) {
-                    (Phase::Apart, Phase::Apart) => without.push(off),
-                    (Phase::Apart, _) | (_, Phase::Apart) => {}
-                    _ if a.force_n > 0.3 * one.most() => under.push(off),
-                    _ => {}
-                }
+            let found = deviations((one, other), (simulated, sigma));
+            let counts = [found.under.len() as f64, found.without.len() as f64];
+            for (k, worth) in worth.iter_mut().enumerate() {
+                *worth += counts[k].min(found.seconds[k] / (2.0 * memory_s).max(1e-6));
             }
+            under.extend(freed(&found));
+            without.extend(found.without);
         }
     }
     if under.len() < LEAST.0 || without.len() < LEAST.1 {
         return None;
     }
+    let spread = (0.5 / worth[0].max(1.0) + 0.5 / worth[1].max(1.0)).sqrt();
     Some(Unsteady {
         ratio: size(&under) / size(&without).max(1e-9),
-        counts: (under.len(), without.len()),
+        least: libm::exp(SURE * spread),
     })
+}
+
+fn deviations(
+    (one, other): (&Course, &Course),
+    (simulated, sigma): (&[f64], &[f64]),
+) -> Deviations {
+    let mut found = Deviations::default();
+    let over = |row: &Row, k: usize| (row.force_n - simulated[k]) / sigma[k];
+    for (n, (a, b)) in one.rows.iter().zip(&other.rows).enumerate() {
+        let (Some(i), Some(j)) = (a.sample, b.sample) else {
+            continue;
+        };
+        let off = (over(a, i) - over(b, j)) / 2f64.sqrt();
+        let step = if n > 0 {
+            a.time_s - one.rows[n - 1].time_s
+        } else {
+            0.0
+        };
+        if a.phase == Phase::Apart && b.phase == Phase::Apart {
+            found.without.push(off);
+            found.seconds[1] += step;
+        } else if a.force_n > LOADED * one.most() {
+            let share = simulated[i].max(0.0) / one.most();
+            found.under.push(off);
+            // Force grows about as depth^1.5, and so its slope as the force's third root.
+            found.along.push([share, libm::cbrt(share)]);
+            found.seconds[0] += step;
+        }
+    }
+    found
+}
+
+/// Deviations under load with what gain and first touch do taken out.
+fn freed(found: &Deviations) -> Vec<f64> {
+    let (mut gram, mut side) = (Matrix2::zeros(), Vector2::zeros());
+    for (off, along) in found.under.iter().zip(&found.along) {
+        let along = Vector2::from(*along);
+        gram += along * along.transpose();
+        side += along * *off;
+    }
+    let by = gram
+        .try_inverse()
+        .map_or(Vector2::zeros(), |inverse| inverse * side);
+    let each = found.under.iter().zip(&found.along);
+    each.map(|(off, along)| off - Vector2::from(*along).dot(&by))
+        .collect()
 }
 
 /// Root mean square without outliers.
@@ -75,11 +160,17 @@ pub struct GainStep {
     pub t: f64,
     /// Degrees of freedom of that error.
     pub degrees: f64,
+    /// Logarithm of the improbability of such a step anywhere in the session, nats.
+    pub evidence: f64,
 }
+
+/// Scatter of gains between repeats that is taken before they are seen, and the degrees of freedom that it counts for: 2 to 8 % are
+/// common (`tests/trial`, calibration).
+const USUAL_SCATTER: (f64, f64) = (0.05, 4.0);
 
 /// The step of the session's gain that repeats show most clearly: `log_gain` by recording against the others of its protocol.
 pub fn gain_step(courses: &[Course], log_gain: &[f64]) -> Option<GainStep> {
-    let mut best: Option<GainStep> = None;
+    let (mut best, mut tried): (Option<GainStep>, f64) = (None, 0.0);
     for from in 1..courses.len() {
         let (mut xx, mut xy, mut yy, mut degrees) = (0.0, 0.0, 0.0, -1.0);
         let mut done: Vec<(&str, usize)> = Vec::new();
@@ -105,8 +196,11 @@ pub fn gain_step(courses: &[Course], log_gain: &[f64]) -> Option<GainStep> {
         if xx < 1.0 || degrees < 2.0 {
             continue;
         }
+        tried += 1.0;
         let slope = xy / xx;
-        let left = ((yy - slope * xy) / degrees).max(1e-12);
+        let usual = USUAL_SCATTER.1 * USUAL_SCATTER.0.powi(2);
+        degrees += USUAL_SCATTER.1;
+        let left = (yy - slope * xy + usual) / degrees;
         let error = (left / xx).sqrt();
         let t = slope.abs() / error;
         if best.is_none_or(|b| t > b.t) {
@@ -115,8 +209,44 @@ pub fn gain_step(courses: &[Course], log_gain: &[f64]) -> Option<GainStep> {
                 size: (slope, error),
                 t,
                 degrees,
+                evidence: 0.0,
             });
         }
     }
-    best
+    best.map(|step| GainStep {
+        evidence: -libm::log((tried * two_sided(step.t, step.degrees)).min(1.0)),
+        ..step
+    })
+}
+
+/// Probability that Student's t with `degrees` is larger than `t` either way (by Simpson's rule over the angle).
+fn two_sided(t: f64, degrees: f64) -> f64 {
+    const PARTS: usize = 200;
+    // With t = sqrt(degrees) tan x the density is that of cos(x)^(degrees - 1).
+    let from = libm::atan(t / degrees.sqrt());
+    let half = std::f64::consts::FRAC_PI_2;
+    let area = |from: f64| {
+        let step = (half - from) / PARTS as f64;
+        let at = |k: usize| libm::pow(libm::cos(from + step * k as f64).max(0.0), degrees - 1.0);
+        let weight = |k: usize| match k {
+            0 | PARTS => 1.0,
+            k if k % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        (0..=PARTS).map(|k| weight(k) * at(k)).sum::<f64>() * step / 3.0
+    };
+    (area(from) / area(0.0)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Any table of Student's t: 2.776 at 4 degrees and 2.306 at 8 leave 5 %; 4.604 at 4 leaves 1 %.
+    #[test]
+    fn tails_agree_with_published_tables() {
+        for (t, degrees, p) in [(2.776, 4.0, 0.05), (2.306, 8.0, 0.05), (4.604, 4.0, 0.01)] {
+            assert!((two_sided(t, degrees) / p - 1.0).abs() < 2e-3, "{t}");
+        }
+    }
 }

@@ -2,24 +2,38 @@
 
 use thenar_contact::effects::Effect;
 
+use super::elastic::radius;
 use super::findings::Verdict;
 use super::ladder::{Rungs, Scored};
+use super::mechanism::Mechanism;
 use super::prepare::Prepared;
 
 /// Evidence, nats, from which anything is said to be missing.
-pub const DETECTED: f64 = 7.0;
-/// Lead in evidence, nats, over every rival that bears another name.
-pub const LEAD: f64 = 3.0;
-/// Evidence that a second mechanism must add.
-const SECOND: f64 = 7.0;
+pub const DETECTED: f64 = 6.0;
+/// The same of what changes the elastic answer of the skin alone, and of a fixture that yields: the model's own form may be off by as
+/// much, and looks like the latter.
+const DETECTED_STATIC: (f64, f64) = (8.0, 14.0);
+/// The same of a step in the gain, and of adhesion, which has more variants than others.
+const DETECTED_ELSE: f64 = 7.5;
+/// Evidence that a mechanism must add beside another, and what changes the elastic answer alone.
+const BESIDE: f64 = 10.0;
+const STATIC_BESIDE: f64 = 30.0;
+/// Lead in evidence, nats, over every rival that bears another name; and over one that differs by its clock alone, or belongs to the
+/// instrument where the other belongs to the skin.
+const LEAD: (f64, f64) = (3.0, 5.0);
+/// The least that a second mechanism must add, as a part of what both have: what screening's own form may be off by.
+const SECOND: f64 = 0.06;
 /// Part of the coherent misfit that a name may leave.
 const LEFT: f64 = 0.3;
 /// Coherent misfit per sample, in variances of the noise, below which nothing is left to explain.
 const QUIET: f64 = 0.12;
 /// Coherent misfit per sample that no name explains, from which something unlisted is there.
-const UNLISTED: f64 = 0.25;
+const UNLISTED: f64 = 0.1;
 /// Noise under load over that without, from which the skin itself is unsteady.
-const UNSTEADY: f64 = 1.45;
+const UNSTEADY: f64 = 2.0;
+
+/// Ratio of contact radii from which two sizes are two: a clock that grows as the area is then twice as slow.
+const SIZES: f64 = 1.4;
 
 /// What may be said.
 #[derive(Debug, Clone)]
@@ -49,8 +63,10 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         );
     }
     let best = rungs.singles.first();
-    let is_detected = best.is_some_and(|b| b.evidence >= DETECTED);
-    if rungs.unsteady.is_some_and(|u| u.ratio > UNSTEADY)
+    let is_detected = best.is_some_and(|b| b.evidence >= needed(&b.mechanisms[0]));
+    if rungs
+        .unsteady
+        .is_some_and(|u| u.ratio > u.least.max(UNSTEADY))
         && !best.is_some_and(|b| b.evidence > 60.0)
     {
         return silent(
@@ -71,12 +87,14 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
             "no listed effect explains more than noise would",
         );
     };
-    if let Some(pair) = rungs.pairs.first()
-        && is_pair(pair, rungs)
-    {
+    if let Some(pair) = rungs.pairs.iter().find(|pair| is_pair(pair, rungs)) {
         let names = pair.names();
         let mut rivals = Vec::new();
-        for rival in rungs.pairs.iter().skip(1).filter(|r| within(pair, r)) {
+        for rival in rungs
+            .pairs
+            .iter()
+            .filter(|r| within(pair, r) && is_pair(r, rungs))
+        {
             for (a, b) in differing(&names, &rival.names()) {
                 rivals.push([a, b]);
             }
@@ -98,7 +116,7 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
     }
     let rivals: Vec<&Scored> = rungs.singles[1..]
         .iter()
-        .filter(|r| within(best, r) && is_adequate_beside(r, best))
+        .filter(|r| (within(best, r) || is_alias(ready, best, r)) && is_adequate_beside(r, best))
         .collect();
     if !rivals.is_empty() {
         let first = best.mechanisms[0].effect.name();
@@ -136,7 +154,41 @@ fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
 
 /// True if a rival's evidence is within reach.
 fn within(best: &Scored, rival: &Scored) -> bool {
-    best.evidence - rival.evidence < LEAD
+    let of = |s: &Scored| {
+        let own = |m: &&Mechanism| !best.mechanisms.contains(m) || !rival.mechanisms.contains(m);
+        s.mechanisms
+            .iter()
+            .find(own)
+            .map(|m| (m.effect, m.is_instrument()))
+    };
+    let (Some(a), Some(b)) = (of(best), of(rival)) else {
+        return false;
+    };
+    let are_clocks = CLOCKS.contains(&a.0) && CLOCKS.contains(&b.0);
+    let is_alone = best.mechanisms.len() == 1;
+    let lead = match is_alone && (are_clocks || a.1 != b.1) {
+        true => LEAD.1,
+        false => LEAD.0,
+    };
+    best.evidence - rival.evidence < lead
+}
+
+/// What makes force fade with time: by a clock that is fixed, or one that grows as the contact's area.
+const CLOCKS: [Effect; 2] = [Effect::Relaxation, Effect::Drainage];
+
+/// True if only a second contact size could tell two names apart, and there is none: a clock that is fixed, and one that grows as
+/// the contact's area, differ nowhere else.
+fn is_alias(ready: &Prepared, best: &Scored, rival: &Scored) -> bool {
+    let both = [best, rival].map(|s| s.mechanisms[0].effect);
+    let radii = ready
+        .elastic
+        .places
+        .iter()
+        .map(|p| radius(p, ready.scales.deepest));
+    let (low, high) = radii.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), a| {
+        (l.min(a), h.max(a))
+    });
+    CLOCKS.iter().all(|c| both.contains(c)) && high < SIZES * low
 }
 
 fn is_adequate_beside(rival: &Scored, best: &Scored) -> bool {
@@ -154,14 +206,38 @@ fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
         let of = |s: &&Scored| s.mechanisms[0].effect == pair.mechanisms[k].effect;
         rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
     };
+    let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    let least = |k: usize| match is_static(&pair.mechanisms[k]) {
+        true => STATIC_BESIDE,
+        false => BESIDE.max(SECOND * pair.evidence),
+    };
+    let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
     pair.mechanisms[0].effect != pair.mechanisms[1].effect
-        && pair.evidence - alone(0) >= SECOND
-        && pair.evidence - alone(1) >= SECOND
-        && rungs
-            .singles
-            .first()
-            .is_some_and(|s| pair.evidence - s.evidence >= SECOND)
+        && (0..2).all(is_needed)
+        && pair.evidence - best >= least(0).min(least(1))
         && is_adequate(pair, rungs)
+}
+
+/// True for what changes the elastic answer alone.
+fn is_static(mechanism: &Mechanism) -> bool {
+    matches!(
+        mechanism.effect,
+        Effect::Bone
+            | Effect::Compressibility
+            | Effect::StiffSkin
+            | Effect::StiffeningLaw
+            | Effect::FixtureCompliance
+    )
+}
+
+/// Evidence from which a mechanism is said to be there.
+fn needed(mechanism: &Mechanism) -> f64 {
+    match mechanism.effect {
+        Effect::FixtureCompliance => DETECTED_STATIC.1,
+        Effect::Gain | Effect::Adhesion => DETECTED_ELSE,
+        _ if is_static(mechanism) => DETECTED_STATIC.0,
+        _ => DETECTED,
+    }
 }
 
 fn differing(names: &[&'static str], others: &[&'static str]) -> Vec<(&'static str, &'static str)> {
@@ -206,8 +282,10 @@ fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a
 
 /// Probabilities of the base and of everything that was tried, by evidence over `temperature`.
 pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
-    let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), DETECTED - 2.0)];
-    for scored in rungs.singles.iter().chain(&rungs.pairs) {
+    let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), SILENT)];
+    // A pair one of which is not needed is that single effect over again.
+    let pairs = rungs.pairs.iter().filter(|pair| is_pair(pair, rungs));
+    for scored in rungs.singles.iter().chain(pairs) {
         let names = scored.names();
         match all.iter_mut().find(|(other, _)| *other == names) {
             Some((_, evidence)) => *evidence = evidence.max(scored.evidence),
@@ -226,6 +304,9 @@ pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     all
 }
+
+/// Evidence that the base counts for without any: what nulls reach.
+const SILENT: f64 = 5.0;
 
 /// What evidence is divided by before it becomes a probability: models are not true.
 const TEMPERATURE: f64 = 2.0;

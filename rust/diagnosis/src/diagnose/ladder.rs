@@ -3,7 +3,7 @@
 
 use thenar_contact::effects::Effect;
 
-use super::checks::{GainStep, Unsteady, gain_step, unsteady};
+use super::checks::{GainStep, Unsteady, gain_step, pulls, unsteady};
 use super::mechanism::{Acts, Mechanism, singles};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
@@ -58,8 +58,8 @@ pub struct Rungs {
 const PRICE: f64 = 1.0;
 /// Names among which all pairs are tried.
 const PAIRED: usize = 6;
-/// Part of a deviance's fall that leaves nothing for a second mechanism to explain: below it, pairs are tried.
-pub const ADEQUATE: f64 = 0.12;
+/// Evidence of the best single mechanism from which a second beside it is looked for.
+const WORTH_A_PAIR: f64 = 7.0;
 
 /// Climbs the ladder.
 ///
@@ -127,10 +127,9 @@ pub fn climb(
         .filter(|s| s.mechanisms[0].effect == Effect::Gain)
     {
         // The scatter of gains was judged with the step in it: what the step explains is told by the repeats' gains alone.
-        let t = found.map_or(0.0, |f| f.t * f.t / f.degrees);
-        let n = ready.courses.len() as f64;
-        scored.evidence = scored.evidence.max(0.25 * n * libm::log1p(t));
+        scored.evidence = scored.evidence.max(found.map_or(0.0, |f| f.evidence));
     }
+    all.retain(|s| shows_its_signs(ready, s));
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let mut best: Vec<Scored> = Vec::new();
     for scored in all {
@@ -142,10 +141,7 @@ pub fn climb(
         }
     }
     let mut pairs = Vec::new();
-    let wants_pairs = best.first().is_some_and(|b| {
-        let fall = base.coherent - b.coherent;
-        b.evidence > 5.0 && b.coherent > ADEQUATE * fall
-    });
+    let wants_pairs = best.first().is_some_and(|b| b.evidence > WORTH_A_PAIR);
     if wants_pairs {
         let among: Vec<Mechanism> = best
             .iter()
@@ -169,9 +165,11 @@ pub fn climb(
             pairs.push(score(set, &from));
         }
         pairs.iter_mut().for_each(judge);
+        pairs.retain(|s| shows_its_signs(ready, s));
         pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     }
-    let unsteady = unsteady(&screen, &base.refit.residual);
+    let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
+    let unsteady = unsteady(&screen, sizes, ready.noise.memory_s[0]);
     Ok(Rungs {
         base,
         singles: best,
@@ -181,6 +179,15 @@ pub fn climb(
         samples,
         temper,
     })
+}
+
+/// False for a hypothesis whose necessary signs do not show in what was measured.
+fn shows_its_signs(ready: &Prepared, scored: &Scored) -> bool {
+    let clings = scored
+        .mechanisms
+        .iter()
+        .any(|m| m.effect == Effect::Adhesion);
+    !clings || pulls(&ready.courses, (&scored.refit.simulated, &ready.sigma))
 }
 
 /// Standard errors from which a step of the gain is looked into.

@@ -28,11 +28,13 @@ pub enum Acts {
         /// Time without load after which 63 % has come back, s.
         recovery_s: f64,
     },
-    /// Springs hold on until they are stretched by a length that grows as the root of the contact radius; its factor is free, and
-    /// sought from `start`.
+    /// Skin that clings takes off a force in proportion to the area that was touched, once the tool has left by some way, and until
+    /// it lets go; the force on the largest contact is free, over the study's largest force.
     Clings {
-        /// Over the root of the largest depth.
-        start: f64,
+        /// Way out over which the grip builds up, over the largest depth.
+        builds: f64,
+        /// Depth at which it lets go, over the largest depth; negative: above the skin.
+        lets_go: f64,
     },
     /// A tabulated change of the response; its coordinate is free.
     Tabled,
@@ -118,6 +120,9 @@ const TIMES_S: [f64; 3] = [0.12, 1.0, 8.0];
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 2] = [0.08, 0.4];
 
+/// Depths at which skin lets go, over the largest depth: before the tool is out, as it leaves, above the skin, and not at all.
+const LETS_GO: [f64; 4] = [0.12, 0.0, -0.1, -10.0];
+
 /// Every mechanism that is tried alone, with its variants; the order decides ties.
 pub fn singles(scales: Scales) -> Vec<Mechanism> {
     let mut all = instrument();
@@ -143,8 +148,10 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
         });
     }
     let one = |effect, acts| Mechanism { effect, acts };
-    let clings = [0.02, 0.08, 0.25].map(|start| one(Effect::Adhesion, Acts::Clings { start }));
-    all.extend(clings);
+    for builds in [0.08, 0.25] {
+        let clings = LETS_GO.map(|lets_go| one(Effect::Adhesion, Acts::Clings { builds, lets_go }));
+        all.extend(clings);
+    }
     if scales.has_bone {
         all.push(one(Effect::Bone, Acts::Tabled));
     }

@@ -2,12 +2,10 @@
 //!
 //! An elastic force curve `f(d)`, joined by straight lines between rungs `d_j`, is that of springs of stiffness `k_j` that touch
 //! one after the other at the depths `d_j`: `f(d) = sum_j k_j max(d - d_j, 0)`. Memory acts on each spring by itself, which is exact
-//! for an axisymmetric tool that goes in (Lee & Radok 1960) and near to Ting's solution when it comes out; a spring that is held
-//! until it is stretched by `l(a)` gives JKR's pull-off (Hess 2011; Popov & Hess 2015, Method of Dimensionality Reduction 4.2).
+//! for an axisymmetric tool that goes in (Lee & Radok 1960) and near to Ting's solution when it comes out (Popov & Hess 2015,
+//! Method of Dimensionality Reduction).
 //! What is computed is each spring's length times its share that is borne, over what an elastic spring would bear.
 
-/// Part of the length over which a spring lets go, so that force depends smoothly on that length.
-const LETS_GO: f64 = 0.3;
 /// Steps shorter than this share of a period are taken by the series of the closed form.
 const SHORT: f64 = 1e-6;
 
@@ -22,8 +20,6 @@ pub struct Way<'a> {
     pub fades: &'a [Vec<(f64, f64)>],
     /// Share of each branch.
     pub shares: &'a [f64],
-    /// How far each spring may be stretched before it lets go, mm; empty: not at all.
-    pub holds: &'a [f64],
 }
 
 /// Decay and mean of a branch over steps of its clock in periods.
@@ -43,26 +39,11 @@ pub fn lost(way: &Way<'_>, springs: &[f64]) -> Vec<f64> {
     let rows = way.depths.len();
     let mut all = vec![0.0; rows];
     let mut left = vec![0.0; way.fades.len()];
-    for (j, (touch, k)) in way.touches.iter().zip(springs).enumerate() {
+    for (touch, k) in way.touches.iter().zip(springs) {
         left.fill(0.0);
-        let hold = way.holds.get(j).copied().unwrap_or(0.0);
-        let (mut last, mut is_held) = (0.0, false);
+        let mut last = 0.0;
         for n in 0..rows {
-            let reach = way.depths[n] - touch;
-            let elastic = reach.max(0.0);
-            let length = match reach >= 0.0 {
-                true => {
-                    is_held = true;
-                    reach
-                }
-                false if is_held && hold > 0.0 => {
-                    // Lets go between hold and hold (1 + LETS_GO).
-                    let over = (reach + hold * (1.0 + LETS_GO)) / (LETS_GO * hold);
-                    is_held = over > 0.0;
-                    reach * over.clamp(0.0, 1.0)
-                }
-                false => 0.0,
-            };
+            let length = (way.depths[n] - touch).max(0.0);
             let mut borne = length;
             for (b, fades) in way.fades.iter().enumerate() {
                 let (decay, mean) = match n {
@@ -73,9 +54,8 @@ pub fn lost(way: &Way<'_>, springs: &[f64]) -> Vec<f64> {
                 borne -= way.shares[b] * (length - left[b]);
             }
             last = length;
-            // Skin that is not held does not pull.
-            let floor = if length < 0.0 { f64::NEG_INFINITY } else { 0.0 };
-            all[n] += k * (borne.max(floor) - elastic);
+            // Skin that does not cling does not pull.
+            all[n] += k * (borne.max(0.0) - length);
         }
     }
     all

@@ -31,6 +31,8 @@ pub use findings::{
 };
 pub use findings_json::findings_json;
 
+use std::sync::{Mutex, PoisonError};
+
 use thenar_contact::Control;
 use thenar_recordings::Study;
 
@@ -63,8 +65,16 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     control: &Control<'_>,
 ) -> Result<Diagnosis, DiagnosisError> {
+    // Each part begins its own count; what the caller is told does not fall.
+    let furthest = Mutex::new(0.0);
+    let tell = |stage: &str, share: f64| {
+        let mut furthest = furthest.lock().unwrap_or_else(PoisonError::into_inner);
+        *furthest = f64::max(*furthest, share);
+        (control.progress)(stage, *furthest);
+    };
     let part = |from: f64, to: f64| {
-        move |stage: &str, share: f64| (control.progress)(stage, from + (to - from) * share)
+        let tell = &tell;
+        move |stage: &str, share: f64| tell(stage, from + (to - from) * share.clamp(0.0, 1.0))
     };
     let progress = part(0.0, 0.3);
     let within = Control {

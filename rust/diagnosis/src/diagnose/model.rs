@@ -124,7 +124,7 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism) -> (f64, f64, f64) {
     match &mechanism.acts {
         Acts::Fades { .. } => (0.03, 0.0, 0.6),
         Acts::Softens { .. } => (0.1, 0.0, 0.9),
-        Acts::Clings { start } => (start * depth.sqrt(), 0.0, depth.sqrt()),
+        Acts::Clings { .. } => (0.01, 0.0, 0.6),
         Acts::Tabled => match screen.elastic.variant(mechanism.effect) {
             Some(v) => {
                 let (low, high) = (v.knots[0], v.knots[v.knots.len() - 1]);
@@ -137,7 +137,11 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism) -> (f64, f64, f64) {
         Acts::Offset => (0.0, -0.3 * force, 0.3 * force),
         Acts::Drifts { .. } => (0.0, -0.3 * force, 0.3 * force),
         Acts::Saturates => (-0.1, -2.0, 0.7),
-        Acts::Blind => (0.1, 0.0, 0.9),
+        Acts::Blind => (
+            f64::max(0.1, 1.5 * screen.least_floor),
+            screen.least_floor,
+            0.9,
+        ),
         Acts::Yields => (0.02 * depth / force, 0.0, 0.8 * depth / force),
         Acts::Late => (0.02, -0.5, 0.5),
     }

@@ -34,7 +34,7 @@ pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, S
     let mechanism = &scored.mechanisms[number];
     let free = free_numbers(ready, scored, number);
     let effect = mechanism.effect;
-    let (amplitude, numbers) = values(ready, scored, (mechanism, &free));
+    let (amplitude, numbers) = values(ready, (mechanism, &free));
     let unit = |name: &str| {
         let entry = effect.entry().shape.iter().find(|n| n.name == name);
         entry.map_or("1", |n| n.unit)
@@ -76,11 +76,7 @@ type Three = (f64, f64, f64);
 type Named = (&'static str, f64, f64, f64);
 
 /// Amplitude and shape numbers, each with its interval.
-fn values(
-    ready: &Prepared,
-    scored: &Scored,
-    (mechanism, free): (&Mechanism, &[(f64, f64)]),
-) -> (Three, Vec<Named>) {
+fn values(ready: &Prepared, (mechanism, free): (&Mechanism, &[(f64, f64)])) -> (Three, Vec<Named>) {
     let (value, error) = free[0];
     let interval = |scale: &dyn Fn(f64) -> f64| {
         (
@@ -105,7 +101,7 @@ fn values(
             (shares, shape)
         }
         Acts::Clings { .. } => {
-            let work = interval(&|x| work_of(ready, scored, x.max(0.0)));
+            let work = interval(&|x| work_of(ready, x.max(0.0)));
             (whole, named("work_j_per_m2", work))
         }
         Acts::Tabled => {
@@ -204,17 +200,11 @@ fn fading(
     (amplitude, numbers)
 }
 
-/// Work of adhesion of springs that hold as far as `factor` says, J/m2: `l(a) = sqrt(2 pi a w / E*)` (Hess 2011), E* = 4 G.
-fn work_of(ready: &Prepared, scored: &Scored, factor: f64) -> f64 {
+/// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits
+/// of JKR and DMT, with `R = a^2 / d`.
+fn work_of(ready: &Prepared, share: f64) -> f64 {
     let deepest = ready.scales.deepest;
-    let a = ready
-        .elastic
-        .places
-        .iter()
-        .map(|p| radius(p, deepest))
-        .fold(f64::INFINITY, f64::min)
-        .max(1e-3);
-    let length = factor * deepest.sqrt();
-    let modulus = 4.0 * libm::exp(scored.refit.at[0]);
-    length * length * modulus / (2.0 * std::f64::consts::PI * a) * 1e3
+    let radii = ready.elastic.places.iter().map(|p| radius(p, deepest));
+    let tool = radii.fold(1e-3, f64::max).powi(2) / deepest;
+    share * ready.scales.forces.1 / (1.75 * std::f64::consts::PI * tool) * 1e3
 }

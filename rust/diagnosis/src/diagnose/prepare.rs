@@ -13,14 +13,15 @@ use super::screen::Screen;
 use crate::DiagnosisError;
 use crate::fit::Fitting;
 use crate::noise::{Noise, Whitening, noise};
+use crate::observe::scatter::median;
 use crate::replay::KNOTS;
 
 /// Standard deviation of the factor by which the model's form may be off at each knot of depth, for each tool at each site: on flat
 /// skin, and on any other.
 ///
 /// Against the finite elements of the calibration's flat pads without effects the layer is off by up to 2 % at a quarter of the depth
-/// and 1 % beyond, after two moduli (`tests/trial`); on the round fingertip of `tests/proof` by up to 9 %.
-const FORM_ERROR: [[f64; KNOTS]; 2] = [[0.02, 0.012, 0.01, 0.01], [0.05; KNOTS]];
+/// and 0.5 to 1 % beyond, after two moduli (`tests/trial`); on the round fingertip of `tests/proof` by up to 9 %.
+const FORM_ERROR: [[f64; KNOTS]; 2] = [[0.02, 0.01, 0.008, 0.008], [0.05; KNOTS]];
 /// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
 const FLAT: (f64, f64) = (0.03, 1.5);
 /// Standard deviation of first touch as an operator judges it, mm, as the fit takes it.
@@ -29,6 +30,8 @@ const TOUCH: f64 = 0.05;
 const UNKNOWN_TOUCH: f64 = 0.15;
 /// Bounds of a modulus against the study's own, as logarithms.
 const MODULUS: f64 = 3.0;
+/// Standard deviations of the noise below which a floor under readings is none.
+const FLOOR: f64 = 4.0;
 /// Bounds in standard deviations.
 const MOST: f64 = 6.0;
 
@@ -68,11 +71,20 @@ pub fn prepare(
     if found.is_empty() {
         return Ok(None);
     }
+    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
+    let elastic = Elastic::new(fitting, g0, control)?;
+    Ok(Some(assemble(study, fitting, (found, elastic))))
+}
+
+/// What is known without pressing.
+fn assemble(
+    study: &Study,
+    fitting: &Fitting,
+    (found, elastic): (Vec<Course>, Elastic),
+) -> Prepared {
     let is_screened: Vec<bool> = (0..fitting.measured().len())
         .map(|r| found.iter().any(|c| c.recording == r))
         .collect();
-    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
-    let elastic = Elastic::new(fitting, g0, control)?;
     let noise = judged(study, fitting, ((&found, &elastic), &is_screened));
     let whitening = Whitening::new(fitting.measured(), &noise, &is_screened);
     let samples = fitting.measured().iter().flat_map(|m| &m.samples);
@@ -80,7 +92,7 @@ pub fn prepare(
     let scales = scales(study, &found, &elastic);
     let shared = shared((fitting, is_flat(study)), (&found, &elastic), &noise);
     let sigma = noise.sigma.concat();
-    Ok(Some(Prepared {
+    Prepared {
         courses: found,
         elastic,
         noise,
@@ -90,7 +102,7 @@ pub fn prepare(
         shared,
         scales,
         base_material: fitting.replay.tissue.materials[0],
-    }))
+    }
 }
 
 /// The noise, from repeats along what gain and contact zero do to them.
@@ -129,6 +141,16 @@ fn judged(
 }
 
 impl Prepared {
+    /// Noise over the largest force of its recording, the median of all samples.
+    fn noise_share(&self) -> f64 {
+        let share = |c: &Course| {
+            let sample = c.rows.iter().find_map(|r| r.sample)?;
+            Some(self.sigma[sample] / c.most())
+        };
+        let mut shares: Vec<f64> = self.courses.iter().filter_map(share).collect();
+        median(&mut shares).clamp(1e-4, 0.1)
+    }
+
     /// The screen of these recordings.
     pub fn screen(&self) -> Screen<'_> {
         Screen {
@@ -139,6 +161,7 @@ impl Prepared {
             shared: self.shared.clone(),
             most: (self.scales.forces.1, self.scales.deepest),
             least_peak: self.scales.forces.0,
+            least_floor: FLOOR * self.noise_share(),
         }
     }
 }

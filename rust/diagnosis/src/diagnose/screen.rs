@@ -31,6 +31,8 @@ pub struct Screen<'a> {
     pub most: (f64, f64),
     /// Smallest peak force of a recording, N.
     pub least_peak: f64,
+    /// Floor over it, below which readings cannot be told from noise.
+    pub least_floor: f64,
 }
 
 /// What a tool at its site answers for the numbers of a model.
@@ -78,19 +80,18 @@ impl Screen<'_> {
         let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
         let fades = self.fades(model, (one, &depths));
         let shares = self.shares(model, set, one.place);
-        let holds = self.holds(model, set, table);
-        if !fades.is_empty() || !holds.is_empty() {
+        if !fades.is_empty() {
             let way = Way {
                 depths: &depths,
                 touches: &answer.touches,
                 fades: &fades,
                 shares: &shares,
-                holds: &holds,
             };
             let more = lost(&way, &answer.springs);
             forces.iter_mut().zip(more).for_each(|(f, m)| *f += m);
         }
         self.soften(model, set, ((one, &depths), &mut forces));
+        self.cling(model, set, ((one, &depths), &mut forces));
         forces
     }
 

@@ -220,7 +220,7 @@ fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str)
     use super::mechanism::Acts;
     match &scored.mechanisms[0].acts {
         Acts::Fades { .. } | Acts::Softens { .. } => (size, "share of the force"),
-        Acts::Clings { .. } => (size * ready.scales.deepest.sqrt(), "mm that skin holds on"),
+        Acts::Clings { .. } => (size, "share of the largest force"),
         Acts::Tabled => match scored.mechanisms[0].effect {
             Effect::Bone => (libm::exp(size) - 1.0, "share of the thickness"),
             Effect::Compressibility => (size, "of Poisson's ratio"),
@@ -277,6 +277,7 @@ pub fn evidence(ready: &Prepared, rungs: &Rungs) -> Vec<(&'static str, f64)> {
     ];
     if let Some(unsteady) = rungs.unsteady {
         all.push(("noise_under_load_over_without", unsteady.ratio));
+        all.push(("noise_of_one_size_up_to", unsteady.least));
     }
     if let Some(step) = rungs.gain_step {
         all.push(("gain_step_t", step.t));

@@ -1,0 +1,125 @@
+//! The ladder's plumbing on studies that the model itself makes: these say that each rung is reached, not that names are right; that
+//! is told by the finite elements of `tests/trial`.
+#![allow(clippy::unwrap_used)]
+
+mod scenes;
+
+use scenes::laboratory::{USUAL, clean, measured, planned};
+use serde_json::Value;
+use thenar_contact::{ActiveEffect, Control};
+use thenar_diagnosis::diagnose::Verdict;
+use thenar_diagnosis::{
+    DiagnoseOptions, Diagnosis, DiagnosisError, Fitting, diagnose, findings_json,
+};
+use thenar_recordings::Study;
+
+fn diagnosed(study: &Study) -> Diagnosis {
+    diagnose(study, &DiagnoseOptions::default(), &Control::none()).unwrap()
+}
+
+/// Moduli that are off, gain and first touch that differ from repeat to repeat, outliers: only the parameters were off.
+#[test]
+fn a_study_without_anything_missing_blames_nobody_and_says_what_it_would_have_seen() {
+    let study = measured(&clean(), &USUAL, 5);
+    let found = diagnosed(&study);
+    assert_eq!(found.verdict, Verdict::Parameters, "{}", found.sentence);
+    assert!(found.findings.is_empty() && found.cannot_tell.is_empty());
+    let seen: Vec<&str> = found.smallest_seen.iter().map(|s| s.0).collect();
+    assert!(
+        seen.contains(&"relaxation") && seen.contains(&"cycle_softening"),
+        "{seen:?}"
+    );
+    assert!(
+        found
+            .smallest_seen
+            .iter()
+            .all(|(_, value, _)| value.is_finite() && *value > 0.0)
+    );
+    assert_eq!(
+        findings_json(&found),
+        findings_json(&diagnosed(&study)),
+        "the same seed gives the same bytes"
+    );
+}
+
+/// Relaxation that the contact model follows on its mesh is named by the screening's springs, a model of another kind.
+#[test]
+fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
+    let effect = ActiveEffect::named("relaxation", 0.5).unwrap();
+    let study = planned();
+    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
+    let forces = fitting.simulate(&[effect], &Control::none()).unwrap();
+    let study = measured(&(study, forces), &USUAL, 11);
+    let found = diagnosed(&study);
+    let names: Vec<&str> = found.findings.iter().map(|f| f.effect).collect();
+    assert_eq!(names, ["relaxation"], "{}", found.sentence);
+    assert_eq!(found.verdict, Verdict::MissingPhysics);
+    let gain = found.gain.as_ref().unwrap();
+    assert!(
+        gain.after.rms < gain.before.rms && gain.removed > 0.75,
+        "{gain:?}"
+    );
+    let json: Value = serde_json::from_str(&findings_json(&found)).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["findings"][0]["kind"], "tissue");
+    let when = &json["findings"][0]["when"];
+    assert!(when["recordings"].as_array().is_some_and(|r| !r.is_empty()));
+    assert!(
+        json["fit"]["reducible_error_removed"]["value"]
+            .as_f64()
+            .unwrap()
+            > 0.75
+    );
+    assert_eq!(json["model"]["effects"][0]["name"], "relaxation");
+    let switched = &found.effects[0];
+    let mut active = ActiveEffect::named(switched.name, switched.amplitude).unwrap();
+    for (name, value) in &switched.numbers {
+        active = active.with(name, *value).unwrap();
+    }
+    assert!(
+        fitting.simulate(&[active], &Control::none()).is_ok(),
+        "the model takes what was found"
+    );
+}
+
+/// One recording of each protocol: noise is not known, and nothing is named whatever the curve looks like.
+#[test]
+fn without_repeats_nothing_is_named() {
+    let mut study = measured(&clean(), &USUAL, 5);
+    study.recordings.truncate(1);
+    let found = diagnosed(&study);
+    assert_eq!(
+        found.verdict,
+        Verdict::InsufficientData,
+        "{}",
+        found.sentence
+    );
+    assert!(found.findings.is_empty() && found.names_90.is_empty());
+}
+
+#[test]
+fn a_diagnosis_can_be_cancelled_at_any_time_and_its_progress_never_falls() {
+    let study = measured(&clean(), &USUAL, 5);
+    let told = std::sync::Mutex::new(Vec::new());
+    let watched = Control {
+        cancelled: &|| false,
+        progress: &|_, share| told.lock().unwrap().push(share),
+    };
+    diagnose(&study, &DiagnoseOptions::default(), &watched).unwrap();
+    let told = told.into_inner().unwrap();
+    assert!(told.windows(2).all(|w| w[0] <= w[1]) && told.last() == Some(&1.0));
+    let calls = std::sync::atomic::AtomicUsize::new(0);
+    for after in [0, 40, 400] {
+        calls.store(0, std::sync::atomic::Ordering::Relaxed);
+        let stops = Control {
+            cancelled: &|| calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= after,
+            progress: &|_, _| {},
+        };
+        let ended = diagnose(&study, &DiagnoseOptions::default(), &stops);
+        assert_eq!(
+            ended.err(),
+            Some(DiagnosisError::Cancelled),
+            "after {after}"
+        );
+    }
+}

@@ -1,0 +1,56 @@
+"""`thenar.diagnose` on finite elements of the calibration split: silence, names, instruments, clocks, too little."""
+
+import json
+import tomllib
+
+import pytest
+import thenar
+from trial import cases
+
+# Cases of the calibration split by what they hold; their labels are opened by score.py alone.
+SILENT = ("case_462", "case_157", "case_189", "case_447")
+NAMED = {"case_132": "relaxation", "case_061": "cycle_softening", "case_274": "rate_independent_loss"}
+READ = {"case_015": "saturation", "case_020": "timing"}
+
+
+def found(case, folder):
+    cases.write(case, folder)
+    return json.loads(thenar.diagnose(thenar.Study.load(folder)).to_json())
+
+
+@pytest.mark.parametrize("case", SILENT)
+def test_where_nothing_is_planted_nothing_is_claimed(case, tmp_path):
+    said = found(case, tmp_path)
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+    assert said["smallest_seen"]["relaxation"]["value"] > 0.0
+
+
+@pytest.mark.parametrize("case", NAMED)
+def test_an_effect_of_the_skin_is_named_and_predicts_what_was_held_out(case, tmp_path):
+    said = found(case, tmp_path)
+    assert [one["effect"] for one in said["findings"]] == [NAMED[case]]
+    assert said["verdict"] == "missing_physics" and [NAMED[case]] in said["names_90"]
+    assert said["fit"]["reducible_error_removed"]["value"] > 0.5
+
+
+@pytest.mark.parametrize("case", READ)
+def test_an_instrument_is_not_blamed_on_the_skin(case, tmp_path):
+    said = found(case, tmp_path)
+    assert said["verdict"] == "instrument" and [one["effect"] for one in said["findings"]] == [READ[case]]
+
+
+def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_for(tmp_path):
+    """Only the contact's size tells the clocks apart: the next recording is with a tool that was not used."""
+    said = found("case_478", tmp_path)
+    assert said["verdict"] == "cannot_tell" and ["relaxation", "drainage"] in said["cannot_tell"]
+    used = {one["indenter"] for one in _recordings(tmp_path)}
+    asked = said["record_next"][0]["protocol"]
+    assert asked["indenter"] is not None and asked["indenter"] not in used and asked["hold_s"] > 0.0
+
+
+def test_one_recording_is_too_little(tmp_path):
+    assert found("case_479", tmp_path)["verdict"] == "insufficient_data"
+
+
+def _recordings(folder):
+    return tomllib.loads((folder / "study.toml").read_text())["recordings"]
