@@ -33,7 +33,7 @@ fn a_study_without_anything_missing_blames_nobody_and_says_what_it_would_have_se
         found
             .smallest_seen
             .iter()
-            .all(|(_, value, _)| value.is_finite() && *value > 0.0)
+            .all(|(_, value, _)| value.is_none_or(|v| v.is_finite() && v > 0.0))
     );
     assert_eq!(
         findings_json(&found),

@@ -164,8 +164,6 @@ pub struct Suggestion {
     pub depth_mm: f64,
     /// The names it settles between.
     pub settles: Vec<&'static str>,
-    /// Probability that it settles them.
-    pub probability: f64,
     /// Time it takes, minutes.
     pub minutes: f64,
 }
@@ -217,8 +215,8 @@ pub struct Diagnosis {
     pub cannot_tell: Vec<[&'static str; 2]>,
     /// Predictions of what was held out; None where nothing is named.
     pub gain: Option<Gain>,
-    /// Smallest size of each effect that would have been seen: name, value, unit.
-    pub smallest_seen: Vec<(&'static str, f64, &'static str)>,
+    /// Smallest size of each effect that would have been seen: name, value (None: none that can be), unit.
+    pub smallest_seen: Vec<(&'static str, Option<f64>, &'static str)>,
     /// What to record next.
     pub record_next: Vec<Suggestion>,
     /// Fitted moduli: region, G0 and Glim in MPa.

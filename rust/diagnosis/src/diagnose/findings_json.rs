@@ -6,10 +6,10 @@ use super::findings::{Diagnosis, Finding, Gain, Rival, Spread, Suggestion, Switc
 
 /// The diagnosis as JSON, schema 1.
 pub fn findings_json(found: &Diagnosis) -> String {
-    let by_name = |(name, value, unit): &(&'static str, f64, &'static str)| {
+    let by_name = |(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
         (
             (*name).to_owned(),
-            json!({"value": rounded(*value), "unit": unit}),
+            json!({"value": value.and_then(rounded), "unit": unit}),
         )
     };
     let smallest: Map<String, Value> = found.smallest_seen.iter().map(by_name).collect();
@@ -141,7 +141,8 @@ fn suggestion(of: &Suggestion) -> Value {
             "depth_mm": rounded(of.depth_mm),
         },
         "settles": of.settles,
-        "probability": rounded(of.probability),
+        // How often such a recording settles the matter is not computed.
+        "probability": null,
         "minutes": rounded(of.minutes),
     })
 }

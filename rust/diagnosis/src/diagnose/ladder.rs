@@ -58,6 +58,8 @@ pub struct Rungs {
 const PRICE: f64 = 1.0;
 /// Names among which all pairs are tried.
 const PAIRED: usize = 6;
+/// Names that are tried beside the leader.
+const LED: usize = 12;
 /// Evidence of the best single mechanism from which a second beside it is looked for.
 const WORTH_A_PAIR: f64 = 7.0;
 
@@ -71,114 +73,156 @@ pub fn climb(
     control: &Control<'_>,
 ) -> Result<Rungs, DiagnosisError> {
     let screen = ready.screen();
-    let step = |share: f64| {
-        let step = control.step("trying explanations", share);
-        step.map_err(|_| DiagnosisError::Cancelled)
+    let mut trial = Trial {
+        ready,
+        screen: &screen,
+        blocks: blocks(measured),
+        from: Vec::new(),
+        control,
     };
-    let blocks = blocks(measured);
-    let samples = ready
-        .courses
-        .iter()
-        .flat_map(|c| &c.rows)
-        .filter(|r| r.sample.is_some())
-        .count();
-    let score = |mechanisms: &[Mechanism], from: &[f64]| {
-        let model = Model::new(&screen, mechanisms);
-        let refit = refit(&screen, &model, from);
-        Scored {
-            coherent: coherent(&screen, &refit.residual, &blocks),
-            mechanisms: mechanisms.to_vec(),
-            refit,
-            evidence: 0.0,
-        }
+    let mut base = trial.score(&[]);
+    trial.from.clone_from(&base.refit.at);
+    let gain_step = gain_step(&ready.courses, &log_gains(ready, &base));
+    let clear_step = gain_step.filter(|found| found.t > STEP);
+    let mut singles = trial.singles(clear_step)?;
+    let rows = ready.courses.iter().flat_map(|c| &c.rows);
+    let samples = rows.filter(|r| r.sample.is_some()).count();
+    let deviances = singles.iter().map(|s| s.refit.deviance);
+    let least = deviances.fold(base.refit.deviance, f64::min);
+    let scale = Scale {
+        base: base.refit.deviance,
+        temper: (least / samples.max(1) as f64).max(1.0),
     };
-    let mut base = score(&[], &[]);
-    let from = base.refit.at.clone();
-    let mut tried = singles(ready.scales);
-    let step_found = gain_step(&ready.courses, &log_gains(ready, &base));
-    if let Some(found) = step_found.filter(|f| f.t > STEP) {
-        let acts = Acts::GainStep { from: found.from };
-        tried.push(Mechanism {
-            effect: Effect::Gain,
-            acts,
-        });
-    }
-    let mut all = Vec::new();
-    for (k, mechanism) in tried.iter().enumerate() {
-        step(0.6 * k as f64 / tried.len() as f64)?;
-        all.push(score(std::slice::from_ref(mechanism), &from));
-    }
-    let least = all
-        .iter()
-        .map(|s| s.refit.deviance)
-        .fold(base.refit.deviance, f64::min);
-    let temper = (least / samples.max(1) as f64).max(1.0);
-    let base_deviance = base.refit.deviance;
-    let judge = |scored: &mut Scored| {
-        let numbers: usize = scored.mechanisms.iter().map(Mechanism::count).sum();
-        let fall = base_deviance - scored.refit.deviance;
-        scored.evidence = 0.5 * fall / temper - PRICE * numbers as f64;
-    };
-    judge(&mut base);
-    all.iter_mut().for_each(judge);
-    let found = step_found.filter(|f| f.t > STEP);
-    for scored in all
+    scale.judge(&mut base);
+    singles.iter_mut().for_each(|s| scale.judge(s));
+    for scored in singles
         .iter_mut()
         .filter(|s| s.mechanisms[0].effect == Effect::Gain)
     {
         // The scatter of gains was judged with the step in it: what the step explains is told by the repeats' gains alone.
-        scored.evidence = scored.evidence.max(found.map_or(0.0, |f| f.evidence));
+        scored.evidence = scored.evidence.max(clear_step.map_or(0.0, |f| f.evidence));
     }
+    let singles = best_of_each(ready, singles);
+    let pairs = trial.pairs(&singles, &scale)?;
+    let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
+    Ok(Rungs {
+        unsteady: unsteady(&screen, sizes, ready.noise.memory_s[0]),
+        base,
+        singles,
+        pairs,
+        gain_step,
+        samples,
+        temper: scale.temper,
+    })
+}
+
+/// What evidence is measured with.
+struct Scale {
+    /// Deviance of the base.
+    base: f64,
+    /// What deviances are divided by.
+    temper: f64,
+}
+
+impl Scale {
+    fn judge(&self, scored: &mut Scored) {
+        let numbers: usize = scored.mechanisms.iter().map(Mechanism::count).sum();
+        let fall = self.base - scored.refit.deviance;
+        scored.evidence = 0.5 * fall / self.temper - PRICE * numbers as f64;
+    }
+}
+
+/// Tries hypotheses on one study.
+struct Trial<'a> {
+    ready: &'a Prepared,
+    screen: &'a Screen<'a>,
+    /// Samples that repeats share, by number of their block.
+    blocks: Vec<usize>,
+    /// Optimum of the base, where fits begin.
+    from: Vec<f64>,
+    control: &'a Control<'a>,
+}
+
+impl Trial<'_> {
+    fn step(&self, share: f64) -> Result<(), DiagnosisError> {
+        let step = self.control.step("trying explanations", share);
+        step.map_err(|_| DiagnosisError::Cancelled)
+    }
+
+    fn score(&self, mechanisms: &[Mechanism]) -> Scored {
+        let model = Model::new(self.screen, mechanisms);
+        let refit = refit(self.screen, &model, &self.from);
+        Scored {
+            coherent: coherent(self.screen, &refit.residual, &self.blocks),
+            mechanisms: mechanisms.to_vec(),
+            refit,
+            evidence: 0.0,
+        }
+    }
+
+    /// Every variant of every single mechanism, and a step of the gain if repeats show one.
+    fn singles(&self, step: Option<GainStep>) -> Result<Vec<Scored>, DiagnosisError> {
+        let mut tried = singles(self.ready.scales);
+        tried.extend(step.map(|found| Mechanism {
+            effect: Effect::Gain,
+            acts: Acts::GainStep { from: found.from },
+        }));
+        let mut all = Vec::new();
+        for (k, mechanism) in tried.iter().enumerate() {
+            self.step(0.6 * k as f64 / tried.len() as f64)?;
+            all.push(self.score(std::slice::from_ref(mechanism)));
+        }
+        Ok(all)
+    }
+
+    /// Pairs of single mechanisms, best first; none where no single one is worth it.
+    fn pairs(&self, singles: &[Scored], scale: &Scale) -> Result<Vec<Scored>, DiagnosisError> {
+        let mut pairs = Vec::new();
+        if singles.first().is_none_or(|b| b.evidence <= WORTH_A_PAIR) {
+            return Ok(pairs);
+        }
+        let sets = sets_of_two(singles);
+        for (k, set) in sets.iter().enumerate() {
+            self.step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
+            pairs.push(self.score(set));
+        }
+        pairs.iter_mut().for_each(|s| scale.judge(s));
+        pairs.retain(|s| shows_its_signs(self.ready, s));
+        pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        Ok(pairs)
+    }
+}
+
+/// The best variant of every name whose necessary signs show, best first.
+fn best_of_each(ready: &Prepared, mut all: Vec<Scored>) -> Vec<Scored> {
     all.retain(|s| shows_its_signs(ready, s));
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let mut best: Vec<Scored> = Vec::new();
     for scored in all {
-        if !best
-            .iter()
-            .any(|b| b.mechanisms[0].effect == scored.mechanisms[0].effect)
-        {
+        let is_same = |b: &Scored| b.mechanisms[0].effect == scored.mechanisms[0].effect;
+        if !best.iter().any(is_same) {
             best.push(scored);
         }
     }
-    let mut pairs = Vec::new();
-    let wants_pairs = best.first().is_some_and(|b| b.evidence > WORTH_A_PAIR);
-    if wants_pairs {
-        let among: Vec<Mechanism> = best
-            .iter()
-            .filter(|s| s.evidence > 1.0)
-            .take(PAIRED)
-            .map(|s| s.mechanisms[0].clone())
-            .collect();
-        let mut others: Vec<Mechanism> = best.iter().map(|s| s.mechanisms[0].clone()).collect();
-        others.truncate(12);
-        let mut sets = Vec::new();
-        for (i, a) in others.iter().enumerate() {
-            for b in &others[i + 1..] {
-                let leads = among.first().is_some_and(|lead| a == lead || b == lead);
-                if leads || (among.contains(a) && among.contains(b)) {
-                    sets.push([a.clone(), b.clone()]);
-                }
+    best
+}
+
+/// The leader with each other name, and all pairs among the best few.
+fn sets_of_two(singles: &[Scored]) -> Vec<[Mechanism; 2]> {
+    let others: Vec<&Mechanism> = singles.iter().map(|s| &s.mechanisms[0]).collect();
+    let others = &others[..others.len().min(LED)];
+    let among = singles.iter().filter(|s| s.evidence > 1.0).take(PAIRED);
+    let among: Vec<&Mechanism> = among.map(|s| &s.mechanisms[0]).collect();
+    let mut sets = Vec::new();
+    for (i, a) in others.iter().enumerate() {
+        for b in &others[i + 1..] {
+            let leads = among.first().is_some_and(|lead| a == lead || b == lead);
+            if leads || (among.contains(a) && among.contains(b)) {
+                sets.push([(*a).clone(), (*b).clone()]);
             }
         }
-        for (k, set) in sets.iter().enumerate() {
-            step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
-            pairs.push(score(set, &from));
-        }
-        pairs.iter_mut().for_each(judge);
-        pairs.retain(|s| shows_its_signs(ready, s));
-        pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     }
-    let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
-    let unsteady = unsteady(&screen, sizes, ready.noise.memory_s[0]);
-    Ok(Rungs {
-        base,
-        singles: best,
-        pairs,
-        unsteady,
-        gain_step: step_found,
-        samples,
-        temper,
-    })
+    sets
 }
 
 /// False for a hypothesis whose necessary signs do not show in what was measured.

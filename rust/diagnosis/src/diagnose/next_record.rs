@@ -133,7 +133,6 @@ fn suggestion(study: &Study, courses: &[Course], pair: [&'static str; 2]) -> Opt
             cycles,
             depth_mm: depth,
             settles: pair.to_vec(),
-            probability: 0.75,
             minutes: MINUTES + 2.0 * (hold + 2.0 * f64::from(cycles) * depth / speed) / 60.0,
         }
     };

@@ -3,6 +3,7 @@
 use thenar_contact::effects::{Effect, Sign};
 use thenar_recordings::Study;
 
+use super::course::Course;
 use super::findings::{Curve, Finding, Rival, Switched, When, Where};
 use super::gates::{DETECTED, Decision};
 use super::ladder::{Rungs, Scored};
@@ -197,8 +198,11 @@ pub fn curves(ready: &Prepared, rungs: &Rungs, decision: &Decision<'_>) -> Vec<C
     ready.courses.iter().map(of).collect()
 }
 
-/// The smallest amplitude of every single effect that would have been detected.
-pub fn smallest_seen(ready: &Prepared, rungs: &Rungs) -> Vec<(&'static str, f64, &'static str)> {
+/// The smallest amplitude of every single effect that would have been detected; None where that is more than there can be.
+pub fn smallest_seen(
+    ready: &Prepared,
+    rungs: &Rungs,
+) -> Vec<(&'static str, Option<f64>, &'static str)> {
     let mut found = Vec::new();
     for scored in &rungs.singles {
         let free = free_numbers(ready, scored, 0);
@@ -208,32 +212,44 @@ pub fn smallest_seen(ready: &Prepared, rungs: &Rungs) -> Vec<(&'static str, f64,
             .fold(f64::INFINITY, f64::min)
             .sqrt();
         let needed = (2.0 * (DETECTED + free.len() as f64) * rungs.temper).sqrt();
-        let (value, unit) = in_words(ready, scored, needed * error);
-        found.push((scored.mechanisms[0].effect.name(), value, unit));
+        let (value, unit, most) = in_words(ready, scored, needed * error);
+        let name = scored.mechanisms[0].effect.name();
+        found.push((name, Some(value).filter(|v| *v <= most), unit));
     }
     found.sort_by_key(|(name, ..)| Effect::named(name));
     found
 }
 
-/// A size in screening's own number as a person takes it.
-fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str) {
+/// A size in screening's own number as a person takes it, and the largest that there can be.
+fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str, f64) {
     use super::mechanism::Acts;
+    let (least, most) = ready.scales.forces;
+    let deepest = ready.scales.deepest;
     match &scored.mechanisms[0].acts {
-        Acts::Fades { .. } | Acts::Softens { .. } => (size, "share of the force"),
-        Acts::Clings { .. } => (size, "share of the largest force"),
+        Acts::Fades { .. } | Acts::Softens { .. } => (size, "share of the force", 1.0),
+        Acts::Clings { .. } => (size, "share of the largest force", 1.0),
         Acts::Tabled => match scored.mechanisms[0].effect {
-            Effect::Bone => (libm::exp(size) - 1.0, "share of the thickness"),
-            Effect::Compressibility => (size, "of Poisson's ratio"),
-            _ => (super::elastic::skin_share(size), "of the catalogue's skin"),
+            Effect::Bone => (libm::exp(size) - 1.0, "share of the thickness", 1.0),
+            Effect::Compressibility => (size, "of Poisson's ratio", 0.5),
+            _ => {
+                let share = super::elastic::skin_share(size);
+                (share, "of the catalogue's skin", 1.0)
+            }
         },
         Acts::Stiffens(_) | Acts::Saturates | Acts::GainStep { .. } => {
-            (libm::exp(size) - 1.0, "share of the force")
+            (libm::exp(size) - 1.0, "share of the force", 1.0)
         }
-        Acts::Offset | Acts::Drifts { .. } => (size, "N"),
-        Acts::Blind => (size * ready.scales.forces.0, "N"),
-        Acts::Yields => (size, "mm/N"),
-        Acts::Late => (size, "s"),
+        Acts::Offset | Acts::Drifts { .. } => (size, "N", most),
+        Acts::Blind => (size * least, "N", most),
+        Acts::Yields => (size, "mm/N", deepest / most.max(1e-12)),
+        Acts::Late => (size, "s", longest(ready)),
     }
+}
+
+/// Length of the longest recording, s.
+fn longest(ready: &Prepared) -> f64 {
+    let last = |course: &Course| course.rows.last().map_or(0.0, |row| row.time_s);
+    ready.courses.iter().map(last).fold(0.0, f64::max)
 }
 
 /// Fitted moduli by region: all in the proportion of the study's own.

@@ -82,9 +82,8 @@ fn next(found: &Diagnosis) -> String {
     }
     let one = |next: &crate::diagnose::Suggestion| {
         format!(
-            "<li>{} (settles it with a probability of {:.0} %, about {:.0} minutes)</li>",
+            "<li>{} (about {:.0} minutes)</li>",
             escaped(&next.text),
-            100.0 * next.probability,
             next.minutes
         )
     };
@@ -121,9 +120,10 @@ fn smallest(found: &Diagnosis) -> String {
     if found.smallest_seen.is_empty() {
         return String::new();
     }
-    let row = |(name, value, unit): &(&'static str, f64, &'static str)| {
+    let row = |(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
+        let size = value.map_or_else(|| "at no size".to_owned(), |v| format!("{v:.3}"));
         format!(
-            "<tr><td class='left'>{}</td><td>{value:.3}</td><td class='left'>{}</td></tr>",
+            "<tr><td class='left'>{}</td><td>{size}</td><td class='left'>{}</td></tr>",
             escaped(&name.replace('_', " ")),
             escaped(unit)
         )
