@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import thenar
 from proof import meshes, pressing
-from trial import cases, protocols, score
+from trial import cases, counts, protocols, score
 
 HERE = Path(__file__).parent
 RUNS = dict(np.load(HERE / "truth_runs.npz"))
@@ -139,8 +139,8 @@ def test_what_is_recorded_next_is_added(tmp_path):
 
 def test_the_trial_is_as_large_as_it_must_be_and_hides_its_truths():
     sealed = score.labels("trial")
-    counts = {stratum: sum(label["stratum"] == stratum for label in sealed.values()) for stratum in LEAST}
-    assert all(counts[stratum] >= least for stratum, least in LEAST.items()), counts
+    found = {stratum: sum(label["stratum"] == stratum for label in sealed.values()) for stratum in LEAST}
+    assert all(found[stratum] >= least for stratum, least in LEAST.items()), found
     hidden = [label["r2"] for label in sealed.values() if label["stratum"] not in ("null", "poor", "local", "faint")]
     assert np.mean(np.array(hidden) >= counts.CONCEALED) >= 0.6
     trial, calibration = (
