@@ -41,6 +41,19 @@ fn triangles_and_edges_keep_their_promises_at_every_spacing() {
     }
 }
 
+/// At this size and spacing the extraction once lost a block at the little finger's tip, and the skin had a hole.
+#[test]
+fn a_small_man_whose_little_finger_grazes_a_block_gets_a_closed_hand() {
+    let hand = hand(&HandShape {
+        percentile: 1.4837531378264395,
+        spacing_mm: 2.3001469187093293,
+        ..HandShape::default()
+    });
+    let audit = hand.mesh.audit();
+    assert!(audit.is_closed() && audit.parts == 1);
+    assert_eq!(self_intersections(&hand.mesh), 0);
+}
+
 #[test]
 fn left_hand_mirrors_the_right_exactly() {
     let right = default_hand();

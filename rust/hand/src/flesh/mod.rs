@@ -16,8 +16,9 @@ pub(crate) use sweep::Station;
 use sweep::Sweep;
 use thenar_surface::Vec3;
 
-/// The field's slope away from its steps (nails, creases), and the height of those; extraction skips empty space by them.
-/// `nothing_is_skipped` in the tests of extraction holds them against the full grid.
+/// What the field's slope stays below away from its steps (nails, creases), and the height of those; extraction looks for the skin by them.
+/// They hold outside the flesh, not on a digit's axis: there a point reads the semi-axis in its own direction, not the smallest (see
+/// `ellipsoid_value`), and the field leaps. Extraction follows the skin into what they miss.
 pub(crate) const MAX_SLOPE: f64 = 1.3;
 pub(crate) const MAX_STEP: f64 = 1.0;
 /// Two fingers blend over this many mm only; more and they web.

@@ -154,6 +154,7 @@ fn cone_value(q: Vec3, length: f64, [start, end]: [f64; 2], aspect: [f64; 2]) ->
 }
 
 /// First-order distance to an ellipsoid: its implicit function over the length of its gradient.
+/// Good near the surface. At the middle it has no limit: it tends to minus the semi-axis in the direction from which the middle is reached.
 pub(super) fn ellipsoid_value(q: Vec3, half: Vec3) -> f64 {
     let scaled = q.component_div(&half);
     let norm = scaled.norm();

@@ -1,13 +1,16 @@
-//! Marching tetrahedra on the blocks of a grid that the skin can cross; closed and manifold by construction.
+//! Marching tetrahedra on the blocks of a grid that the skin crosses; closed and manifold by construction.
 
 use super::Soup;
 use crate::flesh::{Flesh, MAX_SLOPE, MAX_STEP};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use thenar_surface::Vec3;
 
 /// Cells along one side of a block, and blocks along one side of a super-block.
 const BLOCK: usize = 4;
 const SUPER: usize = 4;
+/// Grid points along one side of a block.
+const WIDE: usize = BLOCK + 1;
 /// Crossings keep this share of an edge from its ends, so that no two fall together.
 const END_SHARE: f64 = 0.03;
 
@@ -41,11 +44,29 @@ pub(crate) fn extract(flesh: &Flesh, step: f64) -> Soup {
         .into_par_iter()
         .flat_map_iter(|b| near_blocks(flesh, &grid, b))
         .collect();
-    let faces: Vec<Vec<[Crossing; 3]>> = near
-        .into_par_iter()
-        .map(|block| march(flesh, &grid, block))
-        .collect();
-    weld(&faces.concat())
+    weld(&follow(flesh, &grid, near))
+}
+
+/// Faces of the skin in the blocks of `front` and in every block it runs on into.
+///
+/// The field is no true distance: on the axis of a fingertip it reads the length of the cap (6 mm) where the skin beside it is half as far, so a
+/// block that the skin grazes at a corner is taken for empty if its middle falls there. A block is therefore added whenever the grid points on the
+/// side it shares with a marched one are not all inside or all outside.
+fn follow(flesh: &Flesh, grid: &Grid, mut front: Vec<[usize; 3]>) -> Vec<[Crossing; 3]> {
+    let mut known: BTreeSet<[usize; 3]> = front.iter().copied().collect();
+    let mut faces = Vec::new();
+    while !front.is_empty() {
+        let marched: Vec<Marched> = front
+            .into_par_iter()
+            .map(|block| march(flesh, grid, block))
+            .collect();
+        front = Vec::new();
+        for one in marched {
+            faces.extend(one.faces);
+            front.extend(one.onward.into_iter().filter(|&block| known.insert(block)));
+        }
+    }
+    faces
 }
 
 fn grid(flesh: &Flesh, step: f64) -> Grid {
@@ -112,8 +133,13 @@ impl Grid {
     }
 }
 
-fn march(flesh: &Flesh, grid: &Grid, block: [usize; 3]) -> Vec<[Crossing; 3]> {
-    const WIDE: usize = BLOCK + 1;
+/// The skin inside one block, and the neighbours it runs on into.
+struct Marched {
+    faces: Vec<[Crossing; 3]>,
+    onward: Vec<[usize; 3]>,
+}
+
+fn march(flesh: &Flesh, grid: &Grid, block: [usize; 3]) -> Marched {
     let corner = block.map(|n| n * BLOCK);
     let shift = |i: usize, j: usize, k: usize| [corner[0] + i, corner[1] + j, corner[2] + k];
     let mut values = [0.0; WIDE * WIDE * WIDE];
@@ -138,7 +164,31 @@ fn march(flesh: &Flesh, grid: &Grid, block: [usize; 3]) -> Vec<[Crossing; 3]> {
                 .for_each(|t| cut_tetrahedron(grid, t.map(|c| corners[c]), &mut faces));
         }
     }
-    faces
+    Marched {
+        faces,
+        onward: onward(grid, block, &values),
+    }
+}
+
+/// Neighbours of a block across those of its sides whose grid points lie partly inside and partly outside the flesh.
+fn onward(grid: &Grid, block: [usize; 3], values: &[f64]) -> Vec<[usize; 3]> {
+    let mut neighbors = Vec::new();
+    for (axis, end) in (0..6).map(|n| (n / 2, n % 2)) {
+        let side = (0..WIDE * WIDE).map(|n| {
+            let mut at = [end * BLOCK; 3];
+            at[(axis + 1) % 3] = n / WIDE;
+            at[(axis + 2) % 3] = n % WIDE;
+            values[(at[0] * WIDE + at[1]) * WIDE + at[2]] < 0.0
+        });
+        let inside = side.filter(|&is_inside| is_inside).count();
+        let mut neighbor = block.map(|n| n as isize);
+        neighbor[axis] += 2 * end as isize - 1;
+        let is_in_grid = (0..3).all(|i| (0..grid.blocks[i] as isize).contains(&neighbor[i]));
+        if is_in_grid && inside > 0 && inside < WIDE * WIDE {
+            neighbors.push(neighbor.map(|n| n as usize));
+        }
+    }
+    neighbors
 }
 
 /// Triangles of the skin inside one positively oriented tetrahedron, facing out of the flesh.
@@ -220,15 +270,42 @@ mod tests {
         let mut faces = Vec::new();
         for n in 0..grid.blocks.iter().product() {
             let [_, wide, deep] = grid.blocks;
-            faces.extend(march(
-                &flesh,
-                &grid,
-                [n / (wide * deep), n / deep % wide, n % deep],
-            ));
+            let block = [n / (wide * deep), n / deep % wide, n % deep];
+            faces.extend(march(&flesh, &grid, block).faces);
         }
         let full = weld(&faces);
         assert_eq!(skipped.positions, full.positions);
         assert_eq!(skipped.triangles.len(), full.triangles.len());
+    }
+
+    /// The middle of one block lies on the axis of the little finger's tip, where the field reads -6.2 mm; the skin is 3.4 mm away and grazes it.
+    #[test]
+    fn a_fingertip_that_grazes_a_block_leaves_no_hole() {
+        let flesh = Flesh::new(&Skeleton::new(167.25599395728915, 76.12799697864457));
+        let step = 0.5 * 2.3001469187093293;
+        let grid = grid(&flesh, step);
+        let seeds = super_blocks(&grid)
+            .into_iter()
+            .flat_map(|b| near_blocks(&flesh, &grid, b));
+        let faces: Vec<[Crossing; 3]> = seeds.flat_map(|b| march(&flesh, &grid, b).faces).collect();
+        assert!(
+            Topology::new(weld(&faces)).is_none(),
+            "the seeds alone close the skin; this person no longer shows the fault"
+        );
+        assert!(Topology::new(extract(&flesh, step)).is_some());
+    }
+
+    #[test]
+    fn one_block_of_the_skin_leads_to_all_of_it() {
+        let flesh = Flesh::new(&Skeleton::new(189.0, 87.0));
+        let grid = grid(&flesh, 2.6);
+        let seed = super_blocks(&grid)
+            .into_iter()
+            .flat_map(|b| near_blocks(&flesh, &grid, b))
+            .find(|&b| !march(&flesh, &grid, b).faces.is_empty())
+            .expect("a block that the skin crosses");
+        let followed = weld(&follow(&flesh, &grid, vec![seed]));
+        assert_eq!(followed.positions, extract(&flesh, 2.6).positions);
     }
 
     #[test]
