@@ -50,9 +50,28 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         armature = armature_of(context)
         layout.operator("thenar.guess_bones", icon="VIEWZOOM")
         layout.prop(armature.thenar_bones, "axis")
-        column = layout.column(align=True)
-        for role in roles.ROLES:
-            column.prop_search(armature.thenar_bones, role, armature.data, "bones")
+        rows = layout.column()
+        rows.use_property_split = False
+        for digit in (roles.WRIST, *roles.FINGERS, "thumb"):
+            _bones_of(rows, armature, digit)
+
+
+SHARE = 0.32
+"""Of a row's width, what the name of a part takes; the rest shows a bone's name."""
+
+
+def _bones_of(layout, armature, digit):
+    """Which bone is which of a digit's parts; its name stands above them, for beside each it would be cut."""
+    column = layout.column(align=True)
+    own = [role for role in roles.ROLES if role.partition("_")[0] == digit]
+    if len(own) > 1:
+        column.label(text=digit.capitalize())
+    for role in own:
+        split = column.split(factor=SHARE)
+        name = split.row()
+        name.alignment = "RIGHT"
+        name.label(text=role.rpartition("_")[2].capitalize())
+        split.prop_search(armature.thenar_bones, role, armature.data, "bones", text="")
 
 
 def armature_of(context):

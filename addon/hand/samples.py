@@ -60,11 +60,13 @@ def add_sample(context, kind):
 
 
 def add_sample_scene(context, kind):
-    """`add_sample` into the current scene if it is empty, else into a new one that the window shows. Returns True."""
+    """`add_sample` into the current scene if it is empty, else into a new one that the window shows; its 3D views look
+    through the sample's camera. Returns True."""
     if context.scene.objects:
         context.window.scene = bpy.data.scenes.new(f"Thenar {SAMPLES[kind].label}")
         context = bpy.context
     add_sample(context, kind)
+    _look_through_camera([context.window.screen] if context.window else [])
     return True
 
 
@@ -239,16 +241,16 @@ def make_samples(out_dir):
     for kind in SAMPLES:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         add_sample(bpy.context, kind)
-        _look_through_camera()
+        _look_through_camera(bpy.data.screens)
         path = out / f"{kind}{FILE_SUFFIX}"
         bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=True)
         paths.append(path)
     return paths
 
 
-def _look_through_camera():
-    """Open every 3D view on what the camera frames: from the default view the hand is a speck behind the backdrop."""
-    for screen in bpy.data.screens:
+def _look_through_camera(screens):
+    """Show in every 3D view what the camera frames: from the default view the hand is a speck behind the backdrop."""
+    for screen in screens:
         for area in screen.areas:
             if area.type == "VIEW_3D":
                 area.spaces.active.region_3d.view_perspective = "CAMERA"

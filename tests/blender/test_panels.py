@@ -75,9 +75,12 @@ class Layout:
         told = data.bl_rna.properties[name].name if text is None else text
         self._say(told if data.bl_rna.properties[name].type != "ENUM" else "")
 
-    def prop_search(self, data, name, where, listed, icon="NONE", **_):
+    def prop_search(self, data, name, where, listed, text=None, **_):
         assert listed in where.bl_rna.properties
-        self.prop(data, name)
+        if text == "":
+            self.said.append((getattr(data, name), self._child().letters - 2 * ICON))
+        else:
+            self.prop(data, name, text)
 
     def template_list(self, kind, _, data, name, active_data, active_name, rows=1):  # noqa: PLR0913 - Blender's
         assert hasattr(bpy.types, kind) and hasattr(data, name) and hasattr(active_data, active_name)
@@ -147,6 +150,14 @@ def test_a_solved_scene_with_effects_is_drawn():
     drawn = draw()
     assert {"THENAR_PT_regions", "THENAR_PT_comfort", "THENAR_PT_quality", "THENAR_PT_effects"} <= set(drawn)
     assert not too_long(drawn)
+
+
+def test_the_bones_of_a_made_hand_are_drawn_in_full():
+    bpy.ops.thenar.make_hand(spacing_mm=6.0)
+    drawn = draw()
+    told = {words for words, _ in drawn["THENAR_PT_bones"]}
+    assert {"Wrist", "Thumb", "Little", "Metacarpal", "Proximal", "index_metacarpal", "thumb_distal"} <= told
+    assert not too_long({"THENAR_PT_bones": drawn["THENAR_PT_bones"]})
 
 
 def test_comparisons_are_drawn(tmp_path):

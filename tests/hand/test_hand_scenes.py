@@ -114,6 +114,16 @@ def test_both_hands_grasp(blender, side):
     assert not found.warnings
 
 
+def test_added_sample_is_seen_through_its_camera(blender):
+    blender.ops.mesh.primitive_cube_add()
+    before = blender.context.scene
+    assert blender.ops.thenar.add_sample(kind="fingertip_on_plate") == {"FINISHED"}
+    window = blender.context.window
+    assert window.scene != before and window.scene.camera is not None
+    views = [area.spaces.active.region_3d for area in window.screen.areas if area.type == "VIEW_3D"]
+    assert views and all(view.view_perspective == "CAMERA" for view in views)
+
+
 @pytest.mark.parametrize("kind", SAMPLE_KINDS)
 def test_sample_is_complete_and_solves(blender, kind):
     assert blender.ops.thenar.add_sample(kind=kind) == {"FINISHED"}
