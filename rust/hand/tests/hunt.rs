@@ -13,35 +13,77 @@ use thenar_surface::{Adjacency, self_intersections};
 const LONGEST_S: f64 = 120.0;
 
 #[test]
-#[ignore = "takes minutes; see the first line of this file"]
+#[ignore = "takes minutes; see the first lines of this file"]
 fn random_persons_all_get_a_sound_hand() {
     let (count, first) = (
         asked("THENAR_PERSONS", 600),
         asked("THENAR_FIRST_PERSON", 0),
     );
-    let broken: Vec<String> = (first..first + count)
-        .into_par_iter()
-        .filter_map(|number| {
-            let shape = person(number);
-            let start = std::time::Instant::now();
-            let mut faults = match shape.build() {
-                Ok(hand) => faults(&hand, shape.spacing_mm),
-                Err(error) => vec![error.to_string()],
-            };
-            let seconds = start.elapsed().as_secs_f64();
-            if seconds > LONGEST_S {
-                faults.push(format!("took {seconds:.0} s"));
-            }
-            if faults.is_empty() {
-                return None;
-            }
-            let line = format!("person {number}, {shape:?}: {}", faults.join("; "));
-            println!("{line}");
-            Some(line)
-        })
-        .collect();
-    println!("{count} persons, {} broken", broken.len());
-    assert!(broken.is_empty(), "{} of {count} persons", broken.len());
+    hunt((first..first + count).map(person).collect());
+}
+
+#[test]
+#[ignore = "takes minutes; see the first lines of this file"]
+fn persons_at_the_ends_of_what_is_accepted_get_a_sound_hand() {
+    let usual = HandShape::default();
+    let by_percentile = [
+        (1.0, Sex::Female),
+        (99.0, Sex::Female),
+        (1.0, Sex::Male),
+        (99.0, Sex::Male),
+    ]
+    .map(|(percentile, sex)| HandShape {
+        percentile,
+        sex,
+        ..usual
+    });
+    let own = [
+        (120.0, 0.3801),
+        (120.0, 0.5399),
+        (240.0, 0.3801),
+        (240.0, 0.5399),
+    ]
+    .map(|(length, share)| HandShape {
+        length_mm: Some(length),
+        breadth_mm: Some(share * length),
+        ..usual
+    });
+    let shapes = by_percentile.into_iter().chain(own);
+    hunt(
+        shapes
+            .flat_map(|shape| {
+                [1.0, 6.0].map(|spacing_mm| HandShape {
+                    spacing_mm,
+                    ..shape
+                })
+            })
+            .collect(),
+    );
+}
+
+fn hunt(persons: Vec<HandShape>) {
+    let broken = persons.par_iter().filter_map(broken_promises).count();
+    println!("{} persons, {broken} broken", persons.len());
+    assert_eq!(broken, 0, "of {} persons", persons.len());
+}
+
+/// What is wrong with the hand of a person, printed as soon as it is known; `None` if nothing is.
+fn broken_promises(shape: &HandShape) -> Option<String> {
+    let start = std::time::Instant::now();
+    let mut faults = match shape.build() {
+        Ok(hand) => faults(&hand, shape.spacing_mm),
+        Err(error) => vec![error.to_string()],
+    };
+    let seconds = start.elapsed().as_secs_f64();
+    if seconds > LONGEST_S {
+        faults.push(format!("took {seconds:.0} s"));
+    }
+    if faults.is_empty() {
+        return None;
+    }
+    let line = format!("{shape:?}: {}", faults.join("; "));
+    println!("{line}");
+    Some(line)
 }
 
 fn asked(variable: &str, usual: u64) -> u64 {
