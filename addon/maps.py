@@ -121,6 +121,17 @@ MAPS = {
             covers="mat",
             is_signed=True,
         ),
+        Map(
+            "PRINT",
+            names.PRINT_RESIDUAL,
+            "Handprint",
+            "ink − simulation",
+            "Contact beside a compared handprint: red is inked alone, blue touches in simulation alone",
+            "no handprint was compared; load its image under Recordings, place it, and compare",
+            palette="COOLWARM",
+            covers="mat",
+            is_signed=True,
+        ),
     )
 }
 

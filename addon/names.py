@@ -18,8 +18,10 @@ THRESHOLD_SHARE = "threshold_share"
 """Pressure over the threshold of its region."""
 RESIDUAL_KPA = "residual_kpa"
 """Measured minus simulated pressure; 0 away from the mat."""
+PRINT_RESIDUAL = "print_residual"
+"""1 where a compared handprint is inked alone, -1 where the simulation alone touches, 0 where both or neither do."""
 ON_MAT = "on_mat"
-"""1 where a compared mat lies, 0 elsewhere."""
+"""1 where a compared mat or print lies, 0 elsewhere."""
 COLOR = "Thenar Pressure"
 MAP_COLOR = "Thenar Map"
 """Colours of any other map than the pressure's."""
@@ -37,11 +39,12 @@ HAND_ATTRIBUTES = (
     THICKNESS_MM,
     THRESHOLD_SHARE,
     RESIDUAL_KPA,
+    PRINT_RESIDUAL,
     ON_MAT,
     COLOR,
     MAP_COLOR,
 )
-RESIDUAL_ATTRIBUTES = (RESIDUAL_KPA, ON_MAT)
+RESIDUAL_ATTRIBUTES = (RESIDUAL_KPA, PRINT_RESIDUAL, ON_MAT)
 PRODUCT_ATTRIBUTES = (PRESSURE_KPA, *RESIDUAL_ATTRIBUTES, COLOR, MAP_COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"

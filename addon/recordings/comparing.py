@@ -12,6 +12,9 @@ from ..scene import attributes, matching, own, read, units
 from ..scene.checks import Refusal
 from . import filling, laying, loading, settings
 
+_TOUCHED = 0.5
+"""Share of a cell from which the library says that it touched."""
+
 
 def steps(context):
     """The comparison of the selected recording as the steps of a computation. Returns the library's comparison."""
@@ -45,18 +48,27 @@ def _study(path, cancel=None, progress=None):
 
 
 def _carry(context, comparison, match):
-    """Write the largest residual of a study's calibrated mats on the hand. Returns a note on it, or nothing."""
+    """Write the largest residual of a study's mats, or its worst print, on the hand. Returns a note, or nothing."""
     hand, parts = context.scene.thenar.hand, workflow.product_parts(context.scene.thenar)
     carried = [each for each in comparison.recordings if each.residual_kpa is not None and len(each.residual_kpa)]
     carried = [each for each in carried if np.isfinite(each.residual_kpa).any()]
-    if not carried:
+    prints = [each for each in comparison.recordings if each.print is not None]
+    if not carried and not prints:
         return ""
     if not hand.data.is_editable or hand.mode == "EDIT":
         return f"'{hand.name}' is linked or in Edit Mode, so the residual is not shown on it."
-    worst = max(carried, key=lambda each: np.nanmax(np.abs(each.residual_kpa)))
     _take_off(hand, parts)
+    if not carried:
+        least = min(prints, key=_overlap)
+        put(hand.data, match.carried(least.print.print_residual), names.PRINT_RESIDUAL)
+        return f"The hand shows where ink and simulation differ in '{least.name}', the print that overlaps least."
+    worst = max(carried, key=lambda each: np.nanmax(np.abs(each.residual_kpa)))
     put(hand.data, match.carried(worst.residual_kpa))
     return f"The hand shows the residual of '{worst.name}', the largest of the study."
+
+
+def _overlap(recording):
+    return next(row.simulated for row in recording.measures if row.name == "overlap")
 
 
 def _still(context, item):
@@ -66,7 +78,8 @@ def _still(context, item):
     seat = laying.Seat(seat.axes, job.reading.product.vertices_mm)
     told = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
     contact = yield partial(workflow.compute, job)
-    comparison, mat, residual = yield partial(_compare, job, contact, told)
+    by_cell = _compare_print if item.kind == settings.PRINT else _compare
+    comparison, mat, residual = yield partial(by_cell, job, contact, told)
     workflow.finish(context, job, contact)
     _write(context, job, (comparison, mat, residual))
     return comparison
@@ -111,6 +124,29 @@ def _compare(job, contact, told, cancel=None, progress=None):
     return comparison, mat, _residual(comparison, mat) if is_calibrated else None
 
 
+def _compare_print(job, contact, told, cancel=None, progress=None):
+    """The same of a handprint: ink alone 1, simulation alone -1 by cell. No Blender in it."""
+    seat, lie, name, *_ = told
+    print_, hand = lie.source(), job.reading.hand
+    mat = laying.lay(lie, seat, print_)
+    comparison = native.module.compare_print(
+        print_,
+        mat,
+        hand.posed_mm + np.asarray(contact.displacement_mm) - workflow.offset_mm(contact, job),
+        hand.triangles,
+        contact.force_n,
+        ink_kpa=lie.print.ink_kpa,
+        name=name,
+        product=", ".join(job.part_names),
+        hand=job.hand_name,
+    )
+    found, residual = comparison.recordings[0].print, np.full(len(mat.area_mm2), np.nan)
+    touches = [np.asarray(found[share]) >= _TOUCHED for share in ("recorded_share", "simulated_share")]
+    known = np.isfinite(found.recorded_share)
+    residual[~np.isnan(mat.area_mm2)] = np.where(known, touches[0].astype(float) - touches[1], np.nan)
+    return comparison, mat, residual
+
+
 def _residual(comparison, mat):
     """The residual per sensel of the whole mat, kPa; NaN for missing cells."""
     residual = np.full(len(mat.area_mm2), np.nan)
@@ -127,14 +163,17 @@ def _write(context, job, found):
     _take_off(hand, parts)
     if residual is None:
         return
-    carried = comparison.recordings[0].residual_kpa
+    recording = comparison.recordings[0]
+    is_print = recording.print is not None
+    name = names.PRINT_RESIDUAL if is_print else names.RESIDUAL_KPA
+    carried = recording.print.print_residual if is_print else recording.residual_kpa
     if carried is not None:
-        put(hand.data, carried)
+        put(hand.data, carried, name)
     spread = native.module.spread_map(residual, mat, job.reading.product.vertices_mm)
     for record in job.reading.product.parts:
         part = next((part for part in parts if part.name == record.name), None)
         if part is not None and not record.reason:
-            put(part.data, spread[record.first : record.first + len(part.data.vertices)])
+            put(part.data, spread[record.first : record.first + len(part.data.vertices)], name)
     status.set_stale(context.scene.name, False)
 
 
@@ -144,9 +183,10 @@ def _take_off(hand, parts):
             attributes.remove(obj.data, names.RESIDUAL_ATTRIBUTES)
 
 
-def put(mesh, residual_kpa):
-    """Write residuals (n,), kPa, NaN away from the mat."""
-    is_on = np.isfinite(residual_kpa)
-    attributes.write(mesh, names.RESIDUAL_KPA, "FLOAT", np.where(is_on, residual_kpa, 0.0))
+def put(mesh, residual, name=names.RESIDUAL_KPA):
+    """Write residuals (n,), NaN away from the mat or print."""
+    residual = np.asarray(residual)
+    is_on = np.isfinite(residual)
+    attributes.write(mesh, name, "FLOAT", np.where(is_on, residual, 0.0))
     attributes.write(mesh, names.ON_MAT, "FLOAT", is_on.astype(np.float32))
     mesh.update()

@@ -41,6 +41,8 @@ def fill(state, comparison, about):
             state.worst[-1].group = recording.name if several else ""
             vertices = place.vertices if match is None else match.on_hand(place.vertices)
             state.worst[-1].vertices = ",".join(map(str, vertices))
+        if recording.print is not None:
+            state.notes.add().name = prefix + recording.sentence
         for text in recording.unknown:
             state.notes.add().name = prefix + text
     for text in comparison.notes:

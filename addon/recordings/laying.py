@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import native
 from ..scene.checks import Refusal
+from . import settings
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,35 @@ class Lie:
     turn_deg: float
     shift_mm: tuple
     is_mirrored: bool
+    print: "PrintLook | None" = None
+
+    def source(self):
+        """What `place_mat` lays: the file of a mat, or the print. Raises `RecordingError`."""
+        return self.path if self.print is None else self.print.read(self.path)
+
+
+@dataclass(frozen=True)
+class PrintLook:
+    """How the image of a handprint is read; plain numbers."""
+
+    dpi: float
+    cell_mm: float
+    ink: str
+    ink_kpa: float
+    is_mirrored: bool
+
+    def read(self, path):
+        """The library's print. Raises `RecordingError`."""
+        ink = None if self.ink == "AUTO" else self.ink.lower()
+        return native.module.Print.read(path, dpi=self.dpi, cell_mm=self.cell_mm, ink=ink, mirrored=self.is_mirrored)
+
+
+def look_of(item):
+    """How the properties of a recording say that its print is read; None for another kind."""
+    if item.kind != settings.PRINT:
+        return None
+    look = item.print
+    return PrintLook(look.dpi, look.cell_mm, look.ink, look.ink_kpa, look.is_mirrored)
 
 
 def lie_of(item):
@@ -42,6 +72,7 @@ def lie_of(item):
         turn_deg=placing.turn_deg,
         shift_mm=tuple(placing.shift_mm),
         is_mirrored=placing.is_mirrored,
+        print=look_of(item),
     )
 
 
@@ -61,8 +92,12 @@ def diameter_mm(seat, axis):
     return float(np.delete(extent, number).mean())
 
 
-def lay(lie, seat):
-    """The mat as a record: center_mm, normal, area_mm2, row, column. Raises `Refusal`, `RecordingError`."""
+def lay(lie, seat, source=None):
+    """The mat as a record: center_mm, normal, area_mm2, row, column. Raises `Refusal`, `RecordingError`.
+
+    `source`: what `lie.source()` gave, if it was read already.
+    """
+    source = lie.source() if source is None else source
     number, sign = _axis(lie.axis)
     along = sign * seat.axes[:, number]
     first = seat.axes[:, (number + 1) % 3]
@@ -71,16 +106,17 @@ def lay(lie, seat):
     local = seat.vertices_mm @ seat.axes
     middle = seat.axes @ (0.5 * (local.min(axis=0) + local.max(axis=0)))
     place = _cylinder if lie.on == "CYLINDER" else _plane
-    mat = place(lie, (along, turned), (middle, (seat.vertices_mm @ along).max()))
+    mat = place((lie, source), (along, turned), (middle, (seat.vertices_mm @ along).max()))
     if not np.isfinite(mat.center_mm).all(axis=1).any():
         raise Refusal("no sensel of the mat reads anything, so none can be placed; load another recording")
     return mat
 
 
-def _cylinder(lie, directions, where):
+def _cylinder(flat, directions, where):
+    lie, source = flat
     along, seam = directions
     mat = native.module.place_mat(
-        lie.path,
+        source,
         "cylinder",
         origin_mm=where[0],
         rows=along,
@@ -94,11 +130,12 @@ def _cylinder(lie, directions, where):
     return mat
 
 
-def _plane(lie, directions, where):
+def _plane(flat, directions, where):
+    lie, source = flat
     normal, columns = directions
     rows, sense = np.cross(normal, columns), -1.0 if lie.is_mirrored else 1.0
     mat = native.module.place_mat(
-        lie.path, "plane", origin_mm=np.zeros(3), rows=rows, columns=sense * columns, mat=lie.mat or None
+        source, "plane", origin_mm=np.zeros(3), rows=rows, columns=sense * columns, mat=lie.mat or None
     )
     center, (middle, top) = np.asarray(mat.center_mm), where
     for direction, shift in ((rows, lie.shift_mm[0]), (columns, lie.shift_mm[1])):

@@ -9,10 +9,12 @@ from ..scene.checks import Refusal
 from . import settings
 
 _STUDY_FILE = "study.toml"
+IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
+"""Endings of the images that a handprint may be."""
 
 
 def load(context, path):
-    """Add what `path` holds to the list: a study's folder or its study.toml, or every mat of a measurement file.
+    """Add what `path` holds to the list: a study (its folder or study.toml), every mat of a file, or a handprint.
 
     Returns the names added. Raises `Refusal` and the native module's errors.
     """
@@ -22,7 +24,8 @@ def load(context, path):
     place = Path(path)
     if place.name == _STUDY_FILE:
         place = place.parent
-    found = _study(place) if place.is_dir() else _maps(place)
+    of_file = _print if place.suffix.lower() in IMAGES else _maps
+    found = _study(place) if place.is_dir() else of_file(place)
     state, added = context.scene.thenar_recordings, []
     for values in found:
         item = state.items.add()
@@ -56,6 +59,13 @@ def _maps(file):
             {"name": name, "kind": settings.MAP, "path": str(file), "mat": found.name, "about": about, "frames": frames}
         )
     return rows
+
+
+def _print(file):
+    """An image is read once, in cells of many pixels, to refuse what is no print. Its scale is the user's to give."""
+    width, height = native.module.Print.read(file, mm_per_px=1.0, cell_mm=256.0).size_px
+    about = f"handprint of {width} x {height} pixels; give the dpi of its scan"
+    return [{"name": file.name, "kind": settings.PRINT, "path": str(file), "about": about}]
 
 
 def values_of(found):

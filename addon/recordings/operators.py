@@ -8,7 +8,7 @@ from ..operators import computing, display, polling, running, selecting
 from ..scene.checks import Refusal
 from . import comparing, laying, loading, outline, settings
 
-RESIDUAL = "RESIDUAL"
+RESIDUAL, PRINT = "RESIDUAL", "PRINT"
 
 
 def _no_recording(context):
@@ -17,7 +17,7 @@ def _no_recording(context):
 
 def _no_map(context):
     item = settings.chosen(context)
-    return "" if item is not None and item.kind == settings.MAP else "select a recording of a mat"
+    return "" if item is not None and item.kind != settings.STUDY else "select a recording of a mat or a print"
 
 
 def _no_comparison(context):
@@ -26,14 +26,15 @@ def _no_comparison(context):
 
 
 class THENAR_OT_load_recording(bpy.types.Operator, ImportHelper):
-    """Load a study (its folder or study.toml), or a maker's export of a pressure mat"""
+    """Load a study (its folder or study.toml), a maker's export of a pressure mat, or the image of a handprint"""
 
     bl_idname = "thenar.load_recording"
     bl_label = "Load Recording"
     bl_options = {"REGISTER", "UNDO"}
 
     filter_glob: bpy.props.StringProperty(
-        default="*.toml;*.csv;*.txt;*.asc;*.asf;*.fsx;*.lst;*.tsv;*.sol;*.fgt;*.xlsx;*.ods", options={"HIDDEN"}
+        default="*.toml;*.csv;*.txt;*.asc;*.asf;*.fsx;*.lst;*.tsv;*.sol;*.fgt;*.xlsx;*.ods;*.png;*.jpg;*.jpeg;*.tif;*.tiff",
+        options={"HIDDEN"},
     )
 
     @classmethod
@@ -45,7 +46,7 @@ class THENAR_OT_load_recording(bpy.types.Operator, ImportHelper):
         if added is None:
             return {"CANCELLED"}
         item = settings.chosen(context)
-        if item.kind == settings.MAP:
+        if item.kind != settings.STUDY:
             _guess_diameter(context, item)
         self.report({"INFO"}, f"Loaded {', '.join(added)}")
         return {"FINISHED"}
@@ -95,7 +96,7 @@ class THENAR_OT_outline_mat(bpy.types.Operator):
 
 
 class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
-    """Compare the recording with the simulation: a study with its own skin, a mat with the contact of this scene"""
+    """Compare with the simulation: a study with its own skin, a mat or a print with the contact of this scene"""
 
     bl_idname = "thenar.compare"
     bl_label = "Compare"
@@ -114,7 +115,10 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, comparison):
         hand = context.scene.thenar.hand
-        if hand is not None and hand.type == "MESH" and names.RESIDUAL_KPA in hand.data.attributes:
+        held = hand.data.attributes if hand is not None and hand.type == "MESH" else ()
+        if names.PRINT_RESIDUAL in held:
+            display.show(context, PRINT)
+        elif names.RESIDUAL_KPA in held:
             display.show(context, RESIDUAL)
             fitting = display.fitting_range(context)
             if fitting is not None:

@@ -14,8 +14,7 @@ def draw(context, item):
     """Make or renew the object that shows the mat of a recording. Returns it. Raises `Refusal`, `RecordingError`."""
     seat = comparing.seat_of(context)
     mat = laying.lay(laying.lie_of(item), seat)
-    found = next(found for found in native.module.read_recording(item.path).maps if found.name == item.mat)
-    values = loading.values_of(found)[loading.frame_number(found, item.frame_rule, item.frame)]
+    values = _reading(item)
     is_placed = np.isfinite(np.asarray(mat.area_mm2))
     corners = _corners(mat, is_placed) / units.mm_per_unit(context.scene)
     count = len(corners)
@@ -23,6 +22,15 @@ def draw(context, item):
     mesh.from_pydata(corners.reshape(-1, 3).tolist(), [], np.arange(4 * count).reshape(-1, 4).tolist())
     attributes.write(mesh, "reading", "FLOAT", np.repeat(np.nan_to_num(values[is_placed]), 4))
     return _shown(context, mesh)
+
+
+def _reading(item):
+    """What every cell of a recording reads: pressure, counts, or share of ink."""
+    look = laying.look_of(item)
+    if look is not None:
+        return np.asarray(look.read(item.path).inked)
+    found = next(found for found in native.module.read_recording(item.path).maps if found.name == item.mat)
+    return loading.values_of(found)[loading.frame_number(found, item.frame_rule, item.frame)]
 
 
 def _corners(mat, is_placed):

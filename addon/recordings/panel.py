@@ -11,11 +11,14 @@ SHARE, PLACE_SHARE = 0.5, 0.45
 """Of a row's width, what the name of a measure, and of a worst place, takes."""
 
 
+_ICONS = {settings.STUDY: "FILE_FOLDER", settings.PRINT: "VIEW_PAN"}
+
+
 class THENAR_UL_recordings(bpy.types.UIList):
     """What was loaded."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
-        layout.label(text=item.name, icon="FILE_FOLDER" if item.kind == settings.STUDY else "MESH_GRID")
+        layout.label(text=item.name, icon=_ICONS.get(item.kind, "MESH_GRID"))
 
 
 class THENAR_PT_recordings(Tab, bpy.types.Panel):
@@ -39,10 +42,10 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         side.operator("thenar.remove_recording", text="", icon="REMOVE")
         item = settings.chosen(context)
         if item is None:
-            layout.label(text="Load a study or a mat's export", icon="INFO")
+            layout.label(text="Load a study, a mat or a print", icon="INFO")
             return
         text.faint(layout, context, item.about)
-        if item.kind == settings.MAP:
+        if item.kind != settings.STUDY:
             _draw_placing(layout, item)
         if text.progress(layout):
             return
@@ -66,9 +69,13 @@ def _draw_placing(layout, item):
         column.prop(placing, "shift_mm")
     column.prop(placing, "is_mirrored")
     column = layout.column(align=True)
-    column.prop(item, "frame_rule")
-    if item.frame_rule == "NUMBER":
-        column.prop(item, "frame", text=f"of {item.frames}")
+    if item.kind == settings.PRINT:
+        for name in ("dpi", "cell_mm", "ink", "ink_kpa", "is_mirrored"):
+            column.prop(item.print, name)
+    else:
+        column.prop(item, "frame_rule")
+        if item.frame_rule == "NUMBER":
+            column.prop(item, "frame", text=f"of {item.frames}")
     layout.operator("thenar.outline_mat", icon="MOD_WIREFRAME")
 
 

@@ -14,7 +14,7 @@ from bpy.props import (
 
 from ..settings import ThenarText
 
-STUDY, MAP = "STUDY", "MAP"
+STUDY, MAP, PRINT = "STUDY", "MAP", "PRINT"
 AXES = tuple((f"{sign}{axis}", f"{sign}{axis}", f"The product's {sign}{axis} axis") for axis in "XYZ" for sign in "+-")
 
 
@@ -47,8 +47,37 @@ class ThenarPlacing(bpy.types.PropertyGroup):
     is_mirrored: BoolProperty(name="Other way round", description="Columns count the other way")
 
 
+class ThenarPrint(bpy.types.PropertyGroup):
+    """How the image of a handprint is read."""
+
+    dpi: FloatProperty(name="Scan (dpi)", description="Dots per inch of the image", min=1.0, default=300, soft_max=1200)
+    cell_mm: FloatProperty(
+        name="Cell (mm)",
+        description="Cells in which contact is compared, mm: about as long as the edges of the hand's mesh",
+        min=0.1,
+        default=2.5,
+        soft_max=10,
+    )
+    ink: EnumProperty(
+        name="Ink",
+        description="Whether ink is darker or lighter than the paper",
+        items=(
+            ("AUTO", "By the edge", "Paper is what most of the image's edge is"),
+            ("DARK", "Dark", "Dark ink on light paper"),
+            ("LIGHT", "Light", "Light on dark ground, as paint or dust"),
+        ),
+    )
+    ink_kpa: FloatProperty(
+        name="Inks above (kPa)", description="Pressure above which skin leaves ink, kPa; 0: any touch", min=0.0
+    )
+    is_mirrored: BoolProperty(
+        name="Seen from behind",
+        description="The image shows the print from behind, as through glass or after a transfer",
+    )
+
+
 class ThenarRecording(bpy.types.PropertyGroup):
-    """A study, or one mat of a measurement file; `name` is shown."""
+    """A study, one mat of a measurement file, or a handprint; `name` is shown."""
 
     kind: StringProperty()
     path: StringProperty(subtype="FILE_PATH")
@@ -66,6 +95,7 @@ class ThenarRecording(bpy.types.PropertyGroup):
     )
     frame: IntProperty(name="Number", description="Number of the frame, from 1", min=1, default=1)
     placing: PointerProperty(type=ThenarPlacing)
+    print: PointerProperty(type=ThenarPrint)
 
 
 class ThenarMeasure(bpy.types.PropertyGroup):
@@ -109,6 +139,7 @@ class ThenarRecordings(bpy.types.PropertyGroup):
 
 CLASSES = (
     ThenarPlacing,
+    ThenarPrint,
     ThenarRecording,
     ThenarMeasure,
     ThenarWorst,

@@ -445,7 +445,7 @@ class Comparison:
     def estimates(self) -> list[Record]: ...
     @property
     def recordings(self) -> list[Record]:
-        """By recording: sentence, measures, series, mat, frames, scan, worst, residual_kpa by vertex, unknown."""
+        """By recording: sentence, measures, series, mat, frames, scan, print, worst, residual_kpa, unknown."""
 
 def compare(
     study: Study,
@@ -484,7 +484,7 @@ def diagnose(
     """Says what physics a study's recordings show that the model leaves out. Raises `RecordingError`, `Cancelled`."""
 
 def place_mat(
-    file: str | PathLike[str],
+    file: str | PathLike[str] | Print,
     on: Literal["plane", "cylinder"],
     *,
     origin_mm: ArrayLike,
@@ -514,6 +514,64 @@ def compare_map(
     unknown: list[str] = ...,
 ) -> Comparison:
     """Compares one frame of a mat with a solved contact, sensel by sensel. Raises `MeshError`, `RecordingError`."""
+
+@final
+class Print:
+    """The image of a print in ink as shares of ink by cell; columns from left to right, rows from the lower edge up."""
+
+    @staticmethod
+    def read(
+        file: str | PathLike[str],
+        *,
+        dpi: float | None = None,
+        mm_per_px: float | None = None,
+        marks_px: tuple[tuple[float, float], tuple[float, float]] | None = None,
+        marks_mm: float | None = None,
+        cell_mm: float = 2.5,
+        threshold: float | None = None,
+        ink: Literal["dark", "light"] | None = None,
+        paper_px: tuple[float, float, float, float] | None = None,
+        mirrored: bool = False,
+    ) -> Print:
+        """Reads a PNG, JPEG or TIFF; what is transparent is no paper. Raises `RecordingError`."""
+    @property
+    def inked(self) -> NDArray[np.float64]:
+        """Share of ink by cell (n,), NaN where less than half of the cell is paper."""
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Rows and columns."""
+    @property
+    def cell_mm(self) -> float: ...
+    @property
+    def mm_per_px(self) -> float: ...
+    @property
+    def size_px(self) -> tuple[int, int]: ...
+    @property
+    def inked_mm2(self) -> float: ...
+    @property
+    def threshold(self) -> float: ...
+    @property
+    def ink(self) -> Literal["dark", "light"]: ...
+    @property
+    def unknown(self) -> list[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
+
+def compare_print(
+    print: Print,
+    mat: Record,
+    vertices_mm: ArrayLike,
+    triangles: ArrayLike,
+    force_n: ArrayLike,
+    *,
+    ink_kpa: float = 0.0,
+    regions: list[int] | None = None,
+    region_names: list[str] = ...,
+    name: str = "print",
+    product: str = "product",
+    hand: str = "hand",
+) -> Comparison:
+    """Compares a print with a solved contact; only the paper's pose is fitted. Raises `MeshError`, `RecordingError`."""
 
 def spread_map(values: ArrayLike, mat: Record, positions_mm: ArrayLike, depth_mm: float = 0.0) -> NDArray[np.float64]:
     """Values of sensels at positions on the mat or near it, NaN away from it. Raises `MeshError`."""

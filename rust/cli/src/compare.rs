@@ -36,6 +36,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
         text: comparison_html(&comparison),
     }];
     outputs.extend(residuals(&comparison));
+    outputs.extend(prints(&comparison));
     outputs.push(Output {
         name: "comparison.json",
         text: comparison_json(&comparison),
@@ -66,6 +67,28 @@ fn residuals(comparison: &Comparison) -> Option<Output> {
     }
     Some(Output {
         name: "residual.csv",
+        text,
+    })
+}
+
+/// prints.csv: for every handprint the residual per skin vertex, 1 inked alone, -1 simulated alone, 0 both or neither; vertices of which
+/// nothing is known are left out.
+fn prints(comparison: &Comparison) -> Option<Output> {
+    let mut text = "recording,vertex,print_residual\n".to_owned();
+    let mut has_any = false;
+    for recording in &comparison.recordings {
+        let Some(print) = &recording.print else {
+            continue;
+        };
+        has_any = true;
+        let name = recording.name.replace('"', "\"\"");
+        let known = print.on_skin.iter().enumerate();
+        for (vertex, residual) in known.filter(|(_, residual)| !residual.is_nan()) {
+            let _ = writeln!(text, "\"{name}\",{vertex},{residual}");
+        }
+    }
+    has_any.then_some(Output {
+        name: "prints.csv",
         text,
     })
 }

@@ -56,6 +56,17 @@ fn write_study(text: &mut String, study: &Study) -> Result<(), Error> {
             Data::Scan { mesh, .. } => {
                 writeln!(text, "  scan of {} vertices", mesh.positions.len())?
             }
+            Data::Handprint { print, sensels, .. } => {
+                let [rows, columns] = print.cells;
+                writeln!(
+                    text,
+                    "  print of {:.1} mm2 ink in {rows} x {columns} cells of {:.2} mm, threshold {:.3}",
+                    print.inked_mm2, print.cell_mm, print.threshold
+                )?;
+                let placed = sensels.iter().flatten().flatten().count();
+                writeln!(text, "  {placed} cells placed on the product")?;
+                write_notes(text, &[], &print.unknown, &print.warnings)?;
+            }
         }
     }
     Ok(())

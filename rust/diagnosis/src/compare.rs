@@ -3,10 +3,12 @@
 use nalgebra::Vector3;
 use thenar_contact::Control;
 use thenar_recordings::Study;
+use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
 
 use crate::comparison::{Compared, Comparison, compare_fit};
-use crate::{DiagnosisError, Options, Search, fit_study, locate};
+use crate::prints::add_prints;
+use crate::{DiagnosisError, Fitting, Options, Search, locate};
 
 /// Part of the work that fitting is, for progress.
 const FITTING: f64 = 0.8;
@@ -29,7 +31,14 @@ pub fn compare(
         cancelled: control.cancelled,
         progress: &progress,
     };
-    let fit = fit_study(study, options, &within)?;
+    let mut fitting = Fitting::new(study, &within)?;
+    let has_samples = fitting.measured().iter().any(|m| !m.samples.is_empty());
+    let is_print = |recording: &StudyRecording| matches!(recording.data, Data::Handprint { .. });
+    let mut fit = match !has_samples && study.recordings.iter().any(is_print) {
+        true => fitting.unfitted(),
+        false => fitting.fit(options, &within)?,
+    };
+    let prints = add_prints(study, (&mut fitting, &mut fit), &within)?;
     let progress = |stage: &str, share: f64| {
         (control.progress)(stage, FITTING + (LOCATED - FITTING) * share);
     };
@@ -66,6 +75,7 @@ pub fn compare(
         sites: &sites,
         fit: &fit,
         location: location.as_ref(),
+        prints: &prints,
     });
     step(1.0)?;
     Ok(comparison)

@@ -15,6 +15,7 @@ mod fit;
 mod location;
 mod words;
 pub mod comparison;
+pub mod prints;
 pub mod report;
 pub mod diagnose;
 mod compare;

@@ -248,6 +248,7 @@ fn the_simulations_own_error_is_told_beside_the_noise() {
         sites: &[],
         fit: &fit,
         location: Some(&silent),
+        prints: &[],
     });
     let said = &comparison.sentence;
     assert!(

@@ -2,6 +2,7 @@
 
 use crate::arrays::{Argument, column};
 use crate::errors::RecordingError;
+use crate::prints::printed;
 use crate::readings::{frame, mat, scan};
 use crate::record::record;
 use crate::running::{Hooks, run};
@@ -44,9 +45,7 @@ pub fn compare(
         };
         Ok(thenar_diagnosis::compare(&study, &options, control)?)
     })?;
-    Ok(Comparison {
-        inner: Arc::new(inner),
-    })
+    Ok(Comparison::new(inner))
 }
 
 /// Compares one frame of a mat with a contact that was solved, sensel by sensel; nothing is fitted.
@@ -109,9 +108,7 @@ pub fn compare_map(
         };
         Ok(compare_still(still)?)
     })?;
-    Ok(Comparison {
-        inner: Arc::new(inner),
-    })
+    Ok(Comparison::new(inner))
 }
 
 /// Values of sensels (n,), NaN for missing, at positions (m, 3) on the mat or near it, mm: hand or product.
@@ -139,7 +136,7 @@ pub fn spread_map(
 }
 
 /// The mat of a record, and which of its cells have a place.
-fn mat_of(mat: &Bound<'_, PyAny>) -> PyResult<(Mat, Vec<bool>)> {
+pub fn mat_of(mat: &Bound<'_, PyAny>) -> PyResult<(Mat, Vec<bool>)> {
     let item = |name: &str| {
         mat.get_item(name).map_err(|_| {
             RecordingError::new_err(format!(
@@ -179,6 +176,15 @@ fn mat_of(mat: &Bound<'_, PyAny>) -> PyResult<(Mat, Vec<bool>)> {
         places: kept().map(place).collect(),
     };
     Ok((mat, is_placed))
+}
+
+impl Comparison {
+    /// Of the library's.
+    pub fn new(inner: thenar_diagnosis::comparison::Comparison) -> Comparison {
+        Comparison {
+            inner: Arc::new(inner),
+        }
+    }
 }
 
 #[pymethods]
@@ -226,7 +232,7 @@ impl Comparison {
             .collect()
     }
 
-    /// Records: name, sentence, indenter, site, protocol, is_calibrated, has_noise, measures, series by name, mat, frames, scan, worst,
+    /// Records: name, sentence, indenter, site, protocol, is_calibrated, has_noise, measures, series by name, mat, frames, scan, print, worst,
     /// residual_kpa (one per skin vertex, NaN away from the mat, or None), unknown.
     #[getter]
     fn recordings(&self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
@@ -294,6 +300,8 @@ fn recording(py: Python<'_>, recording: &RecordingComparison) -> PyResult<Py<PyA
     entries.set_item("frames", frames.collect::<PyResult<Vec<_>>>()?)?;
     let seen = recording.scan.as_ref().map(|each| scan(py, each));
     entries.set_item("scan", seen.transpose()?)?;
+    let print = recording.print.as_ref().map(|each| printed(py, each));
+    entries.set_item("print", print.transpose()?)?;
     entries.set_item("worst", list(py, &recording.worst, worst)?)?;
     let residual =
         (!recording.residual_kpa.is_empty()).then(|| column(py, recording.residual_kpa.clone()));

@@ -20,6 +20,7 @@ mod recordings;
 mod study;
 mod placing;
 mod comparison;
+mod prints;
 mod diagnosis;
 mod parquet_table;
 mod about;
@@ -50,6 +51,8 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare_map, module)?)?;
+    module.add_class::<prints::Print>()?;
+    module.add_function(wrap_pyfunction!(prints::compare_print, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::spread_map, module)?)?;
     module.add_function(wrap_pyfunction!(
         complementarity::solve_complementarity,

@@ -2,17 +2,18 @@
 
 use crate::arrays::{Argument, column, rows};
 use crate::errors::{Failure, RecordingError};
+use crate::prints::Print;
 use crate::record::record;
 use crate::recordings::path;
 use crate::running::{Hooks, run};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use thenar_recordings::PressureMap;
 use thenar_recordings::study::{PlacedSensel, Seat};
 use thenar_surface::Vec3;
 
-/// Lays the flat mat of a measurement file on a plane or around a cylinder, mm; a mat that bends keeps its lengths.
+/// Lays the flat mat of a measurement file, or a `Print`, on a plane or around a cylinder, mm; a mat that bends keeps its lengths.
 ///
 /// `origin_mm` is on a plane the mat's corner before its first row and column, on a cylinder the point of the axis level with the edge
 /// before the first row. `rows` is the direction in which rows count (along the axis of a cylinder). `columns` is on a plane the direction in
@@ -37,7 +38,10 @@ pub fn place_mat(
     turn: &str,
     mat: Option<String>,
 ) -> PyResult<Py<PyAny>> {
-    let file = path("file", file)?;
+    let flat = match file.cast::<Print>() {
+        Ok(print) => Flat::Print(Box::new(print.get().as_map())),
+        Err(_) => Flat::File(path("file", file)?),
+    };
     let origin = Argument::solve("origin_mm", origin_mm).vector()?;
     let along = direction("rows", Argument::solve("rows", rows).vector()?)?;
     let across = Argument::solve("columns", columns).vector()?;
@@ -67,7 +71,7 @@ pub fn place_mat(
         }
     };
     let (map, placed) = run(py, &Hooks::none(), move |_| {
-        Ok(lay(&file, mat.as_deref(), &seat))
+        Ok(lay(flat, mat.as_deref(), &seat))
     })?
     .map_err(|fault| match fault {
         Fault::Reading(error) => PyErr::from(Failure::Recording(error)),
@@ -83,16 +87,28 @@ enum Fault {
 
 type Laid = (PressureMap, Vec<Option<PlacedSensel>>);
 
-fn lay(file: &Path, mat: Option<&str>, seat: &Seat) -> Result<Laid, Fault> {
-    let maps = thenar_recordings::read(file).map_err(Fault::Reading)?.maps;
-    let map = chosen(file, maps, mat).map_err(Fault::Laying)?;
+/// What is laid.
+enum Flat {
+    File(PathBuf),
+    Print(Box<PressureMap>),
+}
+
+fn lay(flat: Flat, mat: Option<&str>, seat: &Seat) -> Result<Laid, Fault> {
+    let (map, name) = match flat {
+        Flat::Print(map) => (*map, "the print".to_string()),
+        Flat::File(file) => {
+            let maps = thenar_recordings::read(&file).map_err(Fault::Reading)?.maps;
+            let map = chosen(&file, maps, mat).map_err(Fault::Laying)?;
+            (map, file.display().to_string())
+        }
+    };
     let placed = seat.place(&map);
     let placed = placed.map_err(|(problem, remedy)| {
         let remedy = remedy.replace(
             "sensels = \"sensels.csv\"",
             "the places of the sensels in a study",
         );
-        Fault::Laying(format!("{}: {problem}; {remedy}", file.display()))
+        Fault::Laying(format!("{name}: {problem}; {remedy}"))
     })?;
     Ok((map, placed))
 }

@@ -2,6 +2,7 @@
 
 use crate::arrays::{column, rows, table, triple};
 use crate::errors::Failure;
+use crate::prints::Print;
 use crate::record::record;
 use crate::recordings::{curve_record, map_record, path};
 use crate::running::{Hooks, run};
@@ -33,7 +34,8 @@ pub struct Study {
     #[pyo3(get)]
     sites: Py<PyAny>,
     /// List of records: name, kind, file, indenter, site, protocol, subject, day, temperature_c, rest_s, order, and by kind
-    /// `curve`, `map` with `sensels` and `motion`, or `vertices_mm`, `triangles`, `at_time_s`, `depth_mm`, `motion`.
+    /// `curve`, `map` with `sensels` and `motion`, `vertices_mm`, `triangles`, `at_time_s`, `depth_mm`, `motion`, or `print` with `sensels`,
+    /// `ink_kpa`, `depth_mm`, `force_n`, `motion`.
     #[pyo3(get)]
     recordings: Py<PyAny>,
     /// Record of the data sheet, or None.
@@ -237,6 +239,24 @@ fn recording(py: Python<'_>, recording: &StudyRecording) -> PyResult<Py<PyAny>> 
             let motion = motion.as_ref().map(|curve| curve_record(py, curve));
             entries.set_item("motion", motion.transpose()?)?;
             "scan"
+        }
+        Data::Handprint {
+            print,
+            sensels,
+            ink_kpa,
+            depth_mm,
+            force_n,
+            motion,
+        } => {
+            entries.set_item("print", Py::new(py, Print::new((**print).clone()))?)?;
+            let places = sensels.as_ref().map(|places| places_record(py, places));
+            entries.set_item("sensels", places.transpose()?)?;
+            entries.set_item("ink_kpa", *ink_kpa)?;
+            entries.set_item("depth_mm", *depth_mm)?;
+            entries.set_item("force_n", *force_n)?;
+            let motion = motion.as_ref().map(|curve| curve_record(py, curve));
+            entries.set_item("motion", motion.transpose()?)?;
+            "handprint"
         }
     };
     entries.set_item("kind", kind)?;

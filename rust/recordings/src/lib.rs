@@ -16,6 +16,7 @@ mod detection;
 mod tables;
 mod makers;
 mod recording;
+pub mod handprint;
 pub mod meshes;
 pub mod study;
 

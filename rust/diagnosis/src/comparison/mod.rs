@@ -16,6 +16,7 @@ mod surface;
 mod sentence;
 mod still;
 
+use crate::prints::Printed;
 use crate::{Censoring, Estimate, Fit, Location, Mat, Moment, Quantity};
 use nalgebra::Vector3;
 use standing::Standing;
@@ -43,6 +44,8 @@ pub struct Compared<'a> {
     pub fit: &'a Fit,
     /// What was located in it, if that was done.
     pub location: Option<&'a Location>,
+    /// By recording, what a handprint shows and its measures; empty: there is none.
+    pub prints: &'a [Option<(Printed, Vec<Measure>)>],
 }
 
 /// What separates simulation and recordings.
@@ -95,6 +98,8 @@ pub struct RecordingComparison {
     pub frames: Vec<Frame>,
     /// Heights of a scan, place by place.
     pub scan: Option<Scanned>,
+    /// Contact of a handprint, cell by cell of `mat`.
+    pub print: Option<Printed>,
     /// Table of measures.
     pub measures: Vec<Measure>,
     /// Residual against what it may depend on.
@@ -160,7 +165,8 @@ pub fn compare_fit(compared: &Compared) -> Comparison {
     let recordings: Vec<RecordingComparison> = standings
         .iter()
         .zip(all_trends)
-        .map(|(standing, trends)| recording(compared, standing, trends))
+        .enumerate()
+        .map(|(number, (standing, trends))| recording(compared, (number, standing), trends))
         .collect();
     Comparison {
         title: compared.title.to_string(),
@@ -184,7 +190,11 @@ fn notes(compared: &Compared) -> Vec<String> {
     all.cloned().collect()
 }
 
-fn recording(compared: &Compared, standing: &Standing, trends: Vec<Trend>) -> RecordingComparison {
+fn recording(
+    compared: &Compared,
+    (number, standing): (usize, &Standing),
+    trends: Vec<Trend>,
+) -> RecordingComparison {
     let measured = standing.measured;
     let frames = frames::shown(standing);
     let series = series::series(standing);
@@ -206,9 +216,14 @@ fn recording(compared: &Compared, standing: &Standing, trends: Vec<Trend>) -> Re
         series,
         mat: measured.mat.clone(),
         scan: scanned::of(standing),
+        print: None,
         frames,
         unknown: measured.unknown.clone(),
     };
+    if let Some(Some((print, table))) = compared.prints.get(number) {
+        comparison.measures.extend(table.iter().cloned());
+        comparison.print = Some(print.clone());
+    }
     comparison.sentence = sentence::of_recording(&comparison);
     comparison
 }

@@ -31,10 +31,12 @@ pub(super) fn of_study(
 ) -> String {
     let compared: Vec<_> = recordings
         .iter()
-        .filter(|recording| has_values(recording))
+        .filter(|recording| has_values(recording) && recording.print.is_none())
         .collect();
     let count = compared.len();
+    let prints = of_prints(recordings);
     let (all, are) = match count {
+        0 if !prints.is_empty() => return prints.trim_start().to_string(),
         0 => return "No recording of this study can be compared with a simulation.".into(),
         1 => ("The recording".to_string(), "is"),
         _ => (format!("All {count} recordings"), "are"),
@@ -93,7 +95,26 @@ pub(super) fn of_study(
         );
         text += &format!(" {list} {lie} at the end of what is admissible.");
     }
-    text
+    text + &prints
+}
+
+/// Of every handprint, by how much it overlaps; they take no part in the fit, and so none in what it leaves.
+fn of_prints(recordings: &[RecordingComparison]) -> String {
+    let told = |recording: &RecordingComparison| {
+        let print = recording.print.as_ref()?;
+        let overlap = find(recording, "overlap")?;
+        let mirrored = if print.is_mirrored {
+            ", and better mirrored"
+        } else {
+            ""
+        };
+        Some(format!(
+            " The handprint \u{201c}{}\u{201d} overlaps with simulated contact by {}{mirrored}.",
+            recording.name,
+            percent(overlap.after)
+        ))
+    };
+    recordings.iter().filter_map(told).collect()
 }
 
 /// A recording's sentence with its name in front.
@@ -128,6 +149,9 @@ pub(super) fn of_recording(recording: &RecordingComparison) -> String {
             "Nothing of it can be compared: {}.",
             reason.trim_end_matches('.')
         );
+    }
+    if let Some(print) = &recording.print {
+        return print.sentence(&recording.measures);
     }
     let mut text = match strongest(recording) {
         Some((trend, bin)) => departs(recording, trend, bin),

@@ -99,6 +99,7 @@ pub fn compare_still(still: Still<'_>) -> Result<Comparison, DiagnosisError> {
         sites: &[],
         fit: &fit,
         location: None,
+        prints: &[],
     }))
 }
 

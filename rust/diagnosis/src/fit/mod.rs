@@ -8,6 +8,7 @@ mod form;
 mod intervals;
 mod parameters;
 mod poses;
+mod printed;
 mod problem;
 mod setting;
 mod start;

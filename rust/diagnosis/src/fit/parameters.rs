@@ -8,7 +8,7 @@ use super::poses::{MOST_POSITION, poses};
 use crate::noise::Noise;
 use crate::observe::{Measured, Quantity};
 use crate::replay::Tissue;
-use crate::{Phase, Target};
+use crate::{Estimate, Phase, Target};
 
 /// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
 /// (subcutaneous Young's modulus of 2.2 MPa at 30 N over 3, Isogai 2022).
@@ -104,6 +104,23 @@ impl Number {
             ),
             Number::Thickness => (THICKNESS.0.min(start / 4.0), THICKNESS.1.max(start * 4.0)),
         }
+    }
+}
+
+impl Tissue {
+    /// The study's materials with what was estimated of them.
+    pub fn fitted_materials(&self, estimates: &[Estimate]) -> Vec<Material> {
+        let mut materials = self.materials.clone();
+        for estimate in estimates {
+            let Target::Region(name) = &estimate.target else {
+                continue;
+            };
+            let region = self.regions.iter().position(|region| region == name);
+            if let Some((region, number)) = region.zip(Number::named(&estimate.name)) {
+                *number.of(&mut materials[region]) = estimate.value;
+            }
+        }
+        materials
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use thenar_recordings::study::PlacedSensel;
 use thenar_recordings::{Curve, PressureMap, PressureUnit};
+use thenar_surface::{GapLimits, Product};
 
 use super::phases::{Courses, Stretch, range, stretches};
 use super::thinning::{bins, means};
@@ -25,7 +26,12 @@ pub struct Seen<'a> {
     pub across: Vector3<f64>,
     /// Direction of travel.
     pub direction: Vector3<f64>,
+    /// The tool at first touch, if a sensel's normal is to be told from it.
+    pub tool: Option<&'a Product>,
 }
+
+/// Sensels farther from the tool than this do not lie on it, mm.
+const ON_TOOL: f64 = 5.0;
 
 /// Fills in moments, samples and mat, frames thinned to `budget`; returns whether the depth of first touch is known.
 pub fn observe(seen: &Seen<'_>, measured: &mut Measured, budget: usize) -> bool {
@@ -39,7 +45,7 @@ pub fn observe(seen: &Seen<'_>, measured: &mut Measured, budget: usize) -> bool 
         return true;
     };
     let kept: Vec<usize> = (0..placed.len()).filter(|&k| placed[k].is_some()).collect();
-    let mat = mat(&kept, placed, seen);
+    let mat = mat(&kept, placed, (seen, &mut measured.unknown));
     let course = Course::of(seen, &kept, &mut measured.unknown);
     let bins = course.bins(budget);
     if bins.len() < map.frames() {
@@ -74,14 +80,55 @@ pub fn observe(seen: &Seen<'_>, measured: &mut Measured, budget: usize) -> bool 
     course.is_touch_known
 }
 
-fn mat(kept: &[usize], placed: &[Option<PlacedSensel>], seen: &Seen<'_>) -> Mat {
+/// The way out of the tool where a sensel lies; None off it.
+fn out_of_tool(tool: &Product, sensel: &PlacedSensel) -> Option<Vector3<f64>> {
+    let limits = GapLimits {
+        cut_off_mm: ON_TOOL,
+        max_depth_mm: ON_TOOL,
+    };
+    let gap = tool.gap(sensel.center_mm.into(), None, limits)?;
+    let triangle = tool.mesh().triangles()[gap.triangle as usize];
+    let [a, b, c] = triangle.map(|corner| tool.mesh().positions()[corner as usize]);
+    (b - a).cross(&(c - a)).try_normalize(1e-300)
+}
+
+/// The mat; what is taken for normals that the study does not give is said.
+fn mat(
+    kept: &[usize],
+    placed: &[Option<PlacedSensel>],
+    (seen, unknown): (&Seen<'_>, &mut Vec<String>),
+) -> Mat {
     let each = || kept.iter().filter_map(|&k| placed[k].as_ref());
+    let (mut of_tool, mut of_travel) = (0, 0);
+    let mut normal = |sensel: &PlacedSensel| {
+        let given = sensel.normal.map(Vector3::from);
+        given.unwrap_or_else(
+            || match seen.tool.and_then(|tool| out_of_tool(tool, sensel)) {
+                Some(normal) => {
+                    of_tool += 1;
+                    normal
+                }
+                None => {
+                    of_travel += 1;
+                    -seen.direction
+                }
+            },
+        )
+    };
+    let normals = each().map(&mut normal).collect();
+    if of_tool > 0 {
+        unknown.push(format!(
+            "the study gives no normals of {of_tool} sensels: they are taken to look out of the tool where they lie"
+        ));
+    }
+    if of_travel > 0 {
+        unknown.push(format!(
+            "{of_travel} sensels have no normals and lie off the tool: they are taken to look back along the travel; check their places, or give placing"
+        ));
+    }
     Mat {
         centers: each().map(|s| s.center_mm.into()).collect(),
-        // Without a normal of its own, a sensel looks back along the travel.
-        normals: each()
-            .map(|s| s.normal.map_or(-seen.direction, Vector3::from))
-            .collect(),
+        normals,
         areas: each().map(|s| s.area_mm2).collect(),
         places: kept.iter().map(|&k| seen.map.sensels[k].place).collect(),
     }

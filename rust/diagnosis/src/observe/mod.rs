@@ -17,10 +17,15 @@ use nalgebra::Vector3;
 use thenar_recordings::Study;
 use thenar_recordings::study::{Data, StudyRecording};
 
+use crate::replay::tool_at;
+
 /// Most moments of an indentation that are compared.
 pub const MOST_MOMENTS: usize = 100;
 /// Most frames of a map that are compared.
 pub const MOST_FRAMES: usize = 40;
+
+/// Extent of a tool that only tells the normals of sensels on it, mm: more than a mat's.
+const FAR: f64 = 500.0;
 
 /// A study's recordings, and what the fit must know of them besides.
 #[derive(Debug, Clone)]
@@ -82,7 +87,21 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
             sensels,
             motion,
         } => {
+            let lacks = sensels
+                .iter()
+                .flatten()
+                .flatten()
+                .any(|s| s.normal.is_none());
+            let indenter = study
+                .indenters
+                .iter()
+                .find(|i| lacks && i.name == recording.indenter);
+            // A tool that cannot be is refused where it presses.
+            let tool = indenter
+                .zip(site)
+                .and_then(|(indenter, site)| tool_at(indenter, site, FAR).ok());
             let seen = map::Seen {
+                tool: tool.as_ref(),
                 map,
                 sensels: sensels.as_deref(),
                 motion: motion.as_deref(),
@@ -112,6 +131,19 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
                     .find(|i| i.name == recording.indenter),
             };
             scan::observe(&seen, &study.skin.mesh, &mut measured);
+            (measured, true)
+        }
+        Data::Handprint { print, ink_kpa, .. } => {
+            // No samples: no fit sees it.
+            measured.unknown.extend(print.unknown.iter().cloned());
+            measured.unknown.push(
+                "no parameter is fitted to it: it is compared with the model that the other recordings give, pressed as hard as the study says"
+                    .to_owned(),
+            );
+            measured.unknown.push(match *ink_kpa > 0.0 {
+                true => format!("skin is taken to leave ink where it presses with more than {ink_kpa} kPa"),
+                false => "skin is taken to leave ink wherever it touches; give ink_kpa if ink asks for more".to_owned(),
+            });
             (measured, true)
         }
     }

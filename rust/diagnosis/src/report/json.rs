@@ -4,6 +4,7 @@ use crate::comparison::{
     Bin, Comparison, Frame, Kind, Measure, RecordingComparison, SIGNIFICANT, Scanned, Series,
     Trend, WorstPlace,
 };
+use crate::prints::{PosePart, PrintRegion, Printed};
 use crate::{Carrier, Estimate, Location, Mat, Mismatch, Moment, Place, Target};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -120,6 +121,7 @@ fn recording(recording: &RecordingComparison) -> Value {
         "series": recording.series.iter().map(|each| series(recording, each)).collect::<Vec<_>>(),
         "mat": recording.mat.as_ref().map(mat),
         "scan": recording.scan.as_ref().map(|each| scan(recording, each)),
+        "print": recording.print.as_ref().map(print),
         "frames": recording.frames.iter().map(|each| frame(recording, each)).collect::<Vec<_>>(),
         "trends": recording.trends.iter().map(|each| trend(each, is_calibrated)).collect::<Vec<_>>(),
         "worst": recording.worst.iter().map(|each| place(each, is_calibrated)).collect::<Vec<_>>(),
@@ -173,6 +175,32 @@ fn scan(recording: &RecordingComparison, scan: &Scanned) -> Value {
         "simulated_mm": scan.simulated,
         "residual_mm": scan.residual,
         "noise_mm": scan.sigma,
+    })
+}
+
+/// A handprint: shares by cell of `mat`, the paper's pose, and the residual by vertex of the skin.
+fn print(print: &Printed) -> Value {
+    let part = |part: &PosePart| json!({"value": part.value, "low": part.low, "high": part.high});
+    let region = |region: &PrintRegion| {
+        json!({
+            "name": region.name,
+            "recorded_mm2": region.recorded_mm2,
+            "simulated_mm2": region.simulated_mm2,
+            "overlap": region.overlap,
+        })
+    };
+    let [x, y, turn] = &print.pose;
+    json!({
+        "ink_kpa": print.ink_kpa,
+        "recorded_share": print.recorded,
+        "simulated_share": print.simulated,
+        "simulated_share_as_laid": print.as_laid,
+        "pose": {"columns_mm": part(x), "rows_mm": part(y), "turn_rad": part(turn)},
+        "mirrored_overlap": print.mirrored_overlap,
+        "is_mirrored": print.is_mirrored,
+        "regions": print.regions.iter().map(region).collect::<Vec<_>>(),
+        "print_residual": print.on_skin,
+        "force_beside_share": print.beside,
     })
 }
 

@@ -10,6 +10,7 @@ mod axes;
 mod curves;
 mod bars;
 mod maps;
+mod prints;
 mod tables;
 mod sections;
 mod page;

@@ -3,7 +3,7 @@
 use super::curves::{Against, curve};
 use super::maps::{self, Mark};
 use super::svg::escaped;
-use super::{bars, tables};
+use super::{bars, prints, tables};
 use crate::Place;
 use crate::comparison::{Comparison, Frame, RecordingComparison, Scanned, Trend};
 use crate::words::{capital, number};
@@ -54,6 +54,7 @@ pub fn recording(number: usize, comparison: &Comparison) -> String {
     if let Some(scan) = &recording.scan {
         html += &scanned(recording, scan);
     }
+    html += &prints::section(recording);
     if !recording.measures.is_empty() {
         html += &format!("<h3>Measures</h3>{}", tables::measures(&recording.measures));
     }
@@ -131,12 +132,16 @@ fn setting(recording: &RecordingComparison) -> String {
         ),
         format!("protocol \u{201c}{}\u{201d}", recording.protocol),
         match recording.moments.len() {
+            0 if recording.print.is_some() => "a handprint".to_string(),
             1 => "one moment".to_string(),
             count => format!("{count} moments in {} s", number(last - first)),
         },
     ];
     if let Some(mat) = &recording.mat {
-        parts.push(format!("mat of {} sensels", mat.centers.len()));
+        parts.push(match &recording.print {
+            Some(_) => format!("{} cells", mat.centers.len()),
+            None => format!("mat of {} sensels", mat.centers.len()),
+        });
     }
     if !recording.is_calibrated {
         parts.push("not calibrated: shape and relative size only".into());
@@ -195,6 +200,7 @@ pub fn method(comparison: &Comparison) -> String {
 <li><b>Frame of mean force</b> is the frame whose force is nearest to the mean over all frames that carry any.</li>\
 <li><b>A map that is not calibrated</b> is scaled to the sum of the reading: force and pressure cannot be told from it.</li>\
 <li><b>A scan</b> is laid on the skin as a rigid body, with its pose among the fitted numbers. What lies on the tool or next to it is left out. The residual is the distance from the scanned points to the simulated skin, along its normal, positive outside.</li>\
+<li><b>A handprint</b> says where skin touched, never how hard. A cell of it touched if at least half of it is inked, and touches in simulation if at least half of it bears more than the pressure at which skin leaves ink. The paper\u{2019}s pose is fitted; nothing else is fitted to it.</li>\
 <li><b>Noise</b> of a sum over sensels takes the sensels\u{2019} noise as independent.</li>\
 <li><b>Intervals</b> hold the true number in 90 of 100 studies if the model is right; they say nothing of what the model leaves out.</li>\
 </ul></section>\n"

@@ -3,6 +3,7 @@
 use super::bars;
 use super::svg::escaped;
 use crate::comparison::{Comparison, Measure, RecordingComparison, WorstPlace};
+use crate::prints::{PrintRegion, Printed};
 use crate::words::{capital, number, percent};
 use crate::{Estimate, Target};
 use std::fmt::Write;
@@ -125,6 +126,20 @@ pub fn measures(rows: &[Measure]) -> String {
         html += &row_of(&heads, &cells);
     }
     format!("{}{html}</tbody></table>\n", head(&heads))
+}
+
+/// Contact of a print by region of the skin.
+pub fn print_regions(print: &Printed) -> String {
+    let heads = ["<Region", "Inked, mm²", "Simulated, mm²", "Overlap"];
+    let row = |region: &PrintRegion| {
+        vec![
+            escaped(&region.name),
+            number(region.recorded_mm2),
+            number(region.simulated_mm2),
+            format!("<b>{}</b>", percent(region.overlap)),
+        ]
+    };
+    table(&heads, print.regions.iter().map(row))
 }
 
 /// Worst places of a recording.

@@ -200,5 +200,6 @@ pub fn compared(fit: &Fit) -> Comparison {
         sites: &[("pad".into(), Vec3::zeros())],
         fit,
         location: None,
+        prints: &[],
     })
 }

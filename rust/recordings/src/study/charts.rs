@@ -18,11 +18,20 @@ const ONE_PLACE: f64 = 1e-6;
 /// Cells along the UV map's box in which charts are looked up.
 const CELLS: usize = 256;
 
+/// What becomes of a cell outside of every chart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum OffChart {
+    /// A sensel must lie on the product.
+    Refused,
+    /// A cell of a print that shows no ink lies on no product; one that does must.
+    Blank,
+}
+
 /// Reads the table `placing` of a recording whose mat lies on a mesh, and places every sensel of the map, in its order; `None` for a cell
 /// that is missing in every frame.
 pub(super) fn place(
     section: &mut Section,
-    map: &PressureMap,
+    (map, off): (&PressureMap, OffChart),
     folder: &Folder,
 ) -> Result<Vec<Option<PlacedSensel>>, RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
@@ -48,6 +57,7 @@ pub(super) fn place(
         corner,
         along,
         spanned,
+        off,
     };
     let placed = lie.place(map, &atlas);
     placed.map_err(|(problem, remedy)| here(section.fault(problem, remedy)))
@@ -59,6 +69,7 @@ struct Lie {
     along: [[f64; 2]; 2],
     /// Area of the mat in the map, with its sign.
     spanned: f64,
+    off: OffChart,
 }
 
 impl Lie {
@@ -79,9 +90,14 @@ impl Lie {
             }
             let [x, y] = [column / columns, row / rows];
             let at = [0, 1].map(|c| self.corner[c] + x * self.along[0][c] + y * self.along[1][c]);
-            let spot = atlas
-                .spot(at)
-                .map_err(|(problem, remedy)| (format!("{} {problem}", named(sensel)), remedy))?;
+            let spot = atlas.spot(at);
+            let is_blank = (0..map.frames()).all(|frame| map.frame(frame)[k] == 0.0);
+            if spot.is_err() && is_blank && self.off == OffChart::Blank {
+                placed.push(None);
+                continue;
+            }
+            let spot =
+                spot.map_err(|(problem, remedy)| (format!("{} {problem}", named(sensel)), remedy))?;
             placed.push(Some(PlacedSensel {
                 center_mm: spot.point.into(),
                 normal: Some(spot.normal.into()),

@@ -26,6 +26,24 @@
 //!
 //! A sensel lies on the one triangle whose chart holds its center, and looks along that triangle's normal. Its area is the maker's; where
 //! the file states none, that of its patch of the chart on the mesh.
+//!
+//! A handprint is an image with its scale, placed as a mat is: looking at the inked side, its columns count from left to right and its
+//! rows from the lower edge up, so `origin_mm` and `corner_uv` are where the image's lower left corner lies.
+//!
+//! ```toml
+//! [[recordings]]
+//! name = "grip, inked"
+//! kind = "handprint"
+//! file = "print.png"         # PNG, JPEG or TIFF; what is transparent is no paper, and nothing is known of it
+//! dpi = 300                  # or mm_per_px, or marks_px = [[x, y], [x, y]] with marks_mm, their distance
+//! force_n = 40               # how hard at most: or depth_mm, or motion = "press.csv"
+//! ink_kpa = 0                # pressure above which ink is taken; 0, any touch, is the default
+//! ink = "dark"               # or "light"; by default the paper is what most of its edge is
+//! threshold = 0.5            # brightness between ink and paper, 0 to 1; by default Otsu's
+//! paper_px = [0, 0, 2480, 3508] # the sheet in the image: left, top, right, bottom; by default all of it
+//! mirrored = false           # true for an image that shows the print from behind
+//! cell_mm = 2.5              # cells in which contact is compared; by default as long as the skin's edges
+//! ```
 
 mod toml_tree;
 mod place;
@@ -35,6 +53,7 @@ mod sites;
 mod sensels;
 mod seat;
 mod charts;
+mod prints;
 mod recordings;
 mod instrument;
 
@@ -111,7 +130,7 @@ impl Study {
         let indenters = indenters::read(&mut root, &folder)?;
         let skin = skin::read(&mut root, &folder)?;
         let sites = sites::read(&mut root, &skin).map_err(here)?;
-        let recordings = recordings::read(&mut root, (&indenters, &sites), &folder)?;
+        let recordings = recordings::read(&mut root, (&indenters, &sites, &skin.mesh), &folder)?;
         let warnings = recordings
             .iter()
             .flat_map(StudyRecording::warnings)

@@ -1,14 +1,16 @@
 //! The recordings that a study lists, with what they were taken from.
 
-use super::charts;
+use super::charts::{self, OffChart};
 use super::indenters::Indenter;
 use super::place::Folder;
+use super::prints;
 use super::seat;
 use super::sensels::{self, PlacedSensel};
 use super::sites::Site;
 use super::toml_tree::{Section, nearest};
 use crate::curve::Curve;
 use crate::fault::{Fault, shown};
+use crate::handprint::Handprint;
 use crate::meshes::{self, MeshFile};
 use crate::pressure_map::{PressureMap, PressureUnit};
 use crate::{RecordingError, recording};
@@ -66,6 +68,21 @@ pub enum Data {
         /// The indentation during which it was taken.
         motion: Option<Box<Curve>>,
     },
+    /// A print in ink: where skin touched, never how hard.
+    Handprint {
+        /// Shares of ink by cell.
+        print: Box<Handprint>,
+        /// Where the cells lie on the product, in the print's order, if the study says.
+        sensels: Option<Vec<Option<PlacedSensel>>>,
+        /// Pressure above which skin leaves ink, kPa.
+        ink_kpa: f64,
+        /// How deep the tool stood at most, mm.
+        depth_mm: Option<f64>,
+        /// How hard it was pressed at most, N.
+        force_n: Option<f64>,
+        /// The indentation during which it was taken.
+        motion: Option<Box<Curve>>,
+    },
 }
 
 impl StudyRecording {
@@ -75,6 +92,7 @@ impl StudyRecording {
             Data::Indentation(curve) => &curve.warnings,
             Data::PressureMap { map, .. } => &map.warnings,
             Data::Scan { .. } => return Vec::new(),
+            Data::Handprint { print, .. } => &print.warnings,
         };
         of_file
             .iter()
@@ -85,7 +103,7 @@ impl StudyRecording {
 
 pub(super) fn read(
     root: &mut Section,
-    known: (&[Indenter], &[Site]),
+    (indenters, sites, skin): (&[Indenter], &[Site], &MeshFile),
     folder: &Folder,
 ) -> Result<Vec<StudyRecording>, RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
@@ -99,8 +117,9 @@ pub(super) fn read(
                 section.fault(problem, "give each recording a name of its own"),
             ));
         }
-        let (file, data) = read_data(&mut section, folder)?;
-        let recording = read_setting(&mut section, known, (name, file, data)).map_err(here)?;
+        let (file, data) = read_data(&mut section, skin, folder)?;
+        let recording =
+            read_setting(&mut section, (indenters, sites), (name, file, data)).map_err(here)?;
         section.finish().map_err(here)?;
         recordings.push(recording);
     }
@@ -163,16 +182,21 @@ fn defined(section: &mut Section, key: &'static str, known: &[&str]) -> Result<S
     Err(Fault::line(entry.line, problem, remedy))
 }
 
-fn read_data(section: &mut Section, folder: &Folder) -> Result<(PathBuf, Data), RecordingError> {
+fn read_data(
+    section: &mut Section,
+    skin: &MeshFile,
+    folder: &Folder,
+) -> Result<(PathBuf, Data), RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
     let Some(entry) = section.get("kind") else {
-        return Err(here(
-            section.needs("kind", "give indentation, pressure_map or scan"),
-        ));
+        return Err(here(section.needs(
+            "kind",
+            "give indentation, pressure_map, scan or handprint",
+        )));
     };
     let kind = entry.text().map_err(here)?;
     let key = if kind == "scan" { "mesh" } else { "file" };
-    let known = ["indentation", "pressure_map", "scan"];
+    let known = ["indentation", "pressure_map", "scan", "handprint"];
     if !known.contains(&kind.as_str()) {
         let problem = format!("kind {} is not known", shown(kind.as_bytes()));
         return Err(here(Fault::line(
@@ -190,6 +214,7 @@ fn read_data(section: &mut Section, folder: &Folder) -> Result<(PathBuf, Data), 
     let data = match kind.as_str() {
         "indentation" => Data::Indentation(read_curve(&file)?),
         "scan" => read_scan(section, &file, folder)?,
+        "handprint" => prints::read(section, (&file, skin), folder)?,
         _ => read_map(section, &file, folder)?,
     };
     Ok((file, data))
@@ -252,7 +277,7 @@ fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data,
         map.warnings
             .push("not calibrated: only shape and relative size are used".into());
     }
-    let sensels = read_places(section, &map, folder)?;
+    let sensels = read_places(section, (&map, OffChart::Refused), folder)?;
     Ok(Data::PressureMap {
         map: Box::new(map),
         sensels,
@@ -261,7 +286,7 @@ fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data,
 }
 
 /// The indentation that goes with a map or a scan.
-fn read_motion(
+pub(super) fn read_motion(
     section: &mut Section,
     folder: &Folder,
 ) -> Result<Option<Box<Curve>>, RecordingError> {
@@ -300,9 +325,9 @@ fn read_scan(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data
 }
 
 /// Where the sensels lie: as a file lists them, or as the mat is laid on a plane or a cylinder.
-fn read_places(
+pub(super) fn read_places(
     section: &mut Section,
-    map: &PressureMap,
+    (map, off): (&PressureMap, OffChart),
     folder: &Folder,
 ) -> Result<Option<Vec<Option<PlacedSensel>>>, RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
@@ -320,7 +345,7 @@ fn read_places(
     let is_on_mesh =
         matches!(placing.get("on"), Some(entry) if entry.text().is_ok_and(|on| on == "mesh"));
     let placed = match is_on_mesh {
-        true => charts::place(&mut placing, map, folder)?,
+        true => charts::place(&mut placing, (map, off), folder)?,
         false => {
             let seat = seat::read(&mut placing).map_err(here)?;
             let placed = seat.place(map);

@@ -298,6 +298,32 @@ impl Entry<'_> {
         parts.try_into().map_err(wrong)
     }
 
+    /// So many numbers.
+    pub fn numbers<const N: usize>(&self) -> Result<[f64; N], Fault> {
+        let parts = self.parts()?;
+        let parts: Vec<f64> = parts.iter().map(Entry::finite).collect::<Result<_, _>>()?;
+        let wrong = |_| {
+            self.fault(
+                format!("is no list of {N} numbers"),
+                "write them in square brackets",
+            )
+        };
+        parts.try_into().map_err(wrong)
+    }
+
+    /// Two pairs of numbers.
+    pub fn two_pairs(&self) -> Result<[[f64; 2]; 2], Fault> {
+        let parts = self.parts()?;
+        let pairs: Vec<[f64; 2]> = parts.iter().map(Entry::pair).collect::<Result<_, _>>()?;
+        let wrong = |_| {
+            self.fault(
+                "is no pair of points".into(),
+                "write it as [[x, y], [x, y]]",
+            )
+        };
+        pairs.try_into().map_err(wrong)
+    }
+
     pub fn texts(&self) -> Result<Vec<String>, Fault> {
         self.parts()?.iter().map(Entry::text).collect()
     }

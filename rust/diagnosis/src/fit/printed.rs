@@ -1,0 +1,58 @@
+//! What handprints ask of a fit: presses with its materials, and what stands for it where nothing is fitted.
+
+use nalgebra::DMatrix;
+use thenar_contact::{Control, Material};
+use thenar_surface::Vec3;
+
+use super::{Estimate, Fit, Fitting};
+use crate::DiagnosisError;
+use crate::replay::{Demanded, PrintPress};
+
+impl Fitting {
+    /// What stands for a fit of a study of which nothing is fitted.
+    pub fn unfitted(&self) -> Fit {
+        let measured = self.replay.observed.measured.clone();
+        let empty = || vec![Vec::new(); measured.len()];
+        let mut notes = self.replay.tissue.notes.clone();
+        notes.push(
+            "Nothing was fitted: handprints say where skin touched, and the simulation is that of the study's own materials."
+                .to_owned(),
+        );
+        Fit {
+            simulated: empty(),
+            before: empty(),
+            sigma: empty(),
+            projected: empty(),
+            absorbed: DMatrix::zeros(0, 0),
+            estimates: Vec::new(),
+            lack_of_fit_p: None,
+            measured,
+            notes,
+        }
+    }
+
+    /// The press of a print with the study's own materials, and with those of a fit.
+    ///
+    /// `rest` are the skin's positions before contact.
+    ///
+    /// # Errors
+    /// What the contact model says of a press, or `Cancelled`.
+    pub(crate) fn presses(
+        &mut self,
+        recording: usize,
+        (rest, demanded, estimates): (&[Vec3], Demanded, &[Estimate]),
+        control: &Control<'_>,
+    ) -> Result<[PrintPress; 2], DiagnosisError> {
+        let start = self.replay.tissue.materials.clone();
+        let fitted = self.replay.tissue.fitted_materials(estimates);
+        let mut press = |materials: &[Material]| {
+            let how = (materials, demanded);
+            self.replay.print_press((recording, rest), how, control)
+        };
+        let before = press(&start)?;
+        match fitted == start {
+            true => Ok([before.clone(), before]),
+            false => Ok([before, press(&fitted)?]),
+        }
+    }
+}

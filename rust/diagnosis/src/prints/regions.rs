@@ -1,0 +1,79 @@
+//! Ink and simulated contact on the skin: by vertex, and by region of the hand.
+
+use super::fitting::{Cells, Fitted};
+use super::sheet::Sheet;
+use super::{PrintCase, TOUCHED_FROM};
+
+/// Contact of one region, by the areas of its vertices.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrintRegion {
+    /// Its name.
+    pub name: String,
+    /// Inked, mm2.
+    pub recorded_mm2: f64,
+    /// In simulated contact, mm2.
+    pub simulated_mm2: f64,
+    /// Both over either.
+    pub overlap: f64,
+}
+
+/// Residual by vertex as [`super::Printed::on_skin`], and the part of the force that presses beside the paper.
+pub fn on_skin(
+    case: &PrintCase<'_>,
+    sheet: &Sheet,
+    (cells, fitted): (&Cells, &Fitted),
+) -> (Vec<f64>, f64) {
+    let pose = fitted.pose();
+    let (mut all, mut beside) = (0.0, 0.0);
+    let mut at_vertex = |vertex: usize| {
+        let spot = sheet.spot(&case.pressed.positions[vertex]);
+        let cell = spot.and_then(|(at, _)| sheet.cell(cells.back(at, &pose)));
+        let inked = cell.map_or(f64::NAN, |cell| case.inked[cell]);
+        let force = case.pressed.force_n[vertex].max(0.0);
+        all += force;
+        if inked.is_nan() {
+            beside += force;
+            return f64::NAN;
+        }
+        let touches = |is: bool| if is { 1.0 } else { 0.0 };
+        touches(inked >= TOUCHED_FROM) - touches(presses(case, vertex))
+    };
+    let residual = (0..case.pressed.positions.len())
+        .map(&mut at_vertex)
+        .collect();
+    (residual, if all > 0.0 { beside / all } else { 0.0 })
+}
+
+fn presses(case: &PrintCase<'_>, vertex: usize) -> bool {
+    case.pressed.force_n[vertex] > 0.0 && case.pressed.kpa(vertex) > case.ink_kpa
+}
+
+/// Areas and overlap of every region that either shows; none where there is one region.
+pub fn by_region(case: &PrintCase<'_>, on_skin: &[f64]) -> Vec<PrintRegion> {
+    let (regions, names) = case.regions;
+    if names.len() < 2 || regions.len() != on_skin.len() {
+        return Vec::new();
+    }
+    let of = |(number, name): (usize, &String)| {
+        let (mut recorded, mut simulated, mut both) = (0.0, 0.0, 0.0);
+        for (vertex, residual) in on_skin.iter().enumerate() {
+            if residual.is_nan() || usize::try_from(regions[vertex]) != Ok(number) {
+                continue;
+            }
+            let (area, is_pressed) = (case.pressed.areas[vertex], presses(case, vertex));
+            let is_inked = *residual > 0.0 || *residual == 0.0 && is_pressed;
+            recorded += if is_inked { area } else { 0.0 };
+            simulated += if is_pressed { area } else { 0.0 };
+            both += if is_inked && is_pressed { area } else { 0.0 };
+        }
+        PrintRegion {
+            name: name.clone(),
+            recorded_mm2: recorded,
+            simulated_mm2: simulated,
+            overlap: both / (recorded + simulated - both),
+        }
+    };
+    let all = names.iter().enumerate().map(of);
+    all.filter(|region| region.recorded_mm2 + region.simulated_mm2 > 0.0)
+        .collect()
+}

@@ -1,0 +1,214 @@
+//! A handprint: ink and simulated contact over one another, their outlines, and a table by region of the hand.
+
+use super::colors::{SIMULATED, STANDS_OUT};
+use super::svg::{Anchor, Svg, Type, escaped};
+use super::tables;
+use crate::Mat;
+use crate::comparison::RecordingComparison;
+use crate::prints::Printed;
+use std::collections::BTreeMap;
+
+/// Largest width and height of the picture, px.
+const LARGEST: [f64; 2] = [620.0, 560.0];
+const TOP: f64 = 30.0;
+/// Room for the ruler, px.
+const BOTTOM: f64 = 30.0;
+const PAPER: &str = "#f4f1ea";
+const BOTH: &str = "#8d99a3";
+const INK_ALONE: &str = "#e9a27a";
+const SIMULATED_ALONE: &str = "#8fc1e3";
+const INK_EDGE: &str = "stroke='#111' stroke-width='1.4' stroke-linecap='square'";
+
+/// A cell touched from this share on.
+const TOUCHED: f64 = thenar_recordings::handprint::TOUCHED_FROM;
+
+/// Picture and table of a print; nothing for other recordings.
+pub fn section(recording: &RecordingComparison) -> String {
+    let (Some(print), Some(mat)) = (&recording.print, &recording.mat) else {
+        return String::new();
+    };
+    let beside = match print.beside > 0.005 {
+        true => format!(
+            " {:.0} % of the simulated force presses beside the paper.",
+            100.0 * print.beside
+        ),
+        false => String::new(),
+    };
+    let caption = format!(
+        "The paper as one looks at its inked side, in its fitted pose. Gray: inked and in simulated contact; orange: inked alone; blue: \
+         simulated alone. Black outline: ink; blue outline: simulation.{beside}"
+    );
+    let drawn = picture(mat, print, &format!("{}: {caption}", recording.name));
+    let mut html = format!(
+        "<figure class='map'>{drawn}<figcaption>{}</figcaption></figure>\n",
+        escaped(&caption)
+    );
+    if !print.regions.is_empty() {
+        html += &format!(
+            "<h3>By region of the skin</h3>{}",
+            tables::print_regions(print)
+        );
+    }
+    html
+}
+
+/// Rows and columns of the cells that are known, and what of them is drawn where.
+struct Picture<'p> {
+    cells: BTreeMap<[u32; 2], usize>,
+    print: &'p Printed,
+    low: [u32; 2],
+    size: [f64; 2],
+    side: [f64; 2],
+}
+
+impl Picture<'_> {
+    /// Upper left corner of a cell, px; rows count upward.
+    fn corner(&self, [row, column]: [u32; 2]) -> [f64; 2] {
+        [
+            f64::from(column - self.low[1]) * self.side[0],
+            TOP + self.size[1] - (f64::from(row - self.low[0]) + 1.0) * self.side[1],
+        ]
+    }
+
+    fn touches(&self, at: Option<[u32; 2]>, shares: &[f64]) -> bool {
+        let cell = at.and_then(|at| self.cells.get(&at));
+        cell.is_some_and(|cell| shares[*cell] >= TOUCHED)
+    }
+
+    fn color(&self, cell: usize) -> &'static str {
+        let inked = self.print.recorded[cell] >= TOUCHED;
+        match (inked, self.print.simulated[cell] >= TOUCHED) {
+            (true, true) => BOTH,
+            (true, false) => INK_ALONE,
+            (false, true) => SIMULATED_ALONE,
+            (false, false) => PAPER,
+        }
+    }
+
+    /// Rows of like cells as one rectangle each.
+    fn fill(&self, svg: &mut Svg) {
+        let mut run: Option<([u32; 2], u32, &'static str)> = None;
+        let draw = |svg: &mut Svg, run: Option<([u32; 2], u32, &'static str)>| {
+            if let Some((first, count, color)) = run {
+                let size = [f64::from(count) * self.side[0] + 0.2, self.side[1] + 0.2];
+                svg.rect(self.corner(first), size, color);
+            }
+        };
+        for (place, cell) in &self.cells {
+            let color = self.color(*cell);
+            run = match run {
+                Some((first, count, same))
+                    if same == color && first[0] == place[0] && first[1] + count == place[1] =>
+                {
+                    Some((first, count + 1, same))
+                }
+                other => {
+                    draw(svg, other);
+                    Some((*place, 1, color))
+                }
+            };
+        }
+        draw(svg, run);
+    }
+
+    /// The edge of what touches by some shares.
+    fn outline(&self, svg: &mut Svg, shares: &[f64], style: &str) {
+        for place in self.cells.keys() {
+            if !self.touches(Some(*place), shares) {
+                continue;
+            }
+            let [row, column] = *place;
+            let ([x, y], [width, height]) = (self.corner(*place), self.side);
+            let above = [row + 1, column];
+            let right = [row, column + 1];
+            let below = row.checked_sub(1).map(|row| [row, column]);
+            let left = column.checked_sub(1).map(|column| [row, column]);
+            for (beside, from, to) in [
+                (Some(above), [x, y], [x + width, y]),
+                (Some(right), [x + width, y], [x + width, y + height]),
+                (below, [x, y + height], [x + width, y + height]),
+                (left, [x, y], [x, y + height]),
+            ] {
+                if !self.touches(beside, shares) {
+                    svg.line(from, to, style);
+                }
+            }
+        }
+    }
+}
+
+fn picture(mat: &Mat, print: &Printed, label: &str) -> String {
+    let known = (0..mat.places.len()).filter(|k| !print.recorded[*k].is_nan());
+    let cells: BTreeMap<[u32; 2], usize> =
+        known.filter_map(|k| Some((mat.places[k]?, k))).collect();
+    let range = |axis: usize| {
+        let numbers = || cells.keys().map(|place| place[axis]);
+        (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0))
+    };
+    let (rows, columns) = (range(0), range(1));
+    let pitch = pitch(mat, &cells);
+    let extent = [
+        f64::from(columns.1 - columns.0 + 1) * pitch[0],
+        f64::from(rows.1 - rows.0 + 1) * pitch[1],
+    ];
+    let scale = (LARGEST[0] / extent[0]).min(LARGEST[1] / extent[1]);
+    let picture = Picture {
+        cells,
+        print,
+        low: [rows.0, columns.0],
+        size: extent.map(|length| length * scale),
+        side: pitch.map(|length| length * scale),
+    };
+    let [width, height] = picture.size;
+    let mut svg = Svg::new(width.max(330.0), TOP + height + BOTTOM, label);
+    picture.fill(&mut svg);
+    let blue = format!("stroke='{SIMULATED}' stroke-width='1.8' stroke-linecap='square'");
+    picture.outline(&mut svg, &print.simulated, &blue);
+    picture.outline(&mut svg, &print.recorded, INK_EDGE);
+    svg.frame([0.0, TOP], picture.size, "#c3cad0");
+    let legend = [
+        (BOTH, "both"),
+        (INK_ALONE, "ink alone"),
+        (SIMULATED_ALONE, "simulated alone"),
+    ];
+    for (k, (color, text)) in legend.iter().enumerate() {
+        let left = 105.0 * k as f64;
+        svg.rect([left, 8.0], [12.0, 12.0], color);
+        svg.text([left + 17.0, 18.0], Anchor::Start, Type::Legend, text);
+    }
+    ruler(&mut svg, (scale, width, TOP + height + 14.0));
+    svg.finish()
+}
+
+fn ruler(svg: &mut Svg, (scale, width, y): (f64, f64, f64)) {
+    let long = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
+    let Some(length) = long
+        .iter()
+        .rev()
+        .find(|length| **length * scale <= 0.4 * width)
+    else {
+        return;
+    };
+    let style = format!("stroke='{STANDS_OUT}' stroke-width='2'");
+    svg.line([0.0, y], [length * scale, y], &style);
+    let at = [length * scale + 6.0, y + 4.0];
+    svg.text(at, Anchor::Start, Type::Tick, &format!("{length} mm"));
+}
+
+/// Usual distance of neighboring columns and rows, mm.
+fn pitch(mat: &Mat, cells: &BTreeMap<[u32; 2], usize>) -> [f64; 2] {
+    let median = |step: [u32; 2]| {
+        let apart = |(place, cell): (&[u32; 2], &usize)| {
+            let next = cells.get(&[place[0] + step[0], place[1] + step[1]])?;
+            Some((mat.centers[*next] - mat.centers[*cell]).norm())
+        };
+        let mut lengths: Vec<f64> = cells.iter().filter_map(apart).collect();
+        lengths.sort_by(f64::total_cmp);
+        lengths.get(lengths.len() / 2).copied()
+    };
+    let side = mat.areas.first().map_or(1.0, |area| area.sqrt());
+    [
+        median([0, 1]).unwrap_or(side),
+        median([1, 0]).unwrap_or(side),
+    ]
+}

@@ -1,0 +1,306 @@
+//! A print beside a contact of known shape: poses, mirrored and torn prints, paper around a cylinder, regions, intervals.
+#![allow(clippy::unwrap_used)]
+
+mod cells;
+mod scenes;
+
+use cells::{measure, shares};
+use nalgebra::Vector3;
+use scenes::Dice;
+use thenar_diagnosis::Mat;
+use thenar_diagnosis::comparison::Comparison;
+use thenar_diagnosis::prints::{Pressed, Printed, StillPrint, compare_print};
+
+type Vec3 = Vector3<f64>;
+
+/// The letter F, in mm about the middle of its box: no turn and no mirror brings it on itself.
+fn letter(x: f64, y: f64) -> bool {
+    let within = |[left, low]: [f64; 2], [right, high]: [f64; 2]| {
+        x > left && x < right && y > low && y < high
+    };
+    within([-10.0, -15.0], [-4.0, 15.0])
+        || within([-10.0, 9.0], [10.0, 15.0])
+        || within([-10.0, -2.0], [5.0, 4.0])
+}
+
+/// A skin of vertices 1 mm apart that presses with 10 kPa on the letter, turned and moved on the product.
+struct Skin {
+    positions: Vec<Vec3>,
+    areas: Vec<f64>,
+    force_n: Vec<f64>,
+}
+
+fn pressed_letter() -> Skin {
+    let each = (0..80 * 80).map(|k| (f64::from(k % 80) - 39.5, f64::from(k / 80) - 39.5));
+    let positions: Vec<Vec3> = each.map(|(x, y)| Vec3::new(x, y, 0.0)).collect();
+    let force = |p: &Vec3| if letter(p.x, p.y) { 0.01 } else { 0.0 };
+    Skin {
+        areas: vec![1.0; positions.len()],
+        force_n: positions.iter().map(force).collect(),
+        positions,
+    }
+}
+
+/// A sheet of 50 x 50 mm in cells of 1 mm about the origin.
+fn sheet() -> Mat {
+    let at = |number: usize| number as f64 + 0.5 - 25.0;
+    let cells = 0..50 * 50;
+    Mat {
+        centers: cells
+            .clone()
+            .map(|k| Vec3::new(at(k % 50), at(k / 50), 0.0))
+            .collect(),
+        normals: vec![Vec3::z(); 2500],
+        areas: vec![1.0; 2500],
+        places: cells
+            .map(|k| Some([(k / 50) as u32, (k % 50) as u32]))
+            .collect(),
+    }
+}
+
+fn found(skin: &Skin, mat: Mat, inked: &[f64]) -> (Printed, Comparison) {
+    let comparison = compare_print(StillPrint {
+        name: "ink",
+        product: "plate",
+        hand: "hand",
+        pressed: Pressed {
+            positions: &skin.positions,
+            areas: &skin.areas,
+            force_n: &skin.force_n,
+        },
+        mat,
+        inked,
+        ink_kpa: 2.0,
+        regions: (&[], &[]),
+        unknown: Vec::new(),
+    });
+    let comparison = comparison.unwrap();
+    (comparison.recordings[0].print.clone().unwrap(), comparison)
+}
+
+/// What a paper that lies `pose` off shows of a shape on the product: where a place of the paper comes to lie there.
+fn seen(shape: &dyn Fn(f64, f64) -> bool, [x, y, turn]: [f64; 3], middle: [f64; 2]) -> Vec<f64> {
+    shares([50, 50], 1.0, &|u, v| {
+        let (from, (sin, cos)) = ([u - 25.0 - middle[0], v - 25.0 - middle[1]], turn.sin_cos());
+        shape(
+            middle[0] + cos * from[0] - sin * from[1] + x,
+            middle[1] + sin * from[0] + cos * from[1] + y,
+        )
+    })
+}
+
+#[test]
+fn a_shifted_and_turned_print_is_found_back() {
+    let skin = pressed_letter();
+    for planted in [[0.0, 0.0, 0.0], [2.3, -1.7, 0.1], [-6.0, 4.0, -0.15]] {
+        let inked = seen(&letter, planted, [0.0, 0.0]);
+        let (print, comparison) = found(&skin, sheet(), &inked);
+        // The pose turns about the middle of the ink: carried there, the planted one reads otherwise along x and y.
+        let (mut sum, mut all) = ([0.0; 2], 0.0);
+        for (k, share) in inked.iter().enumerate().filter(|(_, share)| **share >= 0.5) {
+            let _ = share;
+            sum = [
+                sum[0] + (k % 50) as f64 - 24.5,
+                sum[1] + (k / 50) as f64 - 24.5,
+            ];
+            all += 1.0;
+        }
+        let c = sum.map(|s| s / all);
+        let (sin, cos) = planted[2].sin_cos();
+        let wanted = [
+            cos * c[0] - sin * c[1] + planted[0] - c[0],
+            sin * c[0] + cos * c[1] + planted[1] - c[1],
+            planted[2],
+        ];
+        let overlap = measure(&comparison.recordings[0], "overlap")[1];
+        println!("{wanted:?}: {:?}, overlap {overlap:.3}", print.pose);
+        for (part, (wanted, near)) in print.pose.iter().zip(wanted.iter().zip([0.15, 0.15, 0.01])) {
+            assert!((part.value - wanted).abs() < near, "{part:?} for {wanted}");
+        }
+        assert!(overlap > 0.95 && !print.is_mirrored);
+    }
+}
+
+#[test]
+fn a_print_from_behind_is_called_mirrored() {
+    let skin = pressed_letter();
+    let inked = seen(&|x, y| letter(-x, y), [1.0, 0.0, 0.05], [0.0, 0.0]);
+    let (print, comparison) = found(&skin, sheet(), &inked);
+    let overlap = measure(&comparison.recordings[0], "overlap")[1];
+    println!("{overlap:.3}, mirrored {:.3}", print.mirrored_overlap);
+    assert!(print.is_mirrored && print.mirrored_overlap > 0.95 && overlap < 0.8);
+    let said = &comparison.recordings[0].sentence;
+    assert!(
+        said.contains("the image seems to show the print from behind"),
+        "{said}"
+    );
+}
+
+/// Of a paper that was torn along y = 0 only what is there counts, and the force beside it is said.
+#[test]
+fn what_is_torn_off_is_neither_right_nor_wrong() {
+    let skin = pressed_letter();
+    let mut inked = seen(&letter, [0.0; 3], [0.0, 0.0]);
+    inked[..25 * 50].fill(f64::NAN);
+    let (print, comparison) = found(&skin, sheet(), &inked);
+    let recording = &comparison.recordings[0];
+    let lower = skin
+        .positions
+        .iter()
+        .filter(|p| p.y < 0.0 && letter(p.x, p.y))
+        .count() as f64;
+    let whole = skin.positions.iter().filter(|p| letter(p.x, p.y)).count() as f64;
+    assert!(
+        (print.beside - lower / whole).abs() < 0.03,
+        "{} {}",
+        print.beside,
+        lower / whole
+    );
+    assert!(measure(recording, "overlap")[1] > 0.95);
+    let [recorded, simulated] = measure(recording, "area_mm2");
+    assert!((recorded - (whole - lower)).abs() < 12.0 && (simulated / recorded - 1.0).abs() < 0.03);
+    let on_skin = |p: [f64; 2]| {
+        skin.positions
+            .iter()
+            .position(|q| (q.x - p[0]).abs() < 0.6 && (q.y - p[1]).abs() < 0.6)
+    };
+    assert!(print.on_skin[on_skin([-7.0, -10.0]).unwrap()].is_nan());
+    assert_eq!(print.on_skin[on_skin([-7.0, 10.0]).unwrap()], 0.0);
+}
+
+/// Around a cylinder of 48 mm the paper unrolls: an arc is as long on it as on the product.
+#[test]
+fn a_print_around_a_cylinder_unrolls() {
+    let radius = 24.0;
+    let bent =
+        |x: f64, y: f64, r: f64| Vec3::new(r * (x / radius).sin(), y, r * (x / radius).cos());
+    let mut skin = pressed_letter();
+    skin.positions = skin
+        .positions
+        .iter()
+        .map(|p| bent(p.x, p.y, radius + 0.1))
+        .collect();
+    // Of the 80 mm across half would lie behind; the letter is 20 mm wide.
+    let flat = sheet();
+    let mat = Mat {
+        centers: flat
+            .centers
+            .iter()
+            .map(|p| bent(p.x, p.y, radius))
+            .collect(),
+        normals: flat.centers.iter().map(|p| bent(p.x, 0.0, 1.0)).collect(),
+        ..flat
+    };
+    let (print, comparison) = found(&skin, mat, &seen(&letter, [3.0, 1.0, 0.0], [0.0, 0.0]));
+    let overlap = measure(&comparison.recordings[0], "overlap")[1];
+    println!("{overlap:.3} {:?}", print.pose);
+    assert!(
+        overlap > 0.95
+            && (print.pose[0].value - 3.0).abs() < 0.2
+            && (print.pose[1].value - 1.0).abs() < 0.15
+    );
+}
+
+/// Areas and overlap by region: what is missing in one of them is told of that one.
+#[test]
+fn regions_are_told_apart() {
+    let skin = pressed_letter();
+    let regions: Vec<i32> = skin
+        .positions
+        .iter()
+        .map(|p| i32::from(p.y > 6.0))
+        .collect();
+    let names = ["lower".to_string(), "upper".to_string()];
+    // The upper bar left no ink beyond x = 0.
+    let inked = seen(
+        &|x, y| letter(x, y) && !(y > 6.0 && x > 0.0),
+        [0.0; 3],
+        [0.0, 0.0],
+    );
+    let comparison = compare_print(StillPrint {
+        name: "ink",
+        product: "plate",
+        hand: "hand",
+        pressed: Pressed {
+            positions: &skin.positions,
+            areas: &skin.areas,
+            force_n: &skin.force_n,
+        },
+        mat: sheet(),
+        inked: &inked,
+        ink_kpa: 0.0,
+        regions: (&regions, &names),
+        unknown: Vec::new(),
+    })
+    .unwrap();
+    let found = &comparison.recordings[0].print.as_ref().unwrap().regions;
+    println!("{found:?}");
+    assert!(found[0].name == "lower" && found[0].overlap > 0.95);
+    // Upper: the stem's 6 x 9 and the bar's 20 x 6, less the stem in it: 54 + 84 mm2; 60 mm2 of the bar are not inked.
+    assert!(
+        (found[1].simulated_mm2 - 138.0).abs() < 3.0
+            && (found[1].overlap - 78.0 / 138.0).abs() < 0.06
+    );
+}
+
+/// Rims off by 0.7 mm over stretches of some mm, and specks: the pose's 90 % intervals hold what was planted.
+#[test]
+fn intervals_of_the_pose_hold_it() {
+    let skin = pressed_letter();
+    let (mut dice, mut held, trials) = (Dice(11), [0usize; 3], 40);
+    for _ in 0..trials {
+        let planted = [
+            2.0 * dice.normal(),
+            2.0 * dice.normal(),
+            0.05 * dice.normal(),
+        ];
+        let waves: Vec<[f64; 4]> = (0..12)
+            .map(|_| {
+                [
+                    0.5 * dice.normal(),
+                    0.5 * dice.normal(),
+                    6.3 * dice.roll(),
+                    0.29 * dice.normal(),
+                ]
+            })
+            .collect();
+        let rough = |x: f64, y: f64| {
+            let by = |shift: f64| -> f64 {
+                waves
+                    .iter()
+                    .map(|[u, v, phase, size]| size * (u * x + v * y + phase + shift).sin())
+                    .sum()
+            };
+            letter(x + by(0.0), y + by(1.7))
+        };
+        let mut inked = seen(&rough, planted, [0.0, 0.0]);
+        for share in &mut inked {
+            if dice.roll() < 0.01 {
+                *share = 1.0 - *share;
+            }
+        }
+        let (print, _) = found(&skin, sheet(), &inked);
+        let touched = inked.iter().enumerate().filter(|(_, share)| **share >= 0.5);
+        let (sum, all) = touched.fold(([0.0; 2], 0.0), |(sum, all), (k, _)| {
+            (
+                [
+                    sum[0] + (k % 50) as f64 - 24.5,
+                    sum[1] + (k / 50) as f64 - 24.5,
+                ],
+                all + 1.0,
+            )
+        });
+        let (c, (sin, cos)) = (sum.map(|s| s / all), planted[2].sin_cos());
+        let wanted = [
+            cos * c[0] - sin * c[1] + planted[0] - c[0],
+            sin * c[0] + cos * c[1] + planted[1] - c[1],
+            planted[2],
+        ];
+        for k in 0..3 {
+            held[k] += usize::from((print.pose[k].low..=print.pose[k].high).contains(&wanted[k]));
+        }
+    }
+    println!("of {trials}: {held:?}");
+    // 90 % of 40 is 36; fewer than 31 or so come up once in 100 such runs.
+    assert!(held.iter().all(|held| *held >= 31), "{held:?}");
+}

@@ -1,0 +1,50 @@
+//! Counts ink by cell.
+
+use super::image::Gray;
+use super::ink::Told;
+use super::{Handprint, KNOWN_FROM, PrintOptions};
+
+/// The print of an image whose ink was told from its paper.
+pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
+    let (mm, side) = (options.scale.mm_per_px(), options.cell_mm);
+    let [width, height] = gray.size;
+    let number = |pixels: usize| (pixels as f64 * mm / side).ceil().max(1.0) as usize;
+    let [columns, rows] = [number(width), number(height)];
+    let (mut inked, mut known) = (vec![0.0; rows * columns], vec![0.0; rows * columns]);
+    let cell = |pixel: usize| ((pixel as f64 + 0.5) * mm / side) as usize;
+    for (pixel, brightness) in gray.pixels.iter().enumerate() {
+        if !told.is_paper[pixel] {
+            continue;
+        }
+        let (x, y) = (pixel % width, pixel / width);
+        let across = if options.is_mirrored {
+            width - 1 - x
+        } else {
+            x
+        };
+        // Rows count from the lower edge.
+        let at = cell(height - 1 - y).min(rows - 1) * columns + cell(across).min(columns - 1);
+        known[at] += 1.0;
+        inked[at] += f64::from(u8::from(told.is_ink(*brightness)));
+    }
+    let all: f64 = inked.iter().sum();
+    let in_cell = (side / mm).powi(2);
+    let share = |(inked, known): (&f64, &f64)| match *known >= KNOWN_FROM * in_cell {
+        true => inked / known,
+        false => f64::NAN,
+    };
+    Handprint {
+        size_px: gray.size,
+        mm_per_px: mm,
+        threshold: told.threshold,
+        ink: told.ink,
+        cells: [rows, columns],
+        cell_mm: side,
+        inked: inked.iter().zip(&known).map(share).collect(),
+        inked_mm2: all * mm * mm,
+        unknown: vec![
+            "ink says where skin touched at any time of the press, and not how hard".to_owned(),
+        ],
+        warnings: told.warnings.clone(),
+    }
+}

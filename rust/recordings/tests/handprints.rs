@@ -1,0 +1,277 @@
+//! Images of prints: ink told from paper at every depth, scales that agree, cells where they lie, refusals in a sentence, damaged files.
+#![allow(clippy::unwrap_used)]
+
+mod folders;
+mod inked;
+
+use folders::Folder;
+use image::{DynamicImage, GrayImage, ImageFormat, Luma, LumaA, Rgb, RgbaImage};
+use inked::{DISC, PIXEL_MM, SHEET, bytes, drawn, is_inked};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use thenar_recordings::handprint::{Handprint, Ink, PrintOptions, Scale};
+
+const OPTIONS: PrintOptions = PrintOptions {
+    scale: Scale::MmPerPixel(PIXEL_MM),
+    cell_mm: 1.0,
+    threshold: None,
+    ink: None,
+    paper_px: None,
+    is_mirrored: false,
+};
+
+fn read(bytes: &[u8], options: &PrintOptions) -> Result<Handprint, String> {
+    let folder = Folder::new();
+    folder.write("a.png", bytes);
+    let read = Handprint::read(&folder.path().join("a.png"), options);
+    read.map_err(|error| {
+        let text = error.to_string();
+        text.rsplit_once("a.png: ")
+            .map_or(text.clone(), |(_, told)| told.to_string())
+    })
+}
+
+fn png(image: DynamicImage, options: &PrintOptions) -> Handprint {
+    read(&bytes(&image, ImageFormat::Png), options).unwrap()
+}
+
+/// Area of the disc in every format and depth, dark on light and light on dark: pi r^2, within what pixels and cells resolve.
+#[test]
+fn a_disc_of_ink_has_its_area_in_every_kind_of_image() {
+    let dark = drawn(30, 220);
+    let gray = DynamicImage::ImageLuma8(dark.clone());
+    let rgba = RgbaImage::from_fn(SHEET.0, SHEET.1, |x, y| {
+        let blue = if is_inked(x, y) {
+            [20, 40, 160, 255]
+        } else {
+            [240, 235, 220, 255]
+        };
+        image::Rgba(blue)
+    });
+    let deep = image::ImageBuffer::from_fn(SHEET.0, SHEET.1, |x, y| {
+        Luma([u16::from(dark.get_pixel(x, y).0[0]) * 257])
+    });
+    let color = image::ImageBuffer::from_fn(SHEET.0, SHEET.1, |x, y| {
+        Rgb([u16::from(dark.get_pixel(x, y).0[0]) * 256; 3])
+    });
+    let seen = [
+        ("gray", bytes(&gray, ImageFormat::Png), Ink::Dark),
+        (
+            "light",
+            bytes(&DynamicImage::ImageLuma8(drawn(200, 20)), ImageFormat::Png),
+            Ink::Light,
+        ),
+        (
+            "rgba",
+            bytes(&DynamicImage::ImageRgba8(rgba), ImageFormat::Png),
+            Ink::Dark,
+        ),
+        (
+            "16 bit",
+            bytes(&DynamicImage::ImageLuma16(deep), ImageFormat::Png),
+            Ink::Dark,
+        ),
+        (
+            "16 bit color",
+            bytes(&DynamicImage::ImageRgb16(color), ImageFormat::Tiff),
+            Ink::Dark,
+        ),
+        ("tiff", bytes(&gray, ImageFormat::Tiff), Ink::Dark),
+        ("jpeg", bytes(&gray, ImageFormat::Jpeg), Ink::Dark),
+    ];
+    let area = PI * DISC.2 * DISC.2;
+    for (name, bytes, ink) in seen {
+        let print = read(&bytes, &OPTIONS).unwrap();
+        assert_eq!((print.cells, print.ink), ([24, 40], ink), "{name}");
+        assert!(
+            (print.inked_mm2 / area - 1.0).abs() < 0.005,
+            "{name}: {}",
+            print.inked_mm2
+        );
+        assert!(
+            (print.touched_mm2() / area - 1.0).abs() < 0.05,
+            "{name}: {}",
+            print.touched_mm2()
+        );
+        let sum: f64 = print.inked.iter().sum();
+        assert!((sum / area - 1.0).abs() < 0.005, "{name}: {sum}");
+    }
+}
+
+/// Rows count from the lower edge and columns from the left; an image from behind is turned about.
+#[test]
+fn cells_lie_where_the_ink_does() {
+    let center = |print: &Handprint| {
+        let columns = print.cells[1];
+        let sums = print
+            .inked
+            .iter()
+            .enumerate()
+            .fold([0.0; 3], |[x, y, all], (k, share)| {
+                let at = [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5];
+                [x + share * at[0], y + share * at[1], all + share]
+            });
+        [sums[0] / sums[2], sums[1] / sums[2]]
+    };
+    let image = || DynamicImage::ImageLuma8(drawn(30, 220));
+    let [x, y] = center(&png(image(), &OPTIONS));
+    assert!(
+        (x - DISC.0).abs() < 0.02 && (y - DISC.1).abs() < 0.02,
+        "{x}, {y}"
+    );
+    let behind = PrintOptions {
+        is_mirrored: true,
+        ..OPTIONS
+    };
+    let [x, y] = center(&png(image(), &behind));
+    assert!(
+        (x - 27.0).abs() < 0.02 && (y - DISC.1).abs() < 0.02,
+        "{x}, {y}"
+    );
+}
+
+#[test]
+fn scales_agree() {
+    let (a, b) = ([10.0, 20.0], [40.0, 60.0]);
+    for scale in [
+        Scale::Dpi(254.0),
+        Scale::MmPerPixel(0.1),
+        Scale::Marks([a, b], 5.0),
+    ] {
+        assert!((scale.mm_per_px() - 0.1).abs() < 1e-15, "{scale:?}");
+    }
+}
+
+/// What is transparent, or outside of the sheet that the user gives, is not "no ink" but nothing known.
+#[test]
+fn what_is_no_paper_is_not_known() {
+    let drawn = drawn(30, 220);
+    let torn = image::ImageBuffer::from_fn(SHEET.0, SHEET.1, |x, y| {
+        LumaA([drawn.get_pixel(x, y).0[0], if x < 104 { 0 } else { 255 }])
+    });
+    let print = png(DynamicImage::ImageLumaA8(torn), &OPTIONS);
+    // Of the eleventh column of cells six tenths are paper.
+    let known = |print: &Handprint| -> Vec<usize> {
+        (0..40)
+            .filter(|column| !print.inked[9 * 40 + column].is_nan())
+            .collect()
+    };
+    assert_eq!(known(&print), (10..40).collect::<Vec<_>>());
+    // On a dark table, with the sheet said.
+    let table = GrayImage::from_fn(SHEET.0, SHEET.1, |x, y| match (50..300).contains(&x) {
+        true => *drawn.get_pixel(x, y),
+        false => Luma([10]),
+    });
+    let sheet = PrintOptions {
+        paper_px: Some([50.0, 0.0, 300.0, 240.0]),
+        ..OPTIONS
+    };
+    let print = png(DynamicImage::ImageLuma8(table.clone()), &sheet);
+    assert_eq!((known(&print), print.ink), ((5..30).collect(), Ink::Dark));
+    assert!((print.inked_mm2 / (PI * 36.0) - 1.0).abs() < 0.005 && print.warnings.is_empty());
+    // Without it the user is told that the edge decides.
+    let lid = GrayImage::from_fn(SHEET.0, SHEET.1, |x, y| {
+        match x > 20 && x < 380 && y > 20 && y < 220 {
+            true => *drawn.get_pixel(x, y),
+            false => Luma([10]),
+        }
+    });
+    let print = png(DynamicImage::ImageLuma8(lid.clone()), &OPTIONS);
+    assert!(
+        print.warnings[0].contains("give paper_px or ink"),
+        "{:?}",
+        print.warnings
+    );
+    let print = png(
+        DynamicImage::ImageLuma8(lid),
+        &PrintOptions {
+            ink: Some(Ink::Dark),
+            ..OPTIONS
+        },
+    );
+    assert!(print.warnings[0].starts_with("ink lies along 100 % of the paper's edge"));
+}
+
+#[test]
+fn images_that_are_no_print_are_refused() {
+    let plain = bytes(&DynamicImage::ImageLuma8(drawn(200, 200)), ImageFormat::Png);
+    let good = bytes(&DynamicImage::ImageLuma8(drawn(30, 220)), ImageFormat::Png);
+    let with = |change: &dyn Fn(&mut PrintOptions)| {
+        let mut options = OPTIONS;
+        change(&mut options);
+        options
+    };
+    for (image, options, expected) in [
+        (
+            &plain,
+            OPTIONS,
+            "no ink stands out from the paper; scan it with more contrast, or give threshold",
+        ),
+        (
+            &b"time_s,force_n".to_vec(),
+            OPTIONS,
+            "it is no image that can be read; save the print as PNG, JPEG or TIFF",
+        ),
+        (
+            &good[..good.len() / 2].to_vec(),
+            OPTIONS,
+            "the image is damaged or cut off; scan it or save it anew",
+        ),
+        (
+            &good,
+            with(&|o| o.cell_mm = 0.2),
+            "a cell of 0.200 mm is 2.0 pixels wide, and 3 are needed; scan with more dpi",
+        ),
+        (
+            &good,
+            with(&|o| o.scale = Scale::MmPerPixel(10.0)),
+            "a cell of 1.000 mm is 0.1 pixels wide",
+        ),
+        (
+            &good,
+            with(&|o| (o.scale, o.cell_mm) = (Scale::MmPerPixel(1.0), 3.0)),
+            "",
+        ),
+        (
+            &good,
+            with(&|o| o.scale = Scale::Marks([[3.0, 4.0]; 2], 10.0)),
+            "the image has no scale: its marks lie on one pixel, or their distance is none; give dpi",
+        ),
+        (
+            &good,
+            with(&|o| o.paper_px = Some([500.0, 0.0, 600.0, 100.0])),
+            "no pixel of the 400 x 240 is paper; check paper_px",
+        ),
+    ] {
+        match (read(image, &options), expected) {
+            (Ok(_), "") => {}
+            (Err(told), expected) if !expected.is_empty() => {
+                assert!(told.starts_with(expected), "{told}")
+            }
+            (other, expected) => panic!("{expected}: {other:?}"),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Damaged images of all three kinds: a print whose shares are shares, or one sentence.
+    #[test]
+    fn damaged_images_never_panic(kind in 0usize..3, changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6), cut in prop::option::of(any::<prop::sample::Index>())) {
+        let small = DynamicImage::ImageLuma8(image::imageops::thumbnail(&drawn(30, 220), 40, 24));
+        let format = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Tiff][kind];
+        let mut bytes = bytes(&small, format);
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        match read(&bytes, &PrintOptions { scale: Scale::MmPerPixel(0.3), ..OPTIONS }) {
+            Ok(print) => prop_assert!(print.inked.iter().all(|share| share.is_nan() || (0.0..=1.0).contains(share))),
+            Err(told) => prop_assert!(told.contains("; ") && !told.contains('\n'), "{}", told),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+"""A handprint in a scene: its image laid on the product, compared with the contact, shown on both, kept and refused."""
+
+import bpy
+import numpy as np
+import pytest
+import stage
+
+PIXEL_MM, SIDE_MM = 25.4 / 254, 20.0
+
+
+def save(path, is_ink):
+    """The image of a sheet about the middle of the plate, black where `is_ink(x, y)` in mm; Blender writes it."""
+    count = round(SIDE_MM / PIXEL_MM)
+    places = (np.arange(count) + 0.5) * PIXEL_MM - SIDE_MM / 2
+    x, y = np.meshgrid(places, places)
+    pixels = np.ones((count, count, 4), np.float32)
+    pixels[..., :3] = np.where(is_ink(x, y), 0.1, 0.9)[..., None]
+    image = bpy.data.images.new("print", count, count)
+    image.pixels.foreach_set(pixels.ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+    return str(path)
+
+
+def load(path):
+    assert bpy.ops.thenar.load_recording(filepath=path) == {"FINISHED"}
+    item = bpy.context.scene.thenar_recordings.items[-1]
+    item.placing.on, item.placing.axis = "PLANE", "+Z"
+    item.print.dpi, item.print.cell_mm = 254, 0.5
+    return item
+
+
+def measure(name):
+    rows = bpy.context.scene.thenar_recordings.comparison.measures
+    return next((row.measured, row.simulated) for row in rows if row.name == name)
+
+
+@pytest.fixture
+def compared(tmp_path):
+    """Ball on plate and a print of what touches, but for a corner that left no ink."""
+    hand, product = stage.pad(fineness=6), stage.plate(top=-6.3)
+    settings = bpy.context.scene.thenar
+    settings.hand, settings.product = hand, product
+    bpy.context.view_layer.update()
+    stage.solve()
+    touching = stage.evaluated(hand)[stage.attribute(hand, "contact_force_n") > 0][:, :2]
+    radius = np.linalg.norm(touching, axis=1).max()
+    item = load(save(tmp_path / "print.png", lambda x, y: (np.hypot(x, y) < radius) & ~((x > 1) & (y > 1))))
+    assert item.kind == "PRINT" and "200 x 200 pixels" in item.about
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    return hand, product, radius
+
+
+def test_overlap_area_and_map(compared):
+    hand, product, radius = compared
+    state = bpy.context.scene.thenar_recordings.comparison
+    inked, simulated = map(float, measure("Area"))
+    corner = inked_corner(radius)
+    assert inked == pytest.approx(np.pi * radius**2 - corner, rel=0.05)
+    assert simulated == pytest.approx(np.pi * radius**2, rel=0.1)
+    assert float(measure("Overlap")[1].rstrip("%")) > 65
+    assert "overlaps with simulated contact" in state.sentence
+    assert bpy.context.scene.thenar.maps.shown == "PRINT"
+    residual, on_mat = stage.attribute(hand, "print_residual"), stage.attribute(hand, "on_mat")
+    assert set(np.unique(residual)) <= {-1.0, 0.0, 1.0} and (residual[on_mat == 0] == 0).all()
+    missing = stage.evaluated(hand)[residual == -1]
+    assert len(missing) and (missing[:, :2] > 0).all(axis=1).mean() > 0.6, "the corner touches and left no ink"
+    spread, places = stage.attribute(product, "print_residual"), stage.evaluated(product)
+    assert places[spread.argmin()][:2].min() > 0 and "residual_kpa" not in hand.data.attributes
+
+
+def inked_corner(radius):
+    """Area of the disc beyond x = 1 and y = 1 mm."""
+    x = np.linspace(1, np.sqrt(radius**2 - 1), 2001)
+    height = np.sqrt(np.maximum(radius**2 - x**2, 0)) - 1
+    return float(((height[1:] + height[:-1]) / 2 * np.diff(x)).sum())
+
+
+def test_it_is_drawn_kept_and_reported(compared, tmp_path):
+    assert bpy.ops.thenar.outline_mat() == {"FINISHED"}
+    mat = bpy.data.objects["Thenar Mat"]
+    assert len(mat.data.polygons) == 40 * 40 and stage.attribute(mat, "reading").max() == pytest.approx(1.0)
+    page = tmp_path / "report.html"
+    assert bpy.ops.thenar.report(filepath=str(page)) == {"FINISHED"}
+    assert "orange: inked alone" in page.read_text()
+    before = bpy.context.scene.thenar_recordings.comparison.sentence
+    path = str(tmp_path / "kept.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    state = bpy.context.scene.thenar_recordings
+    assert state.comparison.sentence == before and state.items[0].print.dpi == 254
+    assert bpy.ops.thenar.compare() == {"FINISHED"} and state.comparison.sentence == before
+    stage.solve()
+    assert "print_residual" not in bpy.context.scene.thenar.hand.data.attributes
+
+
+def test_what_is_no_print_says_why(tmp_path):
+    stage.scene()
+    plain = save(tmp_path / "plain.png", lambda x, y: np.zeros_like(x, bool))
+    with pytest.raises(RuntimeError, match="no ink stands out"):
+        bpy.ops.thenar.load_recording(filepath=plain)
+    (tmp_path / "text.png").write_text("no image")
+    with pytest.raises(RuntimeError, match="save the print as PNG, JPEG or TIFF"):
+        bpy.ops.thenar.load_recording(filepath=str(tmp_path / "text.png"))
+    item = load(save(tmp_path / "disc.png", lambda x, y: np.hypot(x, y) < 4))
+    item.print.cell_mm = 0.1
+    with pytest.raises(RuntimeError, match="scan with more dpi"):
+        bpy.ops.thenar.compare()
