@@ -4,6 +4,7 @@ mod alike;
 mod frames;
 mod repeats;
 mod scans;
+mod smoothing;
 mod whitening;
 #[cfg(test)]
 mod tests;
@@ -13,6 +14,7 @@ pub use whitening::{Whitened, Whitening};
 use crate::observe::scatter::noise_of;
 use crate::observe::{Measured, Quantity};
 use repeats::{Repeats, Scatter};
+use smoothing::smoothed;
 
 /// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
 const FLOOR: f64 = 2e-4;
@@ -158,9 +160,7 @@ fn sigma(
         let (constant, proportional) = of_channel[Channel::of(quantity) as usize];
         constant.hypot(proportional * value).max(f64::MIN_POSITIVE)
     };
-    measured
-        .samples
-        .iter()
-        .map(|s| one(s.quantity, s.value))
-        .collect()
+    let judged = smoothed(measured);
+    let samples = measured.samples.iter().zip(&judged);
+    samples.map(|(s, by)| one(s.quantity, *by)).collect()
 }
