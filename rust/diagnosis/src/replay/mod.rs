@@ -163,6 +163,12 @@ impl Replay {
                     .transpose()
             })
             .collect::<Result<Vec<Option<Reader>>, DiagnosisError>>()?;
+        for place in &places {
+            let indenter = study.indenters.iter().find(|i| i.name == place.indenter);
+            let told =
+                indenter.and_then(|indenter| tool::deeper_than_round(indenter, place.deepest));
+            tissue.notes.extend(told);
+        }
         for place in &mut places {
             // Where no depth is known a force is sought; soft tissue yields half its thickness at most.
             if place.deepest == 0.0 {

@@ -5,6 +5,7 @@ use thenar_recordings::study::{Indenter, Shape, Site};
 use thenar_surface::{Mesh, Product, Vec3};
 
 use crate::DiagnosisError;
+use crate::words::number;
 
 /// Sectors around a round tool: a chord of a cylinder of radius R lies R (pi / 512)^2 / 2 = 2e-5 R under the arc.
 const SECTORS: u32 = 512;
@@ -44,6 +45,24 @@ pub fn tool(indenter: &Indenter, site: &Site, reach: f64) -> Result<Product, Dia
     };
     let mesh = Mesh::new(mesh.0, mesh.1).map_err(refused)?;
     Product::new(mesh).map_err(refused)
+}
+
+/// What a reader should know of a round tool that is pressed `deepest` mm, deeper than it is round; None within its radius.
+pub fn deeper_than_round(indenter: &Indenter, deepest: f64) -> Option<String> {
+    let (what, radius) = match indenter.shape {
+        Shape::Sphere { radius_mm } => ("sphere", radius_mm),
+        Shape::Cylinder { radius_mm, .. } => ("cylinder", radius_mm),
+        Shape::Plane | Shape::Punch { .. } | Shape::Mesh(_) => return None,
+    };
+    (deepest > radius).then(|| {
+        format!(
+            "the {what} '{}' is pressed {} mm deep and has a radius of {} mm: the model's skin gives way along its own normal and does not \
+             close around what lies deeper than the radius, so beyond that depth simulated force is too low and may even fall",
+            indenter.name,
+            number(deepest),
+            number(radius)
+        )
+    })
 }
 
 type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
@@ -179,6 +198,20 @@ fn sphere(frame: &Frame, radius: f64) -> Surface {
 mod tests {
     use super::*;
     use thenar_surface::GapLimits;
+
+    #[test]
+    fn a_ball_deeper_than_its_radius_is_told() {
+        let tool = |shape| Indenter {
+            name: "probe".into(),
+            shape,
+        };
+        let ball = tool(Shape::Sphere { radius_mm: 2.0 });
+        assert!(deeper_than_round(&ball, 1.9).is_none());
+        let told = deeper_than_round(&ball, 3.07).unwrap();
+        let start = "the sphere 'probe' is pressed 3.07 mm deep and has a radius of 2 mm";
+        assert!(told.starts_with(start), "{told}");
+        assert!(deeper_than_round(&tool(Shape::Punch { radius_mm: 2.0 }), 5.0).is_none());
+    }
 
     #[test]
     fn tools_touch_at_the_site_and_have_their_shape() {
