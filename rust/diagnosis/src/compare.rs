@@ -6,10 +6,14 @@ use thenar_recordings::Study;
 use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
 
-use crate::comparison::{Compared, Comparison, compare_fit};
+use crate::comparison::{Compared, Comparison, SIGNIFICANT, compare_fit};
 use crate::prints::add_prints;
+use crate::words::{chance, percent};
 use crate::{DiagnosisError, Fitting, Options, Search, locate};
 
+/// Standard deviation of the model's load at any depth against finite elements of a fingertip, which it leaves by up to 9 % of the best
+/// straight line (two of them).
+const FORM_ERROR: f64 = 0.045;
 /// Part of the work that fitting is, for progress.
 const FITTING: f64 = 0.8;
 /// Part after which all is located.
@@ -31,6 +35,10 @@ pub fn compare(
         cancelled: control.cancelled,
         progress: &progress,
     };
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
     let mut fitting = Fitting::new(study, &within)?;
     let has_samples = fitting.measured().iter().any(|m| !m.samples.is_empty());
     let is_print = |recording: &StudyRecording| matches!(recording.data, Data::Handprint { .. });
@@ -38,6 +46,9 @@ pub fn compare(
         true => fitting.unfitted(),
         false => fitting.fit(options, &within)?,
     };
+    if fit.lack_of_fit_p.is_some_and(|p| p < SIGNIFICANT) {
+        fit.notes.extend(allowing(&mut fitting, options, &quiet)?);
+    }
     let prints = add_prints(study, (&mut fitting, &mut fit), &within)?;
     let progress = |stage: &str, share: f64| {
         (control.progress)(stage, FITTING + (LOCATED - FITTING) * share);
@@ -79,4 +90,25 @@ pub fn compare(
     });
     step(1.0)?;
     Ok(comparison)
+}
+
+/// How much is left once the model's own form may be off, as far as it is known to be.
+fn allowing(
+    fitting: &mut Fitting,
+    options: &Options,
+    control: &Control<'_>,
+) -> Result<Option<String>, DiagnosisError> {
+    let wider = Options {
+        form_error: FORM_ERROR,
+        ..options.clone()
+    };
+    let p = fitting.fit(&wider, control)?.lack_of_fit_p;
+    Ok(p.map(|p| {
+        format!(
+            "The test for lack of fit takes the model as exact. With its load allowed to be off by {} (one standard deviation) at any depth, for each tool at \
+             each place, as finite elements of a fingertip show, noise alone leaves as much with {}.",
+            percent(FORM_ERROR),
+            chance(p)
+        )
+    }))
 }
