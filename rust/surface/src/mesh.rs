@@ -145,8 +145,16 @@ impl Mesh {
 
     /// Vertices and corners (mm) of every triangle with an area of its own: the sound ones.
     pub(crate) fn sound_triangles(&self) -> impl Iterator<Item = ([u32; 3], [Vec3; 3])> {
+        self.sound_triangles_where(|_| true)
+    }
+
+    /// The sound ones of the triangles whose vertices are `wanted`, in the same order.
+    pub(crate) fn sound_triangles_where(
+        &self,
+        wanted: impl Fn(&[u32; 3]) -> bool,
+    ) -> impl Iterator<Item = ([u32; 3], [Vec3; 3])> {
         let all = self.triangles.iter().zip(self.is_repeat.iter());
-        all.filter(|(t, is_repeat)| !**is_repeat && !self.is_flat(**t))
+        all.filter(move |(t, is_repeat)| wanted(t) && !**is_repeat && !self.is_flat(**t))
             .map(|(t, _)| (*t, t.map(|i| self.positions[i as usize])))
     }
 

@@ -16,6 +16,26 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     sums
 }
 
+/// [`vertex_normals`] of a mesh of which some vertices have moved, bit for bit, from the `normals` before; `has_moved` (n).
+pub fn renew_normals(mesh: &Mesh, has_moved: &[bool], normals: &mut [Vec3]) {
+    let mut is_stale = vec![false; normals.len()];
+    for triangle in mesh.triangles() {
+        if triangle.iter().any(|&v| has_moved[v as usize]) {
+            triangle.iter().for_each(|&v| is_stale[v as usize] = true);
+        }
+    }
+    let mut sums: Vec<Vec3> = vec![Vec3::zeros(); normals.len()];
+    let is_around = |vertices: &[u32; 3]| vertices.iter().any(|&v| is_stale[v as usize]);
+    for (vertices, corners) in mesh.sound_triangles_where(is_around) {
+        add_angle_weighted(&mut sums, vertices, corners);
+    }
+    for (k, n) in normals.iter_mut().enumerate() {
+        if is_stale[k] {
+            *n = sums[k].try_normalize(1e-12).unwrap_or_default();
+        }
+    }
+}
+
 /// Adds the normal of one triangle to its vertices, weighted by the angle at each.
 pub(crate) fn add_angle_weighted(sums: &mut [Vec3], vertices: [u32; 3], corners: [Vec3; 3]) {
     let [a, b, c] = corners;

@@ -9,6 +9,7 @@ use crate::nearest::{Hit, Pending};
 use crate::normals::vertex_areas;
 use crate::orient::orient;
 use crate::poke::{Skin, settle};
+use crate::readings::new_number;
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
 use crate::winding::Winding;
@@ -51,6 +52,7 @@ pub struct Gap {
 #[derive(Debug, Clone)]
 pub struct Product {
     mesh: Mesh,
+    number: u64,
     pub(crate) tree: Tree,
     pub(crate) sign: Sign,
     /// For surfaces without holes.
@@ -91,6 +93,7 @@ impl Product {
         let vertex_areas = vertex_areas(&mesh);
         let mut product = Product {
             mesh,
+            number: new_number(),
             vertex_areas,
             tree,
             sign,
@@ -111,6 +114,11 @@ impl Product {
     /// The mesh queries refer to: as given, but with triangles turned outward.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
+    }
+
+    /// What tells this product, and copies of it, from others of this process.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
     }
 
     /// Area of each vertex, mm2, as [`vertex_areas`] gives it.

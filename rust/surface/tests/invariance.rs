@@ -6,8 +6,8 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Gap, GapLimits, Mesh, Product, SkinDistance, Vec3, closest_point, self_intersections,
-    vertex_normals,
+    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_normals,
+    self_intersections, vertex_normals,
 };
 
 const FULL: GapLimits = GapLimits {
@@ -229,5 +229,33 @@ proptest! {
         for g in product.gaps(&points, Some(&normals), CUT).into_iter().flatten() {
             prop_assert!(g.distance.is_finite() && g.normal.iter().all(|x| x.is_finite()));
         }
+    }
+}
+
+#[test]
+fn readings_and_normals_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_for_bit() {
+    let (dented, skin) = scene();
+    let other = Product::new(moved(&dented, |p| p * 1.02)).unwrap();
+    let products = [Product::new(dented).unwrap(), other];
+    let mut random = Random(11);
+    let (mut readings, mut positions) = (Readings::default(), skin.positions().to_vec());
+    let mut normals = vertex_normals(&skin);
+    for frame in 0..24 {
+        let middle = v(10.0, 0.0, 0.0) + random.within(5.0);
+        let by = random.within(0.6);
+        let has_moved: Vec<bool> = positions
+            .iter()
+            .map(|p| (p - middle).norm() < 3.0)
+            .collect();
+        for (p, has_moved) in positions.iter_mut().zip(&has_moved) {
+            *p += if *has_moved { by } else { Vec3::zeros() };
+        }
+        let posed = skin.with_positions(positions.clone()).unwrap();
+        renew_normals(&posed, &has_moved, &mut normals);
+        assert_eq!(normals, vertex_normals(&posed), "{frame}");
+        let product = &products[frame / 6 % 2];
+        let limits = if frame % 12 < 9 { CUT } else { FULL };
+        let again = product.gaps_after(&mut readings, (&positions, &normals), limits);
+        assert_eq!(again, query(product, &posed, limits), "{frame}");
     }
 }
