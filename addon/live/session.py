@@ -27,8 +27,9 @@ class Session:
     """Prepared for this session alone: a solve of another scene must not change its effects or what it remembers."""
     product: object = None
     painted: dict = field(default_factory=dict)
-    is_warm: bool = True
-    """Whether solves begin at the last one: faster, but skin beside the contact then keeps some of its way there."""
+    is_warm: bool = False
+    """Whether solves begin at the last one and are as exact as the eye: faster, but skin beside the contact then keeps
+    some of its way there."""
 
     def fits(self, hand, parts):
         """Whether hand and product are still the ones it began with."""
@@ -97,7 +98,7 @@ def follow(context, session):
     job = replace(session.job, reading=read.Reading(skin, session.job.reading.product), seconds={})
     contact = _press(job, session)
     _write(context, session, job, contact)
-    session.job, session.seen = job, seen
+    session.job, session.seen, session.is_warm = job, seen, True
     return True
 
 
@@ -123,7 +124,7 @@ def _press(job, session):
     slide = None if job.slide_mm is None else np.array(job.slide_mm, dtype=np.float64)
     posed = job.reading.hand.posed_mm
     try:
-        return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, warm_start=session.is_warm)
+        return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, live=session.is_warm)
     except native.error_types() as error:
         raise type(error)(workflow.named(str(error), job)) from None
 

@@ -159,6 +159,7 @@ class Skin:
         twist_rad: ArrayLike | None = None,
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
+        live: bool = False,
     ) -> Contact: ...
     @overload
     def press(
@@ -175,6 +176,7 @@ class Skin:
         twist_rad: ArrayLike | None = None,
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
+        live: bool = False,
     ) -> Contact: ...
     @overload
     def run(

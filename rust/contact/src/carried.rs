@@ -4,10 +4,14 @@ use thenar_surface::{Gap, Vec3};
 
 use crate::hierarchy::Carried;
 use crate::linearize::{Setting, vertex};
-use crate::response::assembly::Load;
+use crate::response::assembly::{Load, displacements};
 use crate::skin::Skin;
+use crate::solve::Accuracy;
 use crate::zone::limits;
 use crate::{ContactError, Control, Model, paper};
+
+/// Change of a load, over the largest, that a live press does not yet carry on: all together move skin by some micrometres.
+const WAITING: f64 = 1e-5;
 
 /// What a solve found, by site of its zone.
 pub struct Found<'a> {
@@ -30,7 +34,7 @@ pub struct Found<'a> {
 /// # Errors
 /// [`ContactError::Cancelled`].
 pub fn field(
-    skin: &Skin,
+    skin: &mut Skin,
     setting: &Setting<'_>,
     found: &Found<'_>,
     control: &Control,
@@ -52,18 +56,69 @@ pub fn field(
     let Carried {
         mut field,
         certificate,
-    } = skin.carry(loads, control)?;
+    } = if setting.accuracy == Accuracy::Rough && skin.hierarchy.is_none() {
+        Carried {
+            field: carry_changes(skin, loads),
+            certificate: 0.0,
+        }
+    } else {
+        skin.carry(loads, control)?
+    };
     for (site, u) in field.iter_mut().enumerate() {
         *u *= setting.weight[site] * skin.sites.follow[site];
     }
-    keep_out(skin, setting, found, &mut field);
     Ok((field, certificate))
+}
+
+/// Where loads carry the skin, from where those of the last live press did: loads that hardly changed wait until they have.
+fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
+    let mut shown = std::mem::take(&mut skin.memory.shown);
+    let sites = skin.sites.len();
+    if shown.load.len() != sites {
+        shown.load = vec![Vec3::zeros(); sites];
+        shown.field = vec![Vec3::zeros(); sites];
+    }
+    let largest = loads.iter().fold(0.0, |m, l| f64::max(m, l.load.norm()));
+    let mut left = vec![Vec3::zeros(); sites];
+    loads.iter().for_each(|l| left[l.site as usize] = l.load);
+    let mut changes = Vec::new();
+    for (site, (now, before)) in left.iter().zip(&mut shown.load).enumerate() {
+        if (now - *before).norm() > WAITING * largest || (largest == 0.0 && now != before) {
+            changes.push(Load {
+                site: site as u32,
+                load: now - *before,
+            });
+            *before = *now;
+        }
+    }
+    if 10 * changes.len() > 9 * loads.len() {
+        let all = shown.load.iter().enumerate();
+        let all = all.filter(|(_, load)| **load != Vec3::zeros());
+        let all: Vec<Load> = all
+            .map(|(site, load)| Load {
+                site: site as u32,
+                load: *load,
+            })
+            .collect();
+        shown.field = displacements(&skin.response, &all, &skin.sites);
+    } else {
+        let more = displacements(&skin.response, &changes, &skin.sites);
+        for (sum, more) in shown.field.iter_mut().zip(&more) {
+            *sum += more;
+        }
+    }
+    let field = shown.field.clone();
+    skin.memory.shown = shown;
+    field
 }
 
 /// Puts skin in contact, and what the field would carry into the product, where the solve left it: along its direction.
 ///
 /// Other skin follows the field in full, in the zone or outside, so that the zone's margin leaves no mark.
-fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &mut [Vec3]) {
+pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &mut [Vec3]) {
+    if skin.model == Model::Paper {
+        return;
+    }
     let free: Vec<usize> = (0..found.zone.len())
         .filter(|&k| found.force[k] == 0.0)
         .collect();
@@ -112,7 +167,13 @@ pub fn lifted_sites(
             .map_or_else(Vec3::zeros, |g| -g.normal)
     };
     let normals: Vec<Vec3> = near.iter().map(facing).collect();
-    let gaps = setting.product.gaps(&points, Some(&normals), limits());
+    let hint = |&s: &u32| {
+        let gap = &setting.detection.gaps[vertex(skin, s)];
+        gap.as_ref().map_or(u32::MAX, |g| g.triangle)
+    };
+    let hints: Vec<u32> = near.iter().map(hint).collect();
+    let product = setting.product;
+    let gaps = product.gaps_near(&points, Some(&normals), limits(), &hints);
     let depth = |g: &Option<Gap>| g.as_ref().map_or(0.0, |g| -g.distance);
     let worst = gaps.iter().map(depth).fold(0.0, f64::max);
     let lifted = near

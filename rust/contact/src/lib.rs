@@ -7,6 +7,7 @@ pub mod parameters;
 pub mod effects;
 pub mod instrument;
 
+mod contact_state;
 mod control;
 mod carried;
 mod direction;
@@ -17,6 +18,7 @@ mod force_control;
 mod hierarchy;
 mod history;
 mod linearize;
+mod live;
 mod material;
 mod memory;
 mod paper;
@@ -28,6 +30,7 @@ mod sites;
 mod skin;
 mod solve;
 mod summary;
+mod turned;
 mod weld;
 mod zone;
 

@@ -5,8 +5,10 @@ use crate::interface::attraction::Pull;
 use crate::interface::shear_kernel::ShearTables;
 use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
+use crate::live::Held;
+use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
-use thenar_surface::Vec3;
+use thenar_surface::{Mesh, Readings, Vec3, renew_normals, vertex_normals};
 
 /// What one press leaves for the next.
 #[derive(Debug, Clone, Default)]
@@ -21,6 +23,11 @@ pub struct Memory {
     pub along: Vec<Vec3>,
     /// Where the last solve ended.
     pub trail: Trail,
+    /// The last posture, and what was measured of it.
+    pub seen: Seen,
+    /// Where the skin was last carried in a live press, and what it met there.
+    pub shown: Shown,
+    pub held: Held,
     /// Kernels of shear, once friction has needed them.
     pub shear: Option<ShearTables>,
     /// And what they are between the sites that were last in contact.
@@ -32,14 +39,14 @@ pub struct Memory {
 pub struct Trail {
     /// What the last solve found.
     pub last: Last,
-    /// Nearest product triangle by welded vertex.
-    pub triangle: Vec<u32>,
     /// Travel found by force control, mm.
     pub offset: f64,
     /// Slope there of the search for it, in its own terms per mm.
     pub slope: Option<f64>,
     /// Attraction of the last row of a protocol.
     pub pulls: Vec<Pull>,
+    /// How far solves go from here.
+    pub accuracy: Accuracy,
 }
 
 /// A solved contact by site, for the next solve to start from; empty for none.
@@ -61,4 +68,41 @@ impl Last {
         }
         Last { force, travel }
     }
+}
+
+/// A posture and what was measured of it: what has not moved need not be measured again.
+#[derive(Debug, Clone, Default)]
+pub struct Seen {
+    /// Posed positions of the welded vertices, mm, and their normals.
+    posed: (Vec<Vec3>, Vec<Vec3>),
+    /// Their gaps to the product.
+    pub readings: Readings,
+}
+
+impl Seen {
+    /// Vertex normals of the welded mesh in its next posture.
+    pub fn normals(&mut self, mesh: &Mesh) -> Vec<Vec3> {
+        let (before, normals) = &mut self.posed;
+        if before.len() == mesh.positions().len() {
+            let pairs = before.iter().zip(mesh.positions());
+            let has_moved: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
+            if has_moved.contains(&true) {
+                renew_normals(mesh, &has_moved, normals);
+            }
+        } else {
+            *normals = vertex_normals(mesh);
+        }
+        before.clear();
+        before.extend_from_slice(mesh.positions());
+        normals.clone()
+    }
+}
+
+/// Where loads carried the skin: a change of some is added to it.
+#[derive(Debug, Clone, Default)]
+pub struct Shown {
+    /// Load at every site, weight and direction in it.
+    pub load: Vec<Vec3>,
+    /// `sum_j K_ij load_j` at every site.
+    pub field: Vec<Vec3>,
 }

@@ -14,9 +14,10 @@ use crate::linearize::{Setting, Solved, solve};
 use crate::memory::{Last, Trail};
 use crate::press::{Contact, Press, Start};
 use crate::skin::Skin;
+use crate::solve::Accuracy;
 use crate::summary::summarize;
 use crate::zone::{
-    Detection, candidates, check_resolution, detect, kept_stiffness, lasting_candidates,
+    Detection, candidates, check_resolution, detect, kept_stiffness, lasting_with,
     pressed_thickness,
 };
 use crate::{ContactError, Control, Model};
@@ -96,6 +97,10 @@ impl Skin {
             self.memory.trail = Trail::default();
         }
         self.memory.trail.pulls.clear();
+        self.memory.trail.accuracy = match press.start {
+            Start::Live => Accuracy::Rough,
+            Start::Fresh | Start::Warm => Accuracy::Full,
+        };
         let mut seconds = Seconds::new();
         let posed = self.posed(press.posed)?;
         let (offset, direction, mut pressed) = match press.force {
@@ -225,6 +230,11 @@ impl Skin {
             detection,
             weight: state.weight,
             start: (start.force.len() == self.sites.len()).then_some(start),
+            // What moves besides the product is solved to the end.
+            accuracy: match &moved {
+                None => self.memory.trail.accuracy,
+                Some(_) => Accuracy::Full,
+            },
             spacing: self.spacing,
         };
         let solved = solve(self, zone, &setting, control);
@@ -321,7 +331,7 @@ impl Skin {
             && last.iter().all(is_known);
         match (serves, is_warm && !zone.is_empty()) {
             (true, _) => last.clone(),
-            (false, true) => lasting_candidates(self, detection),
+            (false, true) => lasting_with(self, detection, last),
             (false, false) => zone,
         }
     }
@@ -373,9 +383,6 @@ impl Skin {
 
     pub(crate) fn remember(&mut self, pressed: &Pressed, offset: f64) {
         self.memory.trail.last = Last::of(&pressed.solved, self.sites.len());
-        let triangle =
-            |gap: &Option<thenar_surface::Gap>| gap.as_ref().map_or(u32::MAX, |g| g.triangle);
-        self.memory.trail.triangle = pressed.detection.gaps.iter().map(triangle).collect();
         self.memory.trail.offset = offset;
         self.memory.trail.pulls.clone_from(&pressed.clinging.pulls);
     }

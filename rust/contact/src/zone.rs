@@ -1,6 +1,6 @@
 //! Stages 1 and 2: which sites penetrate, how deep each region is pressed, and which sites may come to touch.
 
-use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
+use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3};
 
 use crate::skin::Skin;
 use crate::{ContactError, Model};
@@ -65,23 +65,16 @@ pub fn limits() -> GapLimits {
 /// # Errors
 /// [`ContactError::Swallowed`] if skin lies deeper than any tissue yields.
 pub fn detect(
-    skin: &Skin,
+    skin: &mut Skin,
     posed: &Mesh,
     product: &Product,
     shift: Vec3,
 ) -> Result<Detection, ContactError> {
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
-    let normals = vertex_normals(posed);
-    let mut gaps = if skin.memory.trail.triangle.len() == positions.len() {
-        product.gaps_near(
-            &positions,
-            Some(&normals),
-            limits(),
-            &skin.memory.trail.triangle,
-        )
-    } else {
-        product.gaps(&positions, Some(&normals), limits())
-    };
+    let seen = &mut skin.memory.seen;
+    let normals = seen.normals(posed);
+    let facing = (&positions[..], &normals[..]);
+    let mut gaps = product.gaps_after(&mut seen.readings, facing, limits());
     // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
     for (gap, position) in gaps.iter_mut().zip(&positions) {
         if gap.as_ref().is_some_and(|g| -g.distance > MOST_DEPTH) {
@@ -120,9 +113,20 @@ pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
     within(skin, detection, 0.0)
 }
 
-/// [`candidates`] and their surroundings, to be kept while the posture changes little.
-pub fn lasting_candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
-    within(skin, detection, WARM_MARGIN)
+/// [`candidates`] and their surroundings, to be kept while the posture changes little; with the `last` zone where that is little
+/// more, for what was lifted into it is likely to be again.
+pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
+    let lasting = within(skin, detection, WARM_MARGIN);
+    let is_known = |s: &&u32| detection.gaps[skin.sites.vertex[**s as usize] as usize].is_some();
+    let mut both = lasting.clone();
+    both.extend(last.iter().filter(is_known));
+    both.sort_unstable();
+    both.dedup();
+    if both.len() > lasting.len() + lasting.len() / 4 {
+        lasting
+    } else {
+        both
+    }
 }
 
 fn within(skin: &Skin, detection: &Detection, more: f64) -> Vec<u32> {

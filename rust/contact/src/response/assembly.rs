@@ -11,15 +11,10 @@ use crate::solve::operator::{Rows, Run};
 
 /// `K` between the sites of `zone` (ascending): symmetric, 1/mm.
 pub fn coupling(response: &Response, zone: &[u32], sites: &Sites) -> Rows<f32> {
-    let members: Vec<(usize, usize)> = sites
+    let members: Vec<Members> = sites
         .patch_range
         .iter()
-        .map(|&(first, last)| {
-            (
-                zone.partition_point(|&z| z < first),
-                zone.partition_point(|&z| z < last),
-            )
-        })
+        .map(|&(first, last)| Members::new(zone, (first, last)))
         .collect();
     let mut matrix = Rows::new();
     let mut runs: Vec<Run> = Vec::new();
@@ -30,31 +25,52 @@ pub fn coupling(response: &Response, zone: &[u32], sites: &Sites) -> Rows<f32> {
         let row = response.row(site);
         let mut diagonal = 0.0;
         for &(patch, offset) in response.near(sites.patch[site as usize]) {
-            let (from, to) = members[patch as usize];
-            if from == to {
+            let members = &members[patch as usize];
+            if members.len == 0 {
                 continue;
             }
-            let first = sites.patch_range[patch as usize].0;
             match runs.last_mut() {
-                Some(run) if (run.start + run.len) as usize == from => {
-                    run.len += (to - from) as u32
-                }
+                Some(run) if run.start + run.len == members.from => run.len += members.len,
                 _ => runs.push(Run {
-                    start: from as u32,
-                    len: (to - from) as u32,
+                    start: members.from,
+                    len: members.len,
                 }),
             }
-            for &other in &zone[from..to] {
-                let value = row[(offset + other - first) as usize];
-                if other == site {
-                    diagonal = f64::from(value);
-                }
-                values.push(value);
+            for &(first, len) in &members.pieces {
+                values.extend_from_slice(&row[(offset + first) as usize..][..len as usize]);
+            }
+            if patch == sites.patch[site as usize] {
+                let first = sites.patch_range[patch as usize].0;
+                diagonal = f64::from(row[(offset + site - first) as usize]);
             }
         }
         matrix.push(runs.iter().copied(), values.iter().copied(), diagonal);
     }
     matrix
+}
+
+/// What a zone holds of a patch.
+struct Members {
+    /// Place of the first in the zone.
+    from: u32,
+    len: u32,
+    /// First, counted in the patch, and number of those that follow one another.
+    pieces: Vec<(u32, u32)>,
+}
+
+impl Members {
+    fn new(zone: &[u32], (first, last): (u32, u32)) -> Self {
+        let from = zone.partition_point(|&z| z < first);
+        let to = zone.partition_point(|&z| z < last);
+        let following = zone[from..to].chunk_by(|a, b| a + 1 == *b);
+        Members {
+            from: from as u32,
+            len: (to - from) as u32,
+            pieces: following
+                .map(|piece| (piece[0] - first, piece.len() as u32))
+                .collect(),
+        }
+    }
 }
 
 /// The compliance (mm/N) along directions: `A_ij = w_i w_j K_ij t_i.t_j`, for weights `w` and unit directions `t`.

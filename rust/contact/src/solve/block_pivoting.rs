@@ -9,24 +9,41 @@ use super::kept::Kept;
 use super::projection::mprgp;
 use crate::Control;
 
-/// Residuals of the levels, relative to the largest gap; the set must hold still before the next is taken.
-const TOLERANCES: [f64; 4] = [1e-2, 1e-4, 1e-7, 1e-12];
-/// Last of the loose levels.
-const ROUGH_LEVEL: usize = 1;
+/// Residual from which a level is loose.
+const ROUGH: f64 = 1e-4;
+/// Residual of the certificate.
+const EXACT: f64 = 1e-12;
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
 const PATIENCE: usize = 8;
 /// Passes in all before the fallback.
 const MOST_PASSES: usize = 120;
 
 /// How far a contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Accuracy {
     /// To 1e-4 of the largest gap: enough to see where the surface goes.
     Rough,
-    /// To 1e-12 of it: the certificate.
+    /// To 1e-12 of it: the certificate; from forces that are already rough, this costs least.
+    #[default]
     Full,
-    /// To 1e-12 of it, from forces that are already rough: the looser levels are left out.
-    Polish,
+}
+
+impl Accuracy {
+    /// Residuals to go through, relative to the largest gap; the set must hold still before the next is taken.
+    fn levels(self) -> &'static [f64] {
+        match self {
+            Accuracy::Rough => &[1e-2, ROUGH],
+            Accuracy::Full => &[EXACT],
+        }
+    }
+
+    /// Largest complementarity of a contact that counts as solved.
+    pub fn certificate(self) -> f64 {
+        match self {
+            Accuracy::Rough => 5e-3,
+            Accuracy::Full => 1e-10,
+        }
+    }
 }
 
 /// Forces and what is left of the equations.
@@ -137,35 +154,29 @@ impl<'a> Run<'a> {
         (scale, accuracy): (f64, Accuracy),
         control: &Control,
     ) -> bool {
-        let finest = if accuracy == Accuracy::Rough {
-            ROUGH_LEVEL
-        } else {
-            TOLERANCES.len() - 1
-        };
-        let first = if accuracy == Accuracy::Polish {
-            TOLERANCES.len() - 1
-        } else {
-            0
-        };
-        let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, first);
+        let levels = accuracy.levels();
+        let finest = levels.len() - 1;
+        let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, 0);
+        let mut tolerance = levels[0] * scale;
         for _ in 0..MOST_PASSES {
             if (control.cancelled)() {
                 return true;
             }
-            if !self.solve_set(matrix, gap, (level, scale), control) {
+            let is_rough = levels[level] >= ROUGH;
+            if !self.solve_set(matrix, gap, (tolerance, is_rough), control) {
                 return false;
             }
-            if level < finest {
-                self.find_outer_slack(matrix, gap);
-            } else {
-                self.find_slack(matrix, gap);
+            self.find_outer_slack(matrix, gap);
+            if level == finest {
+                self.find_inner_slack(gap);
             }
-            let wrong = self.infeasible(TOLERANCES[level] * scale);
+            let wrong = self.infeasible(tolerance);
             if wrong.is_empty() {
                 if level >= finest {
                     return true;
                 }
                 level += 1;
+                tolerance = levels[level] * scale;
                 continue;
             }
             // An unchanged set at a loose level is no cycle: count only passes that do not get better.
@@ -175,7 +186,7 @@ impl<'a> Run<'a> {
                 stalled += 1;
             }
             if stalled > PATIENCE {
-                level = TOLERANCES.len() - 1;
+                (level, tolerance) = (finest, EXACT * scale);
                 self.flip(wrong[0]);
             } else {
                 wrong.iter().for_each(|&i| self.flip(i));
@@ -197,19 +208,18 @@ impl<'a> Run<'a> {
         &mut self,
         matrix: &'a M,
         gap: &[f64],
-        (level, scale): (usize, f64),
+        (tolerance, is_rough): (f64, bool),
         control: &Control,
     ) -> bool {
         let set: Vec<u32> = (0..self.force.len() as u32)
             .filter(|&i| self.in_contact[i as usize])
             .collect();
         let limits = CgLimits {
-            tolerance: TOLERANCES[level] * scale,
+            tolerance,
             steps: 40 + 6 * set.len(),
             cancelled: &control.cancelled,
         };
         // Single precision suffices to find the set.
-        let is_rough = level <= ROUGH_LEVEL;
         let kept = match self.kept.take() {
             Some(kept) if kept.is_narrow == matrix.is_narrow(is_rough) && kept.holds(&set) => kept,
             _ => matrix.kept(&set, is_rough),
@@ -244,6 +254,19 @@ impl<'a> Run<'a> {
         matrix.times_rows(&outer, &self.force, &mut image);
         for (&i, image) in outer.iter().zip(&image) {
             self.slack[i as usize] = image + gap[i as usize];
+        }
+    }
+
+    /// The slack within the contact set, by the part of the matrix that it was solved on.
+    fn find_inner_slack(&mut self, gap: &[f64]) {
+        let Some(kept) = &self.kept else { return };
+        let force: Vec<f64> = kept.rows.iter().map(|&i| self.force[i as usize]).collect();
+        let mut image = vec![0.0; kept.rows.len()];
+        kept.matrix.times(&force, &mut image);
+        for (&i, image) in kept.rows.iter().zip(&image) {
+            if self.in_contact[i as usize] {
+                self.slack[i as usize] = image + gap[i as usize];
+            }
         }
     }
 

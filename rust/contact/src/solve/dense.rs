@@ -50,7 +50,7 @@ pub fn solve_dense(matrix: Vec<f64>, gap: &[f64]) -> Result<Solution, ContactErr
         &matrix,
         gap,
         Some(&rough.force),
-        (Accuracy::Polish, &control),
+        (Accuracy::Full, &control),
     ))
 }
 

@@ -120,6 +120,100 @@ impl<T: Entry> Half<T> {
     }
 }
 
+impl Half<f32> {
+    /// The half of the principal submatrix of the rows `keep` (ascending) of `matrix`, its entries replaced by
+    /// `run(row, first column, values, out)`, both counted in `keep`.
+    pub fn stretched(
+        matrix: &Rows<f32>,
+        keep: &[u32],
+        run: impl Fn(usize, usize, &[f32], &mut [f32]),
+    ) -> Self {
+        let stretches = stretches(keep);
+        let most = keep.len() * (keep.len() + 1) / 2;
+        let mut half = Half {
+            run_ends: Vec::with_capacity(keep.len()),
+            runs: Vec::new(),
+            values: Vec::with_capacity(most.min(matrix.entries())),
+            diagonal: Vec::with_capacity(keep.len()),
+        };
+        let mut own = [0.0];
+        for (row, &i) in keep.iter().enumerate() {
+            run(row, row, &[matrix.diagonal()[i as usize] as f32], &mut own);
+            half.diagonal.push(own[0].wide());
+            half.push_row(matrix, (row, i), (&stretches, &run));
+        }
+        half
+    }
+
+    /// Appends what of row `i` lies left of the diagonal within the stretches of kept columns.
+    fn push_row(
+        &mut self,
+        matrix: &Rows<f32>,
+        (row, i): (usize, u32),
+        (stretches, run): (&[Stretch], &impl Fn(usize, usize, &[f32], &mut [f32])),
+    ) {
+        let (runs, mut values) = matrix.row(i as usize);
+        let (begun, mut at) = (self.runs.len(), 0);
+        for part in runs {
+            let (own, rest) = values.split_at(part.len as usize);
+            values = rest;
+            if part.start >= i {
+                break;
+            }
+            let end = (part.start + part.len).min(i);
+            while at < stretches.len() && stretches[at].end() <= part.start {
+                at += 1;
+            }
+            for stretch in stretches[at..].iter().take_while(|s| s.first < end) {
+                let (from, to) = (stretch.first.max(part.start), stretch.end().min(end));
+                let there = stretch.place + from - stretch.first;
+                let taken = &own[(from - part.start) as usize..(to - part.start) as usize];
+                let begin = self.values.len();
+                self.values.resize(begin + taken.len(), 0.0);
+                run(row, there as usize, taken, &mut self.values[begin..]);
+                match self.runs[begun..].last_mut() {
+                    Some(last) if last.start + last.len == there => last.len += to - from,
+                    _ => self.runs.push(Run {
+                        start: there,
+                        len: to - from,
+                    }),
+                }
+            }
+        }
+        self.run_ends.push(self.runs.len() as u32);
+    }
+}
+
+/// Kept columns that follow one another.
+struct Stretch {
+    /// The first of them.
+    first: u32,
+    len: u32,
+    /// Its place among all kept columns.
+    place: u32,
+}
+
+impl Stretch {
+    fn end(&self) -> u32 {
+        self.first + self.len
+    }
+}
+
+fn stretches(keep: &[u32]) -> Vec<Stretch> {
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for (place, &column) in keep.iter().enumerate() {
+        match stretches.last_mut() {
+            Some(last) if last.end() == column => last.len += 1,
+            _ => stretches.push(Stretch {
+                first: column,
+                len: 1,
+                place: place as u32,
+            }),
+        }
+    }
+    stretches
+}
+
 impl<T: Entry> Symmetric for Half<T> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal

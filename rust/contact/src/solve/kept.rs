@@ -50,6 +50,16 @@ impl<'a> Kept<'a> {
         }
     }
 
+    /// These rows (ascending) and the matrix on them.
+    pub fn of(rows: Vec<u32>, matrix: Box<dyn Symmetric + 'a>) -> Self {
+        Kept {
+            rows,
+            matrix,
+            is_narrow: false,
+            answers: None,
+        }
+    }
+
     /// All `unknowns`, of which the matrix answers for `set` (ascending) alone.
     pub fn in_place(unknowns: usize, set: &[u32], matrix: Box<dyn Symmetric + 'a>) -> Self {
         let mut answers = vec![false; unknowns];
@@ -67,7 +77,12 @@ impl<'a> Kept<'a> {
         if let Some(answers) = &self.answers {
             return set.iter().all(|&i| answers[i as usize]);
         }
-        let mut rows = self.rows.iter();
-        set.iter().all(|i| rows.any(|j| j == i))
+        holds(&self.rows, set)
     }
+}
+
+/// Whether a set lies within rows, both ascending.
+pub fn holds(rows: &[u32], set: &[u32]) -> bool {
+    let mut rows = rows.iter();
+    set.iter().all(|i| rows.any(|j| j == i))
 }

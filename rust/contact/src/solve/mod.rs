@@ -2,6 +2,7 @@
 
 pub mod operator;
 
+mod along;
 mod block_pivoting;
 mod conjugate_gradient;
 mod dense;
@@ -9,6 +10,7 @@ mod half;
 mod kept;
 mod projection;
 
+pub use along::{Along, Axes, Part};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
 pub use half::{Compliance, Symmetric};

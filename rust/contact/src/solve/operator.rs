@@ -85,6 +85,11 @@ impl<T: Entry> Rows<T> {
         self.diagonal.len()
     }
 
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
     /// Whether products are worth several threads.
     pub fn is_large(&self) -> bool {
         self.values.len() >= PARALLEL_ENTRIES

@@ -1,0 +1,209 @@
+//! A zone while its contact is found: forces, touches and travels of its sites, measured against the product.
+
+use thenar_surface::{Gap, Vec3};
+
+use crate::Model;
+use crate::carried::Found;
+use crate::direction::{LEAST_COSINE, yielding_directions};
+use crate::linearize::{Setting, vertex};
+use crate::live::Met;
+use crate::press::Convergence;
+use crate::skin::Skin;
+use crate::zone::limits;
+
+/// What is known so far, by place in the zone.
+pub(crate) struct State {
+    pub zone: Vec<u32>,
+    /// What sites hold from the last live solve; empty if all are solved.
+    pub held: Vec<Option<Met>>,
+    pub force: Vec<f64>,
+    pub touch: Vec<Gap>,
+    pub slack: Vec<f64>,
+    pub direction: Vec<Vec3>,
+    /// Cosine between each direction and the product's normal.
+    pub cosine: Vec<f64>,
+    /// Travel of each zone site along its direction, mm.
+    pub travel: Vec<f64>,
+    pub misfit: f64,
+    pub complementarity: f64,
+    pub convergence: Convergence,
+}
+
+impl State {
+    pub(crate) fn new(zone: Vec<u32>) -> Self {
+        let convergence = Convergence {
+            has_converged: false,
+            passes: 0,
+            pivots: 0,
+            cg_steps: 0,
+        };
+        State {
+            zone,
+            held: Vec::new(),
+            force: Vec::new(),
+            touch: Vec::new(),
+            slack: Vec::new(),
+            direction: Vec::new(),
+            cosine: Vec::new(),
+            travel: Vec::new(),
+            misfit: 0.0,
+            complementarity: 0.0,
+            convergence,
+        }
+    }
+
+    /// Takes gaps, normals and directions of the undeformed posture.
+    pub(crate) fn open(&mut self, skin: &Skin, setting: &Setting<'_>) {
+        let gap_of =
+            |&site: &u32| setting.detection.gaps[skin.sites.vertex[site as usize] as usize];
+        self.touch = self.zone.iter().filter_map(gap_of).collect();
+        debug_assert_eq!(self.touch.len(), self.zone.len());
+        let normal: Vec<Vec3> = self.touch.iter().map(|g| g.normal).collect();
+        self.direction = match skin.model {
+            Model::Paper => normal,
+            Model::Layer => self.averaged_directions(skin, setting, &normal),
+        };
+        self.travel = vec![0.0; self.zone.len()];
+        let travel = setting.start.map_or(&[][..], |last| &last.travel);
+        if !travel.is_empty() && skin.model == Model::Layer {
+            // Little has moved: the product is met where the skin lay last.
+            self.travel = self.zone.iter().map(|&s| travel[s as usize]).collect();
+        }
+        self.take_held();
+        if !travel.is_empty() && skin.model == Model::Layer {
+            self.place(skin, setting);
+        }
+        self.see_along_normals();
+        self.slack = self.held_or(|met| met.slack, vec![0.0; self.zone.len()]);
+        let carried = std::mem::take(&mut self.force);
+        self.force = if carried.len() == self.zone.len() {
+            carried
+        } else {
+            self.zone
+                .iter()
+                .map(|&s| setting.start.map_or(0.0, |start| start.force[s as usize]))
+                .collect()
+        };
+        let force = std::mem::take(&mut self.force);
+        self.force = self.held_or(|met| met.force, force);
+    }
+
+    /// `values` by place in the zone, with those of held sites in their places.
+    pub(crate) fn held_or(&self, value: impl Fn(&Met) -> f64, mut values: Vec<f64>) -> Vec<f64> {
+        for (own, met) in values.iter_mut().zip(&self.held) {
+            *own = met.as_ref().map_or(*own, &value);
+        }
+        values
+    }
+
+    /// Takes over what is held; before the rest is measured where it lay last.
+    pub(crate) fn take_held(&mut self) {
+        for (k, met) in self.held.iter().enumerate() {
+            if let Some(met) = met {
+                (self.touch[k], self.direction[k]) = (met.touch, met.direction);
+                self.travel[k] = met.travel;
+            }
+        }
+    }
+
+    /// Places in the zone that are solved.
+    pub(crate) fn solved(&self) -> Vec<usize> {
+        let is_solved = |k: &usize| self.held.get(*k).is_none_or(Option::is_none);
+        (0..self.zone.len()).filter(is_solved).collect()
+    }
+
+    /// Averages over the penetrating sites, whatever else the zone holds: the result must not depend on its history.
+    pub(crate) fn averaged_directions(
+        &self,
+        skin: &Skin,
+        setting: &Setting<'_>,
+        normal: &[Vec3],
+    ) -> Vec<Vec3> {
+        let inside: Vec<usize> = (0..self.zone.len())
+            .filter(|&k| self.touch[k].distance < 0.0)
+            .collect();
+        let sites: Vec<u32> = inside.iter().map(|&k| self.zone[k]).collect();
+        let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
+        let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
+        let around = (&skin.sites, &skin.adjacency, setting.spacing);
+        let averaged = yielding_directions(&sites, &normals, &gaps, around);
+        let mut direction = normal.to_vec();
+        for (k, average) in inside.into_iter().zip(averaged) {
+            direction[k] = average;
+        }
+        direction
+    }
+
+    /// Takes the cosines between directions and the product's normals as they are now.
+    pub(crate) fn see_along_normals(&mut self) {
+        let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
+        let cosines = self.touch.iter().zip(&self.direction).map(cosine);
+        let cosines = cosines.map(|c| c.max(LEAST_COSINE)).collect();
+        self.cosine = self.held_or(|met| met.cosine, cosines);
+    }
+
+    /// Measures the displaced zone against the product.
+    pub(crate) fn place(&mut self, skin: &Skin, setting: &Setting<'_>) {
+        let positions = &setting.detection.positions;
+        let solved = self.solved();
+        let written =
+            |&k: &usize| positions[vertex(skin, self.zone[k])] + self.direction[k] * self.travel[k];
+        let written: Vec<Vec3> = solved.iter().map(written).collect();
+        // The side first touched stays the side: skin in a fold may face another wall once it has moved.
+        let normals: Vec<Vec3> = solved.iter().map(|&k| -self.touch[k].normal).collect();
+        let hints: Vec<u32> = solved.iter().map(|&k| self.touch[k].triangle).collect();
+        let fresh = setting
+            .product
+            .gaps_near(&written, Some(&normals), limits(), &hints);
+        for (k, gap) in solved.into_iter().zip(fresh) {
+            if let Some(gap) = gap {
+                self.touch[k] = gap;
+            }
+        }
+        self.misfit = self.measure();
+    }
+
+    /// Largest penetration of the zone, or opening under a force, mm.
+    pub(crate) fn measure(&self) -> f64 {
+        let misfit = |(g, f): (&Gap, &f64)| {
+            if *f > 0.0 {
+                g.distance.abs()
+            } else {
+                (-g.distance).max(0.0)
+            }
+        };
+        self.touch
+            .iter()
+            .zip(&self.force)
+            .map(misfit)
+            .fold(0.0, f64::max)
+    }
+
+    pub(crate) fn found(&self) -> Found<'_> {
+        Found {
+            zone: &self.zone,
+            force: &self.force,
+            direction: &self.direction,
+            cosine: &self.cosine,
+            travel: &self.travel,
+            touch: &self.touch,
+        }
+    }
+
+    pub(crate) fn extend(&mut self, lifted: Vec<u32>) {
+        let carried: Vec<(u32, f64)> = self
+            .zone
+            .iter()
+            .copied()
+            .zip(self.force.iter().copied())
+            .collect();
+        self.zone.extend(lifted);
+        self.zone.sort_unstable();
+        let find = |site: &u32| {
+            carried
+                .binary_search_by_key(site, |c| c.0)
+                .map_or(0.0, |k| carried[k].1)
+        };
+        self.force = self.zone.iter().map(find).collect();
+    }
+}
