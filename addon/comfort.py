@@ -62,10 +62,9 @@ def judge(context):
     settings = context.scene.thenar
     hand, outcome, given = settings.hand, settings.result, settings.comfort
     mesh = hand.data if hand is not None and hand.type == "MESH" and hand.mode != "EDIT" else None
-    needed = (names.PRESSURE_KPA, names.FORCE_N, names.REGION)
-    fields = [None if mesh is None else attributes.read(mesh, name) for name in needed]
-    is_there = outcome.is_valid and all(field is not None for field in fields)
-    if given.rule == OFF or not is_there:
+    needed = () if given.rule == OFF or mesh is None else (names.PRESSURE_KPA, names.FORCE_N, names.REGION)
+    fields = [attributes.read(mesh, name) for name in needed]
+    if not fields or not outcome.is_valid or any(field is None for field in fields):
         outcome.comfort_source = ""
         _write(outcome, Verdict((0.0,) * len(outcome.regions), (0.0,) * len(outcome.regions), ""))
         if mesh is not None and mesh.is_editable:
@@ -119,7 +118,10 @@ def _area(area_mm2):
 def _write(outcome, verdict):
     for row, limit, area in zip(outcome.regions, verdict.thresholds_kpa, verdict.over_mm2, strict=True):
         row.threshold_kpa, row.over_mm2 = limit, area
+    over = {}
+    for row, area in zip(outcome.regions, verdict.over_mm2, strict=True):
+        name = result.finger_of(row.name)
+        over[name] = over.get(name, 0.0) + area
     for finger in outcome.fingers:
-        members = [row for row in outcome.regions if result.finger_of(row.name) == finger.name]
-        finger.over_mm2 = sum(row.over_mm2 for row in members)
+        finger.over_mm2 = over.get(finger.name, 0.0)
     outcome.over_mm2, outcome.comfort = sum(verdict.over_mm2), verdict.sentence

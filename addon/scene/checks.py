@@ -76,6 +76,8 @@ def check_visible(context, obj, role):
 
 def check_finite(positions, name, what):
     """Refuse NaN and infinity, which Blender accepts silently; it may hold infinity as its largest number."""
+    if not positions.size or (positions.max() < _FARTHEST and positions.min() > -_FARTHEST):
+        return
     bad = np.flatnonzero(~(np.abs(positions) < _FARTHEST).all(axis=1))
     if bad.size:
         raise Refusal(f"vertex {bad[0]} of the {what} '{name}' is not a number ({bad.size} in all); delete or reset it")
