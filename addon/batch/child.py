@@ -95,14 +95,14 @@ def solve(children, start, task, limit_s):
     return {"error": f"{told}, {TIMES_TRIED} times"}
 
 
-def solve_on_node(task, environment, limit_s):
-    """`solve` on a worker of a Dask cluster, by a process that stays with the worker."""
+def solve_on_node(tasks, environment, limit_s):
+    """The answers to `tasks` on a worker of a Dask cluster, by `solve` and a process that stays with the worker."""
     from distributed import get_worker
 
     command = shlex.split(os.environ.get("THENAR_WORKER", "")) or [sys.executable, "-m", "thenar_blender", "worker"]
     # This function comes anew with every task; the first one's stays, so that its errors are known to it.
     answer, children = get_worker().__dict__.setdefault("thenar_children", (solve, {}))
-    return answer(children, (command, environment), task, limit_s)
+    return [answer(children, (command, environment), task, limit_s) for task in tasks]
 
 
 def _hear(stream, answers):

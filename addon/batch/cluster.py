@@ -4,6 +4,7 @@ A worker machine needs the package `distributed` and a way to start Thenar: `pyt
 Python that runs Dask, or what the variable THENAR_WORKER says there, such as `blender -b --command thenar worker`.
 """
 
+import hashlib
 import time
 from concurrent.futures import CancelledError
 
@@ -13,6 +14,11 @@ from .here import ONE_THREAD, SPAN_S
 
 PATIENCE_S = 300.0
 """How long a scheduler may stay away before the batch gives up; a later run goes on from there."""
+MOST_AT_ONCE = 8
+"""Cases sent to a worker at once: what Dask takes for a task is then little beside a case of some hundredths of a
+second, and little is lost with a worker."""
+GROUPS_EACH = 8
+"""Such lists that each thread of a worker gets at least, so that all end together."""
 CALM_S = 2.0
 """Between attempts to connect, s."""
 
@@ -55,20 +61,37 @@ def _session(client, left):
     """Answers until all are there or the connection breaks; a case that kills its workers is an error of its own."""
     import distributed
 
-    futures = {
-        client.submit(child.solve_on_node, task, ONE_THREAD, SPAN_S, key=f"thenar-{task['hash']}", pure=True): name
-        for name, task in left.items()
-    }
-    for future in distributed.as_completed(futures, loop=client.loop):
+    groups = _grouped(list(left.values()), sum(client.nthreads().values()))
+    futures = {_submitted(client, group): group for group in groups}
+    coming = distributed.as_completed(list(futures), loop=client.loop)
+    for future in coming:
+        group = futures.pop(future)
         if future.status == "finished":
             try:
-                answer = future.result()
+                answered = future.result()
             except CancelledError:  # the connection broke while the answer was on its way
                 return
-            yield futures[future], answer
+            yield from zip((task["case"]["name"] for task in group), answered, strict=True)
+        elif future.status == "error" and len(group) > 1:
+            for task in group:  # which of them it was shows alone
+                alone = _submitted(client, [task])
+                futures[alone] = [task]
+                coming.add(alone)
         elif future.status == "error" and "KilledWorker" in type(future.exception()).__name__:
-            yield futures[future], {"error": "every worker that took this case died"}
+            yield group[0]["case"]["name"], {"error": "every worker that took this case died"}
         elif future.status == "error":
-            yield futures[future], {"error": " ".join(f"the worker failed: {future.exception()!r}".split())}
+            why = " ".join(f"the worker failed: {future.exception()!r}".split())
+            yield group[0]["case"]["name"], {"error": why}
         else:
             return
+
+
+def _grouped(tasks, threads):
+    """Lists of tasks that are sent at once: few where each worker has few."""
+    size = max(1, min(MOST_AT_ONCE, len(tasks) // (GROUPS_EACH * max(threads, 1))))
+    return [tasks[first : first + size] for first in range(0, len(tasks), size)]
+
+
+def _submitted(client, group):
+    digest = hashlib.blake2b(" ".join(task["hash"] for task in group).encode(), digest_size=16).hexdigest()
+    return client.submit(child.solve_on_node, group, ONE_THREAD, SPAN_S, key=f"thenar-{digest}", pure=True)
