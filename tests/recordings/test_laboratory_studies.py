@@ -27,6 +27,7 @@ def bins(recording, variable):
 def test_force_ramps_say_that_the_tip_is_not_known(shared, tmp_path):
     told = compared("force_ramps", shared, tmp_path)
     assert len(told["recordings"]) == 4
+    assert any("the sphere 'tip' is pressed 4.22 mm deep and has a radius of 5 mm" in note for note in told["notes"])
     assert "without repeats of two protocols nobody can say" in told["sentence"] and told["lack_of_fit_p"] is None
     assert "standard errors" not in told["sentence"] and "p <" not in told["sentence"]
     for recording in told["recordings"]:

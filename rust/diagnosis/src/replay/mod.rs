@@ -165,8 +165,7 @@ impl Replay {
             .collect::<Result<Vec<Option<Reader>>, DiagnosisError>>()?;
         for place in &places {
             let indenter = study.indenters.iter().find(|i| i.name == place.indenter);
-            let told =
-                indenter.and_then(|indenter| tool::deeper_than_round(indenter, place.deepest));
+            let told = indenter.and_then(|indenter| tool::too_deep(indenter, place.deepest));
             tissue.notes.extend(told);
         }
         for place in &mut places {
