@@ -55,7 +55,7 @@ pub fn pulls(courses: &[Course], (simulated, sigma): (&[f64], &[f64])) -> bool {
 }
 
 /// Neighboring samples that count as one where nothing is known of their noise's memory.
-const SHARED: f64 = 3.0;
+pub const SHARED: f64 = 3.0;
 /// Standard errors below none that a pull must reach.
 const PULLS: f64 = 2.5;
 

@@ -1,5 +1,6 @@
 //! Elastic answers of every tool at its site, with and without what changes the response: tables that screening looks up.
 
+use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
@@ -15,7 +16,7 @@ const POISSON: [f64; 3] = [0.49, 0.46, 0.4];
 const SKINS: [f64; 3] = [0.02, 0.15, 1.0];
 
 /// Depths at which a table is pressed, and at which what changes it: their ratio is smooth.
-const RUNGS: (usize, usize) = (20, 5);
+const RUNGS: (usize, usize) = (30, 5);
 
 /// How a table was changed, and by how much at each of its knots.
 #[derive(Debug, Clone)]
@@ -242,7 +243,10 @@ fn ratios(with: &PressTable, without: &PressTable) -> Vec<f64> {
 }
 
 fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
-    let rungs: Vec<f64> = table.force.iter().map(|f| f / g_mpa).collect();
+    let rungs = smoothed(
+        &table.roots,
+        table.force.iter().map(|f| f / g_mpa).collect(),
+    );
     let radius = table
         .area
         .iter()
@@ -250,12 +254,61 @@ fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
     let last = table.roots.last().copied().unwrap_or(0.0);
     Tabled {
         force: Table::new(&table.roots, rungs.clone()),
-        radius: radius.collect(),
+        radius: smoothed(&table.roots, radius.collect()),
         deepest: last * last,
         rungs,
         roots: table.roots,
     }
 }
+
+/// Values above none as a smooth function of the root of depth: `ln v = c0 + c1 ln x + c2 x + c3 x^2 + c4 x^3`.
+///
+/// A mesh answers in steps, as vertex after vertex comes to bear; a smooth tool on smooth skin does not. Values that no such
+/// function meets within [`STEPS`], as of a tool with edges, stay as they are.
+fn smoothed(roots: &[f64], values: Vec<f64>) -> Vec<f64> {
+    let last = roots.last().copied().unwrap_or(0.0);
+    let columns = |root: f64| {
+        let x = root / last;
+        [1.0, libm::log(x), x, x * x, x * x * x]
+    };
+    let kept: Vec<usize> = (0..roots.len())
+        .filter(|&k| roots[k] >= FEW * last && values[k] > 0.0)
+        .collect();
+    if kept.len() < 10 {
+        return values;
+    }
+    // The further in, the more vertices bear, and the smaller a step is against the whole.
+    let weight = |k: usize| roots[k] / last;
+    let matrix = DMatrix::from_fn(kept.len(), 5, |i, j| {
+        weight(kept[i]) * columns(roots[kept[i]])[j]
+    });
+    let side = DVector::from_fn(kept.len(), |i, _| {
+        weight(kept[i]) * libm::log(values[kept[i]])
+    });
+    let Ok(found) = matrix.svd(true, true).solve(&side, 1e-10) else {
+        return values;
+    };
+    let at = |root: f64| {
+        let log: f64 = columns(root)
+            .iter()
+            .zip(found.iter())
+            .map(|(a, b)| a * b)
+            .sum();
+        libm::exp(log)
+    };
+    let off = |k: &usize| (weight(*k) * libm::log(values[*k] / at(roots[*k]))).powi(2);
+    let rms = (kept.iter().map(off).sum::<f64>() / kept.len() as f64).sqrt();
+    if rms > STEPS || found[1] <= 0.0 {
+        return values;
+    }
+    let one = |root: &f64| if *root > 0.0 { at(*root) } else { 0.0 };
+    roots.iter().map(one).collect()
+}
+
+/// Part of the deepest root of depth below which too few vertices bear to say how a table goes on.
+const FEW: f64 = 0.12;
+/// Largest weighted rms step that a mesh is taken for the cause of.
+const STEPS: f64 = 0.03;
 
 /// Rung below a depth, and the share of the way to the next, along the root of depth.
 pub fn rung(table: &Tabled, depth: f64) -> (usize, f64) {

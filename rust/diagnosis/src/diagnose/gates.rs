@@ -12,17 +12,15 @@ use super::prepare::Prepared;
 pub const DETECTED: f64 = 6.0;
 /// The same of what changes the elastic answer of the skin alone, and of a fixture that yields: the model's own form may be off by as
 /// much, and looks like the latter.
-const DETECTED_STATIC: (f64, f64) = (8.0, 14.0);
+const DETECTED_STATIC: (f64, f64) = (5.5, 6.0);
 /// The same of a step in the gain, and of adhesion, which has more variants than others.
 const DETECTED_ELSE: f64 = 7.5;
 /// Evidence that a mechanism must add beside another, and what changes the elastic answer alone.
-const BESIDE: f64 = 10.0;
-const STATIC_BESIDE: f64 = 30.0;
+const BESIDE: f64 = 5.5;
+const STATIC_BESIDE: f64 = 10.0;
 /// Lead in evidence, nats, over every rival that bears another name; and over one that differs by its clock alone, or belongs to the
 /// instrument where the other belongs to the skin.
-const LEAD: (f64, f64) = (3.0, 5.0);
-/// The least that a second mechanism must add, as a part of what both have: what screening's own form may be off by.
-const SECOND: f64 = 0.06;
+const LEAD: (f64, f64) = (3.0, 4.4);
 /// Part of the coherent misfit that a name may leave.
 const LEFT: f64 = 0.3;
 /// Coherent misfit per sample, in variances of the noise, below which nothing is left to explain.
@@ -31,6 +29,8 @@ const QUIET: f64 = 0.12;
 const UNLISTED: f64 = 0.1;
 /// Noise under load over that without, from which the skin itself is unsteady.
 const UNSTEADY: f64 = 2.0;
+/// Evidence of a listed effect from which unsteady skin does not keep it from being named.
+const BEYOND_UNSTEADY: f64 = 60.0;
 
 /// Ratio of contact radii from which two sizes are two: a clock that grows as the area is then twice as slow.
 const SIZES: f64 = 1.4;
@@ -48,14 +48,8 @@ pub struct Decision<'a> {
     pub reason: String,
 }
 
-/// Decides from what the rungs found.
+/// Decides from what the rungs found: the gates in their order, the first that is shut speaks.
 pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
-    let silent = |verdict, reason: &str| Decision {
-        verdict,
-        named: None,
-        cannot_tell: Vec::new(),
-        reason: reason.to_owned(),
-    };
     if ready.noise.degrees.is_none() {
         return silent(
             Verdict::InsufficientData,
@@ -63,78 +57,94 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         );
     }
     let best = rungs.singles.first();
-    let is_detected = best.is_some_and(|b| b.evidence >= needed(&b.mechanisms[0]));
-    if rungs
+    let is_unsteady = rungs
         .unsteady
-        .is_some_and(|u| u.ratio > u.least.max(UNSTEADY))
-        && !best.is_some_and(|b| b.evidence > 60.0)
-    {
+        .is_some_and(|u| u.ratio > u.least.max(UNSTEADY));
+    if is_unsteady && !best.is_some_and(|b| b.evidence > BEYOND_UNSTEADY) {
         return silent(
             Verdict::Unlisted,
             "repeats of one protocol differ more under load than without, by more than gain and first touch",
         );
     }
-    let Some(best) = best.filter(|_| is_detected) else {
-        let left = rungs.base.coherent / rungs.samples as f64;
-        if left > UNLISTED {
-            return silent(
-                Verdict::Unlisted,
-                "repeats agree on a misfit that parameters leave and no listed effect takes up",
-            );
-        }
+    match best.filter(|b| b.evidence >= needed(&b.mechanisms[0])) {
+        None => undetected(ready, rungs),
+        Some(best) => paired(rungs).unwrap_or_else(|| alone(ready, rungs, best)),
+    }
+}
+
+fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
+    Decision {
+        verdict,
+        named: None,
+        cannot_tell: Vec::new(),
+        reason: reason.to_owned(),
+    }
+}
+
+/// Nothing listed is there: nothing at all, or something unlisted.
+fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
+    let left = rungs.base.coherent / rungs.samples as f64;
+    if left > UNLISTED {
         return silent(
-            nothing(ready, rungs),
-            "no listed effect explains more than noise would",
-        );
-    };
-    if let Some(pair) = rungs.pairs.iter().find(|pair| is_pair(pair, rungs)) {
-        let names = pair.names();
-        let mut rivals = Vec::new();
-        for rival in rungs
-            .pairs
-            .iter()
-            .filter(|r| within(pair, r) && is_pair(r, rungs))
-        {
-            for (a, b) in differing(&names, &rival.names()) {
-                rivals.push([a, b]);
-            }
-        }
-        if rivals.is_empty() {
-            return named(pair, "two effects together, each of which is needed");
-        }
-        return unsettled(
-            rivals,
-            "several pairs of effects explain the recordings alike",
+            Verdict::Unlisted,
+            "repeats agree on a misfit that parameters leave and no listed effect takes up",
         );
     }
-    let is_adequate = is_adequate(best, rungs);
-    if !is_adequate {
+    silent(
+        nothing(ready, rungs),
+        "no listed effect explains more than noise would",
+    )
+}
+
+/// Two effects; None where one suffices.
+fn paired(rungs: &Rungs) -> Option<Decision<'_>> {
+    let pair = rungs.pairs.iter().find(|pair| is_pair(pair, rungs))?;
+    let names = pair.names();
+    let within_reach = |r: &&Scored| within(pair, r) && is_pair(r, rungs);
+    let rivals: Vec<[&'static str; 2]> = rungs
+        .pairs
+        .iter()
+        .filter(within_reach)
+        .flat_map(|rival| differing(&names, &rival.names()))
+        .map(|(a, b)| [a, b])
+        .collect();
+    Some(match rivals.is_empty() {
+        true => named(pair, "two effects together, each of which is needed"),
+        false => unsettled(
+            rivals,
+            "several pairs of effects explain the recordings alike",
+        ),
+    })
+}
+
+/// One effect that was detected: named, or one of several, or not enough.
+fn alone<'a>(ready: &Prepared, rungs: &'a Rungs, best: &'a Scored) -> Decision<'a> {
+    if !is_adequate(best, rungs) {
         return silent(
             Verdict::Unlisted,
             "the best listed effect leaves too much of what repeats agree on",
         );
     }
-    let rivals: Vec<&Scored> = rungs.singles[1..]
+    let rivals: Vec<&'static str> = rungs.singles[1..]
         .iter()
         .filter(|r| (within(best, r) || is_alias(ready, best, r)) && is_adequate_beside(r, best))
+        .map(|r| r.mechanisms[0].effect.name())
         .collect();
-    if !rivals.is_empty() {
-        let first = best.mechanisms[0].effect.name();
-        let mut pairs: Vec<[&'static str; 2]> = rivals
-            .iter()
-            .map(|r| [first, r.mechanisms[0].effect.name()])
-            .collect();
-        for (i, a) in rivals.iter().enumerate() {
-            for b in &rivals[i + 1..] {
-                pairs.push([a.mechanisms[0].effect.name(), b.mechanisms[0].effect.name()]);
-            }
-        }
-        return unsettled(pairs, "several effects explain the recordings alike");
+    if rivals.is_empty() {
+        return named(
+            best,
+            "one effect explains what parameters cannot, and no other does",
+        );
     }
-    named(
-        best,
-        "one effect explains what parameters cannot, and no other does",
-    )
+    let first = best.mechanisms[0].effect.name();
+    let mut pairs: Vec<[&'static str; 2]> = rivals.iter().map(|r| [first, *r]).collect();
+    // Where the instrument explains best, effects of the skin are not held against each other: it may be none of them.
+    if !best.mechanisms[0].is_instrument() {
+        for (i, a) in rivals.iter().enumerate() {
+            pairs.extend(rivals[i + 1..].iter().map(|b| [*a, *b]));
+        }
+    }
+    unsettled(pairs, "several effects explain the recordings alike")
 }
 
 /// Nothing is missing, with the study's own parameters or with others.
@@ -207,15 +217,28 @@ fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
         rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
     };
     let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    let inexact = |k: usize| inexact(&pair.mechanisms[k]) * alone(k);
     let least = |k: usize| match is_static(&pair.mechanisms[k]) {
-        true => STATIC_BESIDE,
-        false => BESIDE.max(SECOND * pair.evidence),
+        true => STATIC_BESIDE.max(inexact(1 - k)),
+        false => BESIDE.max(inexact(1 - k)),
     };
     let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
     pair.mechanisms[0].effect != pair.mechanisms[1].effect
         && (0..2).all(is_needed)
         && pair.evidence - best >= least(0).min(least(1))
         && is_adequate(pair, rungs)
+}
+
+/// The part of a mechanism's evidence that screening's form of it may leave for a second one to take up; the largest that any did
+/// where it was alone is half of it to all of it (calibration).
+fn inexact(mechanism: &Mechanism) -> f64 {
+    match mechanism.effect {
+        Effect::Threshold => 0.15,
+        Effect::Adhesion => 0.09,
+        Effect::Saturation => 0.1,
+        _ if mechanism.is_instrument() => 0.0,
+        _ => 0.03,
+    }
 }
 
 /// True for what changes the elastic answer alone.
@@ -306,7 +329,7 @@ pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
 }
 
 /// Evidence that the base counts for without any: what nulls reach.
-const SILENT: f64 = 5.0;
+const SILENT: f64 = 4.0;
 
 /// What evidence is divided by before it becomes a probability: models are not true.
 const TEMPERATURE: f64 = 2.0;

@@ -126,7 +126,7 @@ struct Scale {
 
 impl Scale {
     fn judge(&self, scored: &mut Scored) {
-        let numbers: usize = scored.mechanisms.iter().map(Mechanism::count).sum();
+        let numbers: usize = scored.mechanisms.iter().map(Mechanism::price).sum();
         let fall = self.base - scored.refit.deviance;
         scored.evidence = 0.5 * fall / self.temper - PRICE * numbers as f64;
     }

@@ -94,6 +94,11 @@ impl Mechanism {
         }
     }
 
+    /// Numbers that a fit can make use of: shares of neighboring branches stand for each other, and none is below 0.
+    pub fn price(&self) -> usize {
+        self.count().min(3)
+    }
+
     /// True for what belongs to the instrument.
     pub fn is_instrument(&self) -> bool {
         self.effect.entry().is_instrument()
@@ -115,8 +120,8 @@ pub struct Scales {
     pub has_strain: bool,
 }
 
-/// Periods of the branches of a spectrum in time, s: half a decade to a decade apart over what recordings show.
-const TIMES_S: [f64; 3] = [0.12, 1.0, 8.0];
+/// Periods of the branches of a spectrum in time, s: less than a decade apart over what recordings show.
+const TIMES_S: [f64; 5] = [0.04, 0.2, 1.0, 5.0, 25.0];
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 2] = [0.08, 0.4];
 

@@ -19,10 +19,12 @@ mod model;
 mod next_record;
 mod numbers;
 mod prepare;
+mod refine;
 mod refit;
 mod screen;
 mod sentence;
 mod shown;
+mod signs;
 mod stiffness;
 
 pub use findings::{
@@ -94,6 +96,10 @@ pub fn diagnose(
     control
         .step("pressing the tools", 0.3)
         .map_err(|_| DiagnosisError::Cancelled)?;
+    let finer = refine::refined(study, &fitting);
+    if let Some(finer) = &finer {
+        fitting = Fitting::new(finer, &quiet)?;
+    }
     let ready = prepare(study, &mut fitting, &quiet)?;
     let progress = part(0.4, 0.95);
     let within = Control {

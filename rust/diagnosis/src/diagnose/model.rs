@@ -34,7 +34,7 @@ pub enum Kind {
     Zero(usize),
     /// Logarithm of one recording's gain.
     Gain(usize),
-    /// Logarithm of the factor by which the model's form is off, by tool and knot of depth.
+    /// Logarithm of the factor by which the model's form is off, by tool and way.
     Form(usize, usize),
     /// A number of a mechanism: which of the model's, which number.
     Of(usize, usize),
@@ -90,7 +90,7 @@ impl<'a> Model<'a> {
                 Kind::Touch(place) => set.touch[place] = *value,
                 Kind::Zero(course) => set.zero[course] = *value,
                 Kind::Gain(course) => set.gain[course] = *value,
-                Kind::Form(place, knot) => set.form[place][knot] = *value,
+                Kind::Form(place, mode) => set.form[place][mode] = *value,
                 Kind::Of(mechanism, _) => set.of[mechanism].push(*value),
             }
         }

@@ -10,6 +10,8 @@ use super::findings::Suggestion;
 const RATIO: f64 = 2.5;
 /// Hold that tells clocks apart, s.
 const HOLD_S: f64 = 8.0;
+/// Cycles that tell what counts them from what counts time.
+const CYCLES: u32 = 4;
 /// Minutes that a recording takes besides its own time, with its repeat and the rest before it.
 const MINUTES: f64 = 6.0;
 
@@ -63,102 +65,142 @@ fn by(pair: [&str; 2]) -> By {
 }
 
 fn suggestion(study: &Study, courses: &[Course], pair: [&'static str; 2]) -> Option<Suggestion> {
-    let first = courses.first()?;
-    let site = study.recordings[first.recording].site.clone();
-    let used: Vec<&str> = courses
-        .iter()
-        .map(|c| study.recordings[c.recording].indenter.as_str())
-        .collect();
-    let radius = |name: &str| {
-        let tool = study.indenters.iter().find(|i| i.name == name)?;
-        match &tool.shape {
-            Shape::Sphere { radius_mm }
-            | Shape::Cylinder { radius_mm, .. }
-            | Shape::Punch { radius_mm } => Some(*radius_mm),
-            _ => None,
-        }
-    };
-    let speeds: Vec<f64> = courses
-        .iter()
-        .map(Course::speed)
-        .filter(|s| *s > 0.0)
-        .collect();
-    let mut sorted = speeds.clone();
-    sorted.sort_by(f64::total_cmp);
-    let speed = sorted.get(sorted.len() / 2).copied().unwrap_or(1.0);
-    let depth = courses.iter().map(Course::deepest).fold(0.0, f64::max);
-    let hold = courses
-        .iter()
-        .map(Course::hold_s)
-        .fold(0.0, f64::max)
-        .max(HOLD_S);
-    let here = used.iter().filter_map(|u| radius(u));
-    let (low, high) = here.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), r| {
-        (l.min(r), h.max(r))
-    });
-    // The study's own tool that was not used and differs most in size; else one that is asked for.
-    let other = study
-        .indenters
-        .iter()
-        .filter(|i| !used.contains(&i.name.as_str()))
-        .filter_map(|i| radius(&i.name).map(|r| (i.name.clone(), r)))
-        .max_by(|a, b| apart(a.1, (low, high)).total_cmp(&apart(b.1, (low, high))));
-    let make = |indenter: Option<String>,
-                radius_mm: Option<f64>,
-                speed: f64,
-                hold: f64,
-                cycles: u32| {
-        let tool = match (&indenter, radius_mm) {
-            (Some(name), Some(r)) => format!("the indenter '{name}' (radius {r:.1} mm)"),
-            (Some(name), None) => format!("the indenter '{name}'"),
-            (None, Some(r)) => format!("a sphere of radius {r:.1} mm"),
-            (None, None) => "the same indenter".to_owned(),
-        };
-        let how = match cycles {
-            1 => format!("hold {hold:.0} s"),
-            n => format!("{n} cycles without a hold"),
-        };
-        let text = format!(
-            "Press with {tool} to {depth:.2} mm at {speed:.2} mm/s, {how}, twice: {} and {} then differ",
-            pair[0].replace('_', " "),
-            pair[1].replace('_', " ")
-        );
-        Suggestion {
-            text,
-            indenter,
-            radius_mm,
-            site: site.clone(),
-            speed_mm_s: speed,
-            hold_s: hold,
+    let past = Past::of(study, courses)?;
+    let choice = past.choice(study, by(pair));
+    Some(told(&past, choice, pair))
+}
+
+/// What was recorded so far.
+struct Past {
+    site: String,
+    /// The smallest tool in use, and its radius.
+    smallest: (String, Option<f64>),
+    /// Tools in use.
+    used: Vec<String>,
+    /// Radii in use, mm; infinity and 0 where no tool is round.
+    radii: (f64, f64),
+    /// Speeds of loading in use, mm/s: slowest, in the middle, fastest.
+    speeds: [f64; 3],
+    /// Deepest press, mm, and longest hold, s.
+    depth_mm: f64,
+    hold_s: f64,
+}
+
+/// A tool and how it is to be pressed.
+struct Choice {
+    indenter: Option<String>,
+    radius_mm: Option<f64>,
+    speed_mm_s: f64,
+    hold_s: f64,
+    cycles: u32,
+}
+
+fn radius_of(study: &Study, name: &str) -> Option<f64> {
+    let tool = study.indenters.iter().find(|i| i.name == name)?;
+    match &tool.shape {
+        Shape::Sphere { radius_mm }
+        | Shape::Cylinder { radius_mm, .. }
+        | Shape::Punch { radius_mm } => Some(*radius_mm),
+        _ => None,
+    }
+}
+
+impl Past {
+    fn of(study: &Study, courses: &[Course]) -> Option<Past> {
+        let first = courses.first()?;
+        let tool = |c: &Course| study.recordings[c.recording].indenter.clone();
+        let used: Vec<String> = courses.iter().map(tool).collect();
+        let size = |name: &&String| radius_of(study, name).unwrap_or(f64::INFINITY);
+        let smallest = used.iter().min_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let smallest = (smallest.clone(), radius_of(study, smallest));
+        let known = used.iter().filter_map(|name| radius_of(study, name));
+        let radii = known.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), r| {
+            (low.min(r), high.max(r))
+        });
+        let speeds = courses.iter().map(Course::speed);
+        let mut speeds: Vec<f64> = speeds.filter(|s| *s > 0.0).collect();
+        speeds.sort_by(f64::total_cmp);
+        let at = |k: usize| speeds.get(k).copied().unwrap_or(1.0);
+        let most = |of: &dyn Fn(&Course) -> f64| courses.iter().map(of).fold(0.0, f64::max);
+        Some(Past {
+            site: study.recordings[first.recording].site.clone(),
+            smallest,
+            radii,
+            speeds: [at(0), at(speeds.len() / 2), at(speeds.len().max(1) - 1)],
+            depth_mm: most(&Course::deepest),
+            hold_s: most(&Course::hold_s).max(HOLD_S),
+            used,
+        })
+    }
+
+    fn choice(&self, study: &Study, by: By) -> Choice {
+        let same = |speed_mm_s: f64, hold_s: f64, cycles: u32| Choice {
+            indenter: Some(self.smallest.0.clone()),
+            radius_mm: self.smallest.1,
+            speed_mm_s,
+            hold_s,
             cycles,
-            depth_mm: depth,
-            settles: pair.to_vec(),
-            minutes: MINUTES + 2.0 * (hold + 2.0 * f64::from(cycles) * depth / speed) / 60.0,
+        };
+        let [slow, middle, fast] = self.speeds;
+        match by {
+            By::Count => same(middle, 0.0, CYCLES),
+            By::Speed if fast > 4.0 * slow => same((fast * slow).sqrt(), self.hold_s, 1),
+            By::Speed => same(5.0 * fast, self.hold_s, 1),
+            By::Size => {
+                let (indenter, radius_mm) = self.other(study);
+                Choice {
+                    indenter,
+                    radius_mm,
+                    ..same(middle, self.hold_s, 1)
+                }
+            }
         }
+    }
+
+    /// The study's own tool that was not used and differs most in size; else one that is asked for.
+    fn other(&self, study: &Study) -> (Option<String>, Option<f64>) {
+        let unused = study.indenters.iter().map(|i| &i.name);
+        let unused = unused.filter(|name| !self.used.contains(name));
+        let sized = unused.filter_map(|name| Some((name.clone(), radius_of(study, name)?)));
+        let other = sized.max_by(|a, b| apart(a.1, self.radii).total_cmp(&apart(b.1, self.radii)));
+        match other {
+            Some((name, radius)) => (Some(name), Some(radius)),
+            None if self.radii.1 > 0.0 => (None, Some(self.radii.1 * RATIO)),
+            None => (Some(self.smallest.0.clone()), self.smallest.1),
+        }
+    }
+}
+
+fn told(past: &Past, choice: Choice, pair: [&'static str; 2]) -> Suggestion {
+    let tool = match (&choice.indenter, choice.radius_mm) {
+        (Some(name), Some(r)) => format!("the indenter '{name}' (radius {r:.1} mm)"),
+        (Some(name), None) => format!("the indenter '{name}'"),
+        (None, Some(r)) => format!("a sphere of radius {r:.1} mm"),
+        (None, None) => "the same indenter".to_owned(),
     };
-    let small = used.iter().min_by(|a, b| {
-        let size = |name: &str| radius(name).unwrap_or(f64::INFINITY);
-        size(a).total_cmp(&size(b))
-    })?;
-    let small = ((*small).to_owned(), radius(small));
-    Some(match by(pair) {
-        By::Count => make(Some(small.0), small.1, speed, 0.0, 4),
-        By::Speed => {
-            let fast = sorted.last().copied().unwrap_or(1.0);
-            let slow = sorted.first().copied().unwrap_or(1.0);
-            let other = if fast > 4.0 * slow {
-                (fast * slow).sqrt()
-            } else {
-                5.0 * fast
-            };
-            make(Some(small.0), small.1, other, hold, 1)
-        }
-        By::Size => match other {
-            Some((name, r)) => make(Some(name), Some(r), speed, hold, 1),
-            None if high > 0.0 => make(None, Some(high * RATIO), speed, hold, 1),
-            None => make(Some(small.0), small.1, speed, hold, 1),
-        },
-    })
+    let how = match choice.cycles {
+        1 => format!("hold {:.0} s", choice.hold_s),
+        n => format!("{n} cycles without a hold"),
+    };
+    let (depth, speed) = (past.depth_mm, choice.speed_mm_s);
+    let text = format!(
+        "Press with {tool} to {depth:.2} mm at {speed:.2} mm/s, {how}, twice: {} and {} then differ",
+        pair[0].replace('_', " "),
+        pair[1].replace('_', " ")
+    );
+    let own_s = choice.hold_s + 2.0 * f64::from(choice.cycles) * depth / speed;
+    Suggestion {
+        text,
+        indenter: choice.indenter,
+        radius_mm: choice.radius_mm,
+        site: past.site.clone(),
+        speed_mm_s: speed,
+        hold_s: choice.hold_s,
+        cycles: choice.cycles,
+        depth_mm: depth,
+        settles: pair.to_vec(),
+        minutes: MINUTES + 2.0 * own_s / 60.0,
+    }
 }
 
 /// How far a radius is from those in use, as a ratio.

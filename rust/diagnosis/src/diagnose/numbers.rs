@@ -29,12 +29,25 @@ pub fn free_numbers(ready: &Prepared, scored: &Scored, number: usize) -> Vec<(f6
     .collect()
 }
 
+/// Standard error of the sum of a mechanism's free numbers, of which one stands for its neighbor.
+fn sum_error(ready: &Prepared, scored: &Scored, number: usize) -> f64 {
+    let screen = ready.screen();
+    let model = Model::new(&screen, &scored.mechanisms);
+    let all = model.coordinates.iter().enumerate();
+    let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
+    let own: Vec<usize> = own.map(|(k, _)| k).collect();
+    let pairs = own.iter().flat_map(|a| own.iter().map(move |b| (*a, *b)));
+    let variance: f64 = pairs.map(|at| scored.refit.covariance[at]).sum();
+    variance.max(0.0).sqrt()
+}
+
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
 pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, Switched) {
     let mechanism = &scored.mechanisms[number];
     let free = free_numbers(ready, scored, number);
     let effect = mechanism.effect;
-    let (amplitude, numbers) = values(ready, (mechanism, &free));
+    let error = sum_error(ready, scored, number);
+    let (amplitude, numbers) = values(ready, (mechanism, &free, error));
     let unit = |name: &str| {
         let entry = effect.entry().shape.iter().find(|n| n.name == name);
         entry.map_or("1", |n| n.unit)
@@ -76,7 +89,10 @@ type Three = (f64, f64, f64);
 type Named = (&'static str, f64, f64, f64);
 
 /// Amplitude and shape numbers, each with its interval.
-fn values(ready: &Prepared, (mechanism, free): (&Mechanism, &[(f64, f64)])) -> (Three, Vec<Named>) {
+fn values(
+    ready: &Prepared,
+    (mechanism, free, error_of_sum): (&Mechanism, &[(f64, f64)], f64),
+) -> (Three, Vec<Named>) {
     let (value, error) = free[0];
     let interval = |scale: &dyn Fn(f64) -> f64| {
         (
@@ -88,7 +104,11 @@ fn values(ready: &Prepared, (mechanism, free): (&Mechanism, &[(f64, f64)])) -> (
     let whole: Three = (1.0, 1.0, 1.0);
     let named = |name: &'static str, three: Three| vec![(name, three.0, three.1, three.2)];
     match &mechanism.acts {
-        Acts::Fades { clock, periods } => fading(ready, (mechanism.effect, *clock, periods), free),
+        Acts::Fades { clock, periods } => fading(
+            ready,
+            (mechanism.effect, *clock, periods),
+            (free, error_of_sum),
+        ),
         Acts::Softens {
             travel_mm,
             recovery_s,
@@ -152,10 +172,9 @@ fn values(ready: &Prepared, (mechanism, free): (&Mechanism, &[(f64, f64)])) -> (
 fn fading(
     ready: &Prepared,
     (effect, clock, periods): (Effect, Clock, &[f64]),
-    free: &[(f64, f64)],
+    (free, error): (&[(f64, f64)], f64),
 ) -> (Three, Vec<Named>) {
     let sum: f64 = free.iter().map(|f| f.0).sum();
-    let error = free.iter().map(|f| f.1 * f.1).sum::<f64>().sqrt();
     let scale = if effect == Effect::Drainage {
         1.0 / DROP
     } else {
@@ -184,9 +203,10 @@ fn fading(
         _ => {
             let names = ["time_1_s", "time_2_s", "time_3_s"];
             let weights = ["weight_1", "weight_2", "weight_3"];
-            let times = names.iter().zip(periods).map(|(n, p)| (*n, *p, *p, *p));
+            let (free, periods) = in_three(free, periods);
+            let times = names.iter().zip(&periods).map(|(n, p)| (*n, *p, *p, *p));
             let share = |x: f64| (x / sum.max(1e-9)).clamp(0.0, 1.0);
-            let shares = weights.iter().zip(free).map(|(n, f)| {
+            let shares = weights.iter().zip(&free).map(|(n, f)| {
                 (
                     *n,
                     share(f.0),
@@ -198,6 +218,34 @@ fn fading(
         }
     };
     (amplitude, numbers)
+}
+
+/// Branches of a spectrum as the catalogue's three at most: the fastest together, and the slowest, each at their mean time.
+fn in_three(free: &[(f64, f64)], periods: &[f64]) -> (Vec<(f64, f64)>, Vec<f64>) {
+    if free.len() <= 3 {
+        return (free.to_vec(), periods.to_vec());
+    }
+    let side = (free.len() - 1) / 2;
+    let parts = [
+        0..side,
+        side..free.len() - side,
+        free.len() - side..free.len(),
+    ];
+    let one = |part: std::ops::Range<usize>| {
+        let share: f64 = free[part.clone()].iter().map(|f| f.0).sum();
+        let error = free[part.clone()].iter().map(|f| f.1 * f.1).sum::<f64>();
+        let count = part.len() as f64;
+        let logs = part.clone().map(|k| {
+            let weight = if share > 0.0 {
+                free[k].0 / share
+            } else {
+                1.0 / count
+            };
+            weight * libm::log(periods[k])
+        });
+        ((share, error.sqrt()), libm::exp(logs.sum::<f64>()))
+    };
+    parts.into_iter().map(one).unzip()
 }
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits

@@ -8,7 +8,7 @@ use super::elastic::Elastic;
 use super::mechanism::Acts;
 use super::memory::{Way, lost};
 use super::model::{Coordinate, Kind, Model, Setting};
-use super::stiffness::knots;
+use super::stiffness::modes;
 use crate::Phase;
 use crate::noise::Whitening;
 
@@ -173,23 +173,11 @@ impl Screen<'_> {
         }
         match coordinate.kind {
             Kind::Gain(_) | Kind::Scale(_) => return Some(forces.to_vec()),
-            Kind::Form(_, knot) => {
+            Kind::Form(_, mode) => {
                 let table = &self.elastic.places[one.place];
                 let depths = self.depths(model, &model.setting(self, at), (course, forces));
-                let weight = |d: f64| {
-                    knots(table, d)
-                        .iter()
-                        .filter(|k| k.0 == knot)
-                        .map(|k| k.1)
-                        .sum::<f64>()
-                };
-                return Some(
-                    depths
-                        .iter()
-                        .zip(forces)
-                        .map(|(d, f)| f * weight(*d))
-                        .collect(),
-                );
+                let slope = |(d, f): (&f64, &f64)| f * modes(table, *d)[mode];
+                return Some(depths.iter().zip(forces).map(slope).collect());
             }
             _ => {}
         }

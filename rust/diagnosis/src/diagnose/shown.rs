@@ -10,6 +10,7 @@ use super::ladder::{Rungs, Scored};
 use super::numbers::{free_numbers, told};
 use super::prepare::Prepared;
 use super::refit::huber;
+use super::signs::looked_for;
 use crate::Phase;
 use crate::fit::Fitting;
 
@@ -45,7 +46,7 @@ pub fn findings(
             }),
             when: when(ready, rungs, named),
             depends_on: depends_on(mechanism.effect),
-            consequences: Vec::new(),
+            consequences: looked_for(ready, (named, mechanism.effect)),
         }
     };
     (0..named.mechanisms.len()).map(of).collect()
@@ -286,6 +287,8 @@ pub fn evidence(ready: &Prepared, rungs: &Rungs) -> Vec<(&'static str, f64)> {
         ("samples", n),
         ("deviance_per_sample", rungs.base.refit.deviance / n),
         ("coherent_misfit_per_sample", rungs.base.coherent / n),
+        ("noise_share", ready.noise_share()),
+        ("noise_step", ready.noise.step[0]),
         ("temper", rungs.temper),
         ("repeat_gain_sd", ready.noise.gain),
         ("repeat_zero_sd_mm", ready.noise.zero_mm.unwrap_or(f64::NAN)),

@@ -20,9 +20,8 @@ impl Screen<'_> {
         let share = (depth / self.elastic.limit_depth).clamp(0.0, 1.0);
         let modulus = set.first * (1.0 - share) + set.limit * share;
         let mut log = set.scale[place];
-        for (knot, weight) in knots(table, depth) {
-            log += weight * set.form[place][knot];
-        }
+        let form = set.form[place].iter().zip(modes(table, depth));
+        log += form.map(|(size, mode)| size * mode).sum::<f64>();
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             match &mechanism.acts {
                 Acts::Tabled => {
@@ -73,17 +72,16 @@ impl Screen<'_> {
     }
 }
 
-/// Knots of the form between which a depth lies, with their weights; 0 at first touch, as the fit has it.
-pub(super) fn knots(table: &Tabled, depth: f64) -> Vec<(usize, f64)> {
-    let at = (KNOTS as f64 * depth.max(0.0) / table.deepest).min(KNOTS as f64);
-    let below = at.floor() as usize;
-    let share = at - below as f64;
-    let mut found = Vec::with_capacity(2);
-    if below > 0 {
-        found.push((below - 1, 1.0 - share));
-    }
-    if below < KNOTS && share > 0.0 {
-        found.push((below, share));
-    }
-    found
+/// Ways in which the model's form may be off at a depth: the whole tool, its tilt and its bend over depth, and first touch.
+pub(super) fn modes(table: &Tabled, depth: f64) -> [f64; KNOTS] {
+    let u = (depth / table.deepest).clamp(0.0, 1.0);
+    [
+        1.0,
+        2.0 * u - 1.0,
+        6.0 * u * (u - 1.0) + 1.0,
+        libm::exp(-u / FIRST),
+    ]
 }
+
+/// Part of the deepest depth over which an error at first touch dies away.
+const FIRST: f64 = 0.05;

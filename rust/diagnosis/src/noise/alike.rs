@@ -3,6 +3,11 @@
 use crate::noise::Channel;
 use crate::observe::{Censoring, Measured, Phase};
 
+/// Parts of the time that a recording takes: by how much the moments of repeats may differ that count as the same, and by how much
+/// they may have begun apart.
+const APART: f64 = 0.01;
+const LAG: f64 = 0.05;
+
 /// One channel of one repeat at the moments of the first of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Aligned {
@@ -37,11 +42,17 @@ pub fn aligned(channel: Channel, repeats: &[Told<'_>]) -> (Vec<f64>, Vec<Aligned
         .map(|told| Series::new(channel, told))
         .collect();
     let first = &series[0];
+    let range = match (first.time.first(), first.time.last()) {
+        (Some(start), Some(end)) => end - start,
+        _ => 0.0,
+    };
+    // When the first loading began is judged from rows that lie some way apart: by itself it does not make two repeats different.
     let is_same = |other: &Series| {
+        let pairs = || other.time.iter().zip(&first.time);
+        let lag = pairs().next().map_or(0.0, |(a, b)| a - b);
         other.time.len() == first.time.len()
-            && other.time.iter().zip(&first.time).all(|(a, b)| {
-                (a - b).abs() <= 0.02 * (first.time[first.time.len() - 1] - first.time[0])
-            })
+            && lag.abs() <= LAG * range
+            && pairs().all(|(a, b)| (a - b - lag).abs() <= APART * range)
     };
     if series.iter().all(is_same) {
         let time = first.time.clone();

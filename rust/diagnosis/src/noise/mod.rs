@@ -5,6 +5,7 @@ mod frames;
 mod repeats;
 mod scans;
 mod smoothing;
+mod together;
 mod whitening;
 #[cfg(test)]
 mod tests;

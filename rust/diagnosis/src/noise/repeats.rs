@@ -1,8 +1,9 @@
 //! What repeats of a protocol show: noise within a recording, and how recordings differ as a whole.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::Vector2;
 
-use super::alike::{Aligned, Told, aligned};
+use super::alike::{Told, aligned};
+use super::together::Together;
 use super::{Channel, POOLED_DEGREES};
 use crate::observe::Measured;
 use crate::observe::scatter::median;
@@ -12,7 +13,7 @@ const OUTLIER: f64 = 3.5;
 /// Variance that values within `OUTLIER` standard deviations of a normal law keep.
 const KEPT_VARIANCE: f64 = 0.9935;
 /// Fewest samples of a channel from which noise is told.
-const LEAST_SAMPLES: usize = 8;
+pub(super) const LEAST_SAMPLES: usize = 8;
 /// Largest correlation of neighbors that a correction leads to.
 const MOST_CARRY: f64 = 0.97;
 /// Ratios of memory to sampling interval that are tried.
@@ -92,17 +93,17 @@ pub struct Repeats {
 }
 
 /// Deviations within one group.
-struct Deviations {
-    group: Group,
+pub(super) struct Deviations {
+    pub(super) group: Group,
     /// s.
-    time: Vec<f64>,
+    pub(super) time: Vec<f64>,
     /// Largest mean value.
-    most: f64,
+    pub(super) most: f64,
     /// Deviation by repeat and sample, with what differs as a whole taken out.
-    rest: Vec<Vec<f64>>,
-    /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and their variance for noise of variance 1.
-    whole: Vec<Vector2<f64>>,
-    unit_variance: Vector2<f64>,
+    pub(super) rest: Vec<Vec<f64>>,
+    /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and what each sample adds to them.
+    pub(super) whole: Vec<Vector2<f64>>,
+    pub(super) along: Vec<Vector2<f64>>,
 }
 
 impl Repeats {
@@ -137,13 +138,17 @@ impl Repeats {
             simulated: &simulated[k],
             slopes: &slopes[k],
         };
-        let all: Vec<Deviations> = self
+        let aligned_all: Vec<(&Group, Together)> = self
             .groups
             .iter()
             .filter_map(|group| {
                 let repeats: Vec<Told<'_>> = group.iter().map(told).collect();
-                deviations(group, aligned(self.channel, &repeats))
+                Some((group, Together::new(aligned(self.channel, &repeats))?))
             })
+            .collect();
+        let each = aligned_all.iter();
+        let all: Vec<Deviations> = each
+            .filter_map(|(group, together)| together.deviations(group))
             .collect();
         if all.is_empty() {
             return None;
@@ -171,66 +176,6 @@ impl Repeats {
             drawn_from,
         })
     }
-}
-
-fn deviations(group: &Group, (time, repeats): (Vec<f64>, Vec<Aligned>)) -> Option<Deviations> {
-    let (n, m) = (time.len(), repeats.len() as f64);
-    if n < LEAST_SAMPLES || repeats.iter().any(|r| r.value.len() != n) {
-        return None;
-    }
-    let mean = |list: &dyn Fn(&Aligned) -> &Vec<f64>| -> Vec<f64> {
-        (0..n)
-            .map(|k| repeats.iter().map(|r| list(r)[k]).sum::<f64>() / m)
-            .collect()
-    };
-    let (value, depth) = (mean(&|r| &r.value), mean(&|r| &r.depth));
-    let (simulated, slope) = (mean(&|r| &r.simulated), mean(&|r| &r.slope));
-    // The measured value's own slope by depth: the model's relative slope is nearly that of any skin.
-    let own_slope: Vec<f64> = (0..n)
-        .map(|k| match simulated[k].abs() > 0.0 {
-            true => slope[k] * value[k] / simulated[k],
-            false => 0.0,
-        })
-        .map(|s| if s.is_finite() { s } else { 0.0 })
-        .collect();
-    let most = value.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
-    if most == 0.0 {
-        return None;
-    }
-    let mut gram = Matrix2::zeros();
-    for k in 0..n {
-        let along = Vector2::new(value[k], -own_slope[k]);
-        gram += along * along.transpose();
-    }
-    let inverse = gram.try_inverse()?;
-    let (mut rest, mut whole) = (Vec::new(), Vec::new());
-    for repeat in &repeats {
-        let off: Vec<f64> = (0..n)
-            .map(|k| {
-                let moved = repeat.depth[k] - depth[k];
-                let moved = if moved.is_finite() { moved } else { 0.0 };
-                repeat.value[k] - value[k] - own_slope[k] * moved
-            })
-            .collect();
-        let pull: Vector2<f64> = (0..n)
-            .map(|k| Vector2::new(value[k], -own_slope[k]) * off[k])
-            .sum();
-        let found = inverse * pull;
-        rest.push(
-            (0..n)
-                .map(|k| off[k] - value[k] * found.x + own_slope[k] * found.y)
-                .collect(),
-        );
-        whole.push(found);
-    }
-    Some(Deviations {
-        group: group.clone(),
-        time,
-        most,
-        rest,
-        whole,
-        unit_variance: Vector2::new(inverse[(0, 0)], inverse[(1, 1)]),
-    })
 }
 
 impl Deviations {
@@ -275,6 +220,23 @@ impl Deviations {
         }
         let carry = ((found + 2.0 / n) / (1.0 - 4.0 / n)).min(MOST_CARRY);
         memory_s * libm::log(found) / libm::log(carry)
+    }
+
+    /// Variance of what differs as a whole, for noise of variance 1 with that memory.
+    fn unit_variance(&self, memory_s: f64) -> Vector2<f64> {
+        let mut sum = Vector2::zeros();
+        for (k, a) in self.along.iter().enumerate() {
+            sum += a.component_mul(a);
+            // Noise remembers little of what lies many memories back.
+            for j in (0..k).rev() {
+                let shared = carry(self.time[k] - self.time[j], memory_s);
+                if shared < 1e-3 {
+                    break;
+                }
+                sum += a.component_mul(&self.along[j]) * (2.0 * shared);
+            }
+        }
+        sum
     }
 
     /// Correlation of neighboring samples.
@@ -386,10 +348,9 @@ fn between(all: &[Deviations], shares: &[(f64, f64)], memory_s: f64) -> Vector2<
         let nu = d.whole.len() as f64 - 1.0;
         let mean = d.whole.iter().sum::<Vector2<f64>>() / (nu + 1.0);
         let squares: Vector2<f64> = d.whole.iter().map(|w| (w - mean).map(|x| x * x)).sum();
-        let carry = d.carry(memory_s);
-        let noise = (share * d.most).powi(2) * (1.0 + carry) / (1.0 - carry);
+        let noise = (share * d.most).powi(2);
         sum += squares;
-        own += d.unit_variance * (noise * nu);
+        own += d.unit_variance(memory_s) * (noise * nu);
         degrees += nu;
     }
     let variance = (sum - own) / degrees;

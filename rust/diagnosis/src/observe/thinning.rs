@@ -5,11 +5,12 @@ use std::ops::Range;
 
 /// Bins of samples to be averaged, at most `budget` or a few more, none across the border of two stretches.
 ///
-/// A recording that is short enough keeps every sample. Else bins are of equal length along the curve in time, depth and force, each
+/// A recording that is not much longer keeps every sample: bins of one and of two samples would fall on other moments in each of its
+/// repeats, and about turning points these would seem to differ. Else bins are of equal length along the curve in time, depth and force, each
 /// relative to its range: ramps and holds are both kept, and a bin holds little curvature.
 pub fn bins(courses: Courses<'_>, stretches: &[Stretch], budget: usize) -> Vec<Range<usize>> {
     let n = courses.time_s.len();
-    if n <= budget {
+    if n <= budget + budget / 2 {
         return (0..n).map(|k| k..k + 1).collect();
     }
     let length = lengths(courses);
