@@ -61,3 +61,25 @@ def test_silicone_never_unloads_and_ends_where_the_plate_does(shared, tmp_path):
     modulus = next(each for each in told["estimates"] if each["name"] == "g0_mpa")
     assert modulus["high"] < 0.0606 / 3
     assert told["lack_of_fit_p"] == pytest.approx(0.001)
+
+
+SUSPECTED = {
+    "force_ramps": "suspected, and not told apart, are drainage, relaxation, rate independent loss",
+    "gel_creep": "adhesion is suspected",
+}
+
+
+@pytest.mark.parametrize("name", SUSPECTED)
+def test_without_repeats_what_one_would_look_at_first_is_suspected_and_not_named(name, shared, tmp_path):
+    """Gel clings to the tip on the way out; skin loses force with time, and ramps at one tip do not tell in which way."""
+    study = thenar.Study.load(laboratory_studies.write(name, shared, tmp_path))
+    said = json.loads(thenar.diagnose(study).to_json())
+    assert said["verdict"] == "insufficient_data" and said["findings"] == []
+    assert SUSPECTED[name] in said["sentence"]
+
+
+def test_loading_alone_tests_no_hysteresis(shared, tmp_path):
+    study = thenar.Study.load(laboratory_studies.write("silicone", shared, tmp_path))
+    said = json.loads(thenar.diagnose(study).to_json())
+    assert said["verdict"] == "parameters"
+    assert any("hysteresis" in note and "were not tested" in note for note in said["notes"])

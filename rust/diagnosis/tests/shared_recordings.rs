@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use scenes::{add, material, pad, study};
 use thenar_contact::Control;
-use thenar_diagnosis::{Fitting, Options, fit_study};
+use thenar_diagnosis::{DiagnoseOptions, Fitting, Options, diagnose, fit_study};
 use thenar_recordings::meshes::MeshFile;
 use thenar_recordings::study::Shape;
 use thenar_recordings::{Curve, read};
@@ -121,6 +121,13 @@ fn chiaro_gives_the_instruments_own_modulus() {
         told.contains("no point of first touch") && told.contains("never unloads"),
         "{told}"
     );
+    let said = diagnose(&study, &DiagnoseOptions::default(), &Control::none()).unwrap();
+    println!("{} {:?}", said.sentence, said.notes);
+    assert!(
+        said.sentence
+            .contains("beyond the parameters nothing is suspected")
+    );
+    assert!(said.notes.iter().any(|n| n.contains("hysteresis")));
 }
 
 /// What cannot be known from each of them is said.

@@ -83,6 +83,33 @@ impl Course {
     }
 }
 
+/// Whether some recording goes on after its loading: holds, unloads or is read after contact.
+pub fn goes_on(courses: &[Course]) -> bool {
+    let after = |row: &&Row| matches!(row.phase, Phase::Hold | Phase::Unload | Phase::Slide);
+    courses
+        .iter()
+        .any(|c| c.rows.iter().filter(after).count() >= FEW)
+}
+
+/// Whether some recording unloads.
+pub fn unloads(courses: &[Course]) -> bool {
+    let unloading = |row: &&Row| row.phase == Phase::Unload;
+    courses
+        .iter()
+        .any(|c| c.rows.iter().filter(unloading).count() >= FEW)
+}
+
+/// Whether one tool was pressed at speeds that differ by twice or more.
+pub fn changes_speed(courses: &[Course]) -> bool {
+    let differ = |a: &Course, b: &Course| a.place == b.place && a.speed() > 2.0 * b.speed();
+    courses
+        .iter()
+        .any(|a| courses.iter().any(|b| b.speed() > 0.0 && differ(a, b)))
+}
+
+/// Rows from which a part of a protocol counts as recorded.
+const FEW: usize = 4;
+
 /// Recordings of which force and depth are known, in the study's order.
 pub fn courses(study: &Study, measured: &[Measured], place_of: &[usize]) -> Vec<Course> {
     let mut first = 0;

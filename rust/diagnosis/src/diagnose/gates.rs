@@ -7,6 +7,7 @@ use super::findings::Verdict;
 use super::ladder::{Rungs, Scored};
 use super::mechanism::Mechanism;
 use super::prepare::Prepared;
+use super::sentence::words;
 
 /// Evidence, nats, from which anything is said to be missing.
 pub const DETECTED: f64 = 6.0;
@@ -35,6 +36,10 @@ const BEYOND_UNSTEADY: f64 = 60.0;
 /// Ratio of contact radii from which two sizes are two: a clock that grows as the area is then twice as slow.
 const SIZES: f64 = 1.4;
 
+/// Evidence from which an effect is suspected where the noise is only judged by roughness, and the part of the largest that others need
+/// to be suspected with it.
+const SUSPECTED: (f64, f64) = (12.0, 0.9);
+
 /// What may be said.
 #[derive(Debug, Clone)]
 pub struct Decision<'a> {
@@ -51,10 +56,11 @@ pub struct Decision<'a> {
 /// Decides from what the rungs found: the gates in their order, the first that is shut speaks.
 pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
     if ready.noise.degrees.is_none() {
-        return silent(
-            Verdict::InsufficientData,
-            "no protocol was repeated, so that noise cannot be told from what is missing",
+        let reason = format!(
+            "no protocol was repeated, so that noise cannot be told from what is missing; {}",
+            suspected(rungs)
         );
+        return silent(Verdict::InsufficientData, &reason);
     }
     let best = rungs.singles.first();
     let is_unsteady = rungs
@@ -78,6 +84,23 @@ fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
         named: None,
         cannot_tell: Vec::new(),
         reason: reason.to_owned(),
+    }
+}
+
+/// What one would look at first, where the noise is not known.
+fn suspected(rungs: &Rungs) -> String {
+    let most = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    if most < SUSPECTED.0 {
+        return "beyond the parameters nothing is suspected".to_owned();
+    }
+    let near = rungs
+        .singles
+        .iter()
+        .filter(|s| s.evidence > SUSPECTED.1 * most);
+    let names: Vec<String> = near.map(|s| words(s.mechanisms[0].effect.name())).collect();
+    match names.len() {
+        1 => format!("{} is suspected", names[0]),
+        _ => format!("suspected, and not told apart, are {}", names.join(", ")),
     }
 }
 

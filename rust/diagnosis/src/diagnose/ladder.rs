@@ -4,6 +4,7 @@
 use thenar_contact::effects::Effect;
 
 use super::checks::{GainStep, Unsteady, gain_step, pulls, unsteady};
+use super::course::{changes_speed, goes_on};
 use super::mechanism::{Acts, Mechanism, singles};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
@@ -163,6 +164,10 @@ impl Trial<'_> {
     /// Every variant of every single mechanism, and a step of the gain if repeats show one.
     fn singles(&self, step: Option<GainStep>) -> Result<Vec<Scored>, DiagnosisError> {
         let mut tried = singles(self.ready.scales);
+        let courses = &self.ready.courses;
+        if !goes_on(courses) && !changes_speed(courses) {
+            tried.retain(Mechanism::shows_in_loading);
+        }
         tried.extend(step.map(|found| Mechanism {
             effect: Effect::Gain,
             acts: Acts::GainStep { from: found.from },

@@ -99,6 +99,19 @@ impl Mechanism {
         self.count().min(3)
     }
 
+    /// True for what a single loading at one speed can show: there, time and depth grow together.
+    pub fn shows_in_loading(&self) -> bool {
+        matches!(
+            self.acts,
+            Acts::Tabled
+                | Acts::Stiffens(_)
+                | Acts::Offset
+                | Acts::Saturates
+                | Acts::Blind
+                | Acts::Yields
+        )
+    }
+
     /// True for what belongs to the instrument.
     pub fn is_instrument(&self) -> bool {
         self.effect.entry().is_instrument()

@@ -128,6 +128,18 @@ pub fn diagnose(
     Ok(found)
 }
 
+/// What the recordings could not show.
+fn untested(courses: &[course::Course]) -> Option<String> {
+    let missing = match (course::goes_on(courses), course::unloads(courses)) {
+        (false, _) if !course::changes_speed(courses) => {
+            "memory, hysteresis, adhesion and drift were not tested: no recording holds, unloads or changes its speed"
+        }
+        (_, false) => "hysteresis and adhesion were not tested: no recording unloads",
+        _ => return None,
+    };
+    Some(missing.to_owned())
+}
+
 /// All that is said, from what was found.
 fn told(
     study: &Study,
@@ -160,6 +172,7 @@ fn told(
         found.names_90 = Vec::new();
     }
     local::add_place(study, &mut found);
+    found.notes.extend(untested(&ready.courses));
     found.sentence = sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),

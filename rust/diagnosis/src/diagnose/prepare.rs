@@ -193,7 +193,7 @@ fn scales(study: &Study, courses: &[Course], elastic: &Elastic) -> Scales {
     }
 }
 
-/// True if the skin is a plane about every site.
+/// True if the skin is a plane about every site, and goes on beyond what a press moves.
 fn is_flat(study: &Study) -> bool {
     let thickness = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
     let thickness = thickness.fold(f64::INFINITY, f64::min);
@@ -203,10 +203,11 @@ fn is_flat(study: &Study) -> bool {
     study.sites.iter().all(|site| {
         let (point, along): (Vector3<f64>, Vector3<f64>) =
             (site.point_mm.into(), site.direction.into());
-        study.skin.mesh.positions.iter().all(|p| {
-            let off = p - point;
-            off.norm() > FLAT.1 * thickness || off.dot(&along).abs() < FLAT.0 * thickness
-        })
+        let reach = FLAT.1 * thickness;
+        let positions = || study.skin.mesh.positions.iter().map(|p| p - point);
+        positions().any(|off| off.norm() > reach)
+            && positions()
+                .all(|off| off.norm() > reach || off.dot(&along).abs() < FLAT.0 * thickness)
     })
 }
 
