@@ -43,6 +43,15 @@ def assert_stopped_soon(times):
     assert time.perf_counter() - times[0] < PROMISE + NOISE
 
 
+@pytest.fixture
+def heeded():
+    """Python's own answer to Ctrl-C: shells start what they run in the background with the signal ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heeded")
 def test_ctrl_c_stops():
     times = later(lambda: os.kill(os.getpid(), signal.SIGINT))
     with pytest.raises(KeyboardInterrupt):
