@@ -125,7 +125,7 @@ MAPS = {
             "PRINT",
             names.PRINT_RESIDUAL,
             "Handprint",
-            "ink − simulation",
+            "ink - simulation",
             "Contact beside a compared handprint: red is inked alone, blue touches in simulation alone",
             "no handprint was compared; load its image under Recordings, place it, and compare",
             palette="COOLWARM",
