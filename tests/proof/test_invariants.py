@@ -12,8 +12,8 @@ import pytest
 from proof import distances, meshes, pressing
 
 ROUNDING = 2e-8
-"""What rounding may leave in one nodal force, over the largest, where passes before the last are solved roughly. Measured: 5e-9
-at one vertex, 6e-10 at the others; why there is not known."""
+"""What rounding may leave in one nodal force, over the largest, where passes before the last are solved roughly.
+Measured: 5e-9 at one vertex, 6e-10 at the others; why there is not known."""
 
 CASES = {
     "fingertip on plate": (

@@ -71,7 +71,7 @@ SUSPECTED = {
 
 @pytest.mark.parametrize("name", SUSPECTED)
 def test_without_repeats_what_one_would_look_at_first_is_suspected_and_not_named(name, shared, tmp_path):
-    """Gel clings to the tip on the way out; skin loses force with time, and ramps at one tip do not tell in which way."""
+    """Gel clings to the tip on the way out; skin loses force with time, in which way one tip does not tell."""
     study = thenar.Study.load(laboratory_studies.write(name, shared, tmp_path))
     said = json.loads(thenar.diagnose(study).to_json())
     assert said["verdict"] == "insufficient_data" and said["findings"] == []
