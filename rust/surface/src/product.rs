@@ -12,6 +12,7 @@ use crate::poke::{Skin, settle};
 use crate::readings::new_number;
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
+use crate::triangle::Feature;
 use crate::winding::Winding;
 
 /// Points answered by one task.
@@ -237,14 +238,17 @@ impl Product {
         let distance = hit.on.distance_squared.sqrt();
         let sign = if side == Side::Inside { -1.0 } else { 1.0 };
         let away = (query.point - hit.on.point) * sign;
-        let normal = if distance * self.tree.shrink > TOUCHING {
-            // Normalized anew: far from the product, the root of the square is not exactly its length.
-            away.normalize()
-        } else {
+        let normal = if distance * self.tree.shrink <= TOUCHING {
             self.sign
                 .normal(&self.tree, hit)
                 .try_normalize(0.0)
                 .unwrap_or(face.normal)
+        } else if hit.on.feature == Feature::Face {
+            // Over a face it is the face's own: the difference of two points that all but touch tells it badly.
+            face.normal * away.dot(&face.normal).signum()
+        } else {
+            // Normalized anew: far from the product, the root of the square is not exactly its length.
+            away.normalize()
         };
         let (closest, barycentric) = (hit.on.point + self.tree.center, hit.on.barycentric);
         Gap {
