@@ -108,9 +108,10 @@ def test_an_image_from_behind_is_turned_about(tmp_path, grid):
     [
         ({}, "give one scale of the print"),
         ({"dpi": 254, "mm_per_px": 0.1}, "give one scale of the print"),
-        ({"dpi": 254, "cell_mm": 0.0}, "cell_mm: give a length above zero"),
-        ({"dpi": 254, "threshold": 200}, "threshold: give a brightness"),
-        ({"dpi": 254, "ink": "blue"}, "ink: give"),
+        ({"dpi": 254, "cell_mm": 0.0}, "a cell of 0.000 mm is 0.0 pixels wide, and 3 are needed"),
+        ({"dpi": 254, "cell_mm": float("nan")}, "a cell of NaN mm"),
+        ({"dpi": 254, "threshold": 200}, "the threshold is 200; give a brightness, 0 black to 1 white"),
+        ({"dpi": 254, "ink": "blue"}, "ink 'blue' is not known; give"),
         ({"dpi": float("nan")}, "the image has no scale"),
         ({"dpi": 254, "paper_px": (900, 900, 950, 950)}, "no pixel of the 240 x 240 is paper"),
     ],

@@ -71,22 +71,17 @@ impl Print {
                 "give one scale of the print: dpi, mm_per_px, or marks_px with marks_mm",
             ));
         };
-        if !(cell_mm > 0.0 && cell_mm.is_finite()) {
-            return Err(refused("cell_mm: give a length above zero, mm"));
-        }
-        if threshold.is_some_and(|share| !(0.0..=1.0).contains(&share)) {
-            return Err(refused("threshold: give a brightness, 0 black to 1 white"));
-        }
+        let ink = ink.map(|name| Ink::named(name).ok_or(name)).transpose();
+        let ink = ink.map_err(|name| {
+            refused(&format!(
+                "ink '{name}' is not known; give \"dark\" or \"light\""
+            ))
+        })?;
         let options = PrintOptions {
             scale,
             cell_mm,
             threshold,
-            ink: match ink {
-                None => None,
-                Some("dark") => Some(Ink::Dark),
-                Some("light") => Some(Ink::Light),
-                Some(_) => return Err(refused("ink: give \"dark\" or \"light\"")),
-            },
+            ink,
             paper_px,
             is_mirrored: mirrored,
         };
@@ -139,10 +134,7 @@ impl Print {
     /// "dark" or "light".
     #[getter]
     fn ink(&self) -> &'static str {
-        match self.inner.ink {
-            Ink::Dark => "dark",
-            Ink::Light => "light",
-        }
+        self.inner.ink.name()
     }
 
     #[getter]

@@ -2,14 +2,13 @@
 
 use super::image::Gray;
 use super::ink::Told;
-use super::{Handprint, KNOWN_FROM, PrintOptions};
+use super::{Handprint, KNOWN_FROM, PrintOptions, cells_along};
 
 /// The print of an image whose ink was told from its paper.
 pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
     let (mm, side) = (options.scale.mm_per_px(), options.cell_mm);
     let [width, height] = gray.size;
-    let number = |pixels: usize| (pixels as f64 * mm / side).ceil().max(1.0) as usize;
-    let [columns, rows] = [number(width), number(height)];
+    let [columns, rows] = gray.size.map(|pixels| cells_along(pixels, options));
     let (mut inked, mut known) = (vec![0.0; rows * columns], vec![0.0; rows * columns]);
     let cell = |pixel: usize| ((pixel as f64 + 0.5) * mm / side) as usize;
     for (pixel, brightness) in gray.pixels.iter().enumerate() {

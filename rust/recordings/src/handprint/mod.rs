@@ -14,6 +14,8 @@ use std::path::Path;
 
 /// Most cells of a print.
 const MOST_CELLS: usize = 1 << 16;
+/// Length of an inch, mm.
+const INCH: f64 = 25.4;
 /// Fewest pixels across a cell: with fewer the edge of the ink is not resolved within it.
 const FEWEST_PIXELS: f64 = 3.0;
 /// A cell is known if this part of it is paper.
@@ -36,7 +38,7 @@ impl Scale {
     /// mm per pixel.
     pub fn mm_per_px(self) -> f64 {
         match self {
-            Scale::Dpi(dpi) => 25.4 / dpi,
+            Scale::Dpi(dpi) => INCH / dpi,
             Scale::MmPerPixel(length) => length,
             Scale::Marks([a, b], distance) => distance / (b[0] - a[0]).hypot(b[1] - a[1]),
         }
@@ -50,6 +52,23 @@ pub enum Ink {
     Dark,
     /// Light on dark ground, as dust or paint.
     Light,
+}
+
+impl Ink {
+    /// The words for them.
+    pub const NAMES: [&'static str; 2] = ["dark", "light"];
+
+    /// "dark" or "light".
+    pub fn name(self) -> &'static str {
+        Ink::NAMES[self as usize]
+    }
+
+    /// The one of that name.
+    pub fn named(name: &str) -> Option<Ink> {
+        [Ink::Dark, Ink::Light]
+            .into_iter()
+            .find(|ink| ink.name() == name)
+    }
 }
 
 /// How an image is to be read.
@@ -98,7 +117,7 @@ impl Handprint {
     /// Reads a PNG, JPEG or TIFF of any depth, gray or color, with or without transparency, which is no paper.
     ///
     /// # Errors
-    /// [`RecordingError`] naming the file and the remedy: no image, too large, a scale that is not one, no ink that stands out.
+    /// [`RecordingError`] naming the file and the remedy: no image, too large, a scale, cell or threshold that is none, no ink that stands out.
     pub fn read(file: &Path, options: &PrintOptions) -> Result<Handprint, RecordingError> {
         let here = |fault: Fault| fault.in_file(file);
         let gray = image::read(file)?;
@@ -124,6 +143,15 @@ impl Handprint {
     }
 }
 
+/// What a threshold must be.
+pub(crate) const THRESHOLD_REMEDY: &str = "give a brightness, 0 black to 1 white";
+
+/// Number of cells along a side of the image.
+fn cells_along(pixels: usize, options: &PrintOptions) -> usize {
+    let cells = pixels as f64 * options.scale.mm_per_px() / options.cell_mm;
+    cells.ceil().max(1.0) as usize
+}
+
 fn check(gray: &image::Gray, options: &PrintOptions) -> Result<(), Fault> {
     let mm = options.scale.mm_per_px();
     if !(mm.is_finite() && mm > 0.0) {
@@ -132,7 +160,9 @@ fn check(gray: &image::Gray, options: &PrintOptions) -> Result<(), Fault> {
             "give dpi, mm_per_px, or two marks_px that lie apart with marks_mm",
         ));
     }
-    if options.cell_mm < FEWEST_PIXELS * mm {
+    // Three pixels of 0.1 mm are a little more than 0.3 mm in binary.
+    let is_resolved = options.cell_mm.is_finite() && options.cell_mm / mm >= FEWEST_PIXELS - 1e-9;
+    if !is_resolved {
         let problem = format!(
             "a cell of {:.3} mm is {:.1} pixels wide, and {FEWEST_PIXELS} are needed",
             options.cell_mm,
@@ -143,8 +173,13 @@ fn check(gray: &image::Gray, options: &PrintOptions) -> Result<(), Fault> {
             "scan with more dpi, check the scale, or give a larger cell_mm",
         ));
     }
-    let count = |pixels: usize| (pixels as f64 * mm / options.cell_mm).ceil();
-    let [columns, rows] = gray.size.map(count);
+    if let Some(other) = options.threshold.filter(|t| !(0.0..=1.0).contains(t)) {
+        return Err(Fault::file(
+            format!("the threshold is {other}"),
+            THRESHOLD_REMEDY,
+        ));
+    }
+    let [columns, rows] = gray.size.map(|pixels| cells_along(pixels, options) as f64);
     if columns * rows > MOST_CELLS as f64 {
         let problem = format!(
             "the image is {:.0} x {:.0} mm, {columns:.0} x {rows:.0} cells, and {MOST_CELLS} cells are read",

@@ -6,7 +6,7 @@ use super::recordings::{Data, read_motion, read_places};
 use super::toml_tree::{Section, nearest};
 use crate::RecordingError;
 use crate::fault::{Fault, shown};
-use crate::handprint::{Handprint, Ink, PrintOptions, Scale};
+use crate::handprint::{Handprint, Ink, PrintOptions, Scale, THRESHOLD_REMEDY};
 use crate::meshes::MeshFile;
 use std::path::Path;
 
@@ -50,26 +50,11 @@ fn options(section: &mut Section, skin: &MeshFile) -> Result<PrintOptions, Fault
         Some(entry) => match entry.finite()? {
             share if (0.0..=1.0).contains(&share) => Some(share),
             other => {
-                return Err(entry.fault(
-                    format!("is {other}"),
-                    "give a brightness, 0 black to 1 white",
-                ));
+                return Err(entry.fault(format!("is {other}"), THRESHOLD_REMEDY));
             }
         },
     };
-    let ink = match section.text("ink")?.as_deref() {
-        None => None,
-        Some("dark") => Some(Ink::Dark),
-        Some("light") => Some(Ink::Light),
-        Some(other) => {
-            let problem = format!("ink {} is not known", shown(other.as_bytes()));
-            return Err(Fault::line(
-                section.line,
-                problem,
-                nearest(other, &["dark", "light"]),
-            ));
-        }
-    };
+    let ink = ink(section)?;
     let paper = section.get("paper_px").map(|entry| entry.numbers::<4>());
     let is_mirrored = section.get("mirrored").map(|entry| entry.boolean());
     let cell_mm = section.positive("cell_mm")?;
@@ -81,6 +66,21 @@ fn options(section: &mut Section, skin: &MeshFile) -> Result<PrintOptions, Fault
         paper_px: paper.transpose()?,
         is_mirrored: is_mirrored.transpose()?.unwrap_or(false),
     })
+}
+
+fn ink(section: &mut Section) -> Result<Option<Ink>, Fault> {
+    let Some(text) = section.text("ink")? else {
+        return Ok(None);
+    };
+    if let Some(ink) = Ink::named(&text) {
+        return Ok(Some(ink));
+    }
+    let problem = format!("ink {} is not known", shown(text.as_bytes()));
+    Err(Fault::line(
+        section.line,
+        problem,
+        nearest(&text, &Ink::NAMES),
+    ))
 }
 
 fn scale(section: &mut Section) -> Result<Scale, Fault> {
