@@ -12,9 +12,6 @@ from ..scene import attributes, matching, own, read, units
 from ..scene.checks import Refusal
 from . import filling, laying, loading, settings
 
-_TOUCHED = 0.5
-"""Share of a cell from which the library says that it touched."""
-
 
 def steps(context):
     """The comparison of the selected recording as the steps of a computation. Returns the library's comparison."""
@@ -121,7 +118,10 @@ def _compare(job, contact, told, cancel=None, progress=None):
         time_s=0.0 if found.time_s is None else float(found.time_s[frame]),
         unknown=list(found.unknown),
     )
-    return comparison, mat, _residual(comparison, mat) if is_calibrated else None
+    if not is_calibrated:
+        return comparison, mat, None
+    frames = comparison.recordings[0].frames
+    return comparison, mat, _by_cell(mat, frames[0].residual if frames else np.nan)
 
 
 def _compare_print(job, contact, told, cancel=None, progress=None):
@@ -140,20 +140,14 @@ def _compare_print(job, contact, told, cancel=None, progress=None):
         product=", ".join(job.part_names),
         hand=job.hand_name,
     )
-    found, residual = comparison.recordings[0].print, np.full(len(mat.area_mm2), np.nan)
-    touches = [np.asarray(found[share]) >= _TOUCHED for share in ("recorded_share", "simulated_share")]
-    known = np.isfinite(found.recorded_share)
-    residual[~np.isnan(mat.area_mm2)] = np.where(known, touches[0].astype(float) - touches[1], np.nan)
-    return comparison, mat, residual
+    return comparison, mat, _by_cell(mat, comparison.recordings[0].print.cell_residual)
 
 
-def _residual(comparison, mat):
-    """The residual per sensel of the whole mat, kPa; NaN for missing cells."""
-    residual = np.full(len(mat.area_mm2), np.nan)
-    frames = comparison.recordings[0].frames
-    if frames:
-        residual[~np.isnan(mat.area_mm2)] = frames[0].residual
-    return residual
+def _by_cell(mat, of_placed):
+    """What is told of the cells that have a place, for every cell of the mat; NaN for the others."""
+    whole = np.full(len(mat.area_mm2), np.nan)
+    whole[~np.isnan(mat.area_mm2)] = of_placed
+    return whole
 
 
 def _write(context, job, found):

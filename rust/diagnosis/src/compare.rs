@@ -7,12 +7,12 @@ use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
 
 use crate::comparison::{Compared, Comparison, SIGNIFICANT, compare_fit};
-use crate::prints::add_prints;
+use crate::prints::{Studied, add_prints};
 use crate::words::{chance, percent};
-use crate::{DiagnosisError, Fitting, Options, Search, locate};
+use crate::{DiagnosisError, Fit, Fitting, Location, Options, Search, locate};
 
-/// Standard deviation of the model's load at any depth against finite elements of a fingertip, which it leaves by up to 9 % of the best
-/// straight line (two of them).
+/// Standard deviation of the factor by which the model's load may be off at any depth: two of them are the 9 % by which the layer leaves
+/// the finite elements of the round fingertip in `tests/proof`.
 const FORM_ERROR: f64 = 0.045;
 /// Part of the work that fitting is, for progress.
 const FITTING: f64 = 0.8;
@@ -31,45 +31,19 @@ pub fn compare(
     control: &Control<'_>,
 ) -> Result<Comparison, DiagnosisError> {
     let progress = |stage: &str, share: f64| (control.progress)(stage, FITTING * share);
-    let within = Control {
+    let fitting = Control {
         cancelled: control.cancelled,
         progress: &progress,
     };
-    let quiet = Control {
-        cancelled: control.cancelled,
-        progress: &|_, _| {},
-    };
-    let mut fitting = Fitting::new(study, &within)?;
-    let has_samples = fitting.measured().iter().any(|m| !m.samples.is_empty());
-    let is_print = |recording: &StudyRecording| matches!(recording.data, Data::Handprint { .. });
-    let mut fit = match !has_samples && study.recordings.iter().any(is_print) {
-        true => fitting.unfitted(),
-        false => fitting.fit(options, &within)?,
-    };
-    if fit.lack_of_fit_p.is_some_and(|p| p < SIGNIFICANT) {
-        fit.notes.extend(allowing(&mut fitting, options, &quiet)?);
-    }
-    let prints = add_prints(study, (&mut fitting, &mut fit), &within)?;
+    let (fit, prints) = fitted(study, options, &fitting)?;
     let progress = |stage: &str, share: f64| {
         (control.progress)(stage, FITTING + (LOCATED - FITTING) * share);
     };
-    let within = Control {
+    let locating = Control {
         cancelled: control.cancelled,
         progress: &progress,
     };
-    let file = &study.skin.mesh;
-    let mesh = Mesh::new(file.positions.clone(), file.triangles.clone());
-    let mesh = mesh.map_err(DiagnosisError::Skin)?;
-    let search = Search {
-        skin: Some(&mesh),
-        seed: options.seed,
-        ..Search::default()
-    };
-    // Without repeats noise is a guess, and a place that stands out of a guess is none.
-    let is_told = fit.lack_of_fit_p.is_some();
-    let location = is_told
-        .then(|| locate(&fit, &search, &within))
-        .transpose()?;
+    let location = located(study, (&fit, options), &locating)?;
     let step = |share: f64| {
         let step = control.step("comparing", share);
         step.map_err(|_| DiagnosisError::Cancelled)
@@ -90,6 +64,48 @@ pub fn compare(
     });
     step(1.0)?;
     Ok(comparison)
+}
+
+/// The fit of a study, and its handprints beside it.
+fn fitted(
+    study: &Study,
+    options: &Options,
+    control: &Control<'_>,
+) -> Result<(Fit, Vec<Option<Studied>>), DiagnosisError> {
+    let mut fitting = Fitting::new(study, control)?;
+    let has_samples = fitting.measured().iter().any(|m| !m.samples.is_empty());
+    let is_print = |recording: &StudyRecording| matches!(recording.data, Data::Handprint { .. });
+    let mut fit = match !has_samples && study.recordings.iter().any(is_print) {
+        true => fitting.unfitted(),
+        false => fitting.fit(options, control)?,
+    };
+    if fit.lack_of_fit_p.is_some_and(|p| p < SIGNIFICANT) {
+        let quiet = Control {
+            cancelled: control.cancelled,
+            progress: &|_, _| {},
+        };
+        fit.notes.extend(allowing(&mut fitting, options, &quiet)?);
+    }
+    let prints = add_prints(study, (&mut fitting, &mut fit), control)?;
+    Ok((fit, prints))
+}
+
+/// Where the mismatch is that a fit leaves; None without repeats: noise is a guess then, and a place that stands out of a guess is none.
+fn located(
+    study: &Study,
+    (fit, options): (&Fit, &Options),
+    control: &Control<'_>,
+) -> Result<Option<Location>, DiagnosisError> {
+    let file = &study.skin.mesh;
+    let mesh = Mesh::new(file.positions.clone(), file.triangles.clone());
+    let mesh = mesh.map_err(DiagnosisError::Skin)?;
+    let search = Search {
+        skin: Some(&mesh),
+        seed: options.seed,
+        ..Search::default()
+    };
+    let is_told = fit.lack_of_fit_p.is_some();
+    is_told.then(|| locate(fit, &search, control)).transpose()
 }
 
 /// How much is left once the model's own form may be off, as far as it is known to be.

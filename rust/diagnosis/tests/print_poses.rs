@@ -59,6 +59,14 @@ fn sheet() -> Mat {
 }
 
 fn found(skin: &Skin, mat: Mat, inked: &[f64]) -> (Printed, Comparison) {
+    found_by(skin, (mat, inked), (&[], &[]))
+}
+
+fn found_by(
+    skin: &Skin,
+    (mat, inked): (Mat, &[f64]),
+    regions: (&[i32], &[String]),
+) -> (Printed, Comparison) {
     let comparison = compare_print(StillPrint {
         name: "ink",
         product: "plate",
@@ -71,47 +79,50 @@ fn found(skin: &Skin, mat: Mat, inked: &[f64]) -> (Printed, Comparison) {
         mat,
         inked,
         ink_kpa: 2.0,
-        regions: (&[], &[]),
+        regions,
         unknown: Vec::new(),
     });
     let comparison = comparison.unwrap();
     (comparison.recordings[0].print.clone().unwrap(), comparison)
 }
 
-/// What a paper that lies `pose` off shows of a shape on the product: where a place of the paper comes to lie there.
-fn seen(shape: &dyn Fn(f64, f64) -> bool, [x, y, turn]: [f64; 3], middle: [f64; 2]) -> Vec<f64> {
+/// Where a place of a paper that lies `pose` off, turned about its middle, comes to lie on the product.
+fn carried([u, v]: [f64; 2], [x, y, turn]: [f64; 3]) -> [f64; 2] {
+    let (sin, cos) = turn.sin_cos();
+    [cos * u - sin * v + x, sin * u + cos * v + y]
+}
+
+/// What a paper that lies `pose` off shows of a shape on the product.
+fn seen(shape: &dyn Fn(f64, f64) -> bool, pose: [f64; 3]) -> Vec<f64> {
     shares([50, 50], 1.0, &|u, v| {
-        let (from, (sin, cos)) = ([u - 25.0 - middle[0], v - 25.0 - middle[1]], turn.sin_cos());
-        shape(
-            middle[0] + cos * from[0] - sin * from[1] + x,
-            middle[1] + sin * from[0] + cos * from[1] + y,
-        )
+        let [x, y] = carried([u - 25.0, v - 25.0], pose);
+        shape(x, y)
     })
+}
+
+/// The same pose as the library tells it: it turns the paper about the middle of its ink, which shifts by as much as that is carried.
+fn about_the_ink(inked: &[f64], pose: [f64; 3]) -> [f64; 3] {
+    let touched = (0..inked.len()).filter(|k| inked[*k] >= 0.5);
+    let (mut sum, mut all) = ([0.0; 2], 0.0);
+    for k in touched {
+        sum = [
+            sum[0] + (k % 50) as f64 - 24.5,
+            sum[1] + (k / 50) as f64 - 24.5,
+        ];
+        all += 1.0;
+    }
+    let middle = sum.map(|s| s / all);
+    let [x, y] = carried(middle, pose);
+    [x - middle[0], y - middle[1], pose[2]]
 }
 
 #[test]
 fn a_shifted_and_turned_print_is_found_back() {
     let skin = pressed_letter();
     for planted in [[0.0, 0.0, 0.0], [2.3, -1.7, 0.1], [-6.0, 4.0, -0.15]] {
-        let inked = seen(&letter, planted, [0.0, 0.0]);
+        let inked = seen(&letter, planted);
         let (print, comparison) = found(&skin, sheet(), &inked);
-        // The pose turns about the middle of the ink: carried there, the planted one reads otherwise along x and y.
-        let (mut sum, mut all) = ([0.0; 2], 0.0);
-        for (k, share) in inked.iter().enumerate().filter(|(_, share)| **share >= 0.5) {
-            let _ = share;
-            sum = [
-                sum[0] + (k % 50) as f64 - 24.5,
-                sum[1] + (k / 50) as f64 - 24.5,
-            ];
-            all += 1.0;
-        }
-        let c = sum.map(|s| s / all);
-        let (sin, cos) = planted[2].sin_cos();
-        let wanted = [
-            cos * c[0] - sin * c[1] + planted[0] - c[0],
-            sin * c[0] + cos * c[1] + planted[1] - c[1],
-            planted[2],
-        ];
+        let wanted = about_the_ink(&inked, planted);
         let overlap = measure(&comparison.recordings[0], "overlap")[1];
         println!("{wanted:?}: {:?}, overlap {overlap:.3}", print.pose);
         for (part, (wanted, near)) in print.pose.iter().zip(wanted.iter().zip([0.15, 0.15, 0.01])) {
@@ -124,7 +135,7 @@ fn a_shifted_and_turned_print_is_found_back() {
 #[test]
 fn a_print_from_behind_is_called_mirrored() {
     let skin = pressed_letter();
-    let inked = seen(&|x, y| letter(-x, y), [1.0, 0.0, 0.05], [0.0, 0.0]);
+    let inked = seen(&|x, y| letter(-x, y), [1.0, 0.0, 0.05]);
     let (print, comparison) = found(&skin, sheet(), &inked);
     let overlap = measure(&comparison.recordings[0], "overlap")[1];
     println!("{overlap:.3}, mirrored {:.3}", print.mirrored_overlap);
@@ -140,7 +151,7 @@ fn a_print_from_behind_is_called_mirrored() {
 #[test]
 fn what_is_torn_off_is_neither_right_nor_wrong() {
     let skin = pressed_letter();
-    let mut inked = seen(&letter, [0.0; 3], [0.0, 0.0]);
+    let mut inked = seen(&letter, [0.0; 3]);
     inked[..25 * 50].fill(f64::NAN);
     let (print, comparison) = found(&skin, sheet(), &inked);
     let recording = &comparison.recordings[0];
@@ -166,6 +177,38 @@ fn what_is_torn_off_is_neither_right_nor_wrong() {
     };
     assert!(print.on_skin[on_skin([-7.0, -10.0]).unwrap()].is_nan());
     assert_eq!(print.on_skin[on_skin([-7.0, 10.0]).unwrap()], 0.0);
+    let by_cell = print.by_cell();
+    assert!(by_cell[..25 * 50].iter().all(|residual| residual.is_nan()));
+    assert!(
+        by_cell[25 * 50..]
+            .iter()
+            .all(|residual| residual.abs() <= 1.0)
+    );
+}
+
+/// Ink beside the letter and a part of it that left none: 1 and -1 there, by cell and by vertex.
+#[test]
+fn what_is_inked_alone_and_what_presses_alone_have_their_signs() {
+    let skin = pressed_letter();
+    let shape = |x: f64, y: f64| {
+        let is_beside = (6.0..8.0).contains(&x) && (-10.0..-8.0).contains(&y);
+        let is_blank = (-8.0..-6.0).contains(&x) && (-10.0..-8.0).contains(&y);
+        is_beside || letter(x, y) && !is_blank
+    };
+    let (print, _) = found(&skin, sheet(), &seen(&shape, [0.0; 3]));
+    let (by_cell, of_cell) = (print.by_cell(), |x: f64, y: f64| {
+        (y + 25.0) as usize * 50 + (x + 25.0) as usize
+    });
+    let of_vertex = |x: f64, y: f64| (y + 40.0) as usize * 80 + (x + 40.0) as usize;
+    for (place, wanted) in [([7.0, -9.0], 1.0), ([-7.0, -9.0], -1.0), ([20.0, 0.0], 0.0)] {
+        let [x, y] = place;
+        assert_eq!(by_cell[of_cell(x, y)], wanted, "cell at {place:?}");
+        assert_eq!(
+            print.on_skin[of_vertex(x, y)],
+            wanted,
+            "vertex at {place:?}"
+        );
+    }
 }
 
 /// Around a cylinder of 48 mm the paper unrolls: an arc is as long on it as on the product.
@@ -191,7 +234,7 @@ fn a_print_around_a_cylinder_unrolls() {
         normals: flat.centers.iter().map(|p| bent(p.x, 0.0, 1.0)).collect(),
         ..flat
     };
-    let (print, comparison) = found(&skin, mat, &seen(&letter, [3.0, 1.0, 0.0], [0.0, 0.0]));
+    let (print, comparison) = found(&skin, mat, &seen(&letter, [3.0, 1.0, 0.0]));
     let overlap = measure(&comparison.recordings[0], "overlap")[1];
     println!("{overlap:.3} {:?}", print.pose);
     assert!(
@@ -212,28 +255,9 @@ fn regions_are_told_apart() {
         .collect();
     let names = ["lower".to_string(), "upper".to_string()];
     // The upper bar left no ink beyond x = 0.
-    let inked = seen(
-        &|x, y| letter(x, y) && !(y > 6.0 && x > 0.0),
-        [0.0; 3],
-        [0.0, 0.0],
-    );
-    let comparison = compare_print(StillPrint {
-        name: "ink",
-        product: "plate",
-        hand: "hand",
-        pressed: Pressed {
-            positions: &skin.positions,
-            areas: &skin.areas,
-            force_n: &skin.force_n,
-        },
-        mat: sheet(),
-        inked: &inked,
-        ink_kpa: 0.0,
-        regions: (&regions, &names),
-        unknown: Vec::new(),
-    })
-    .unwrap();
-    let found = &comparison.recordings[0].print.as_ref().unwrap().regions;
+    let inked = seen(&|x, y| letter(x, y) && !(y > 6.0 && x > 0.0), [0.0; 3]);
+    let (print, _) = found_by(&skin, (sheet(), &inked), (&regions, &names));
+    let found = &print.regions;
     println!("{found:?}");
     assert!(found[0].name == "lower" && found[0].overlap > 0.95);
     // Upper: the stem's 6 x 9 and the bar's 20 x 6, less the stem in it: 54 + 84 mm2; 60 mm2 of the bar are not inked.
@@ -273,29 +297,14 @@ fn intervals_of_the_pose_hold_it() {
             };
             letter(x + by(0.0), y + by(1.7))
         };
-        let mut inked = seen(&rough, planted, [0.0, 0.0]);
+        let mut inked = seen(&rough, planted);
         for share in &mut inked {
             if dice.roll() < 0.01 {
                 *share = 1.0 - *share;
             }
         }
         let (print, _) = found(&skin, sheet(), &inked);
-        let touched = inked.iter().enumerate().filter(|(_, share)| **share >= 0.5);
-        let (sum, all) = touched.fold(([0.0; 2], 0.0), |(sum, all), (k, _)| {
-            (
-                [
-                    sum[0] + (k % 50) as f64 - 24.5,
-                    sum[1] + (k / 50) as f64 - 24.5,
-                ],
-                all + 1.0,
-            )
-        });
-        let (c, (sin, cos)) = (sum.map(|s| s / all), planted[2].sin_cos());
-        let wanted = [
-            cos * c[0] - sin * c[1] + planted[0] - c[0],
-            sin * c[0] + cos * c[1] + planted[1] - c[1],
-            planted[2],
-        ];
+        let wanted = about_the_ink(&inked, planted);
         for k in 0..3 {
             held[k] += usize::from((print.pose[k].low..=print.pose[k].high).contains(&wanted[k]));
         }

@@ -232,6 +232,7 @@ pub fn printed(py: Python<'_>, print: &Printed) -> PyResult<Py<PyAny>> {
     entries.set_item("recorded_share", column(py, print.recorded.clone()))?;
     entries.set_item("simulated_share", column(py, print.simulated.clone()))?;
     entries.set_item("simulated_share_as_laid", column(py, print.as_laid.clone()))?;
+    entries.set_item("cell_residual", column(py, print.by_cell()))?;
     entries.set_item("ink_kpa", print.ink_kpa)?;
     let part = |part: &PosePart| (part.value, part.low, part.high);
     entries.set_item("columns_mm", part(&print.pose[0]))?;

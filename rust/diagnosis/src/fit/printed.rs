@@ -6,18 +6,13 @@ use thenar_surface::Vec3;
 
 use super::{Estimate, Fit, Fitting};
 use crate::DiagnosisError;
+use crate::observe::Measured;
 use crate::replay::{Demanded, PrintPress};
 
-impl Fitting {
-    /// What stands for a fit of a study of which nothing is fitted.
-    pub fn unfitted(&self) -> Fit {
-        let measured = self.replay.observed.measured.clone();
+impl Fit {
+    /// Recordings beside which no value is simulated, and of which no number is fitted.
+    pub(crate) fn of_nothing(measured: Vec<Measured>, notes: Vec<String>) -> Fit {
         let empty = || vec![Vec::new(); measured.len()];
-        let mut notes = self.replay.tissue.notes.clone();
-        notes.push(
-            "Nothing was fitted: handprints say where skin touched, and the simulation is that of the study's own materials."
-                .to_owned(),
-        );
         Fit {
             simulated: empty(),
             before: empty(),
@@ -29,6 +24,18 @@ impl Fitting {
             measured,
             notes,
         }
+    }
+}
+
+impl Fitting {
+    /// What stands for a fit of a study of which nothing is fitted.
+    pub fn unfitted(&self) -> Fit {
+        let mut notes = self.replay.tissue.notes.clone();
+        notes.push(
+            "Nothing was fitted: handprints say where skin touched, and the simulation is that of the study's own materials."
+                .to_owned(),
+        );
+        Fit::of_nothing(self.replay.observed.measured.clone(), notes)
     }
 
     /// The press of a print with the study's own materials, and with those of a fit.

@@ -19,9 +19,9 @@ use thenar_recordings::study::{Data, StudyRecording};
 
 use crate::replay::tool_at;
 
-/// Most moments of an indentation that are compared.
+/// Moments of an indentation that are compared; one that has not half more keeps them all.
 pub const MOST_MOMENTS: usize = 100;
-/// Most frames of a map that are compared.
+/// The same of frames of a map.
 pub const MOST_FRAMES: usize = 40;
 
 /// Extent of a tool that only tells the normals of sensels on it, mm: more than a mat's.

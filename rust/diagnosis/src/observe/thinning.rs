@@ -3,7 +3,8 @@
 use super::phases::{Courses, Stretch, range};
 use std::ops::Range;
 
-/// Bins of samples to be averaged, at most `budget` or a few more, none across the border of two stretches.
+/// Bins of samples to be averaged, at most half more than `budget` (one a stretch where there are more), none across the border of two
+/// stretches.
 ///
 /// A recording that is not much longer keeps every sample: bins of one and of two samples would fall on other moments in each of its
 /// repeats, and about turning points these would seem to differ. Else bins are of equal length along the curve in time, depth and force, each

@@ -2,6 +2,7 @@
 
 use super::Pressed;
 use super::sheet::{MARGIN, Sheet};
+use crate::observe::scatter::median;
 
 /// Parts of a cell's side into which the sheet is cut.
 const PARTS: f64 = 4.0;
@@ -29,15 +30,16 @@ impl Field {
             let Some((at, off)) = sheet.spot(&pressed.positions[vertex]) else {
                 continue;
             };
-            let touches = pressed.force_n[vertex] > 0.0 && pressed.kpa(vertex) > ink_kpa;
+            let touches = pressed.inks(vertex, ink_kpa);
             let reach = REACH * pressed.areas[vertex].sqrt();
             field.cover((at, off, reach), f32::from(u8::from(touches)), &mut nearest);
             if touches {
                 sides.push(pressed.areas[vertex].sqrt());
             }
         }
-        sides.sort_by(f64::total_cmp);
-        field.grain = sides.get(sides.len() / 2).copied().unwrap_or(0.0);
+        if !sides.is_empty() {
+            field.grain = median(&mut sides);
+        }
         field
     }
 

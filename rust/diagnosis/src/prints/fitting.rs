@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::sheet::Sheet;
-use super::{PosePart, TOUCHED_FROM};
+use super::{Areas, PosePart, TOUCHED_FROM};
 use crate::Mat;
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,15 +10,16 @@ use nalgebra::{Matrix3, Vector3};
 const ACROSS: i32 = 3;
 /// The paper may lie this many standard deviations off.
 const MOST: f64 = 4.0;
-/// Starts of the search along each shift and in turn, on both sides of none.
-const STARTS: (i32, i32) = (3, 3);
-/// Steps that are followed from the best starts.
+/// Starts of the search along each shift and in turn, on both sides of none, over this part of the range.
+const STARTS: i32 = 3;
+const STARTED: f64 = 0.9;
+/// Best starts that are followed.
 const FOLLOWED: usize = 4;
 /// Finest steps of the search, as parts of a cell.
 const FINEST: f64 = 0.01;
 /// Sectors about the middle of the ink whose misfits are taken as independent of one another: an edge is off over a stretch and not cell by cell.
 const SECTORS: usize = 8;
-/// Smallest variance of a cell's share that is believed: what a quarter of a cell's side moves it by.
+/// Smallest variance of a cell's share that is believed: that of edges that lie a tenth of a cell's side off.
 const LEAST_VARIANCE: f64 = 0.01;
 /// Standard deviations on each side of a 90 % interval, of Student's t for what the sectors leave beside three numbers.
 const NINETY: f64 = 2.015;
@@ -95,8 +96,7 @@ impl Cells {
 
     /// Which place of the paper lies there.
     pub fn back(&self, at: [f64; 2], [x, y, turn]: &[f64; 3]) -> [f64; 2] {
-        let undone = self.moved([at[0] - x, at[1] - y], &[0.0, 0.0, -turn]);
-        [undone[0], undone[1]]
+        self.moved([at[0] - x, at[1] - y], &[0.0, 0.0, -turn])
     }
 
     /// Share of every cell in simulated contact; NaN where nothing is known.
@@ -124,21 +124,7 @@ impl Cells {
 
     /// Area where both touch over the area where either does.
     pub fn overlap(&self, simulated: &[f64]) -> f64 {
-        let (mut both, mut either) = (0.0, 0.0);
-        for (k, share) in simulated.iter().enumerate() {
-            let touches = [self.recorded[k] >= TOUCHED_FROM, *share >= TOUCHED_FROM];
-            both += if touches == [true; 2] {
-                self.areas[k]
-            } else {
-                0.0
-            };
-            either += if touches == [false; 2] || share.is_nan() {
-                0.0
-            } else {
-                self.areas[k]
-            };
-        }
-        both / either
+        areas(&self.areas, &self.recorded, simulated).overlap()
     }
 
     /// Sum of the squared differences of shares.
@@ -160,6 +146,18 @@ impl Cells {
             .map(|(middle, recorded)| (recorded - field.at(self.moved(*middle, pose))).powi(2))
             .sum()
     }
+}
+
+/// Areas of the cells that touched by their shares; those of which nothing is known count for nothing.
+pub fn areas(of_cells: &[f64], recorded: &[f64], simulated: &[f64]) -> Areas {
+    let mut sum = Areas::default();
+    for (k, area) in of_cells.iter().enumerate() {
+        if !recorded[k].is_nan() {
+            let touches = [recorded[k], simulated[k]].map(|share| share >= TOUCHED_FROM);
+            sum.add(*area, touches);
+        }
+    }
+    sum
 }
 
 /// The best pose within [`MOST`] standard deviations (mm, rad) of where the paper is said to lie.
@@ -199,17 +197,13 @@ pub fn best(cells: &Cells, field: &Field, sd: (f64, f64)) -> Fitted {
 
 /// Poses over the whole range, the best first.
 fn starts(misfit: &dyn Fn(&[f64; 3]) -> f64, sd: [f64; 3]) -> Vec<[f64; 3]> {
-    let place = |k: i32, most: i32, sd: f64| 0.9 * MOST * sd * f64::from(k) / f64::from(most);
-    let (shifts, turns) = STARTS;
+    let place = |number: i32, sd: f64| STARTED * MOST * sd * f64::from(number) / f64::from(STARTS);
+    let numbers = || -STARTS..=STARTS;
     let mut all = Vec::new();
-    for i in -shifts..=shifts {
-        for j in -shifts..=shifts {
-            for k in -turns..=turns {
-                let pose = [
-                    place(i, shifts, sd[0]),
-                    place(j, shifts, sd[1]),
-                    place(k, turns, sd[2]),
-                ];
+    for i in numbers() {
+        for j in numbers() {
+            for k in numbers() {
+                let pose = [place(i, sd[0]), place(j, sd[1]), place(k, sd[2])];
                 all.push((misfit(&pose), pose));
             }
         }

@@ -1,5 +1,6 @@
 //! Table and sentence of a print.
 
+use super::fitting::areas;
 use super::{Printed, TOUCHED_FROM};
 use crate::Mat;
 use crate::comparison::Measure;
@@ -8,13 +9,8 @@ use nalgebra::Vector3;
 
 /// Areas, centers and overlap; `before` is the share of every cell where the fit began, the paper as it is said to lie.
 pub fn table(mat: &Mat, printed: &Printed, before: &[f64]) -> Vec<Measure> {
-    let known = |k: usize| !printed.recorded[k].is_nan();
-    let area = |is_in: &dyn Fn(usize) -> bool| -> f64 {
-        let cells = (0..mat.areas.len()).filter(|k| known(*k) && is_in(*k));
-        cells.map(|k| mat.areas[k]).sum()
-    };
-    let inked = |k: usize| printed.recorded[k] >= TOUCHED_FROM;
-    let recorded = area(&inked);
+    let found = |shares: &[f64]| areas(&mat.areas, &printed.recorded, shares);
+    let recorded = found(before).recorded;
     let center = center(mat, &printed.recorded);
     let row = |name, label, unit, measured: f64, of: &dyn Fn(&[f64]) -> f64| Measure {
         name,
@@ -27,11 +23,10 @@ pub fn table(mat: &Mat, printed: &Printed, before: &[f64]) -> Vec<Measure> {
         noise: f64::NAN,
     };
     let nan = f64::NAN;
-    let simulated = |shares: &[f64]| area(&|k| shares[k] >= TOUCHED_FROM);
-    let both = |shares: &[f64]| area(&|k| inked(k) && shares[k] >= TOUCHED_FROM);
-    let either = |shares: &[f64]| area(&|k| inked(k) || shares[k] >= TOUCHED_FROM);
     vec![
-        row("area_mm2", "Contact area", "mm²", recorded, &simulated),
+        row("area_mm2", "Contact area", "mm²", recorded, &|shares| {
+            found(shares).simulated
+        }),
         row(
             "center_distance_mm",
             "Distance of the centers of contact",
@@ -44,21 +39,21 @@ pub fn table(mat: &Mat, printed: &Printed, before: &[f64]) -> Vec<Measure> {
             "Overlap of the contact areas (both / either)",
             "",
             nan,
-            &|shares| both(shares) / either(shares),
+            &|shares| found(shares).overlap(),
         ),
         row(
             "overlap_of_measured",
             "Share of the inked area that is simulated too",
             "",
             nan,
-            &|shares| both(shares) / recorded,
+            &|shares| found(shares).both / recorded,
         ),
         row(
             "overlap_of_simulated",
             "Share of the simulated area that is inked too",
             "",
             nan,
-            &|shares| both(shares) / simulated(shares),
+            &|shares| found(shares).both / found(shares).simulated,
         ),
     ]
 }

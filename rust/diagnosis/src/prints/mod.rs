@@ -21,10 +21,10 @@ use sheet::Sheet;
 
 pub use regions::PrintRegion;
 pub use still::{StillPrint, compare_print};
-pub(crate) use studied::add_prints;
+pub(crate) use studied::{Studied, add_prints};
 
-/// A cell touched if this part of it did.
-const TOUCHED_FROM: f64 = thenar_recordings::handprint::TOUCHED_FROM;
+pub(crate) use thenar_recordings::handprint::TOUCHED_FROM;
+
 /// A print is called mirrored if its overlap is so much larger when it is turned about.
 const MUCH_BETTER: f64 = 0.1;
 /// Standard deviation of where a paper that was laid by hand lies, mm and rad (5 degrees), where the study does not say.
@@ -44,9 +44,10 @@ pub struct Pressed<'a> {
 }
 
 impl Pressed<'_> {
-    /// Mean pressure at a vertex, kPa.
-    fn kpa(&self, vertex: usize) -> f64 {
-        KPA * self.force_n[vertex] / self.areas[vertex].max(f64::MIN_POSITIVE)
+    /// Whether skin leaves ink at a vertex: it presses, and with more than that on the mean of its area.
+    fn inks(&self, vertex: usize, ink_kpa: f64) -> bool {
+        let (force, area) = (self.force_n[vertex], self.areas[vertex]);
+        force > 0.0 && KPA * force > ink_kpa * area
     }
 }
 
@@ -80,6 +81,33 @@ pub struct PosePart {
     pub high: f64,
 }
 
+/// Contact that was recorded, that is simulated, and that is both, mm2.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Areas {
+    recorded: f64,
+    simulated: f64,
+    both: f64,
+}
+
+impl Areas {
+    fn add(&mut self, area: f64, [is_recorded, is_simulated]: [bool; 2]) {
+        let of = |is: bool| if is { area } else { 0.0 };
+        self.recorded += of(is_recorded);
+        self.simulated += of(is_simulated);
+        self.both += of(is_recorded && is_simulated);
+    }
+
+    /// Both over either; NaN where neither is.
+    fn overlap(&self) -> f64 {
+        self.both / (self.recorded + self.simulated - self.both)
+    }
+}
+
+/// 1 where ink is alone, -1 where simulated contact is alone, 0 where both are or neither.
+fn residual([is_recorded, is_simulated]: [bool; 2]) -> f64 {
+    f64::from(i8::from(is_recorded) - i8::from(is_simulated))
+}
+
 /// A print beside its simulation; lists have a value per cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Printed {
@@ -106,8 +134,8 @@ pub struct Printed {
     pub beside: f64,
 }
 
-/// What a print shows against a contact, and its table of measures; None for cells without rows and columns, and for a print or a contact of
-/// which nothing touches.
+/// What a print shows against a contact, and its table of measures; None for cells without rows and columns, and for a print of which no
+/// cell touched.
 pub fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
     let sheet = Sheet::new(case.mat)?;
     let cells = Cells::new(&sheet, case.mat, case.inked)?;
@@ -145,6 +173,16 @@ pub fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
 }
 
 impl Printed {
+    /// Residual by cell, as by vertex: 1 inked alone, -1 simulated alone, 0 both or neither, NaN where nothing is known.
+    pub fn by_cell(&self) -> Vec<f64> {
+        let cells = self.recorded.iter().zip(&self.simulated);
+        let one = |(recorded, simulated): (&f64, &f64)| match recorded.is_nan() {
+            true => f64::NAN,
+            false => residual([recorded, simulated].map(|share| *share >= TOUCHED_FROM)),
+        };
+        cells.map(one).collect()
+    }
+
     /// What a designer reads first.
     pub(crate) fn sentence(&self, table: &[Measure]) -> String {
         measures::sentence(self, table)

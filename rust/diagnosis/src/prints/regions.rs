@@ -2,7 +2,7 @@
 
 use super::fitting::{Cells, Fitted};
 use super::sheet::Sheet;
-use super::{PrintCase, TOUCHED_FROM};
+use super::{Areas, PrintCase, TOUCHED_FROM, residual};
 
 /// Contact of one region, by the areas of its vertices.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,8 +35,7 @@ pub fn on_skin(
             beside += force;
             return f64::NAN;
         }
-        let touches = |is: bool| if is { 1.0 } else { 0.0 };
-        touches(inked >= TOUCHED_FROM) - touches(presses(case, vertex))
+        residual([inked >= TOUCHED_FROM, presses(case, vertex)])
     };
     let residual = (0..case.pressed.positions.len())
         .map(&mut at_vertex)
@@ -45,7 +44,7 @@ pub fn on_skin(
 }
 
 fn presses(case: &PrintCase<'_>, vertex: usize) -> bool {
-    case.pressed.force_n[vertex] > 0.0 && case.pressed.kpa(vertex) > case.ink_kpa
+    case.pressed.inks(vertex, case.ink_kpa)
 }
 
 /// Areas and overlap of every region that either shows; none where there is one region.
@@ -55,22 +54,20 @@ pub fn by_region(case: &PrintCase<'_>, on_skin: &[f64]) -> Vec<PrintRegion> {
         return Vec::new();
     }
     let of = |(number, name): (usize, &String)| {
-        let (mut recorded, mut simulated, mut both) = (0.0, 0.0, 0.0);
+        let mut areas = Areas::default();
         for (vertex, residual) in on_skin.iter().enumerate() {
             if residual.is_nan() || usize::try_from(regions[vertex]) != Ok(number) {
                 continue;
             }
-            let (area, is_pressed) = (case.pressed.areas[vertex], presses(case, vertex));
+            let is_pressed = presses(case, vertex);
             let is_inked = *residual > 0.0 || *residual == 0.0 && is_pressed;
-            recorded += if is_inked { area } else { 0.0 };
-            simulated += if is_pressed { area } else { 0.0 };
-            both += if is_inked && is_pressed { area } else { 0.0 };
+            areas.add(case.pressed.areas[vertex], [is_inked, is_pressed]);
         }
         PrintRegion {
             name: name.clone(),
-            recorded_mm2: recorded,
-            simulated_mm2: simulated,
-            overlap: both / (recorded + simulated - both),
+            recorded_mm2: areas.recorded,
+            simulated_mm2: areas.simulated,
+            overlap: areas.overlap(),
         }
     };
     let all = names.iter().enumerate().map(of);

@@ -1,11 +1,15 @@
 //! The paper as a flat sheet: where a place near the product lies on it, mm along its columns and rows.
 
 use crate::Mat;
+use crate::observe::scatter::median;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 /// A place farther off the paper than this does not lie on it, mm: skin that nearly touches, and a coarse product's chords.
 const OFF: f64 = 4.0;
+/// How much farther off it may lie for every mm beyond the paper's edge, where the product bends away from it, as a cylinder
+/// of 25 mm radius does at [`MARGIN`].
+const BENDS: f64 = 0.3;
 /// A place beyond the paper's edge is followed so far along it, mm: paper that lies otherwise than it is said to may reach there.
 pub const MARGIN: f64 = 15.0;
 
@@ -46,8 +50,7 @@ impl Sheet {
             let mut lengths: Vec<f64> = (0..places.len())
                 .filter_map(|k| Some(along(k, axis)?.norm()))
                 .collect();
-            lengths.sort_by(f64::total_cmp);
-            lengths.get(lengths.len() / 2).copied()
+            (!lengths.is_empty()).then(|| median(&mut lengths))
         });
         let pitch = match pitch {
             [Some(columns), Some(rows)] => [columns, rows],
@@ -110,9 +113,8 @@ impl Sheet {
         let beyond = (x.abs() * self.pitch[0]).hypot(y.abs() * self.pitch[1]);
         let off = (apart - column * x - row * y).norm();
         let middle = self.middle(cell);
-        // A surface that bends away from the last cell lies the deeper the farther one goes.
         let is_near =
-            off <= OFF + 0.3 * beyond && beyond <= MARGIN + self.pitch[0].hypot(self.pitch[1]);
+            off <= OFF + BENDS * beyond && beyond <= MARGIN + self.pitch[0].hypot(self.pitch[1]);
         is_near.then(|| {
             let at = [middle[0] + x * self.pitch[0], middle[1] + y * self.pitch[1]];
             (at, off)

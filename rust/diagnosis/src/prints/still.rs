@@ -1,6 +1,6 @@
 //! One print beside one contact that was solved elsewhere: nothing but the paper's pose is fitted.
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 
 use super::{Pressed, PrintCase, compare};
 use crate::comparison::{Compared, Comparison, compare_fit};
@@ -53,7 +53,23 @@ pub fn compare_print(still: StillPrint<'_>) -> Result<Comparison, DiagnosisError
         });
     };
     table.iter_mut().for_each(|row| row.before = f64::NAN);
-    let measured = Measured {
+    let measured = measured(&still);
+    let note =
+        "Nothing but the paper's pose was fitted: the simulation is the contact as it was solved.";
+    let fit = Fit::of_nothing(vec![measured], vec![note.to_string()]);
+    let positions: &[Vector3<f64>] = still.pressed.positions;
+    Ok(compare_fit(&Compared {
+        title: &format!("{} on {}", still.hand, still.product),
+        skin: positions,
+        sites: &[],
+        fit: &fit,
+        location: None,
+        prints: &[Some((printed, table))],
+    }))
+}
+
+fn measured(still: &StillPrint<'_>) -> Measured {
+    Measured {
         name: still.name.to_string(),
         protocol: still.name.to_string(),
         indenter: still.product.to_string(),
@@ -64,28 +80,5 @@ pub fn compare_print(still: StillPrint<'_>) -> Result<Comparison, DiagnosisError
         scan: None,
         is_calibrated: true,
         unknown: still.unknown.clone(),
-    };
-    let fit = Fit {
-        measured: vec![measured],
-        simulated: vec![Vec::new()],
-        before: vec![Vec::new()],
-        sigma: vec![Vec::new()],
-        projected: vec![Vec::new()],
-        absorbed: DMatrix::zeros(0, 0),
-        estimates: Vec::new(),
-        lack_of_fit_p: None,
-        notes: vec![
-            "Nothing but the paper's pose was fitted: the simulation is the contact as it was solved."
-                .to_string(),
-        ],
-    };
-    let positions: &[Vector3<f64>] = still.pressed.positions;
-    Ok(compare_fit(&Compared {
-        title: &format!("{} on {}", still.hand, still.product),
-        skin: positions,
-        sites: &[],
-        fit: &fit,
-        location: None,
-        prints: &[Some((printed, table))],
-    }))
+    }
 }

@@ -14,7 +14,7 @@ use crate::replay::{Demanded, PrintPress};
 use crate::{DiagnosisError, Fit, Mat};
 
 /// A print beside its simulation, with its table.
-type Studied = (Printed, Vec<Measure>);
+pub(crate) type Studied = (Printed, Vec<Measure>);
 
 /// Compares every handprint of a study; by recording, None for others and for those that cannot be compared. What a recording lacks is
 /// added to what is unknown of it.
@@ -101,20 +101,13 @@ fn demanded(recording: &StudyRecording) -> Option<Demanded> {
     else {
         return None;
     };
-    let deepest = || {
-        let depths = motion.as_ref()?.channel("depth_mm")?;
-        let finite = depths.iter().copied().filter(|depth| depth.is_finite());
-        finite.reduce(f64::max).filter(|depth| *depth > 0.0)
+    let most = |channel: &str| {
+        let values = motion.as_ref()?.channel(channel)?;
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        finite.reduce(f64::max).filter(|value| *value > 0.0)
     };
-    let strongest = || {
-        let forces = motion.as_ref()?.channel("force_n")?;
-        let finite = forces.iter().copied().filter(|force| force.is_finite());
-        finite.reduce(f64::max).filter(|force| *force > 0.0)
-    };
-    force_n
-        .or_else(strongest)
-        .map(Demanded::Force)
-        .or_else(|| depth_mm.or_else(deepest).map(Demanded::Depth))
+    let force = force_n.or_else(|| most("force_n")).map(Demanded::Force);
+    force.or_else(|| depth_mm.or_else(|| most("depth_mm")).map(Demanded::Depth))
 }
 
 /// The cells that have a place, and their shares of ink.

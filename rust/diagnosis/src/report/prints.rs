@@ -5,7 +5,8 @@ use super::svg::{Anchor, Svg, Type, escaped};
 use super::tables;
 use crate::Mat;
 use crate::comparison::RecordingComparison;
-use crate::prints::Printed;
+use crate::observe::scatter::median;
+use crate::prints::{Printed, TOUCHED_FROM};
 use std::collections::BTreeMap;
 
 /// Largest width and height of the picture, px.
@@ -18,9 +19,6 @@ const BOTH: &str = "#8d99a3";
 const INK_ALONE: &str = "#e9a27a";
 const SIMULATED_ALONE: &str = "#8fc1e3";
 const INK_EDGE: &str = "stroke='#111' stroke-width='1.4' stroke-linecap='square'";
-
-/// A cell touched from this share on.
-const TOUCHED: f64 = thenar_recordings::handprint::TOUCHED_FROM;
 
 /// Picture and table of a print; nothing for other recordings.
 pub fn section(recording: &RecordingComparison) -> String {
@@ -72,12 +70,12 @@ impl Picture<'_> {
 
     fn touches(&self, at: Option<[u32; 2]>, shares: &[f64]) -> bool {
         let cell = at.and_then(|at| self.cells.get(&at));
-        cell.is_some_and(|cell| shares[*cell] >= TOUCHED)
+        cell.is_some_and(|cell| shares[*cell] >= TOUCHED_FROM)
     }
 
     fn color(&self, cell: usize) -> &'static str {
-        let inked = self.print.recorded[cell] >= TOUCHED;
-        match (inked, self.print.simulated[cell] >= TOUCHED) {
+        let inked = self.print.recorded[cell] >= TOUCHED_FROM;
+        match (inked, self.print.simulated[cell] >= TOUCHED_FROM) {
             (true, true) => BOTH,
             (true, false) => INK_ALONE,
             (false, true) => SIMULATED_ALONE,
@@ -197,18 +195,14 @@ fn ruler(svg: &mut Svg, (scale, width, y): (f64, f64, f64)) {
 
 /// Usual distance of neighboring columns and rows, mm.
 fn pitch(mat: &Mat, cells: &BTreeMap<[u32; 2], usize>) -> [f64; 2] {
-    let median = |step: [u32; 2]| {
+    let usual = |step: [u32; 2]| {
         let apart = |(place, cell): (&[u32; 2], &usize)| {
             let next = cells.get(&[place[0] + step[0], place[1] + step[1]])?;
             Some((mat.centers[*next] - mat.centers[*cell]).norm())
         };
         let mut lengths: Vec<f64> = cells.iter().filter_map(apart).collect();
-        lengths.sort_by(f64::total_cmp);
-        lengths.get(lengths.len() / 2).copied()
+        (!lengths.is_empty()).then(|| median(&mut lengths))
     };
     let side = mat.areas.first().map_or(1.0, |area| area.sqrt());
-    [
-        median([0, 1]).unwrap_or(side),
-        median([1, 0]).unwrap_or(side),
-    ]
+    [usual([0, 1]).unwrap_or(side), usual([1, 0]).unwrap_or(side)]
 }
