@@ -8,6 +8,7 @@ use scenes::laboratory::{USUAL, clean, measured, planned};
 use serde_json::Value;
 use thenar_contact::{ActiveEffect, Control};
 use thenar_diagnosis::diagnose::Verdict;
+use thenar_diagnosis::report::diagnosis_html;
 use thenar_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, Fitting, diagnose, findings_json,
 };
@@ -29,11 +30,12 @@ fn a_study_without_anything_missing_blames_nobody_and_says_what_it_would_have_se
         seen.contains(&"relaxation") && seen.contains(&"cycle_softening"),
         "{seen:?}"
     );
+    let sizes = || found.smallest_seen.iter().filter_map(|(_, size, _)| *size);
+    assert!(sizes().all(|size| size.is_finite() && size > 0.0));
+    let fades = found.smallest_seen.iter().find(|s| s.0 == "relaxation");
     assert!(
-        found
-            .smallest_seen
-            .iter()
-            .all(|(_, value, _)| value.is_none_or(|v| v.is_finite() && v > 0.0))
+        fades.is_some_and(|s| s.1.is_some_and(|share| share < 0.5)),
+        "{fades:?}: half of the force is less than presses with holds would show"
     );
     assert_eq!(
         findings_json(&found),
@@ -54,6 +56,13 @@ fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
     let names: Vec<&str> = found.findings.iter().map(|f| f.effect).collect();
     assert_eq!(names, ["relaxation"], "{}", found.sentence);
     assert_eq!(found.verdict, Verdict::MissingPhysics);
+    let signs = &found.findings[0].consequences;
+    assert!(
+        signs.len() >= 2 && signs.iter().all(|(_, holds)| *holds),
+        "a force that fades falls in a hold and opens the loop: {signs:?}"
+    );
+    let page = diagnosis_html(&found);
+    assert!(page.contains(&format!("{}</td><td class='left'>holds", signs[0].0)));
     let gain = found.gain.as_ref().unwrap();
     assert!(
         gain.after.rms < gain.before.rms && gain.removed > 0.75,

@@ -2,7 +2,7 @@
 
 use super::page::page;
 use super::svg::escaped;
-use crate::diagnose::{Curve, Diagnosis, Gain, Rival};
+use crate::diagnose::{Curve, Diagnosis, Gain, Number, Rival};
 use std::fmt::Write;
 
 /// Width and height of a plot, px.
@@ -47,20 +47,42 @@ fn findings(found: &Diagnosis) -> String {
             escaped(&finding.effect.replace('_', " ")),
             100.0 * finding.confidence
         );
-        for number in &finding.numbers {
-            let _ = write!(
-                html,
-                "<tr><td class='left'>{}</td><td>{:.4}</td><td>{:.4} to {:.4}</td><td class='left'>{}</td></tr>",
-                number.name, number.value, number.interval.0, number.interval.1, number.unit
-            );
-        }
+        html.extend(finding.numbers.iter().map(number));
         html += "</table>\n";
-        for (sentence, holds) in &finding.consequences {
-            let mark = if *holds { "holds" } else { "does not hold" };
-            let _ = write!(html, "<p class='meta'>{}: {mark}</p>", escaped(sentence));
-        }
+        html += &signs(&finding.consequences);
     }
     html
+}
+
+fn number(of: &Number) -> String {
+    let (low, high) = of.interval;
+    let between = match low < high {
+        true => format!("{low:.4} to {high:.4}"),
+        false => "not fitted".to_owned(),
+    };
+    let unit = if of.unit == "1" { "" } else { of.unit };
+    format!(
+        "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
+        of.name, of.value
+    )
+}
+
+/// What must show in the recordings if the effect is there, and whether it does.
+fn signs(consequences: &[(String, bool)]) -> String {
+    if consequences.is_empty() {
+        return String::new();
+    }
+    let row = |(sentence, holds): &(String, bool)| {
+        let told = if *holds { "holds" } else { "does not hold" };
+        format!(
+            "<tr><td class='left'>{}</td><td class='left'>{told}</td></tr>",
+            escaped(sentence)
+        )
+    };
+    let rows: String = consequences.iter().map(row).collect();
+    format!(
+        "<table><tr><th class='left'>what must show if it is there</th><th class='left'>in these recordings</th></tr>{rows}</table>\n"
+    )
 }
 
 fn gained(gain: &Gain) -> String {
@@ -113,7 +135,8 @@ fn rivals(all: &[Rival]) -> String {
         }
         html += "</tr>";
     }
-    html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued.</p>\n"
+    html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued. A pair one of which is not needed \
+counts as the other alone, and has no probability of its own.</p>\n"
 }
 
 fn smallest(found: &Diagnosis) -> String {
@@ -125,7 +148,7 @@ fn smallest(found: &Diagnosis) -> String {
         format!(
             "<tr><td class='left'>{}</td><td>{size}</td><td class='left'>{}</td></tr>",
             escaped(&name.replace('_', " ")),
-            escaped(unit)
+            value.map_or_else(String::new, |_| escaped(unit))
         )
     };
     let rows: String = found.smallest_seen.iter().map(row).collect();
