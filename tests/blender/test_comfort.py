@@ -11,11 +11,11 @@ from thenar_blender import comfort
 from thenar_blender import result as results
 
 
-def halves(hand):
-    """Two regions, a finger's and the thenar, by the sign of x."""
-    points = stage.evaluated(hand)
-    for name, inside in (("index_distal_pad", points[:, 0] < 0.0), ("thenar", points[:, 0] >= 0.0)):
-        hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(inside)], 1.0, "REPLACE")
+def halves(hand, names=("index_distal_pad", "thenar"), edges_mm=(0.0,)):
+    """Regions along x that part at `edges_mm`: two, a finger's and the thenar, if not told."""
+    part = np.digitize(stage.evaluated(hand)[:, 0], edges_mm)
+    for number, name in enumerate(names):
+        hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(part == number)], 1.0, "REPLACE")
     bpy.ops.thenar.assign_regions()
 
 
@@ -68,6 +68,18 @@ def test_discomfort_is_a_share_of_the_pain_threshold_that_the_user_types():
     wanted = over(hand, [peak / 2] * 2)
     assert [row.over_mm2 for row in settings.result.regions] == pytest.approx(wanted, rel=1e-4)
     assert settings.result.over_mm2 == pytest.approx(sum(wanted), rel=1e-4) and sum(wanted) > 1.0
+
+
+def test_a_finger_has_what_lies_over_the_threshold_in_all_its_regions():
+    hand, _ = stage.scene()
+    halves(hand, ("index_distal_pad", "index_middle_pad", "thenar"), (-1.0, 1.0))
+    settings = bpy.context.scene.thenar
+    settings.comfort.rule, settings.comfort.finger_kpa, settings.comfort.thenar_kpa = "OWN", 5.0, 5.0
+    result = stage.solve()
+    distal, middle, thenar = over(hand, [5.0] * 3)
+    assert min(distal, middle, thenar) > 1.0
+    told = {finger.name: finger.over_mm2 for finger in result.fingers}
+    assert told == {"index": pytest.approx(distal + middle, rel=1e-4), "palm": pytest.approx(thenar, rel=1e-4)}
 
 
 def test_the_verdict_is_exported_and_shown(tmp_path):

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
+from mathutils import Euler, Matrix
 
 
 def triangle_areas(obj):
@@ -25,6 +26,25 @@ def test_totals_are_those_of_the_vertices():
     assert result.mean_kpa == pytest.approx(1000 * result.force_n / result.area_mm2, rel=1e-4)
     assert ((force > 0) == (pressure > 0)).all() and (force >= 0).all()
     assert np.array(result.force_vector_n)[2] == pytest.approx(-result.force_n, rel=1e-2), "the plate is pushed down"
+
+
+def test_moment_is_about_the_worlds_origin():
+    """Of hand and product moved together by a turn R and a shift t: force R F, moment R M + t x R F."""
+    hand, product = stage.scene()
+    hand.location.x, product.location.x = 0.003, 0.003
+    bpy.context.view_layer.update()
+    result = stage.solve()
+    force, moment = np.array(result.force_vector_n), np.array(result.moment_nmm)
+    center = np.array(result.center_mm)
+    turn, shift_mm = Euler((0.7, -0.4, 1.1)).to_matrix(), np.array([40.0, -25.0, 60.0])
+    for obj in (hand, product):
+        obj.matrix_world = Matrix.Translation(shift_mm * stage.MM) @ turn.to_4x4() @ obj.matrix_world
+    bpy.context.view_layer.update()
+    moved, turned = stage.solve(), np.array(turn) @ force
+    assert np.array(moved.force_vector_n) == pytest.approx(turned, rel=1e-3, abs=1e-3 * moved.force_n)
+    wanted = np.array(turn) @ moment + np.cross(shift_mm, turned)
+    assert np.array(moved.moment_nmm) == pytest.approx(wanted, abs=1e-3 * np.linalg.norm(wanted))
+    assert np.array(moved.center_mm) == pytest.approx(np.array(turn) @ center + shift_mm, abs=0.01)
 
 
 def test_written_surface_does_not_penetrate():
