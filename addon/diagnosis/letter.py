@@ -199,6 +199,10 @@ def _gain(fit):
         if removed.get("low") is not None and removed.get("high") is not None:
             between = f" ({wording.share(removed['low'])} to {wording.share(removed['high'])})"
         yield f"{wording.share(removed['value'])}{between} of the error that could be removed is gone."
+    placebo = fit.get("placebo_removed")
+    if placebo is not None:
+        share = wording.share(max(placebo, 0.0))
+        yield f"A placebo, the same change on the wrong recordings at the wrong moments, removes {share} at most."
     held_out = fit.get("held_out")
     if held_out:
         count = len(held_out)

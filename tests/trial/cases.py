@@ -3,8 +3,9 @@
     for case in names("trial"): write(case, folder)
 
 A case's folder is a study (recordings' format in README): curves of force over depth on a flat pad, each
-protocol twice. `follow_up(case, protocol, folder)` adds a protocol that the case holds back, as if it had been
-recorded next; `held_back(case)` names those. Cases `local_...` hold the maps of a mat, on the pads of studies.py.
+protocol twice. `held_back(case)` names the protocols that it does not publish; `follow_up(case, wanted, folder)` adds
+what was recorded next, any protocol up to twelve times (make_follow_ups.py). Cases `local_...` hold the maps of a mat,
+on the pads of studies.py.
 
 What is in: nine tissue effects, six pairs, seven instrument errors, four mixtures, three causes on no list, spots under
 a mat, nulls of five kinds of scatter, studies that are ambiguous or too poor by design. What is not: friction, coupling
@@ -60,6 +61,11 @@ def held_back(case):
     return sorted({one["protocol"] for one in recordings(case) if one["held_back"]})
 
 
+def goes_on(case):
+    """Whether something was recorded after the study."""
+    return f"{case}/force" in _follow_ups()
+
+
 def curve(case, number):
     """(times s, stated depths mm, forces N) of a case's recording."""
     one = recordings(case)[number]
@@ -69,8 +75,40 @@ def curve(case, number):
     return time, table["depth"][rows] * protocols.STEP_MM, table["force"][rows] * one["step_n"]
 
 
+def recorded_next(case, wanted):
+    """What is recorded after a study, `wanted` times by protocol, in turn.
+
+    Each is (protocol, times s, stated depths mm, forces N).
+    """
+    if not goes_on(case):
+        raise ValueError(f"case {case} publishes every protocol, or too little: nothing was recorded after it")
+    unknown = sorted(set(wanted) - set(protocols.PROTOCOLS))
+    if unknown:
+        raise ValueError(f"there is no protocol {', '.join(unknown)}; there are {', '.join(protocols.PROTOCOLS)}")
+    pad, known = index()[case]["pad"], list(protocols.PROTOCOLS)
+    motions = {name: protocols.sampled(pad, name) for name in known}
+    table = _follow_ups()
+    step, zero, force = (table[f"{case}/{what}"] for what in ("step_n", "zero_mm", "force"))
+    times = len(step) // len(known)
+    if max(wanted.values()) > times:
+        raise ValueError(f"case {case} was recorded {times} times more, not {max(wanted.values())}")
+    before = np.cumsum([0] + [len(motions[name][0]) for name in known for _ in range(times)])
+    for repeat in range(max(wanted.values())):
+        for protocol in (name for name, often in wanted.items() if repeat < often):
+            number = known.index(protocol) * times + repeat
+            time, depth = motions[protocol]
+            rows = slice(before[number], before[number + 1])
+            yield protocol, time, depth + float(zero[number]), force[rows] * step[number]
+
+
+@functools.cache
+def _follow_ups():
+    with np.load(HERE / "follow_ups.npz") as table:
+        return {name: table[name] for name in table.files}
+
+
 def write(case, folder, more=()):
-    """Writes the study, with the protocols `more` of those held back."""
+    """Writes the study, with recordings `more` after it, as of `recorded_next`."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     about = index()[case]
@@ -78,16 +116,20 @@ def write(case, folder, more=()):
         _unpack(about, folder)
         return
     text = _head(about)
-    for number, one in enumerate(recordings(case)):
-        if one["held_back"] and one["protocol"] not in more:
-            continue
-        name = f"{one['protocol']}, repeat {one['repeat'] + 1}"
-        file = f"press_{number}.csv"
-        rows = [f"{t:.4f},{d:.4f},{f:.7f}" for t, d, f in zip(*curve(case, number), strict=True)]
-        (folder / file).write_text("time_s,depth_mm,force_n\n" + "\n".join(rows) + "\n")
-        tool = protocols.PROTOCOLS[one["protocol"]].tool
-        text += f'[[recordings]]\nname = "{name}"\nkind = "indentation"\nfile = "{file}"\nindenter = "{tool}"\n'
-        text += f'site = "pad"\nprotocol = "{one["protocol"]}"\norder = {one["order"]}\nrest_s = 300.0\n'
+    published = [(number, one) for number, one in enumerate(recordings(case)) if not one["held_back"]]
+    presses = [(number, one["protocol"], *curve(case, number)) for number, one in published]
+    presses += [(2 * len(protocols.PROTOCOLS) + k, *one) for k, one in enumerate(more)]
+    often = {}
+    for order, protocol, *rows in presses:
+        often[protocol] = often.get(protocol, 0) + 1
+        file = f"press_{order}.csv"
+        lines = [f"{t:.4f},{d:.4f},{f:.7f}" for t, d, f in zip(*rows, strict=True)]
+        (folder / file).write_text("time_s,depth_mm,force_n\n" + "\n".join(lines) + "\n")
+        text += (
+            f'[[recordings]]\nname = "{protocol}, repeat {often[protocol]}"\nkind = "indentation"\nfile = "{file}"\n'
+        )
+        text += f'indenter = "{protocols.PROTOCOLS[protocol].tool}"\nsite = "pad"\n'
+        text += f'protocol = "{protocol}"\norder = {order}\nrest_s = 300.0\n'
     (folder / "study.toml").write_text(text)
     (folder / "skin.ply").write_text(skin(about["pad"]))
 
@@ -100,11 +142,9 @@ def _unpack(about, folder):
     (folder / "skin.ply").write_text(studies.Pad(about["pad"], studies.MATS[about["mat"]][1]).skin())
 
 
-def follow_up(case, protocol, folder):
-    """The study again, with one protocol that it held back."""
-    if protocol not in held_back(case):
-        raise ValueError(f"case {case} holds back no {protocol}; it holds back {held_back(case)}")
-    write(case, folder, (protocol,))
+def follow_up(case, wanted, folder):
+    """The study again, with what was recorded next: times by protocol."""
+    write(case, folder, tuple(recorded_next(case, wanted)))
 
 
 def _head(about):

@@ -1,4 +1,4 @@
-"""Follows "record this next": which protocol that a case holds back is the one asked for, and one at random."""
+"""Follows "record this next": which protocols are the ones asked for and how often, and one at random."""
 
 import hashlib
 import math
@@ -6,30 +6,49 @@ import math
 from trial import cases, protocols
 
 UNLIKE = 1.0  # away by more than this, none of those held back is what was asked for
+MOST = 12  # presses of a protocol that can be recorded next
 
 
 def is_open(case, verdict):
-    """Whether it cannot tell, asks for a recording, and the case holds one back."""
+    """Whether it cannot tell, asks for a recording, and the case goes on."""
     asks = verdict.get("verdict") == "cannot_tell" and bool(verdict.get("record_next"))
-    return asks and bool(cases.held_back(case))
+    return asks and cases.goes_on(case)
 
 
 def asked_for(case, verdict):
-    """The protocol held back that comes closest to the first advice that any of them meets; None if none does."""
+    """How often to record which protocol; None if nothing that is held back was asked for.
+
+    Of those held back the closest to the first advice that any of them meets; with the tool that is pressed in turn
+    whatever comes closest.
+    """
     if not is_open(case, verdict):
         return None
-    held = cases.held_back(case)
     for advice in verdict.get("record_next", []):
-        away = {name: distance(case, name, advice.get("protocol", {})) for name in held}
-        if away and min(away.values()) <= UNLIKE:
-            return min(away, key=away.get)
+        wanted = advice.get("protocol", {})
+        away, name = nearest(case, cases.held_back(case), wanted)
+        if away > UNLIKE:
+            continue
+        often = min(int(wanted.get("presses") or 2), MOST)
+        found = {name: often}
+        tool = wanted.get("in_turn_with")
+        if tool:
+            like = [one for one, how in protocols.PROTOCOLS.items() if how.tool == tool]
+            found[nearest(case, like, wanted | {"radius_mm": None, "indenter": None})[1]] = often
+        return found
     return None
 
 
-def at_random(case):
-    """One of the protocols held back, by the case's name alone; None if there is none."""
+def at_random(case, often=2):
+    """One of the protocols held back, by the case's name alone, recorded as often; None if there is none."""
     held = cases.held_back(case)
-    return held[int(hashlib.sha256(case.encode()).hexdigest(), 16) % len(held)] if held else None
+    if not cases.goes_on(case):
+        return None
+    return {held[int(hashlib.sha256(case.encode()).hexdigest(), 16) % len(held)]: often}
+
+
+def nearest(case, names, wanted):
+    """(how far, name) of the protocol that comes closest to the one wanted."""
+    return min((distance(case, name, wanted), name) for name in names)
 
 
 def distance(case, name, wanted):

@@ -4,9 +4,10 @@
 
 Verdicts are kept in `target/prove/<case>`, those of the baselines in `target/prove/<baseline>/<case>`, and are not
 asked for twice (running.py), so a run that was cut goes on. Where the diagnosis cannot tell and asks for a recording
-that the case holds back, the study with that recording is kept in `<case>/followed`, one with a recording drawn by lot
-in `<case>/at_random`. A wrong exit counts as saying nothing and is listed. Prints the table and writes `table.json` and
-`page.html`. Exits with 1 if a row of the diagnosis falls short of what it must be.
+that the case holds back, the study with that recording, made as often as was asked, is kept in `<case>/followed`, and
+one with a recording drawn by lot in `<case>/at_random`. A wrong exit
+counts as saying nothing and is listed. Prints the table and writes `table.json` and `page.html`. Exits with 1 if a row
+of the diagnosis falls short of what it must be.
 """
 
 import argparse
@@ -29,10 +30,11 @@ def job(who, out, case):
     told = running.answer(diagnosis, functools.partial(cases.write, case), out / case)
     verdict = json.loads(told.read_text()) if told else {}
     advised = following.asked_for(case, verdict) if who.name == THENAR else None
-    by_lot = following.at_random(case) if who.name == THENAR and verdict.get("verdict") == "cannot_tell" else None
-    for way, protocol in (("followed", advised), ("at_random", by_lot)):
-        if protocol:
-            running.answer(diagnosis, functools.partial(cases.follow_up, case, protocol), out / case / way)
+    is_open = who.name == THENAR and verdict.get("verdict") == "cannot_tell"
+    by_lot = following.at_random(case, max((advised or {"": 2}).values())) if is_open else None
+    for way, wanted in (("followed", advised), ("at_random", by_lot)):
+        if wanted:
+            running.answer(diagnosis, functools.partial(cases.follow_up, case, wanted), out / case / way)
         else:
             shutil.rmtree(out / case / way, ignore_errors=True)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import thenar
 from proof import meshes, pressing
-from trial import cases, counts, protocols, score
+from trial import cases, counts, make_cases, protocols, score
 
 HERE = Path(__file__).parent
 RUNS = dict(np.load(HERE / "truth_runs.npz"))
@@ -127,14 +127,32 @@ def test_thenar_reads_every_kind_of_study(tmp_path):
 def test_what_is_recorded_next_is_added(tmp_path):
     case = next(name for name in cases.names("trial") if len(cases.held_back(name)) > 1)
     cases.write(case, tmp_path / "before")
-    protocol = cases.held_back(case)[0]
-    cases.follow_up(case, protocol, tmp_path / "after")
+    protocol, published = cases.held_back(case)[0], cases.index()[case]["published"][0]
+    cases.follow_up(case, {protocol: 3, published: 2}, tmp_path / "after")
     before, after = (thenar.Study.load(tmp_path / name).recordings for name in ("before", "after"))
-    assert len(after) == len(before) + 2 and {one.protocol for one in after} - {one.protocol for one in before} == {
-        protocol
-    }
-    with pytest.raises(ValueError, match="holds back no dance"):
-        cases.follow_up(case, "dance", tmp_path)
+    assert [one.protocol for one in after[len(before) :]] == [protocol, published, protocol, published, protocol]
+    peaks = [one.curve.channels.force_n.max() for one in after if one.protocol == published]
+    assert len(set(peaks)) == len(peaks) and np.ptp(peaks) < 0.5 * max(peaks)
+    with pytest.raises(ValueError, match="there is no protocol dance"):
+        cases.follow_up(case, {"dance": 2}, tmp_path)
+    with pytest.raises(ValueError, match="was recorded 12 times more, not 13"):
+        cases.follow_up(case, {protocol: 13}, tmp_path)
+
+
+def test_what_is_recorded_next_is_of_the_same_truth():
+    """The mean of twelve presses lies as near to the study's own as scatter and noise let it."""
+    own = 0
+    for case in cases.names("trial"):
+        label = score.labels("trial")[case]
+        if label["stratum"] != "ambiguous" or not cases.held_back(case):
+            continue
+        protocol = cases.index()[case]["published"][0]
+        mean = np.mean([force for _, _, _, force in cases.recorded_next(case, {protocol: 12})], axis=0)
+        first = next(k for k, one in enumerate(cases.recordings(case)) if one["protocol"] == protocol)
+        _, _, force = cases.curve(case, first)
+        assert abs(np.vdot(mean, force) / np.vdot(mean, mean) - 1.0) < 5.0 * make_cases.REPEAT_GAIN
+        own += 1
+    assert own >= 12
 
 
 def test_the_trial_is_as_large_as_it_must_be_and_hides_its_truths():

@@ -83,12 +83,16 @@ def test_the_recording_that_is_asked_for_is_added(tmp_path):
     held = cases.held_back(NARROW)
     wanted = following.described(NARROW, "wide sphere")
     verdict = {"verdict": "cannot_tell", "record_next": [{"text": "larger", "protocol": dict(wanted)}]}
-    assert "wide sphere" in held and following.asked_for(NARROW, verdict) == "wide sphere"
-    near = wanted | {"radius_mm": 1.3 * wanted["radius_mm"]}
-    assert following.asked_for(NARROW, {**verdict, "record_next": [{"protocol": near}]}) == "wide sphere"
+    assert "wide sphere" in held and following.asked_for(NARROW, verdict) == {"wide sphere": 2}
+    near = wanted | {"radius_mm": 1.3 * wanted["radius_mm"], "presses": 8, "in_turn_with": "large"}
+    assert following.asked_for(NARROW, {**verdict, "record_next": [{"protocol": near}]}) == {
+        "wide sphere": 8,
+        "large sphere": 8,
+    }
     assert following.asked_for(NARROW, {**verdict, "record_next": [{"protocol": {"shape": "plane"}}]}) is None
     assert following.asked_for(NARROW, {"verdict": "parameters"}) is None
-    assert following.at_random(NARROW) in held and following.at_random(NARROW) == following.at_random(NARROW)
+    (by_lot,) = following.at_random(NARROW, 8).items()
+    assert by_lot[0] in held and by_lot[1] == 8 and following.at_random(NARROW, 8) == dict([by_lot])
     out = tmp_path / "out"
     telling = tmp_path / "findings.json"
     telling.write_text(json.dumps(verdict))

@@ -86,7 +86,7 @@ impl Screen<'_> {
         ((one, depths), forces): ((&Course, &[f64]), &mut [f64]),
     ) {
         let area = |place: usize| radius(&self.elastic.places[place], self.most.1).powi(2);
-        let most = (0..self.elastic.places.len())
+        let most = (0..self.elastic.studied)
             .map(area)
             .fold(f64::MIN_POSITIVE, f64::max);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {

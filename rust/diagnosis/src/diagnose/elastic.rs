@@ -53,8 +53,10 @@ pub struct Elastic {
     pub variants: Vec<Variant>,
     /// Depth at which the modulus stops growing, mm.
     pub limit_depth: f64,
-    /// By place: what tissue that gives up volume loses of the force, over the mean of all places; 1 where it is not known.
+    /// By place: what tissue that gives up volume loses of the force, over the mean of the study's places; 1 where it is not known.
     pub drained: Vec<f64>,
+    /// Number of places that the study's recordings use; others come after them.
+    pub studied: usize,
 }
 
 impl Elastic {
@@ -67,41 +69,60 @@ impl Elastic {
         g_mpa: f64,
         control: &Control<'_>,
     ) -> Result<Elastic, DiagnosisError> {
+        let mut elastic = Elastic {
+            places: Vec::new(),
+            variants: Vec::new(),
+            limit_depth: fitting.replay.tissue.materials[0].d_lim_mm,
+            drained: Vec::new(),
+            studied: fitting.replay.places(),
+        };
+        elastic.add(fitting, g_mpa, control)?;
+        Ok(elastic)
+    }
+
+    /// Presses the tools that were placed since.
+    ///
+    /// # Errors
+    /// As of `new`.
+    pub fn add(
+        &mut self,
+        fitting: &mut Fitting,
+        g_mpa: f64,
+        control: &Control<'_>,
+    ) -> Result<(), DiagnosisError> {
         let start = fitting.replay.tissue.materials.clone();
         let flat = flattened(&start, g_mpa);
-        let places = fitting.replay.places();
-        let base = tables(fitting, (&[], &flat, RUNGS.0), control)?;
-        let mut variants = Vec::new();
-        for (effect, knots) in plan(&start[0]) {
-            let mut log_ratio = vec![Vec::new(); places];
+        let (known, places) = (self.places.len(), fitting.replay.places());
+        let base = tables(fitting, (&[], &flat, RUNGS.0), (known, control))?;
+        for (number, (effect, knots)) in plan(&start[0]).into_iter().enumerate() {
+            let mut log_ratio = vec![Vec::new(); places - known];
             for (_, changed) in &knots {
                 let tabled = match changed {
                     None => base.clone(),
                     Some(effect) => tables(
                         fitting,
                         (std::slice::from_ref(effect), &flat, RUNGS.1),
-                        control,
+                        (known, control),
                     )?,
                 };
                 for (place, (with, without)) in tabled.iter().zip(&base).enumerate() {
                     log_ratio[place].push(ratios(with, without));
                 }
             }
-            let knots = knots.into_iter().map(|(knot, _)| knot).collect();
-            variants.push(Variant {
-                effect,
-                knots,
-                log_ratio,
-            });
+            match self.variants.get_mut(number) {
+                Some(variant) => variant.log_ratio.extend(log_ratio),
+                None => self.variants.push(Variant {
+                    effect,
+                    knots: knots.into_iter().map(|(knot, _)| knot).collect(),
+                    log_ratio,
+                }),
+            }
         }
         fitting.replay.set_effects(&[], control)?;
-        let drained = drained(&variants, places);
-        Ok(Elastic {
-            drained,
-            places: base.into_iter().map(|table| tabled(table, g_mpa)).collect(),
-            variants,
-            limit_depth: start[0].d_lim_mm,
-        })
+        self.places
+            .extend(base.into_iter().map(|table| tabled(table, g_mpa)));
+        self.drained = drained(&self.variants, (self.studied, places));
+        Ok(())
     }
 
     /// The variant of an effect.
@@ -126,8 +147,8 @@ impl Variant {
     }
 }
 
-/// By place, part of the force that is lost with the smallest Poisson's ratio, over the mean of all.
-fn drained(variants: &[Variant], places: usize) -> Vec<f64> {
+/// By place, part of the force that is lost with the smallest Poisson's ratio, over the mean of those studied.
+fn drained(variants: &[Variant], (studied, places): (usize, usize)) -> Vec<f64> {
     let softer = variants
         .iter()
         .find(|v| v.effect == Effect::Compressibility);
@@ -136,7 +157,7 @@ fn drained(variants: &[Variant], places: usize) -> Vec<f64> {
         1.0 - libm::exp(ratio.unwrap_or(0.0))
     };
     let all: Vec<f64> = (0..places).map(lost).collect();
-    let mean = all.iter().sum::<f64>() / places.max(1) as f64;
+    let mean = all[..studied].iter().sum::<f64>() / studied.max(1) as f64;
     let over = |lost: &f64| {
         if mean > 0.0 {
             (lost / mean).max(0.05)
@@ -210,10 +231,10 @@ fn flattened(start: &[Material], g_mpa: f64) -> Vec<Material> {
 fn tables(
     fitting: &mut Fitting,
     (effects, materials, rungs): (&[ActiveEffect], &[Material], usize),
-    control: &Control<'_>,
+    (from, control): (usize, &Control<'_>),
 ) -> Result<Vec<PressTable>, DiagnosisError> {
     fitting.replay.set_effects(effects, control)?;
-    (0..fitting.replay.places())
+    (from..fitting.replay.places())
         .map(|at| {
             control.check().map_err(|_| DiagnosisError::Cancelled)?;
             fitting.replay.ladder((at, rungs), materials, control)

@@ -141,6 +141,9 @@ pub struct Gain {
     pub removed: f64,
     /// Ends of its interval.
     pub interval: (f64, f64),
+    /// Share that the same change removes on the wrong recordings at the wrong moments, in 99 of 100 draws at most; None where nothing
+    /// could be removed.
+    pub placebo: Option<f64>,
 }
 
 /// A recording that would settle what cannot be told.
@@ -152,6 +155,8 @@ pub struct Suggestion {
     pub indenter: Option<String>,
     /// Its radius, mm.
     pub radius_mm: Option<f64>,
+    /// Name of an indenter in use that is pressed in turn with it in the same way, as often.
+    pub in_turn_with: Option<String>,
     /// Name of the site.
     pub site: String,
     /// mm/s.
@@ -162,9 +167,13 @@ pub struct Suggestion {
     pub cycles: u32,
     /// Largest depth, mm.
     pub depth_mm: f64,
+    /// How often each press is to be made.
+    pub presses: u32,
     /// The names it settles between.
     pub settles: Vec<&'static str>,
-    /// Time it takes, minutes.
+    /// How often it would settle the matter, as the two explanations foretell it; None where they do not.
+    pub probability: Option<f64>,
+    /// Time that all its presses take, with the rest before each, minutes.
     pub minutes: f64,
 }
 

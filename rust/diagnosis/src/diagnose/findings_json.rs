@@ -124,6 +124,7 @@ fn fit(gain: Option<&Gain>) -> Value {
             "reducible_error_removed": {
                 "value": rounded(gain.removed), "low": rounded(gain.interval.0), "high": rounded(gain.interval.1),
             },
+            "placebo_removed": gain.placebo.and_then(rounded),
         }),
     }
 }
@@ -134,15 +135,16 @@ fn suggestion(of: &Suggestion) -> Value {
         "protocol": {
             "indenter": of.indenter,
             "radius_mm": of.radius_mm.and_then(rounded),
+            "in_turn_with": of.in_turn_with,
             "site": of.site,
             "speed_mm_s": rounded(of.speed_mm_s),
             "hold_s": rounded(of.hold_s),
             "cycles": of.cycles,
             "depth_mm": rounded(of.depth_mm),
+            "presses": of.presses,
         },
         "settles": of.settles,
-        // How often such a recording settles the matter is not computed.
-        "probability": null,
+        "probability": of.probability.and_then(rounded),
         "minutes": rounded(of.minutes),
     })
 }

@@ -4,6 +4,7 @@ use super::findings::{Gain, Spread};
 use super::ladder::Scored;
 use super::mechanism::Mechanism;
 use super::model::{Kind, Model};
+use super::placebo::{Held, placebo};
 use super::prepare::Prepared;
 use super::refit::refit;
 use super::screen::Screen;
@@ -42,8 +43,8 @@ pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) 
     if protocols.len() < 2 {
         return None;
     }
-    let mut all = Vec::new();
-    for (protocol, place) in &protocols {
+    let (mut all, mut held) = (Vec::new(), Vec::new());
+    for (number, (protocol, place)) in protocols.iter().enumerate() {
         let is_out =
             |c: usize| ready.courses[c].protocol == *protocol && ready.courses[c].place == *place;
         let before = predicted(ready, measured, (&[], &found.refit.at), &is_out);
@@ -60,11 +61,18 @@ pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) 
                 floor: 0.0,
                 count: 0.0,
             };
+            let mut own = Held {
+                protocol: number,
+                error: Vec::new(),
+                patch: Vec::new(),
+            };
             for row in &course.rows {
                 let Some(sample) = row.sample else {
                     continue;
                 };
                 let sigma = ready.sigma[sample];
+                own.error.push((row.force_n - before[sample]) / sigma);
+                own.patch.push((after[sample] - before[sample]) / sigma);
                 let square = |simulated: &[f64]| {
                     ((row.force_n - simulated[sample]) / sigma)
                         .clamp(-MOST, MOST)
@@ -76,9 +84,15 @@ pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) 
             }
             sum.floor = sum.count * floor(ready, c);
             all.push(sum);
+            held.push(own);
         }
     }
-    Some(told(ready, &all, seed))
+    let mut found = told(ready, &all, seed);
+    let reducible = all.iter().map(|e| e.before - e.floor).sum::<f64>();
+    if reducible > 0.0 {
+        found.placebo = Some(placebo(&held, MOST, seed) / reducible);
+    }
+    Some(found)
 }
 
 /// Mean square of repeats about each other, over the noise, as noise would give it: 1, or less if the noise was judged too large.
@@ -208,5 +222,6 @@ fn told(ready: &Prepared, all: &[Errors], seed: u64) -> Gain {
         },
         removed: best[3],
         interval: interval(&mut removed),
+        placebo: None,
     }
 }

@@ -187,6 +187,11 @@ fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
 
 /// True if a rival's evidence is within reach.
 fn within(best: &Scored, rival: &Scored) -> bool {
+    lead(best, rival).is_some_and(|lead| best.evidence - rival.evidence < lead)
+}
+
+/// Lead in evidence from which one explanation stands before a rival; None if they are the same.
+pub fn lead(best: &Scored, rival: &Scored) -> Option<f64> {
     let of = |s: &Scored| {
         let own = |m: &&Mechanism| !best.mechanisms.contains(m) || !rival.mechanisms.contains(m);
         s.mechanisms
@@ -194,16 +199,29 @@ fn within(best: &Scored, rival: &Scored) -> bool {
             .find(own)
             .map(|m| (m.effect, m.is_instrument()))
     };
-    let (Some(a), Some(b)) = (of(best), of(rival)) else {
-        return false;
-    };
+    let (a, b) = (of(best)?, of(rival)?);
     let are_clocks = CLOCKS.contains(&a.0) && CLOCKS.contains(&b.0);
     let is_alone = best.mechanisms.len() == 1;
-    let lead = match is_alone && (are_clocks || a.1 != b.1) {
+    Some(match is_alone && (are_clocks || a.1 != b.1) {
         true => LEAD.1,
         false => LEAD.0,
+    })
+}
+
+/// The best explanations that hold one name of a pair without the other: two effects each where two were needed, else one.
+pub fn opponents<'a>(rungs: &'a Rungs, pair: [&str; 2]) -> Option<[&'a Scored; 2]> {
+    let needs_two = rungs.pairs.iter().any(|p| is_pair(p, rungs));
+    let all = match needs_two {
+        true => &rungs.pairs,
+        false => &rungs.singles,
     };
-    best.evidence - rival.evidence < lead
+    let best = |with: &str, without: &str| {
+        all.iter().find(|s| {
+            let names = s.names();
+            names.contains(&with) && !names.contains(&without)
+        })
+    };
+    Some([best(pair[0], pair[1])?, best(pair[1], pair[0])?])
 }
 
 /// What makes force fade with time: by a clock that is fixed, or one that grows as the contact's area.
@@ -212,16 +230,26 @@ const CLOCKS: [Effect; 2] = [Effect::Relaxation, Effect::Drainage];
 /// True if only a second contact size could tell two names apart, and there is none: a clock that is fixed, and one that grows as
 /// the contact's area, differ nowhere else.
 fn is_alias(ready: &Prepared, best: &Scored, rival: &Scored) -> bool {
-    let both = [best, rival].map(|s| s.mechanisms[0].effect);
     let radii = ready
         .elastic
         .places
         .iter()
         .map(|p| radius(p, ready.scales.deepest));
+    are_clocks([best, rival]) && !have_sizes(radii)
+}
+
+/// True of the two clocks that differ by the contact's size alone.
+pub fn are_clocks(two: [&Scored; 2]) -> bool {
+    let both = two.map(|s| s.mechanisms[0].effect);
+    CLOCKS.iter().all(|c| both.contains(c))
+}
+
+/// True if contact radii differ enough to tell such clocks apart.
+pub fn have_sizes(radii: impl Iterator<Item = f64>) -> bool {
     let (low, high) = radii.fold((f64::INFINITY, 0.0), |(l, h): (f64, f64), a| {
         (l.min(a), h.max(a))
     });
-    CLOCKS.iter().all(|c| both.contains(c)) && high < SIZES * low
+    high >= SIZES * low
 }
 
 fn is_adequate_beside(rival: &Scored, best: &Scored) -> bool {
@@ -355,7 +383,7 @@ pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
 const SILENT: f64 = 4.0;
 
 /// What evidence is divided by before it becomes a probability: models are not true.
-const TEMPERATURE: f64 = 2.0;
+pub const TEMPERATURE: f64 = 2.0;
 
 /// Names, most probable first, until they hold 90 %.
 pub fn names_90(probabilities: &[(Vec<&'static str>, f64)]) -> Vec<Vec<&'static str>> {

@@ -18,7 +18,10 @@ mod memory;
 mod model;
 mod next_record;
 mod numbers;
+mod placebo;
+mod planned;
 mod prepare;
+mod promise;
 mod refine;
 mod refit;
 mod screen;
@@ -113,12 +116,14 @@ pub fn diagnose(
     let found = match (&ready, &rungs) {
         (Some(ready), Some(rungs)) => {
             let decision = gates::decide(ready, rungs);
-            told(
+            let next = next_record::suggestions(
                 study,
-                (comparison, &fitting),
-                (ready, rungs, decision),
-                options,
-            )
+                &mut fitting,
+                (ready, rungs),
+                (&decision.cannot_tell, &quiet),
+            )?;
+            let ladder = (ready, rungs, decision);
+            told(study, (comparison, &fitting), (ladder, next), options)
         }
         _ => local::without_curves(study, comparison),
     };
@@ -144,7 +149,7 @@ fn untested(courses: &[course::Course]) -> Option<String> {
 fn told(
     study: &Study,
     (comparison, fitting): (Comparison, &Fitting),
-    (ready, rungs, decision): (&Prepared, &Rungs, Decision<'_>),
+    ((ready, rungs, decision), next): ((&Prepared, &Rungs, Decision<'_>), Vec<Suggestion>),
     options: &DiagnoseOptions,
 ) -> Diagnosis {
     let probabilities = gates::probabilities(rungs);
@@ -160,7 +165,7 @@ fn told(
         cannot_tell: decision.cannot_tell.clone(),
         gain,
         smallest_seen: shown::smallest_seen(ready, rungs),
-        record_next: next_record::suggestions(study, &ready.courses, &decision.cannot_tell),
+        record_next: next,
         materials: shown::materials(fitting, (ready, rungs), &decision),
         effects: shown::effects(ready, &decision),
         rivals: shown::rivals(ready, rungs, &probabilities),
@@ -170,6 +175,13 @@ fn told(
     };
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
+    }
+    let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
+    if found.gain.as_ref().is_some_and(is_no_better) {
+        found.notes.push(
+            "on held-out recordings the finding gains no more than its change on the wrong recordings at the wrong moments does"
+                .to_owned(),
+        );
     }
     local::add_place(study, &mut found);
     found.notes.extend(untested(&ready.courses));

@@ -152,6 +152,26 @@ impl Prepared {
         median(&mut shares).clamp(1e-4, 0.1)
     }
 
+    /// Coordinates of a recording that is yet to be made, as deep as `deepest` (mm): those of its tool's place, if the study has
+    /// not used it, and its own.
+    pub fn coordinates_of(
+        &self,
+        study: &Study,
+        (place, course): (usize, usize),
+        deepest: f64,
+    ) -> (Vec<Coordinate>, Vec<Coordinate>) {
+        let has_regions = self.shared.iter().any(|c| matches!(c.kind, Kind::Scale(_)));
+        let of_place = match place < self.elastic.studied {
+            true => Vec::new(),
+            false => of_place(
+                place,
+                (TOUCH.min(0.25 * deepest), deepest),
+                (is_flat(study), has_regions),
+            ),
+        };
+        (of_place, of_course(course, deepest, &self.noise))
+    }
+
     /// The screen of these recordings.
     pub fn screen(&self) -> Screen<'_> {
         Screen {
@@ -217,7 +237,6 @@ fn shared(
     (courses, elastic): (&[Course], &Elastic),
     noise: &Noise,
 ) -> Vec<Coordinate> {
-    let form = usize::from(!is_flat);
     let material = fitting.replay.tissue.materials[0];
     let known = &fitting.replay.observed.is_touch_known;
     let modulus = |kind, start: f64| Coordinate {
@@ -231,37 +250,55 @@ fn shared(
         modulus(Kind::First, material.g0_mpa),
         modulus(Kind::Limit, material.g_lim_mpa),
     ];
-    let about = |kind, sd: f64, step: f64| Coordinate {
+    let has_regions = fitting.replay.tissue.regions.len() > 1;
+    for place in 0..elastic.places.len() {
+        let Some(first) = courses.iter().find(|c| c.place == place) else {
+            continue;
+        };
+        let deep = first.deepest();
+        let judged = match known[first.recording] {
+            true => TOUCH.min(0.25 * deep),
+            false => UNKNOWN_TOUCH * deep,
+        };
+        all.extend(of_place(place, (judged, deep), (is_flat, has_regions)));
+    }
+    for (c, course) in courses.iter().enumerate() {
+        all.extend(of_course(c, course.deepest(), noise));
+    }
+    all
+}
+
+/// What a tool at its site may be off by: its first touch as it was judged, against a depth (mm), and the model's form.
+fn of_place(
+    place: usize,
+    (judged, deep): (f64, f64),
+    (is_flat, has_regions): (bool, bool),
+) -> Vec<Coordinate> {
+    let mut all = vec![about(Kind::Touch(place), judged, 1e-3 * deep)];
+    if has_regions {
+        all.push(about(Kind::Scale(place), 0.5, 1e-3));
+    }
+    let form = FORM_ERROR[usize::from(!is_flat)];
+    all.extend((0..KNOTS).map(|k| about(Kind::Form(place, k), form[k], 1e-3)));
+    all
+}
+
+/// What a recording may be off by: its first touch, and its gain where repeats show that it scatters.
+fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coordinate> {
+    let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
+    let mut all = vec![about(Kind::Zero(course), zero, 1e-3 * deepest)];
+    if noise.gain > 0.0 {
+        all.push(about(Kind::Gain(course), noise.gain, 1e-4));
+    }
+    all
+}
+
+fn about(kind: Kind, sd: f64, step: f64) -> Coordinate {
+    Coordinate {
         kind,
         start: 0.0,
         bounds: (-MOST * sd, MOST * sd),
         prior: Some(sd),
         step,
-    };
-    for place in 0..elastic.places.len() {
-        let own: Vec<usize> = (0..courses.len())
-            .filter(|&c| courses[c].place == place)
-            .collect();
-        let Some(first) = own.first() else {
-            continue;
-        };
-        let deep = courses[*first].deepest();
-        let judged = match known[courses[*first].recording] {
-            true => TOUCH.min(0.25 * deep),
-            false => UNKNOWN_TOUCH * deep,
-        };
-        all.push(about(Kind::Touch(place), judged, 1e-3 * deep));
-        if fitting.replay.tissue.regions.len() > 1 {
-            all.push(about(Kind::Scale(place), 0.5, 1e-3));
-        }
-        all.extend((0..KNOTS).map(|k| about(Kind::Form(place, k), FORM_ERROR[form][k], 1e-3)));
     }
-    for (c, course) in courses.iter().enumerate() {
-        let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
-        all.push(about(Kind::Zero(c), zero, 1e-3 * course.deepest()));
-        if noise.gain > 0.0 {
-            all.push(about(Kind::Gain(c), noise.gain, 1e-4));
-        }
-    }
-    all
 }

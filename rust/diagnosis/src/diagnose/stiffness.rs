@@ -66,7 +66,7 @@ impl Screen<'_> {
 
     /// Largest strain of any tool at the study's largest depth.
     pub fn largest_strain(&self) -> f64 {
-        let places = 0..self.elastic.places.len();
+        let places = 0..self.elastic.studied;
         let all = places.map(|place| self.strain((place, self.most.1)));
         all.fold(f64::MIN_POSITIVE, f64::max)
     }

@@ -10,6 +10,7 @@ mod whitening;
 #[cfg(test)]
 mod tests;
 
+pub use repeats::carry;
 pub use whitening::{Whitened, Whitening};
 
 use crate::observe::scatter::noise_of;

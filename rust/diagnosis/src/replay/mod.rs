@@ -18,6 +18,7 @@ use thenar_contact::effects::Stage;
 use thenar_contact::instrument::Placement;
 use thenar_contact::{ActiveEffect, Control, Material};
 use thenar_recordings::Study;
+use thenar_recordings::study::{Indenter, Site};
 use thenar_surface::{Product, Vec3};
 
 use crate::DiagnosisError;
@@ -265,6 +266,21 @@ impl Replay {
         self.places.len()
     }
 
+    /// Adds a tool at a site that no recording used, to be pressed as deep as `deepest` (mm); its number among the places.
+    ///
+    /// # Errors
+    /// [`DiagnosisError`] naming a tool that cannot be used.
+    pub fn add_place(
+        &mut self,
+        (indenter, site): (&Indenter, &Site),
+        deepest: f64,
+    ) -> Result<usize, DiagnosisError> {
+        let mut place = Place::new(indenter, site, self.tissue.extent)?;
+        place.deepest = deepest;
+        self.places.push(place);
+        Ok(self.places.len() - 1)
+    }
+
     /// Depth that a recording's ladder reaches, mm.
     pub fn deepest(&self, recording: usize) -> f64 {
         self.places[self.place_of[recording]].deepest
@@ -354,15 +370,21 @@ fn place(study: &Study, measured: &Measured, extent: f64) -> Result<Place, Diagn
             problem: "one of them is not defined; add it to the study".into(),
         });
     };
-    let reach = (REACH.0 * extent).min(REACH.1);
-    Ok(Place {
-        title: format!("the indenter '{name}' at site '{at}'"),
-        indenter: name.clone(),
-        site: at.clone(),
-        tool: tool::tool(indenter, site, reach)?,
-        direction: site.direction.into(),
-        deepest: 0.0,
-        kept: Vec::new(),
-        shapes: Shapes::default(),
-    })
+    Place::new(indenter, site, extent)
+}
+
+impl Place {
+    fn new(indenter: &Indenter, site: &Site, extent: f64) -> Result<Place, DiagnosisError> {
+        let reach = (REACH.0 * extent).min(REACH.1);
+        Ok(Place {
+            title: format!("the indenter '{}' at site '{}'", indenter.name, site.name),
+            indenter: indenter.name.clone(),
+            site: site.name.clone(),
+            tool: tool::tool(indenter, site, reach)?,
+            direction: site.direction.into(),
+            deepest: 0.0,
+            kept: Vec::new(),
+            shapes: Shapes::default(),
+        })
+    }
 }

@@ -86,9 +86,15 @@ fn signs(consequences: &[(String, bool)]) -> String {
 }
 
 fn gained(gain: &Gain) -> String {
+    let placebo = gain.placebo.map_or(String::new(), |share| {
+        format!(
+            " The same change on the wrong recordings at the wrong moments removes {:.0} % at most (99 of 100 draws).",
+            100.0 * share
+        )
+    });
     format!(
         "<p>Predictions of recordings that were held out, protocol by protocol: {:.2} standard deviations of the noise before, {:.2} \
-after; repeats predict one another to {:.2}. Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %).</p>\n",
+after; repeats predict one another to {:.2}. Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %).{placebo}</p>\n",
         gain.before.rms,
         gain.after.rms,
         gain.floor.rms,
@@ -103,8 +109,11 @@ fn next(found: &Diagnosis) -> String {
         return String::new();
     }
     let one = |next: &crate::diagnose::Suggestion| {
+        let chance = next.probability.map_or(String::new(), |p| {
+            format!("settles it in {:.0} % of cases, ", 100.0 * p)
+        });
         format!(
-            "<li>{} (about {:.0} minutes)</li>",
+            "<li>{} ({chance}about {:.0} minutes)</li>",
             escaped(&next.text),
             next.minutes
         )
