@@ -11,6 +11,8 @@ from . import settings
 _STUDY_FILE = "study.toml"
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
 """Endings of the images that a handprint may be."""
+_LOOK_PX = 256.0
+"""Side of a cell at a first look, pixels: the longest image that is read has few of them."""
 
 
 def load(context, path):
@@ -63,7 +65,7 @@ def _maps(file):
 
 def _print(file):
     """An image is read once, in cells of many pixels, to refuse what is no print. Its scale is the user's to give."""
-    width, height = native.module.Print.read(file, mm_per_px=1.0, cell_mm=256.0).size_px
+    width, height = native.module.Print.read(file, mm_per_px=1.0, cell_mm=_LOOK_PX).size_px
     about = f"handprint of {width} x {height} pixels; give the dpi of its scan"
     return [{"name": file.name, "kind": settings.PRINT, "path": str(file), "about": about}]
 

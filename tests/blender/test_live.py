@@ -4,6 +4,7 @@ import ctypes
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -11,7 +12,7 @@ import pytest
 import stage
 import thenar_blender
 from thenar_blender import headless, names, status, workflow
-from thenar_blender.live import watch
+from thenar_blender.live import session, watch
 from thenar_blender.scene import checks
 
 MM = stage.MM
@@ -101,6 +102,28 @@ def test_at_rest_it_is_what_solve_leaves(scene):
     expected, wanted = solved_apart(hand)
     assert settled == wanted
     assert np.abs(shown - expected).max() < 5e-4 * 1.5  # the key keeps to 5e-4 of a displacement of about 1.5 mm
+
+
+def test_frames_go_on_from_the_last_but_for_the_first_and_the_settled_one(scene, monkeypatch):
+    hand, product = stage.scene()
+    asked = []
+
+    def begin(*arguments):
+        made = begin_as_usual(*arguments)
+        press = made.skin.press
+        made.skin = SimpleNamespace(press=lambda *a, **k: (asked.append(k["live"]), press(*a, **k))[1])
+        return made
+
+    begin_as_usual = session.begin
+    monkeypatch.setattr(session, "begin", begin)
+    switch(True)
+    for _ in range(3):
+        product.location.z += 0.2 * MM
+        assert follow()
+    assert watch.settle_now(bpy.context)
+    product.location.z += 0.2 * MM
+    assert follow()
+    assert asked == [False, True, True, True, False, True], "the first frame is that of switching on"
 
 
 def test_what_did_not_move_is_skipped(scene):

@@ -52,6 +52,10 @@ def not_a_number(hand, product):
     hand.data.vertices[7].co.x = float("nan")
 
 
+def infinite(hand, product):
+    hand.data.vertices[7].co.z = -float("inf")
+
+
 def product_not_a_number(hand, product):
     product.data.vertices[3].co.y = float("inf")
 
@@ -140,6 +144,7 @@ STATES = {
     "absolute keys": (absolute_keys, "'Pad' are absolute"),
     "pinned key": (pin_key, "'Pad' is pinned"),
     "nan": (not_a_number, "[Vv]ertex 7 of the hand 'Pad' is not a number"),
+    "infinity": (infinite, "[Vv]ertex 7 of the hand 'Pad' is not a number"),
     "product nan": (product_not_a_number, "[Vv]ertex 3 of the product 'Plate'"),
     "scale 1000 off": (thousand_times, "'Pad' is 16 m long"),
     "tiny": (tiny, "'Pad' is 0.0016 mm long"),
