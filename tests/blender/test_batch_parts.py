@@ -1,11 +1,11 @@
-"""Parts of a batch alone: what a case's digest depends on, what counts as done, fresh processes, stiffness."""
+"""Parts of a batch alone: what a case's digest depends on, what counts as done, fresh processes, groups, stiffness."""
 
 import json
 import sys
 
 import pytest
 import stage
-from thenar_blender.batch import child, conductor, jobs, worker
+from thenar_blender.batch import child, cluster, conductor, jobs, worker
 
 
 @pytest.fixture
@@ -50,3 +50,26 @@ def test_stiffness_is_a_factor_on_both_moduli():
     before = material.g0_kpa, material.g_lim_kpa
     worker._stiffen(hand, 1.5)
     assert (material.g0_kpa, material.g_lim_kpa) == pytest.approx([1.5 * value for value in before])
+
+
+def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
+    distributed = pytest.importorskip("distributed")
+    assert {len(group) for group in cluster._grouped(list(range(1000)), 2)} == {cluster.MOST_AT_ONCE}
+    assert {len(group) for group in cluster._grouped(list(range(40)), 1)} == {5}
+    assert {len(group) for group in cluster._grouped(list(range(7)), 1)} == {1}
+    asked = []
+
+    def answer(children, start, task, limit_s):
+        asked.append(task["case"]["name"])
+        if asked[-1] == "case 13":
+            raise ValueError("spilled coffee")
+        return {"summary": asked[-1]}
+
+    left = {f"case {n}": {"hash": f"h{n}", "case": {"name": f"case {n}"}} for n in range(40)}
+    here = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**here) as workers, distributed.Client(workers) as client:
+        next(iter(workers.workers.values())).__dict__["thenar_children"] = (answer, {})
+        told = dict(cluster._session(client, left))
+    assert told.pop("case 13")["error"].startswith("the worker failed: ValueError('spilled coffee')")
+    assert told == {name: {"summary": name} for name in left if name != "case 13"}
+    assert asked.count("case 0") == 1, "groups without it are solved once"
