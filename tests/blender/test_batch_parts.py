@@ -56,6 +56,7 @@ def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
     distributed = pytest.importorskip("distributed")
     assert {len(group) for group in cluster._grouped(list(range(1000)), 2)} == {cluster.MOST_AT_ONCE}
     assert {len(group) for group in cluster._grouped(list(range(40)), 1)} == {5}
+    assert len(cluster._grouped(list(range(96)), 4)) == 4 * cluster.GROUPS_EACH
     assert {len(group) for group in cluster._grouped(list(range(7)), 1)} == {1}
     asked = []
 

@@ -3,7 +3,9 @@
 import bpy
 import numpy as np
 import pytest
+import small_studies
 import stage
+from thenar_blender.recordings import laying
 
 PIXEL_MM, SIDE_MM = 25.4 / 254, 20.0
 
@@ -67,7 +69,81 @@ def test_overlap_area_and_map(compared):
     missing = stage.evaluated(hand)[residual == -1]
     assert len(missing) and (missing[:, :2] > 0).all(axis=1).mean() > 0.6, "the corner touches and left no ink"
     spread, places = stage.attribute(product, "print_residual"), stage.evaluated(product)
-    assert places[spread.argmin()][:2].min() > 0 and "residual_kpa" not in hand.data.attributes
+    assert spread.min() < -0.5 and places[spread.argmin()][:2].min() > 0
+    assert "residual_kpa" not in hand.data.attributes
+
+
+def test_ink_that_asks_for_pressure_is_compared_with_less_contact(compared):
+    hand, _, _ = compared
+    before = float(measure("Area")[1])
+    pressure, force = stage.attribute(hand, "pressure_kpa"), stage.attribute(hand, "contact_force_n")
+    limit = 0.5 * float(pressure.max())
+    bpy.context.scene.thenar_recordings.items[-1].print.ink_kpa = limit
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    area = np.where(pressure > 0, 1e3 * force / np.maximum(pressure, 1e-30), 0.0)
+    wanted = before * area[pressure > limit].sum() / area.sum()
+    assert wanted < 0.85 * before and float(measure("Area")[1]) == pytest.approx(wanted, rel=0.15)
+
+
+def test_an_image_is_read_as_the_panel_says(tmp_path):
+    path = save(tmp_path / "ring.png", lambda x, y: ~((np.hypot(x - 3, y) > 4) & (np.hypot(x - 3, y) < 7)))
+    item = load(path)
+    item.print.ink = "LIGHT"
+    light = laying.look_of(item).read(path)
+    item.print.is_mirrored = True
+    behind = np.asarray(laying.look_of(item).read(path).inked).reshape(light.cells)
+    assert light.ink == "light" and light.inked_mm2 == pytest.approx(np.pi * (49 - 16), rel=0.01)
+    assert np.array_equal(behind, np.asarray(light.inked).reshape(light.cells)[:, ::-1])
+
+
+STUDY = """
+[skin]
+mesh = "skin.obj"
+[skin.materials.default]
+g0_mpa = 0.02
+g_lim_mpa = 0.05
+d_lim_mm = 4.0
+thickness_mm = 7.0
+[indenters.plate]
+shape = "plane"
+[sites.low]
+point_mm = [0.0, 0.0, -8.0]
+direction = [0.0, 0.0, 1.0]
+"""
+RECORDING = """
+[[recordings]]
+name = "{name}"
+kind = "handprint"
+file = "{name}.png"
+dpi = 254
+cell_mm = 0.5
+depth_mm = 1.2
+indenter = "plate"
+site = "low"
+[recordings.placing]
+on = "plane"
+origin_mm = [-10.0, -10.0, -8.0]
+columns = [1.0, 0.0, 0.0]
+rows = [0.0, 1.0, 0.0]
+"""
+
+
+def test_of_a_studys_prints_the_hand_shows_the_one_that_overlaps_least(tmp_path):
+    hand, _ = stage.scene()
+    hand.data.calc_loop_triangles()
+    triangles = np.array([list(each.vertices) for each in hand.data.loop_triangles])
+    small_studies.write_skin(tmp_path / "skin.obj", stage.evaluated(hand), triangles)
+    radius = np.sqrt(2 * 8.0 * 1.2)
+    save(tmp_path / "whole.png", lambda x, y: np.hypot(x, y) < radius)
+    save(tmp_path / "half.png", lambda x, y: (np.hypot(x, y) < radius) & (y > 0))
+    recordings = "".join(RECORDING.format(name=name) for name in ("whole", "half"))
+    (tmp_path / "study.toml").write_text(STUDY + recordings)
+    bpy.ops.thenar.load_recording(filepath=str(tmp_path))
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    comparison = bpy.context.scene.thenar_recordings.comparison
+    assert any("differ in 'half', the print that overlaps least" in note.name for note in comparison.notes)
+    residual = stage.attribute(hand, "print_residual")
+    assert (residual == -1).sum() > 5 * (residual == 1).sum(), "half of what touches left no ink"
 
 
 def inked_corner(radius):
