@@ -4,6 +4,7 @@ mod interpolation;
 mod ladders;
 mod followed;
 mod press_table;
+mod pressing;
 mod printed;
 mod reading;
 mod rim;

@@ -1,6 +1,6 @@
 //! The skin pressed once, as hard as a print was: positions and forces by vertex.
 
-use thenar_contact::{Control, Demand, Keep, Material, Protocol, Row, Run};
+use thenar_contact::{Control, Demand, Material};
 use thenar_surface::Vec3;
 
 use super::{Key, Replay};
@@ -40,32 +40,12 @@ impl Replay {
             materials: materials.to_vec(),
             effects: self.lasting(),
         };
-        self.turn_skin(&key, (&what, control))?;
-        let place = &self.places[self.place_of[recording]];
-        let row = Row {
-            time_s: 0.0,
-            demand: match demanded {
-                Demanded::Depth(depth) => Demand::Depth(depth),
-                Demanded::Force(force) => Demand::Force(force),
-            },
-            slide: Vec3::zeros(),
+        let demand = match demanded {
+            Demanded::Depth(depth) => Demand::Depth(depth),
+            Demanded::Force(force) => Demand::Force(force),
         };
-        let protocol = Protocol {
-            rows: vec![row],
-            direction: Some(place.direction),
-        };
-        let run = Run {
-            product: &place.tool,
-            posed: None,
-            protocol: &protocol,
-            keep: Keep::Totals,
-        };
-        let quiet = Control {
-            cancelled: control.cancelled,
-            progress: &|_, _| {},
-        };
-        let course = self.tissue.skin.run(&run, &quiet);
-        let contact = course.map_err(DiagnosisError::of_contact(what))?.last;
+        let at = self.place_of[recording];
+        let contact = self.pressed_by(at, (&key, &[demand]), (&what, control))?;
         let travel = contact.direction * contact.offset;
         let moved = rest.iter().zip(&contact.displacement);
         Ok(PrintPress {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use thenar_contact::{Control, Demand, Keep, Material, Protocol, Row, Run};
+use thenar_contact::{Control, Demand, Material};
 use thenar_surface::{Mesh, Vec3};
 
 use super::{Key, Nuisance, Replay};
@@ -139,45 +139,14 @@ impl Replay {
         let depth = self.places[at].deepest * rung as f64 / RUNGS as f64;
         let shape = Arc::new(match rung {
             0 => vec![Vec3::zeros(); count],
-            _ => self.pressed_to(at, (key, depth), control)?,
+            _ => {
+                let title = self.places[at].title.clone();
+                let depths = [0.5 * depth, depth].map(Demand::Depth);
+                self.pressed_by(at, (key, &depths), (&title, control))?
+                    .displacement
+            }
         });
         self.places[at].shapes.kept[found].1[rung] = Some(shape.clone());
         Ok(shape)
-    }
-
-    /// Displacement of every vertex with a tool at a depth.
-    fn pressed_to(
-        &mut self,
-        at: usize,
-        (key, depth): (&Key, f64),
-        control: &Control<'_>,
-    ) -> Result<Vec<Vec3>, DiagnosisError> {
-        let title = self.places[at].title.clone();
-        self.turn_skin(key, (&title, control))?;
-        let place = &self.places[at];
-        let row = |(time_s, depth)| Row {
-            time_s,
-            demand: Demand::Depth(depth),
-            slide: Vec3::zeros(),
-        };
-        let protocol = Protocol {
-            rows: [(0.0, 0.5 * depth), (1.0, depth)].map(row).to_vec(),
-            direction: Some(place.direction),
-        };
-        let run = Run {
-            product: &place.tool,
-            posed: None,
-            protocol: &protocol,
-            keep: Keep::Totals,
-        };
-        let quiet = Control {
-            cancelled: control.cancelled,
-            progress: &|_, _| {},
-        };
-        let course = self.tissue.skin.run(&run, &quiet);
-        Ok(course
-            .map_err(DiagnosisError::of_contact(title))?
-            .last
-            .displacement)
     }
 }
