@@ -136,6 +136,8 @@ def _compare_print(job, contact, told, cancel=None, progress=None):
         hand.triangles,
         contact.force_n,
         ink_kpa=lie.print.ink_kpa,
+        regions=[int(number) for number in hand.regions],
+        region_names=list(job.region_names),
         name=name,
         product=", ".join(job.part_names),
         hand=job.hand_name,

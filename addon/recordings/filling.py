@@ -42,6 +42,7 @@ def fill(state, comparison, about):
             vertices = place.vertices if match is None else match.on_hand(place.vertices)
             state.worst[-1].vertices = ",".join(map(str, vertices))
         if recording.print is not None:
+            _regions(state.measures, recording.print.regions, prefix + "inked area by region")
             state.notes.add().name = prefix + recording.sentence
         for text in recording.unknown:
             state.notes.add().name = prefix + text
@@ -57,6 +58,14 @@ def _measure(row, measure, group):
     row.simulated = _text(measure.simulated, is_share)
 
 
+def _regions(rows, regions, group):
+    """What of each region touched, where a print shows several."""
+    for region in regions:
+        row = rows.add()
+        row.name, row.group, row.unit = region.name.replace("_", " "), group, "mm²"
+        row.measured, row.simulated = _text(region.recorded_mm2, False), _text(region.simulated_mm2, False)
+
+
 def _worst(row, place, recording):
     pressure = "kPa" if recording.is_calibrated else "counts"
     unit = {"Pressure": pressure, "Contact area": "mm²", _HEIGHT: "mm"}.get(place.quantity, "N")
@@ -67,6 +76,9 @@ def _worst(row, place, recording):
     else:
         brief = {"Contact area": "area", _HEIGHT: "height"}.get(place.quantity, place.quantity.lower())
         row.name = f"{brief} at {place.time_s:.3g} s"
+    if recording.print is not None:
+        row.residual = f"{abs(place.residual):.3g} mm² {'inked' if place.residual > 0 else 'simulated'} alone"
+        return
     sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
     row.residual = f"{place.residual:+.3g} {unit}{sigmas}"
 

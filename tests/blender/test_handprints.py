@@ -149,6 +149,42 @@ def test_of_a_studys_prints_the_hand_shows_the_one_that_overlaps_least(tmp_path)
     assert (residual == -1).sum() > 5 * (residual == 1).sum(), "half of what touches left no ink"
 
 
+def test_the_corner_is_the_worst_place_and_selects_its_skin(compared):
+    hand, _, radius = compared
+    state = bpy.context.scene.thenar_recordings.comparison
+    assert state.worst[0].residual.endswith("mm² simulated alone")
+    area = float(state.worst[0].residual.split()[0])
+    # The bent sides of what is missing are told to a cell of 0.5 mm.
+    assert area == pytest.approx(inked_corner(radius), rel=0.25)
+    assert bpy.ops.thenar.select_place(index=0) == {"FINISHED"}
+    assert bpy.context.object == hand and hand.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    chosen = [vertex.index for vertex in hand.data.vertices if vertex.select]
+    places = stage.evaluated(hand)[chosen]
+    assert len(chosen) > 3 and (places[:, :2] > 0.3).all()
+    assert (np.linalg.norm(places[:, :2], axis=1) < radius + 0.7).all()
+
+
+def test_regions_are_told_apart(compared):
+    """The half where x > 0 is a region of its own: the corner is missing there and nowhere else."""
+    hand, _, radius = compared
+    places = stage.evaluated(hand)
+    for name, is_in in (("side_right", places[:, 0] > 0), ("side_left", places[:, 0] <= 0)):
+        hand.vertex_groups.new(name=name).add([int(k) for k in np.flatnonzero(is_in)], 1.0, "REPLACE")
+    assert bpy.ops.thenar.assign_regions() == {"FINISHED"}
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    rows = bpy.context.scene.thenar_recordings.comparison.measures
+    shown = [row for row in rows if row.group == "inked area by region"]
+    found = {row.name: (float(row.measured), float(row.simulated)) for row in shown}
+    assert set(found) == {"side left", "side right"}
+    half = np.pi * radius**2 / 2
+    for read, simulated, expected in (
+        (*found["side left"], half),
+        (*found["side right"], half - inked_corner(radius)),
+    ):
+        assert read == pytest.approx(expected, rel=0.15) and simulated == pytest.approx(half, rel=0.15)
+
+
 def inked_corner(radius):
     """Area of the disc beyond x = 1 and y = 1 mm."""
     x = np.linspace(1, np.sqrt(radius**2 - 1), 2001)

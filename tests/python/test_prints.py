@@ -93,6 +93,20 @@ def test_a_print_is_compared_with_a_contact(tmp_path, grid):
     assert "orange: inked alone" in comparison.report_html()
 
 
+def test_patches_name_their_vertices(tmp_path, grid):
+    """The ink lacks all that lies right of x = 3 mm, a cap of the half disc."""
+    lacking = inked(lambda x, y: half_disc(x, y) & (x < 3))
+    print_ = thenar.Print.read(write_png(tmp_path / "print.png", lacking), dpi=254, cell_mm=1.0)
+    comparison = thenar.compare_print(print_, laid(print_), *grid)
+    worst, *_ = comparison.recordings[0].worst
+    assert worst.quantity == "Contact area" and worst.measured == 0.0 and worst.residual == -worst.simulated
+    missing = np.flatnonzero(half_disc(grid[0][:, 0], grid[0][:, 1]) & (grid[0][:, 0] > 3))
+    assert worst.residual == pytest.approx(-len(missing), rel=0.3), "the pose may make up for a part"
+    assert np.isin(worst.vertices, missing).mean() > 0.7
+    told = json.loads(comparison.to_json())["recordings"][0]
+    assert told["worst"][0]["vertices"] == worst.vertices.tolist() and told["print"]["is_at_end"] is False
+
+
 def test_an_image_from_behind_is_turned_about(tmp_path, grid):
     path = write_png(tmp_path / "print.png", inked(lambda x, y: half_disc(-x, y)))
     seen = thenar.Print.read(path, dpi=254, cell_mm=1.0)
@@ -127,6 +141,8 @@ def test_what_does_not_belong_together_is_refused(tmp_path, grid):
     fine, coarse = (thenar.Print.read(path, dpi=254, cell_mm=side) for side in (1.0, 2.0))
     with pytest.raises(thenar.RecordingError, match="it has 144 cells and the print 576"):
         thenar.compare_print(fine, laid(coarse), *grid)
+    with pytest.raises(thenar.RecordingError, match="regions: it has 2 entries"):
+        thenar.compare_print(fine, laid(fine), *grid, regions=[0, 1], region_names=["a", "b"])
     with pytest.raises(thenar.RecordingError, match="ink_kpa"):
         thenar.compare_print(fine, laid(fine), *grid, ink_kpa=-1.0)
     blank = thenar.Print.read(write_png(tmp_path / "b.png", inked(half_disc)), dpi=254, cell_mm=1.0, threshold=0.0)

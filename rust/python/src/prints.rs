@@ -201,6 +201,13 @@ pub fn compare_print(
     let triangles = Argument::mesh("triangles", triangles).triangles(positions.len())?;
     let force_n = Argument::solve("force_n", force_n).numbers_of(positions.len())?;
     let regions = regions.unwrap_or_default();
+    if !regions.is_empty() && regions.len() != positions.len() {
+        return Err(refused(&format!(
+            "regions: it has {} entries and vertices_mm {}; give one for each vertex",
+            regions.len(),
+            positions.len()
+        )));
+    }
     let (name, product, hand) = (name.to_string(), product.to_string(), hand.to_string());
     let inner = run(py, &Hooks::none(), move |_| {
         let mesh = Mesh::new(positions, triangles)?;
@@ -252,6 +259,7 @@ pub fn printed(py: Python<'_>, print: &Printed) -> PyResult<Py<PyAny>> {
     entries.set_item("regions", regions)?;
     entries.set_item("print_residual", column(py, print.on_skin.clone()))?;
     entries.set_item("force_beside_share", print.beside)?;
+    entries.set_item("is_at_end", print.is_at_end)?;
     record(entries)
 }
 

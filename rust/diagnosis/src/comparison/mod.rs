@@ -104,7 +104,7 @@ pub struct RecordingComparison {
     pub measures: Vec<Measure>,
     /// Residual against what it may depend on.
     pub trends: Vec<Trend>,
-    /// Where and when the residual is largest, the worst first.
+    /// Where and when the residual is largest, the worst first; of a handprint the patches where only ink or only the simulation touches.
     pub worst: Vec<WorstPlace>,
     /// Residual per skin vertex in the worst frame, kPa; NaN away from the mat. Empty without a mat or calibration.
     pub residual_kpa: Vec<f64>,
@@ -222,6 +222,7 @@ fn recording(
     };
     if let Some(Some((print, table))) = compared.prints.get(number) {
         comparison.measures.extend(table.iter().cloned());
+        comparison.worst.clone_from(&print.worst);
         comparison.print = Some(print.clone());
     }
     comparison.sentence = sentence::of_recording(&comparison);

@@ -32,7 +32,10 @@ impl Field {
             };
             let touches = pressed.inks(vertex, ink_kpa);
             let reach = REACH * pressed.areas[vertex].sqrt();
-            field.cover((at, off, reach), f32::from(u8::from(touches)), &mut nearest);
+            let value = f32::from(u8::from(touches));
+            for image in sheet.images(at) {
+                field.cover((image, off, reach), value, &mut nearest);
+            }
             if touches {
                 sides.push(pressed.areas[vertex].sqrt());
             }

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 /// Points across a cell at which contact is looked up.
 const ACROSS: i32 = 3;
 /// The paper may lie this many standard deviations off.
-const MOST: f64 = 4.0;
+pub const MOST: f64 = 4.0;
 /// Starts of the search along each shift and in turn, on both sides of none, over this part of the range.
 const STARTS: i32 = 3;
 const STARTED: f64 = 0.9;

@@ -97,6 +97,9 @@ pub fn sentence(printed: &Printed, table: &[Measure]) -> String {
         number(degree * turn.value),
         half(turn, degree)
     );
+    if printed.is_at_end {
+        text += " That is the end of what was sought: place the paper nearer to where it lay, or give a larger position_mm.";
+    }
     if printed.is_mirrored {
         text += &format!(
             " Turned about it would overlap by {}: the image seems to show the print from behind; set mirrored if it does.",

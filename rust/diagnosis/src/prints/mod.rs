@@ -9,11 +9,12 @@ mod field;
 mod fitting;
 mod measures;
 mod regions;
+mod patches;
 mod studied;
 mod still;
 
 use crate::Mat;
-use crate::comparison::Measure;
+use crate::comparison::{Measure, WorstPlace};
 use field::Field;
 use fitting::{Cells, Fitted, best};
 use nalgebra::Vector3;
@@ -132,6 +133,10 @@ pub struct Printed {
     pub on_skin: Vec<f64>,
     /// Part of the simulated force that presses beside the paper.
     pub beside: f64,
+    /// True if the pose lies at the end of what is sought: the paper may lie farther off.
+    pub is_at_end: bool,
+    /// Patches on which only one of the two touches, the largest first.
+    pub worst: Vec<WorstPlace>,
 }
 
 /// What a print shows against a contact, and its table of measures; None for cells without rows and columns, and for a print of which no
@@ -154,8 +159,9 @@ pub fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
     let before = case
         .before
         .map(|pressed| cells.shares(&Field::of(&sheet, &pressed, case.ink_kpa), &[0.0; 3]));
-    let (on_skin, beside) = regions::on_skin(case, &sheet, (&cells, &fitted));
-    let printed = Printed {
+    let cell_of = regions::cell_of(case, &sheet, (&cells, &fitted));
+    let (on_skin, beside) = regions::on_skin(case, &cell_of);
+    let mut printed = Printed {
         recorded: case.inked.to_vec(),
         ink_kpa: case.ink_kpa,
         pose: fitted.parts,
@@ -164,9 +170,12 @@ pub fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
         regions: regions::by_region(case, &on_skin),
         on_skin,
         beside,
+        is_at_end: fitted.is_at_end(sd),
+        worst: Vec::new(),
         simulated,
         as_laid,
     };
+    printed.worst = patches::patches(case, &sheet, (&printed.by_cell(), &cell_of));
     let started = before.unwrap_or_else(|| printed.as_laid.clone());
     let table = measures::table(case.mat, &printed, &started);
     Some((printed, table))
@@ -193,5 +202,13 @@ impl Fitted {
     /// Shift and turn.
     fn pose(&self) -> [f64; 3] {
         self.parts.map(|part| part.value)
+    }
+
+    /// Whether a number lies at the end of what was sought, given standard deviations of shift and turn.
+    fn is_at_end(&self, (shift, turn): (f64, f64)) -> bool {
+        let reached = self.pose().into_iter().zip([shift, shift, turn]);
+        reached
+            .into_iter()
+            .any(|(value, sd)| value.abs() > 0.98 * fitting::MOST * sd)
     }
 }

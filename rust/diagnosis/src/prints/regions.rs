@@ -17,17 +17,25 @@ pub struct PrintRegion {
     pub overlap: f64,
 }
 
-/// Residual by vertex as [`super::Printed::on_skin`], and the part of the force that presses beside the paper.
-pub fn on_skin(
+/// The cell on which each vertex comes to lie, the paper in its fitted pose.
+pub fn cell_of(
     case: &PrintCase<'_>,
     sheet: &Sheet,
     (cells, fitted): (&Cells, &Fitted),
-) -> (Vec<f64>, f64) {
+) -> Vec<Option<usize>> {
     let pose = fitted.pose();
+    let cell = |position| {
+        let (at, _) = sheet.spot(position)?;
+        let mut images = sheet.images(at).into_iter();
+        images.find_map(|at| sheet.cell(cells.back(at, &pose)))
+    };
+    case.pressed.positions.iter().map(cell).collect()
+}
+
+/// Residual by vertex as [`super::Printed::on_skin`], and the part of the force that presses beside the paper.
+pub fn on_skin(case: &PrintCase<'_>, cell_of: &[Option<usize>]) -> (Vec<f64>, f64) {
     let (mut all, mut beside) = (0.0, 0.0);
-    let mut at_vertex = |vertex: usize| {
-        let spot = sheet.spot(&case.pressed.positions[vertex]);
-        let cell = spot.and_then(|(at, _)| sheet.cell(cells.back(at, &pose)));
+    let mut at_vertex = |(vertex, cell): (usize, &Option<usize>)| {
         let inked = cell.map_or(f64::NAN, |cell| case.inked[cell]);
         let force = case.pressed.force_n[vertex].max(0.0);
         all += force;
@@ -37,9 +45,7 @@ pub fn on_skin(
         }
         residual([inked >= TOUCHED_FROM, presses(case, vertex)])
     };
-    let residual = (0..case.pressed.positions.len())
-        .map(&mut at_vertex)
-        .collect();
+    let residual = cell_of.iter().enumerate().map(&mut at_vertex).collect();
     (residual, if all > 0.0 { beside / all } else { 0.0 })
 }
 

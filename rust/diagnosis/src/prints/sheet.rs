@@ -23,6 +23,8 @@ pub struct Sheet {
     pub index: BTreeMap<[u32; 2], usize>,
     /// Usual length of a step along columns and along rows, mm.
     pub pitch: [f64; 2],
+    /// Length once around along columns and along rows, mm, where the paper's ends nearly meet behind the product.
+    around: [Option<f64>; 2],
 }
 
 impl Sheet {
@@ -64,13 +66,79 @@ impl Sheet {
             let row = row.or_else(|| Some(normal.cross(&column?).normalize() * pitch[1]));
             [column, row].map(|step| step.unwrap_or_else(Vector3::zeros))
         };
-        Some(Sheet {
+        let mut sheet = Sheet {
             steps: (0..places.len()).map(step).collect(),
             centers: mat.centers.clone(),
             places,
             index,
             pitch,
-        })
+            around: [None; 2],
+        };
+        sheet.around = [0, 1].map(|axis| sheet.length_around(axis));
+        Some(sheet)
+    }
+
+    /// The usual length around of its lines along an axis; None where the ends of most lines lie apart.
+    fn length_around(&self, axis: usize) -> Option<f64> {
+        let mut lines: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (k, place) in self.places.iter().enumerate() {
+            lines.entry(place[axis]).or_default().push(k);
+        }
+        let count = lines.len();
+        let mut lengths: Vec<f64> = lines
+            .into_values()
+            .filter_map(|line| {
+                let number = |k: &usize| self.places[*k][1 - axis];
+                let first = line.iter().copied().min_by_key(number)?;
+                let last = line.iter().copied().max_by_key(number)?;
+                let steps = f64::from(number(&last) - number(&first));
+                Some(steps * self.pitch[axis] + self.arc(last, first, axis)?)
+            })
+            .collect();
+        lengths.sort_by(f64::total_cmp);
+        (2 * lengths.len() > count).then(|| lengths[lengths.len() / 2])
+    }
+
+    /// Length, mm, on from the last cell of a line to its first, as of a circle that both steps touch; None where that does not lead there, or
+    /// is farther than a place is followed from both ends.
+    fn arc(&self, last: usize, first: usize, axis: usize) -> Option<f64> {
+        let chord = self.centers[first] - self.centers[last];
+        let steps = [last, first].map(|cell| self.steps[cell][axis]);
+        if last == first || steps.iter().any(|step| step.dot(&chord) <= 0.0) {
+            return None;
+        }
+        // A step at an end is that from its neighbor and touches half a pitch before it: both turn over one pitch more than the arc does.
+        let (straight, mut arc) = (chord.norm(), chord.norm());
+        for _ in 0..4 {
+            let turn = steps[0].angle(&steps[1]) * arc / (arc + self.pitch[axis]);
+            let half = (0.5 * turn).max(1e-9);
+            arc = straight * half / libm::sin(half);
+        }
+        (arc <= 2.0 * MARGIN + self.pitch[axis]).then_some(arc)
+    }
+
+    /// A place, and the same place once around the product either way where the paper's ends meet.
+    pub fn images(&self, at: [f64; 2]) -> Vec<[f64; 2]> {
+        let mut all = vec![at];
+        for axis in 0..2 {
+            let Some(around) = self.around[axis] else {
+                continue;
+            };
+            for k in 0..all.len() {
+                for by in [around, -around] {
+                    let mut image = all[k];
+                    image[axis] += by;
+                    all.push(image);
+                }
+            }
+        }
+        all
+    }
+
+    /// The cell so many steps along columns and rows from another.
+    pub fn beside(&self, cell: usize, steps: [f64; 2]) -> Option<usize> {
+        let middle = self.middle(cell);
+        self.cell([0, 1].map(|axis| middle[axis] + steps[axis] * self.pitch[axis]))
     }
 
     /// Middle of a cell, mm along columns and rows.
@@ -82,8 +150,12 @@ impl Sheet {
         ]
     }
 
-    /// The cell that holds a place of the sheet.
+    /// The cell that holds a place of the sheet, or the same place once around.
     pub fn cell(&self, at: [f64; 2]) -> Option<usize> {
+        self.images(at).into_iter().find_map(|at| self.holding(at))
+    }
+
+    fn holding(&self, at: [f64; 2]) -> Option<usize> {
         let number = |axis: usize| {
             let number = (at[axis] / self.pitch[axis]).floor();
             (0.0..f64::from(u32::MAX))

@@ -201,6 +201,7 @@ fn print(print: &Printed) -> Value {
         "regions": print.regions.iter().map(region).collect::<Vec<_>>(),
         "print_residual": print.on_skin,
         "force_beside_share": print.beside,
+        "is_at_end": print.is_at_end,
     })
 }
 

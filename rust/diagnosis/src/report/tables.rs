@@ -144,6 +144,9 @@ pub fn print_regions(print: &Printed) -> String {
 
 /// Worst places of a recording.
 pub fn worst(recording: &RecordingComparison) -> String {
+    if recording.print.is_some() {
+        return patches(&recording.worst);
+    }
     let heads = [
         "<What",
         "<Where",
@@ -159,7 +162,7 @@ pub fn worst(recording: &RecordingComparison) -> String {
         let unit = place.kind.unit(recording.is_calibrated);
         vec![
             format!("{}, {unit}", place.kind.label()),
-            escaped(&place_name(place, &recording.site)),
+            escaped(&place_name(place, ("sensel", &recording.site))),
             number(place.time_s),
             number(place.depth_mm),
             place.phase.name().to_string(),
@@ -172,12 +175,30 @@ pub fn worst(recording: &RecordingComparison) -> String {
     table(&heads, recording.worst.iter().map(row))
 }
 
-/// Sensel, position and nearest vertex in words.
-fn place_name(place: &WorstPlace, site: &str) -> String {
+/// Patches of a print on which only one of the two touches.
+fn patches(worst: &[WorstPlace]) -> String {
+    let heads = ["<What", "<Middle", "Area, mm²", "Vertices"];
+    let row = |place: &WorstPlace| {
+        let what = match place.residual > 0.0 {
+            true => "inked alone",
+            false => "simulated alone",
+        };
+        vec![
+            what.to_string(),
+            escaped(&place_name(place, ("cell", ""))),
+            format!("<b>{}</b>", number(place.residual.abs())),
+            place.vertices.len().to_string(),
+        ]
+    };
+    table(&heads, worst.iter().map(row))
+}
+
+/// Sensel or cell, position and nearest vertex in words.
+fn place_name(place: &WorstPlace, (cell, site): (&str, &str)) -> String {
     let mut parts = Vec::new();
     match (place.place, place.sensel) {
-        (Some([row, column]), _) => parts.push(format!("sensel row {row}, column {column}")),
-        (None, Some(sensel)) => parts.push(format!("sensel {sensel}")),
+        (Some([row, column]), _) => parts.push(format!("{cell} row {row}, column {column}")),
+        (None, Some(sensel)) => parts.push(format!("{cell} {sensel}")),
         (None, None) => parts.push(site.to_string()),
     }
     if let Some([x, y, z]) = place.position_mm {

@@ -1,6 +1,8 @@
 //! Cells of made prints, and measures of what is found.
 #![allow(dead_code, clippy::unwrap_used)]
 
+pub mod letter;
+
 use thenar_diagnosis::comparison::RecordingComparison;
 
 /// Share of every cell of a grid within a shape, looked up at 8 x 8 points.
