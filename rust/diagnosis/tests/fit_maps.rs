@@ -168,6 +168,37 @@ fn counts_give_shape_and_pose_without_a_size() {
     );
 }
 
+/// Frames in counts without a depth: on a skin of known moduli the shape tells the force, and so how many counts a kPa is.
+#[test]
+fn counts_without_a_depth_are_compared_by_the_shape_of_their_force() {
+    let mut study = measured([0.0, 0.0], (0.003, 0.01), 3);
+    for recording in 0..2 {
+        let map = map_of(&mut study, recording);
+        map.unit = PressureUnit::RawCounts;
+        map.values.iter_mut().for_each(|v| *v *= 7.5);
+        map.channels
+            .retain(|channel| !["depth_mm", "force_n"].contains(&channel.name.as_str()));
+    }
+    for material in &mut study.skin.materials {
+        (material.g0_mpa, material.g_lim_mpa) = (Some(TRUE_G0), Some(TRUE_GLIM));
+        material.fit.clear();
+    }
+    let fit = fit_study(&study, &Options::default(), &Control::none()).unwrap();
+    let counts: Vec<_> = (fit.estimates.iter())
+        .filter(|e| e.name == "counts_per_kpa")
+        .collect();
+    assert_eq!(counts.len(), 2);
+    for one in counts {
+        println!("{} ({} to {})", one.value, one.low, one.high);
+        assert!((one.value / 7.5 - 1.0).abs() < 0.15 && !one.is_at_bound);
+    }
+    let told = fit.measured[0].unknown.join(" ");
+    assert!(
+        told.contains("at the counts per kPa that fit its shapes best"),
+        "{told}"
+    );
+}
+
 /// `cargo test --release -p thenar-diagnosis --test fit_maps a_long_export -- --nocapture` prints the time.
 #[test]
 fn a_long_export_is_compared_in_seconds() {

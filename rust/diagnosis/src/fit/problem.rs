@@ -200,8 +200,11 @@ impl Problem<'_> {
     ) -> Result<Vec<f64>, DiagnosisError> {
         let parameter = &self.parameters[column];
         let simulated = &point.simulated[recording];
-        let samples = &self.replay.observed.measured[recording].samples;
+        let measured = &self.replay.observed.measured[recording];
+        let samples = &measured.samples;
         match parameter.kind {
+            // Where counts tell the force that is asked for, they change the contact too.
+            Kind::Counts(_) if measured.asks_force() => {}
             Kind::Gain(_) | Kind::InstrumentGain | Kind::Counts(_) => {
                 let is_scaled = |q: Quantity| match parameter.kind {
                     Kind::Counts(_) => matches!(q, Quantity::Pressure(_)),

@@ -5,6 +5,9 @@ use super::problem::{Problem, is_load};
 use super::setting::setting;
 use crate::DiagnosisError;
 
+/// Steps in which counts per kPa are sought, as a logarithm.
+const STEP: f64 = 0.25;
+
 /// The start, with the moduli moved together to where forces and pressures have the right size.
 pub fn scaled_start(
     problem: &mut Problem<'_>,
@@ -37,24 +40,61 @@ pub fn scaled_start(
     Ok(start)
 }
 
-/// Counts per kPa of uncalibrated mats, so that simulated and measured sums agree.
+/// Counts per kPa of uncalibrated mats: so that simulated and measured sums agree, or where they tell the force that is asked for, so that the
+/// shapes do.
 fn scale_counts(problem: &mut Problem<'_>, start: &mut [f64]) -> Result<(), DiagnosisError> {
     for column in 0..start.len() {
         let Kind::Counts(recording) = problem.parameters[column].kind else {
             continue;
         };
-        let (materials, nuisances) = setting(problem.replay, (problem.parameters, start));
-        let simulated = problem.replay.predict(
-            recording,
-            (&materials, &nuisances[recording]),
-            problem.control,
-        )?;
+        let (low, high) = problem.parameters[column].bounds;
+        if problem.replay.observed.measured[recording].asks_force() {
+            start[column] = of_shape(problem, start, (column, recording))?;
+            continue;
+        }
+        let simulated = simulated(problem, start, recording)?;
         let samples = &problem.replay.observed.measured[recording].samples;
         let ratio = samples.iter().map(|s| s.value).sum::<f64>() / simulated.iter().sum::<f64>();
         if ratio.is_finite() && ratio > 0.0 {
-            let (low, high) = problem.parameters[column].bounds;
             start[column] = libm::log(ratio).clamp(low, high);
         }
     }
     Ok(())
+}
+
+/// The counts per kPa, as a logarithm, over all that is admissible: a force too large or too small by far changes no shape, and no slope leads
+/// back from there.
+fn of_shape(
+    problem: &mut Problem<'_>,
+    start: &[f64],
+    (column, recording): (usize, usize),
+) -> Result<f64, DiagnosisError> {
+    let (low, high) = problem.parameters[column].bounds;
+    let steps = ((high - low) / STEP).ceil();
+    let mut best = (f64::INFINITY, start[column]);
+    let mut at = start.to_vec();
+    for k in 0..=steps as usize {
+        at[column] = low + (high - low) * k as f64 / steps;
+        let simulated = simulated(problem, &at, recording)?;
+        let samples = &problem.replay.observed.measured[recording].samples;
+        let each = samples.iter().zip(&simulated);
+        let misfit: f64 = each.map(|(s, f)| (s.value - f).powi(2)).sum();
+        if misfit < best.0 {
+            best = (misfit, at[column]);
+        }
+    }
+    Ok(best.1)
+}
+
+fn simulated(
+    problem: &mut Problem<'_>,
+    at: &[f64],
+    recording: usize,
+) -> Result<Vec<f64>, DiagnosisError> {
+    let (materials, nuisances) = setting(problem.replay, (problem.parameters, at));
+    problem.replay.predict(
+        recording,
+        (&materials, &nuisances[recording]),
+        problem.control,
+    )
 }

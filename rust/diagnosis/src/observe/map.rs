@@ -179,9 +179,8 @@ struct Course {
     time_s: Vec<f64>,
     depth_mm: Option<Vec<f64>>,
     slide_mm: Vec<f64>,
-    /// Sum of pressure times area, N; in counts times mm2 without calibration.
+    /// Sum of pressure times area, N; without calibration what it would be at a count per kPa.
     total: Vec<f64>,
-    is_calibrated: bool,
     /// Phase that the file states, by frame.
     stated: Vec<Option<Phase>>,
     is_touch_known: bool,
@@ -219,10 +218,13 @@ impl Course {
                 Some(of_motion("travel_mm")?.iter().map(|t| t - touch).collect())
             });
         if depth_mm.is_none() {
-            unknown.push(
-                "no depth goes with it: each frame is simulated at the force that its own cells sum to, so its total says nothing"
-                    .to_owned(),
-            );
+            let at = match map.unit == PressureUnit::Kilopascal {
+                true => "",
+                false => " at the counts per kPa that fit its shapes best",
+            };
+            unknown.push(format!(
+                "no depth goes with it: each frame is simulated at the force that its own cells sum to{at}, so its total says nothing"
+            ));
         }
         let total = |frame: usize| {
             let area = |cell: usize| {
@@ -251,7 +253,6 @@ impl Course {
                 .or_else(|| of_motion("slide_mm"))
                 .unwrap_or_default(),
             total: (0..frames).map(total).collect(),
-            is_calibrated: map.unit == PressureUnit::Kilopascal,
             stated: (0..frames).map(stated).collect(),
             is_touch_known,
             time_s,
@@ -298,10 +299,7 @@ impl Course {
             Moment {
                 time_s: times[k],
                 depth_mm: if has_depth { travel[k] } else { f64::NAN },
-                demand_n: match has_depth || !self.is_calibrated {
-                    true => f64::NAN,
-                    false => totals[k],
-                },
+                demand_n: if has_depth { f64::NAN } else { totals[k] },
                 slide_mm: across * slides.get(first).copied().unwrap_or(0.0),
                 rate_mm_s: rate,
                 phase: self.stated[first].unwrap_or(found.map_or(Phase::Hold, |s| s.phase)),

@@ -64,7 +64,7 @@ pub struct Moment {
     pub time_s: f64,
     /// Travel beyond first touch along the site's direction, mm, as the operator judged the touch; NaN where only force is known.
     pub depth_mm: f64,
-    /// Force that the protocol asks for where it gives no depth, N; else NaN.
+    /// Force that the protocol asks for where it gives no depth, N, of a mat in counts at one count per kPa; else NaN.
     pub demand_n: f64,
     /// Travel along the skin, mm.
     pub slide_mm: Vector3<f64>,
@@ -144,4 +144,11 @@ pub struct Measured {
     pub is_calibrated: bool,
     /// What cannot be known from this recording, a sentence each.
     pub unknown: Vec<String>,
+}
+
+impl Measured {
+    /// True if some moment has no depth: it is simulated at the force that it asks for.
+    pub fn asks_force(&self) -> bool {
+        self.moments.iter().any(|moment| moment.depth_mm.is_nan())
+    }
 }

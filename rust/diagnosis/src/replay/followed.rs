@@ -23,7 +23,8 @@ const MOST_KEPT: usize = 6;
 struct Task {
     recording: usize,
     key: Key,
-    depths: Vec<f64>,
+    /// By moment, a force over `scale`.
+    demands: Vec<Demand>,
     placement: Placement,
     /// Moduli over those of the key.
     scale: f64,
@@ -90,7 +91,7 @@ impl Replay {
                 materials: materials.collect(),
                 effects: self.effects.clone(),
             },
-            depths: self.depths(recording, nuisance),
+            demands: over(self.demands(recording, nuisance), scale),
             placement: misplaced(nuisance.placement, &self.instrument),
             scale,
         }
@@ -98,7 +99,7 @@ impl Replay {
 
     fn known(&self, task: &Task) -> Option<AtSkin> {
         let is_alike = |f: &&Followed| {
-            f.key == task.key && f.placement == task.placement && same(&f.depths, &task.depths)
+            f.key == task.key && f.placement == task.placement && f.demands == task.demands
         };
         let found = self.followed[task.recording].iter().find(is_alike)?;
         Some(found.at_skin.clone().scaled(task.scale))
@@ -131,7 +132,7 @@ impl Replay {
             }
             kept.push(Followed {
                 key: task.key,
-                depths: task.depths,
+                demands: task.demands,
                 placement: task.placement,
                 at_skin,
             });
@@ -149,7 +150,7 @@ impl Replay {
         let recording = task.recording;
         let measured = &self.observed.measured[recording];
         let place = &self.places[self.place_of[recording]];
-        let rows = rows(&measured.moments, &task.depths);
+        let rows = rows(&measured.moments, &task.demands);
         let added = rows.len() - measured.moments.len();
         let protocol = Protocol {
             rows,
@@ -202,23 +203,25 @@ fn grows_with_modulus(effect: &ActiveEffect) -> bool {
         )
 }
 
-/// Equal, NaN among them.
-fn same(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+/// Forces divided: what they reach on a skin so many times softer is what they reach themselves.
+fn over(mut demands: Vec<Demand>, scale: f64) -> Vec<Demand> {
+    for demand in &mut demands {
+        if let Demand::Force(force) = demand {
+            *force /= scale;
+        }
+    }
+    demands
 }
 
 /// One row a moment; a recording that begins within the skin is led there from first touch at its own speed.
-fn rows(moments: &[Moment], depths: &[f64]) -> Vec<Row> {
-    let row = |(moment, depth): (&Moment, &f64)| Row {
+fn rows(moments: &[Moment], demands: &[Demand]) -> Vec<Row> {
+    let row = |(moment, demand): (&Moment, &Demand)| Row {
         time_s: moment.time_s,
-        demand: match depth.is_nan() {
-            false => Demand::Depth(*depth),
-            true => Demand::Force(moment.demand_n.max(0.0)),
-        },
+        demand: *demand,
         slide: moment.slide_mm,
     };
-    let mut rows: Vec<Row> = moments.iter().zip(depths).map(row).collect();
-    let (Some(first), Some(depth)) = (moments.first(), depths.first()) else {
+    let mut rows: Vec<Row> = moments.iter().zip(demands).map(row).collect();
+    let (Some(first), Some(Demand::Depth(depth))) = (moments.first(), demands.first()) else {
         return rows;
     };
     if *depth > 0.0 {

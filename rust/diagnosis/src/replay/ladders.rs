@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use thenar_contact::effects::Effect;
-use thenar_contact::{ActiveEffect, Control, Keep, Material};
+use thenar_contact::{ActiveEffect, Control, Demand, Keep, Material};
 
 use super::press_table::{Basis, PressTable, RUNGS, press_table};
 use super::reading::misplaced;
@@ -23,16 +23,14 @@ impl Replay {
         control: &Control<'_>,
     ) -> Result<AtSkin, DiagnosisError> {
         let (basis, weights) = self.basis(self.place_of[recording], materials, control)?;
-        let moments = self.observed.measured[recording].moments.iter();
-        let known = self.depths(recording, nuisance);
-        let depths: Vec<f64> = moments
-            .zip(&known)
-            .map(|(moment, depth)| match depth.is_nan() {
-                false => *depth,
-                true => basis.depth_at(&weights, moment.demand_n),
-            })
-            .collect();
-        let last = known.last().copied().unwrap_or(0.0);
+        let depth = |demand: &Demand| match demand {
+            // A recording asks for no offset: it knows first touch.
+            Demand::Depth(depth) | Demand::Offset(depth) => *depth,
+            Demand::Force(force) => basis.depth_at(&weights, *force),
+        };
+        let demands = self.demands(recording, nuisance);
+        let depths: Vec<f64> = demands.iter().map(depth).collect();
+        let last = depths.last().copied().unwrap_or(0.0);
         let displacement = self.displacement(recording, (materials, last), control)?;
         let placement = misplaced(nuisance.placement, &self.instrument);
         let frames = match &mut self.readers[recording] {

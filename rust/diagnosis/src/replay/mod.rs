@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use thenar_contact::effects::Stage;
 use thenar_contact::instrument::Placement;
-use thenar_contact::{ActiveEffect, Control, Material};
+use thenar_contact::{ActiveEffect, Control, Demand, Material};
 use thenar_recordings::Study;
 use thenar_recordings::study::{Indenter, Site};
 use thenar_surface::{Product, Vec3};
@@ -95,7 +95,7 @@ struct Place {
 /// What a protocol was followed with, and what came of it.
 struct Followed {
     key: Key,
-    depths: Vec<f64>,
+    demands: Vec<Demand>,
     placement: Placement,
     at_skin: AtSkin,
 }

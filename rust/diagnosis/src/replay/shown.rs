@@ -1,13 +1,13 @@
 //! What the instrument shows of what happens at the skin: gain, counts, and the effects of an instrument.
 
-use thenar_contact::ActiveEffect;
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::{Signals, observe};
+use thenar_contact::{ActiveEffect, Demand};
 use thenar_surface::Vec3;
 
 use super::{KNOTS, Nuisance, Replay};
 use crate::DiagnosisError;
-use crate::observe::{Measured, Quantity, interpolated};
+use crate::observe::{Measured, Moment, Quantity, interpolated};
 
 /// Part of the largest force below which a moment tells no proportion.
 const LEAST_LOAD: f64 = 1e-4;
@@ -191,6 +191,18 @@ impl Replay {
             }
         }
         depths
+    }
+
+    /// What every moment asks for: its depth in the skin, or where none is known a force, that of a mat in counts at its counts per kPa.
+    pub(super) fn demands(&self, recording: usize, nuisance: &Nuisance) -> Vec<Demand> {
+        let per_count = libm::exp(-nuisance.log_counts);
+        let moments = &self.observed.measured[recording].moments;
+        let demand = |(depth, moment): (f64, &Moment)| match depth.is_nan() {
+            false => Demand::Depth(depth),
+            true => Demand::Force((per_count * moment.demand_n).max(0.0)),
+        };
+        let depths = self.depths(recording, nuisance);
+        depths.into_iter().zip(moments).map(demand).collect()
     }
 }
 
