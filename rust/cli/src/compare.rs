@@ -97,6 +97,9 @@ fn told(study: &Study, comparison: &Comparison, out: &Path) -> String {
     let mut text = format!("{}\n\n", comparison.sentence);
     for recording in &comparison.recordings {
         text += &format!("{}: {}\n", recording.name, recording.sentence);
+        for unknown in &recording.unknown {
+            text += &format!("  not known: {unknown}\n");
+        }
     }
     for estimate in &comparison.estimates {
         text += &format!(

@@ -129,12 +129,25 @@ fn write_curve(text: &mut String, curve: &Curve) -> Result<(), Error> {
             finite().fold(f64::INFINITY, f64::min),
             finite().fold(f64::NEG_INFINITY, f64::max),
         );
-        writeln!(text, "    {}: {low:.6e} to {high:.6e}", channel.name)?;
+        let (low, high) = (number(low), number(high));
+        writeln!(text, "    {}: {low} to {high}", channel.name)?;
     }
     for fact in &curve.facts {
-        writeln!(text, "    {} = {:.6e}", fact.name, fact.value)?;
+        writeln!(text, "    {} = {}", fact.name, number(fact.value))?;
     }
     write_notes(text, &curve.checks, &curve.unknown, &curve.warnings)
+}
+
+/// Six decimals without zeros at their end, or a power of ten with six digits where those would not show it.
+fn number(value: f64) -> String {
+    match value.abs() {
+        size if size > 0.0 && !(1e-2..1e7).contains(&size) => format!("{value:.5e}"),
+        _ => {
+            let text = format!("{value:.6}");
+            let short = text.trim_end_matches('0').trim_end_matches('.');
+            if short == "-0" { "0" } else { short }.to_string()
+        }
+    }
 }
 
 fn write_notes(

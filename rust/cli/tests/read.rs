@@ -35,7 +35,10 @@ fn a_mat_is_told_with_its_check_and_what_is_not_known() {
 fn a_study_is_told_recording_by_recording() {
     let folder = Folder::new("read_study");
     folder.file("skin.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n");
-    folder.file("press.csv", "time_s,depth_mm,force_mN\n0,0,0\n0.5,1,2000\n");
+    folder.file(
+        "press.csv",
+        "time_s,depth_mm,force_mN\n0,0,0\n0.25,0.5,0.0125\n0.5,1,2000.5\n",
+    );
     folder.file(
         "study.toml",
         "[study]\ntitle = \"Finger\"\n[skin]\nmesh = \"skin.obj\"\n[indenters.plate]\nshape = \"plane\"\n[sites.pad]\n\
@@ -46,10 +49,24 @@ fn a_study_is_told_recording_by_recording() {
     for line in [
         ": Finger\nskin: 3 vertices, 1 triangles, 1 regions\n",
         "\npress (plate at pad)\n",
-        "    force_n: 0.000000e0 to 2.000000e0\n",
+        "    time_s: 0 to 0.5\n",
+        "    force_n: 0 to 2.0005\n",
     ] {
         assert!(text.contains(line), "{line:?} is not in {text}");
     }
+}
+
+/// Forces of nanonewtons are not told as zeros.
+#[test]
+fn small_numbers_keep_their_digits() {
+    let folder = Folder::new("read_small");
+    let table = "time_s,depth_mm,force_n\n0,0,0\n1,0.01,4.919e-8\n2,0.02,-1.7127e-8\n";
+    let text = told(&folder.file("curve.csv", table));
+    assert!(
+        text.contains("    force_n: -1.71270e-8 to 4.91900e-8\n"),
+        "{text}"
+    );
+    assert!(text.contains("    depth_mm: 0 to 0.02\n"), "{text}");
 }
 
 #[test]
