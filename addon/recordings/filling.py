@@ -86,4 +86,5 @@ def _worst(row, place, recording):
 def _text(value, is_share):
     if isnan(value):
         return ""
+    value += 0.0  # the library's sums of nothing are -0
     return f"{value:.0%}" if is_share else f"{value:.4g}"

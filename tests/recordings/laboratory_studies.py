@@ -58,17 +58,35 @@ def silicone(shared, folder):
     _study(folder, "Ecoflex 00-10 cylinders", numbers, 'shape = "plane"', names)
 
 
-STUDIES = {"force_ramps": force_ramps, "gel_creep": gel_creep, "silicone": silicone}
+def finger_on_mat(shared, folder):
+    """A finger pressed eleven times on an I-Scan mat, in raw counts; product and finger are assumed."""
+    shutil.copy(shared / "finger_pressure_iscan/iscan_test.csv", folder / "mat.csv")
+    line = np.linspace(-9.0, 9.0, 37)
+    points = [(x, y, -(x * x / 14.0 + y * y / 22.0) / 2.0) for y in line for x in line]
+    _mesh(folder, points, _faces(len(line)))
+    numbers = (0.01, 0.05, 4.0, "7.0", '["g0_mpa", "g_lim_mpa"]')
+    _study(folder, "Finger on I-Scan, product assumed", numbers, 'shape = "plane"', [("mat", "mat.csv", "presses")])
+    # The middle of the field on which the finger lies: rows and columns 15 to 25 of cells of 1.27 mm.
+    corner = -20.5 * 1.27
+    text = (folder / "study.toml").read_text().replace('"indentation"', '"pressure_map"\ncalibrated = false')
+    placing = f'[recordings.placing]\non = "plane"\norigin_mm = [{corner}, {corner}, 0.0]\n'
+    (folder / "study.toml").write_text(text + placing + "columns = [1.0, 0.0, 0.0]\nrows = [0.0, 1.0, 0.0]\n")
+
+
+STUDIES = {"force_ramps": force_ramps, "gel_creep": gel_creep, "silicone": silicone, "finger_on_mat": finger_on_mat}
 
 
 def _skin(folder, half, spacing):
     """A flat square."""
     count = round(2 * half / spacing) + 1
     line = np.linspace(-half, half, count)
-    points = [(x, y, 0.0) for y in line for x in line]
-    corners = [(j * count + i, i, j) for j in range(count - 1) for i in range(count - 1)]
-    faces = [f for k, _, _ in corners for f in ((k, k + 1, k + count), (k + 1, k + count + 1, k + count))]
-    _mesh(folder, points, faces)
+    _mesh(folder, [(x, y, 0.0) for y in line for x in line], _faces(count))
+
+
+def _faces(count):
+    """Triangles of a square of `count` by `count` points."""
+    corners = [j * count + i for j in range(count - 1) for i in range(count - 1)]
+    return [f for k in corners for f in ((k, k + 1, k + count), (k + 1, k + count + 1, k + count))]
 
 
 def _disc(folder, radius, spacing):

@@ -63,6 +63,29 @@ def test_silicone_never_unloads_and_ends_where_the_plate_does(shared, tmp_path):
     assert told["lack_of_fit_p"] == pytest.approx(0.001)
 
 
+def test_a_finger_in_counts_is_compared_by_shape_and_its_second_lobe_stands_out(shared, tmp_path):
+    """Its source tells two lobes, in columns 15 and 16 and in 19 to 22, where a plate gives one."""
+    told = compared("finger_on_mat", shared, tmp_path)
+    (recording,) = told["recordings"]
+    assert not recording["is_calibrated"] and "not calibrated, so only the shape is compared" in told["sentence"]
+    said = " ".join(recording["unknown"])
+    assert "no calibration is in the file" in said and "at the counts per kPa that fit its shapes best" in said
+    assert any("counts do not tell them" in note for note in told["notes"])
+    assert [each["name"] for each in told["estimates"] if each["name"].startswith("g")] == []
+    counts = next(each for each in told["estimates"] if each["name"] == "counts_per_kpa")
+    assert not counts["is_at_bound"]
+    # By its source 42 to 53 mm2 at the peaks, two stuck cells of 1.6 mm2 among them.
+    area = next(each for each in recording["measures"] if each["name"] == "largest_mat_area_mm2")
+    assert 42 <= area["measured"] <= 53 and 0.5 < area["simulated"] / area["measured"] < 1.5
+    frame = next(each for each in recording["frames"] if "frame of largest force" in each["why"])
+    mat, residual = recording["mat"], frame["residual_counts"]
+    by_column = {}
+    for column, left in zip(mat["column"], residual, strict=True):
+        by_column[column] = by_column.get(column, 0.0) + left
+    assert max(by_column, key=by_column.get) in (15, 16), "only the recording has the lobe beside the dead strip"
+    assert by_column[15] + by_column[16] > 50 > -50 > sum(by_column[k] for k in range(19, 23))
+
+
 SUSPECTED = {
     "force_ramps": "suspected, and not told apart, are drainage, relaxation, rate independent loss",
     "gel_creep": "adhesion is suspected",

@@ -55,7 +55,8 @@ fn raised(power: &str) -> String {
 
 /// A share in percent, two digits.
 pub(crate) fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
+    // Sums of nothing are -0.
+    let percent = 100.0 * share + 0.0;
     match percent {
         _ if percent.is_nan() => "\u{2013}".into(),
         _ if percent.abs() >= 9.95 => format!("{percent:.0} %"),
@@ -111,6 +112,9 @@ mod tests {
             [0.0001, 0.012, 0.44].map(chance),
             ["p < 0.001", "p = 0.012", "p = 0.44"]
         );
-        assert_eq!([0.691, 0.0042].map(percent), ["69 %", "0.4 %"]);
+        assert_eq!(
+            [0.691, 0.0042, -0.0].map(percent),
+            ["69 %", "0.4 %", "0.0 %"]
+        );
     }
 }

@@ -237,7 +237,9 @@ fn place(variable: Variable, bin: &Bin) -> String {
     match variable {
         Variable::Phase => format!("in the phase \u{201c}{}\u{201d}", bin.label),
         Variable::Cycle => format!("in cycle {}", bin.label),
+        Variable::Time if low == high => format!("at {low} s"),
         Variable::Time => format!("from {low} to {high} s"),
+        Variable::Depth if low == high => format!("at a depth of {low} mm"),
         Variable::Depth => format!("at a depth of {low} to {high} mm"),
         Variable::Rate => format!("at a rate of {low} to {high} mm/s"),
         Variable::SensorRow if low == high => format!("in row {low} of the mat"),

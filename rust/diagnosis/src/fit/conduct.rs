@@ -278,7 +278,15 @@ impl Fitting {
             notes
                 .push("the fit did not settle: what it gives is the best that it found".to_owned());
         }
-        if !parameters.iter().any(|p| p.kind == Kind::InstrumentGain) {
+        let has = |is: &dyn Fn(Kind) -> bool| parameters.iter().any(|p| is(p.kind));
+        if !has(&|kind| matches!(kind, Kind::Tissue(..)))
+            && has(&|kind| matches!(kind, Kind::Counts(_)))
+        {
+            notes.push(
+                "the moduli stay where the study has them: counts do not tell them, and with others the counts per kPa would be others"
+                    .to_owned(),
+            );
+        } else if !has(&|kind| kind == Kind::InstrumentGain) {
             notes.push(
                 "the instrument's gain is taken as true, since the data sheet gives no uncertainty: a gain that is off shows as a modulus that is off"
                     .to_owned(),

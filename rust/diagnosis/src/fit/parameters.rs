@@ -205,9 +205,19 @@ pub struct Case<'a> {
     pub instrument: Option<&'a Instrument>,
 }
 
+/// False if all that is fitted are counts without a depth: a softer skin under a smaller force looks the same.
+fn tells_moduli((measured, is_used): (&[Measured], &[bool])) -> bool {
+    let used = measured.iter().zip(is_used).filter(|(_, used)| **used);
+    let mut used = used.filter(|(one, _)| !one.samples.is_empty());
+    used.any(|(one, _)| one.is_calibrated || !one.asks_force())
+}
+
 /// Everything that the recordings of a study call for.
 pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
-    let mut all = of_tissue(case.tissue);
+    let mut all = match tells_moduli((case.measured, case.is_used)) {
+        true => of_tissue(case.tissue),
+        false => Vec::new(),
+    };
     let sheet = case.instrument;
     if let Some(percent) = sheet.and_then(|s| s.gain_percent) {
         all.push(gain(
