@@ -69,6 +69,55 @@ fn small_numbers_keep_their_digits() {
     assert!(text.contains("    depth_mm: 0 to 0.02\n"), "{text}");
 }
 
+/// A GB of bytes at random, of text at random, and of text after a maker's own header: refused by line with 400 MB of address space in all.
+#[test]
+fn a_gigabyte_of_noise_is_refused_in_little_memory() {
+    let folder = Folder::new("read_noise");
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as u8
+    };
+    let bytes: Vec<u8> = (0..1 << 20).map(|_| next()).collect();
+    let letters = b"0123456789,.;-+ \teE@Frame\n";
+    let text: Vec<u8> = (0..1 << 20)
+        .map(|_| letters[usize::from(next()) % letters.len()])
+        .collect();
+    for (name, head, noise) in [
+        ("bytes.csv", "", &bytes),
+        ("text.csv", "", &text),
+        ("movie.asf", COUNTS.trim_end_matches("@@\n"), &text),
+    ] {
+        let path = folder.path(name);
+        let mut file = std::io::BufWriter::new(std::fs::File::create(&path).unwrap());
+        std::io::Write::write_all(&mut file, head.as_bytes()).unwrap();
+        for _ in 0..1 << 10 {
+            std::io::Write::write_all(&mut file, noise).unwrap();
+        }
+        drop(file);
+        let start = std::time::Instant::now();
+        let limited = format!(
+            "ulimit -v 400000; exec '{}' read '{path}'",
+            env!("CARGO_BIN_EXE_thenar")
+        );
+        let output = std::process::Command::new("sh")
+            .args(["-c", &limited])
+            .output()
+            .unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        println!("{name}: {:.2} s; {said}", start.elapsed().as_secs_f64());
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains(&format!("{name}, line ")) && said.contains("; "),
+            "{said}"
+        );
+        assert!(start.elapsed().as_secs_f64() < 5.0);
+    }
+}
+
 #[test]
 fn what_cannot_be_read_is_refused_with_file_and_line() {
     let folder = Folder::new("read_refused");
