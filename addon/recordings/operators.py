@@ -123,6 +123,8 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
             fitting = display.fitting_range(context)
             if fitting is not None:
                 context.scene.thenar.maps.residual_kpa = fitting
+        else:
+            display.refresh(context)
         running.redraw(context)
         self.report({"INFO"}, comparison.sentence)
         return {"FINISHED"}

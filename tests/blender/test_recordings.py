@@ -157,6 +157,18 @@ def test_raw_counts_are_compared_by_shape(tmp_path):
     assert "residual_kpa" not in hand.data.attributes
 
 
+def test_a_comparison_without_a_map_does_not_leave_the_last_one_shown(compared, tmp_path):
+    hand, _ = compared
+    assert bpy.context.scene.thenar.maps.shown == "RESIDUAL"
+    path = write_asf(tmp_path / "raw.asf", [np.round(read_by_hand(hand) * 3)], units="Raw")
+    bpy.ops.thenar.load_recording(filepath=path)
+    placing = bpy.context.scene.thenar_recordings.items[-1].placing
+    placing.on, placing.axis = "PLANE", "+Z"
+    assert bpy.ops.thenar.compare() == {"FINISHED"}
+    assert "residual_kpa" not in hand.data.attributes
+    assert bpy.context.scene.thenar.maps.shown == "PRESSURE" and hand.thenar.shows_pressure
+
+
 def test_a_mat_wraps_around_a_turned_cylinder(tmp_path):
     stage.scene()
     bpy.ops.mesh.primitive_cylinder_add(radius=0.012, depth=0.08, vertices=96, location=(0.01, 0.02, -0.017))
