@@ -14,7 +14,7 @@ import argparse
 
 import numpy as np
 from scipy.stats import norm
-from trial import cases, counts, make_cases, observing, protocols, score
+from trial import cases, counts, following, make_cases, observing, protocols, score
 
 SEEN, LEAD = 3.3, 5.0
 TOLD = (2.0 * LEAD) ** 0.5
@@ -28,14 +28,15 @@ ROWS = {
 
 
 class Case:
-    """A case's recordings in the units of their noise, with what is refitted taken out."""
+    """A case's recordings in the units of their noise, with what is refitted taken out; `more` presses by protocol."""
 
-    def __init__(self, name, label, more=()):
+    def __init__(self, name, label, more=None):
         about = cases.index()[name]
-        self.label, self.pad = label, about["pad"]
-        self.growth, published = label["g_mpa"], {*about["published"], *more}
-        self.kept = [k for k, press in enumerate(self._presses("none", 0.0)) if press.protocol in published]
+        self.label, self.pad, self.growth = label, about["pad"], label["g_mpa"]
         self.rest = self._presses("none", 0.0)
+        known = [press.protocol for press in self.rest]
+        self.kept = [k for k, protocol in enumerate(known) if protocol in about["published"]]
+        self.kept += [known.index(protocol) for protocol, times in (more or {}).items() for _ in range(times)]
         truth = make_cases.truth_of(self.pad, "none", 0)
         self.white = [self._whitening(truth, self.rest[k]) for k in self.kept]
         self.basis = np.linalg.qr(self._white([truth.base(self.rest[k]) for k in self.kept]))[0]
@@ -90,8 +91,8 @@ def _apply(sigma, keep, basis, shrink, column):
     return rows[:, 0] if np.ndim(column) == 1 else rows
 
 
-def separations(name, label, more=()):
-    """(detect, name) of a case of one effect with protocols added; of an instrument's error (detect, None)."""
+def separations(name, label, more=None):
+    """(detect, name) of a case of one effect with presses added; of an instrument's error (detect, None)."""
     case = Case(name, label, more)
     if label["stratum"] == "decoy":
         return float(np.linalg.norm(case.distortion(label["distortion"], label["amplitudes"][1]))), None
@@ -113,10 +114,10 @@ def chance(detect, name):
 
 
 def settled(name, label):
-    """(detect, name) with the protocol held back that tells best, and with all of them."""
-    held = cases.held_back(name)
-    best = max((separations(name, label, [one]) for one in held), key=lambda pair: pair[1])
-    return best, separations(name, label, held)
+    """(detect, name) with the protocol held back that tells best, as often as can be, in turn with a known one."""
+    known, often = cases.index()[name]["published"], following.MOST
+    tried = [{one: often, other: often} for one in cases.held_back(name) for other in known]
+    return max((separations(name, label, more) for more in tried), key=lambda pair: pair[1])
 
 
 def groups(sealed):
@@ -131,10 +132,8 @@ def groups(sealed):
             found.setdefault("decoys", []).append(separations(name, label))
             severe.setdefault(f"  {label['distortion']}", []).append(found["decoys"][-1])
         elif label["stratum"] == "ambiguous" and cases.held_back(name):
-            best, whole = settled(name, label)
             found.setdefault("ambiguous", []).append(separations(name, label))
-            found.setdefault("  with the best recording", []).append(best)
-            found.setdefault("  with all held back", []).append(whole)
+            found.setdefault("  with the best recording", []).append(settled(name, label))
     return found | {name: severe[name] for name in sorted(severe)}
 
 
