@@ -50,6 +50,7 @@ def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_
     # Each press takes its rest of 5 minutes; where a tool in use is pressed in turn, twice as many are made.
     presses = asked["presses"] * (2 if asked["in_turn_with"] else 1)
     assert presses >= 2 and said["record_next"][0]["minutes"] > 5.0 * presses
+    assert "% of cases" in said["sentence"]
     assert 0.0 < said["record_next"][0]["probability"] < 1.0 and asked["in_turn_with"] in {None, *used}
 
 

@@ -61,7 +61,7 @@ fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
         }
     }
     for next in &found.record_next {
-        text += &format!("record next: {}\n", next.text);
+        text += &format!("record next: {} ({})\n", next.text, next.outlook());
     }
     for note in study.warnings.iter().chain(&found.notes) {
         text += &format!("note: {note}\n");

@@ -13,6 +13,8 @@ use thenar_diagnosis::{
     DiagnoseOptions, Diagnosis, DiagnosisError, Fitting, diagnose, findings_json,
 };
 use thenar_recordings::Study;
+use thenar_recordings::meshes::MeshFile;
+use thenar_recordings::study::{Indenter, Shape};
 
 fn diagnosed(study: &Study) -> Diagnosis {
     diagnose(study, &DiagnoseOptions::default(), &Control::none()).unwrap()
@@ -89,6 +91,47 @@ fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
         fitting.simulate(&[active], &Control::none()).is_ok(),
         "the model takes what was found"
     );
+}
+
+/// One tool alone tells no clock that is fixed from one that grows with the contact: another tool of the study is asked for, or the
+/// same again, and not one of which nothing can be made.
+#[test]
+fn what_is_recorded_next_settles_what_one_tool_cannot() {
+    let mut study = planned();
+    study.recordings.retain(|r| r.indenter == "ball");
+    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
+    let effect = ActiveEffect::named("relaxation", 0.5).unwrap();
+    let forces = fitting.simulate(&[effect], &Control::none()).unwrap();
+    let mut study = measured(&(study, forces), &USUAL, 11);
+    let of_nothing = Shape::Mesh(MeshFile::default());
+    for (name, shape) in [
+        ("nothing", of_nothing),
+        ("large ball", Shape::Sphere { radius_mm: 20.0 }),
+    ] {
+        let name = name.to_owned();
+        study.indenters.push(Indenter { name, shape });
+    }
+    let found = diagnosed(&study);
+    assert_eq!(found.verdict, Verdict::CannotTell, "{}", found.sentence);
+    assert!(
+        found.cannot_tell.contains(&["relaxation", "drainage"]),
+        "{:?}",
+        found.cannot_tell
+    );
+    let next = &found.record_next[0];
+    let asked = next.indenter.as_deref();
+    assert!(
+        asked.is_some_and(|name| ["plate", "large ball"].contains(&name)),
+        "{next:?}"
+    );
+    assert!(
+        next.in_turn_with
+            .as_deref()
+            .is_none_or(|name| name == "ball")
+    );
+    let share = next.probability.unwrap();
+    assert!(share > 0.0 && share <= 1.0 && next.presses >= 2 && next.minutes > 4.0);
+    assert!(found.sentence.contains("% of cases"), "{}", found.sentence);
 }
 
 /// One recording of each protocol: noise is not known, and nothing is named whatever the curve looks like.

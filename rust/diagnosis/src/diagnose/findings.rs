@@ -177,6 +177,16 @@ pub struct Suggestion {
     pub minutes: f64,
 }
 
+impl Suggestion {
+    /// How often it would settle the matter, and how long it takes, in words.
+    pub fn outlook(&self) -> String {
+        let chance = self.probability.map_or(String::new(), |p| {
+            format!("settles it in {:.0} % of cases, ", 100.0 * p)
+        });
+        format!("{chance}takes about {:.0} minutes", self.minutes)
+    }
+}
+
 /// A curve before and after.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {

@@ -5,6 +5,7 @@
 
 mod acting;
 mod checks;
+mod choices;
 mod course;
 mod elastic;
 mod findings;

@@ -51,7 +51,7 @@ pub fn sentence(
                 .map(|[a, b]| format!("{} and {}", words(a), words(b)))
                 .collect();
             let settled = match next.first() {
-                Some(next) => format!(" Record next: {}.", next.text),
+                Some(next) => format!(" Record next: {} ({}).", next.text, next.outlook()),
                 None => String::new(),
             };
             format!(

@@ -282,6 +282,11 @@ impl Replay {
         Ok(self.places.len() - 1)
     }
 
+    /// Takes away the tool that was added last.
+    pub fn drop_place(&mut self) {
+        self.places.pop();
+    }
+
     /// Depth that a recording's ladder reaches, mm.
     pub fn deepest(&self, recording: usize) -> f64 {
         self.places[self.place_of[recording]].deepest

@@ -109,14 +109,7 @@ fn next(found: &Diagnosis) -> String {
         return String::new();
     }
     let one = |next: &crate::diagnose::Suggestion| {
-        let chance = next.probability.map_or(String::new(), |p| {
-            format!("settles it in {:.0} % of cases, ", 100.0 * p)
-        });
-        format!(
-            "<li>{} ({chance}about {:.0} minutes)</li>",
-            escaped(&next.text),
-            next.minutes
-        )
+        format!("<li>{} ({})</li>", escaped(&next.text), next.outlook())
     };
     let list: String = found.record_next.iter().map(one).collect();
     format!("<h3>Record next</h3><ol>{list}</ol>\n")

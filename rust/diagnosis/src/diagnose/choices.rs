@@ -1,0 +1,234 @@
+//! Recordings that could be made: every tool of a study and a larger sphere, held at every speed or in cycles.
+
+use thenar_contact::Control;
+use thenar_recordings::Study;
+use thenar_recordings::study::{Indenter, Shape, Site};
+
+use super::course::Course;
+use super::elastic::Elastic;
+use super::planned::Press;
+use super::prepare::Prepared;
+use crate::DiagnosisError;
+use crate::fit::Fitting;
+
+/// Radius of a sphere that is asked for where the study has no other tool, over the largest in use.
+const RATIO: f64 = 2.5;
+/// Hold that tells clocks apart, s, if none was as long.
+const HOLD_S: f64 = 8.0;
+/// Cycles that tell what counts them from what counts time.
+const CYCLES: u32 = 4;
+/// A speed that is asked for where all were alike, over the one in use.
+const FASTER: f64 = 5.0;
+/// Depth of a sphere's press over its radius, at most: the contact model answers for no more (`tool::too_deep`).
+const DEEPEST: f64 = 0.5;
+/// Rest before each press where the study says none, and time to set up each, s.
+const REST_S: f64 = 120.0;
+const SETTING_UP_S: f64 = 30.0;
+/// A recording that could be made.
+#[derive(Clone)]
+pub struct Choice {
+    /// Name in the study, if it is one of its tools.
+    pub indenter: Option<String>,
+    /// mm; None where it is not round.
+    pub radius_mm: Option<f64>,
+    /// Whether a recording used the tool.
+    pub is_known: bool,
+    /// Name of a tool in use that is pressed in turn with it.
+    pub in_turn_with: Option<String>,
+    /// The press, and that of the tool in turn.
+    pub presses: Vec<Press>,
+    /// Time of each once, with the rest before it, minutes.
+    pub minutes: f64,
+}
+
+/// What was recorded so far.
+pub struct Past {
+    /// Name of the site.
+    pub site: String,
+    /// Tools in use.
+    used: Vec<String>,
+    /// Largest radius in use, mm; 0 where no tool is round.
+    largest: f64,
+    /// Speeds of loading in use, mm/s, ascending, of which none is within a third of another.
+    speeds: Vec<f64>,
+    /// Deepest press, mm, and longest hold, s.
+    depth_mm: f64,
+    hold_s: f64,
+    /// Rest before a press, s.
+    rest_s: f64,
+}
+
+fn radius_of(tool: &Indenter) -> Option<f64> {
+    match &tool.shape {
+        Shape::Sphere { radius_mm }
+        | Shape::Cylinder { radius_mm, .. }
+        | Shape::Punch { radius_mm } => Some(*radius_mm),
+        _ => None,
+    }
+}
+
+impl Past {
+    /// Of at least one recording.
+    pub fn of(study: &Study, courses: &[Course]) -> Past {
+        let of = |c: &Course| &study.recordings[c.recording];
+        let used: Vec<String> = courses.iter().map(|c| of(c).indenter.clone()).collect();
+        let tools = study.indenters.iter().filter(|i| used.contains(&i.name));
+        let mut speeds: Vec<f64> = courses.iter().map(Course::speed).collect();
+        speeds.retain(|s| *s > 0.0);
+        speeds.sort_by(f64::total_cmp);
+        speeds.dedup_by(|a, b| *a < 1.33 * *b);
+        let most = |of: &dyn Fn(&Course) -> f64| courses.iter().map(of).fold(0.0, f64::max);
+        let rest = courses.iter().filter_map(|c| of(c).rest_s);
+        Past {
+            site: courses
+                .first()
+                .map_or(String::new(), |c| of(c).site.clone()),
+            largest: tools.filter_map(radius_of).fold(0.0, f64::max),
+            speeds,
+            depth_mm: most(&Course::deepest),
+            hold_s: most(&Course::hold_s).max(HOLD_S),
+            rest_s: rest.reduce(f64::max).unwrap_or(REST_S),
+            used,
+        }
+    }
+
+    /// The study's tools, and a larger sphere if it has none that was not used.
+    pub fn tools(&self, study: &Study) -> Vec<(Indenter, bool)> {
+        let mut tools: Vec<(Indenter, bool)> =
+            study.indenters.iter().map(|i| (i.clone(), true)).collect();
+        let has_other = study.indenters.iter().any(|i| !self.used.contains(&i.name));
+        if !has_other && self.largest > 0.0 {
+            let shape = Shape::Sphere {
+                radius_mm: RATIO * self.largest,
+            };
+            let name = "a larger sphere".to_owned();
+            tools.push((Indenter { name, shape }, false));
+        }
+        tools
+    }
+
+    fn depth_of(&self, tool: &Indenter) -> f64 {
+        match &tool.shape {
+            Shape::Sphere { radius_mm } => self.depth_mm.min(DEEPEST * radius_mm),
+            _ => self.depth_mm,
+        }
+    }
+
+    /// Every tool held at every speed, and in cycles at the middle one: alone, and in turn with the tool in use that differs most.
+    pub fn choices(
+        &self,
+        (tools, places): (&[(Indenter, bool)], &[Option<usize>]),
+        contact: &dyn Fn(usize) -> f64,
+    ) -> Vec<Choice> {
+        let mut all = Vec::new();
+        let known = || {
+            let both = tools.iter().zip(places);
+            both.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)))
+        };
+        for (tool, is_own, place) in known() {
+            let apart = |other: usize| libm::log(contact(other) / contact(place)).abs();
+            let used = known().filter(|(t, _, p)| *p != place && self.used.contains(&t.name));
+            let other = used.max_by(|a, b| apart(a.2).total_cmp(&apart(b.2)));
+            for (speed_mm_s, hold_s, cycles) in self.ways() {
+                let press = |(tool, place): (&Indenter, usize)| Press {
+                    place,
+                    depth_mm: self.depth_of(tool),
+                    speed_mm_s,
+                    hold_s,
+                    cycles,
+                };
+                let alone = Choice {
+                    indenter: is_own.then(|| tool.name.clone()),
+                    radius_mm: radius_of(tool),
+                    is_known: self.used.contains(&tool.name),
+                    in_turn_with: None,
+                    minutes: self.minutes(&press((tool, place))),
+                    presses: vec![press((tool, place))],
+                };
+                if let Some((other, _, place)) = other {
+                    let mut both = alone.clone();
+                    let press = press((other, place));
+                    both.minutes += self.minutes(&press);
+                    both.presses.push(press);
+                    both.in_turn_with = Some(other.name.clone());
+                    all.push(both);
+                }
+                all.push(alone);
+            }
+        }
+        all
+    }
+
+    /// Speed, hold and cycles of what can be done with a tool.
+    fn ways(&self) -> Vec<(f64, f64, u32)> {
+        let mut speeds = self.speeds.clone();
+        match speeds[..] {
+            [] => speeds.push(1.0),
+            [one] => speeds.push(FASTER * one),
+            _ => {}
+        }
+        let middle = speeds[self.speeds.len().saturating_sub(1) / 2];
+        let mut ways: Vec<(f64, f64, u32)> = speeds.iter().map(|s| (*s, self.hold_s, 1)).collect();
+        ways.push((middle, 0.0, CYCLES));
+        ways
+    }
+
+    /// Time of a press with the rest before it, minutes.
+    fn minutes(&self, press: &Press) -> f64 {
+        let moving = 2.0 * f64::from(press.cycles) * press.depth_mm / press.speed_mm_s;
+        (self.rest_s + SETTING_UP_S + press.hold_s + moving) / 60.0
+    }
+}
+
+/// Numbers of the tools' places; those that no recording used are placed and pressed, and left out (None) where that cannot be done.
+///
+/// # Errors
+/// `Cancelled`.
+pub fn placed(
+    (tools, site): (&[(Indenter, bool)], &Site),
+    (past, fitting): (&Past, &mut Fitting),
+    (ready, elastic, control): (&Prepared, &mut Elastic, &Control<'_>),
+) -> Result<Vec<Option<usize>>, DiagnosisError> {
+    let mut places = Vec::new();
+    for (tool, _) in tools {
+        let observed = &fitting.replay.observed.measured;
+        let is_here = |c: &&Course| {
+            let one = &observed[c.recording];
+            one.indenter == tool.name && one.site == site.name
+        };
+        let known = ready.courses.iter().find(is_here).map(|c| c.place);
+        places.push(match known {
+            Some(place) => Some(place),
+            None => match pressed((tool, site, past), fitting, (elastic, control)) {
+                // A tool that the skin cannot be pressed with is no advice, and no reason to say nothing.
+                Err(DiagnosisError::Cancelled) => return Err(DiagnosisError::Cancelled),
+                other => other.ok(),
+            },
+        });
+    }
+    Ok(places)
+}
+
+/// The number of the place of a tool that is placed and pressed; if that fails, nothing is changed.
+fn pressed(
+    (tool, site, past): (&Indenter, &Site, &Past),
+    fitting: &mut Fitting,
+    (elastic, control): (&mut Elastic, &Control<'_>),
+) -> Result<usize, DiagnosisError> {
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
+    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
+    let place = fitting
+        .replay
+        .add_place((tool, site), past.depth_of(tool))?;
+    let mut tried = elastic.clone();
+    let done = tried.add(fitting, g0, &quiet);
+    fitting.replay.set_effects(&[], &quiet)?;
+    match done {
+        Ok(()) => *elastic = tried,
+        Err(_) => fitting.replay.drop_place(),
+    }
+    done.map(|()| place)
+}
