@@ -135,12 +135,6 @@ impl Handprint {
         map.values = self.inked.clone();
         map
     }
-
-    /// Area of the cells that touched, mm2.
-    pub fn touched_mm2(&self) -> f64 {
-        let touched = self.inked.iter().filter(|share| **share >= TOUCHED_FROM);
-        touched.count() as f64 * self.cell_mm * self.cell_mm
-    }
 }
 
 /// What a threshold must be.

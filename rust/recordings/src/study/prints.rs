@@ -9,6 +9,7 @@ use crate::fault::{Fault, shown};
 use crate::handprint::{Handprint, Ink, PrintOptions, Scale, THRESHOLD_REMEDY};
 use crate::meshes::MeshFile;
 use std::path::Path;
+use thenar_surface::{Mesh, median_edge_length};
 
 /// Reads a handprint, its place and its press.
 pub(super) fn read(
@@ -121,13 +122,10 @@ fn scale(section: &mut Section) -> Result<Scale, Fault> {
 /// Side of a cell: as long as an edge of the skin, since no contact model tells more than its mesh does, and a few pixels at least.
 fn cell_of(skin: &MeshFile, scale: Scale) -> f64 {
     const PIXELS: f64 = 4.0;
-    let length =
-        |[a, b]: [u32; 2]| (skin.positions[a as usize] - skin.positions[b as usize]).norm();
-    let sides = |[a, b, c]: &[u32; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(length);
-    let mut edges: Vec<f64> = skin.triangles.iter().flat_map(sides).collect();
-    edges.sort_by(f64::total_cmp);
-    let median = edges.get(edges.len() / 2).copied().unwrap_or(1.0);
-    median.max(PIXELS * scale.mm_per_px())
+    // A mesh that is none is refused where its skin is prepared.
+    let mesh = Mesh::new(skin.positions.clone(), skin.triangles.clone());
+    let edge = mesh.map_or(0.0, |mesh| median_edge_length(&mesh));
+    edge.max(PIXELS * scale.mm_per_px())
 }
 
 fn number_from_zero(section: &mut Section, key: &'static str) -> Result<Option<f64>, Fault> {
