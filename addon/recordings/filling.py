@@ -42,7 +42,7 @@ def fill(state, comparison, about):
             vertices = place.vertices if match is None else match.on_hand(place.vertices)
             state.worst[-1].vertices = ",".join(map(str, vertices))
         if recording.print is not None:
-            _regions(state.measures, recording.print.regions, prefix + "inked area by region")
+            _regions(state.measures, recording.print.regions, prefix + "inked area by region, mm²")
             state.notes.add().name = prefix + recording.sentence
         for text in recording.unknown:
             state.notes.add().name = prefix + text
@@ -62,7 +62,7 @@ def _regions(rows, regions, group):
     """What of each region touched, where a print shows several."""
     for region in regions:
         row = rows.add()
-        row.name, row.group, row.unit = region.name.replace("_", " "), group, "mm²"
+        row.name, row.group = region.name.replace("_", " "), group
         row.measured, row.simulated = _text(region.recorded_mm2, False), _text(region.simulated_mm2, False)
 
 
@@ -77,7 +77,7 @@ def _worst(row, place, recording):
         brief = {"Contact area": "area", _HEIGHT: "height"}.get(place.quantity, place.quantity.lower())
         row.name = f"{brief} at {place.time_s:.3g} s"
     if recording.print is not None:
-        row.residual = f"{abs(place.residual):.3g} mm² {'inked' if place.residual > 0 else 'simulated'} alone"
+        row.residual = f"{abs(place.residual):.3g} mm², {'ink alone' if place.residual > 0 else 'no ink'}"
         return
     sigmas = "" if isnan(place.residual_sigmas) else f", {place.residual_sigmas:+.1f} σ"
     row.residual = f"{place.residual:+.3g} {unit}{sigmas}"

@@ -152,7 +152,7 @@ def test_of_a_studys_prints_the_hand_shows_the_one_that_overlaps_least(tmp_path)
 def test_the_corner_is_the_worst_place_and_selects_its_skin(compared):
     hand, _, radius = compared
     state = bpy.context.scene.thenar_recordings.comparison
-    assert state.worst[0].residual.endswith("mm² simulated alone")
+    assert state.worst[0].residual.endswith("mm², no ink")
     area = float(state.worst[0].residual.split()[0])
     # The bent sides of what is missing are told to a cell of 0.5 mm.
     assert area == pytest.approx(inked_corner(radius), rel=0.25)
@@ -174,7 +174,7 @@ def test_regions_are_told_apart(compared):
     assert bpy.ops.thenar.assign_regions() == {"FINISHED"}
     assert bpy.ops.thenar.compare() == {"FINISHED"}
     rows = bpy.context.scene.thenar_recordings.comparison.measures
-    shown = [row for row in rows if row.group == "inked area by region"]
+    shown = [row for row in rows if row.group == "inked area by region, mm²"]
     found = {row.name: (float(row.measured), float(row.simulated)) for row in shown}
     assert set(found) == {"side left", "side right"}
     half = np.pi * radius**2 / 2
