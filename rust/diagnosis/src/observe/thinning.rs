@@ -94,4 +94,21 @@ mod tests {
         let in_ramp = bins.iter().filter(|bin| bin.end <= 1000).count();
         assert!(in_ramp > 30 && in_ramp < 65, "{in_ramp}");
     }
+
+    /// Between once and one and a half times the budget some bins would hold one sample and some two.
+    #[test]
+    fn a_recording_that_is_not_much_longer_keeps_every_sample() {
+        let bins_of = |count: usize| {
+            let time: Vec<f64> = (0..count).map(|k| k as f64 * 0.01).collect();
+            let courses = Courses {
+                time_s: &time,
+                depth_mm: &time,
+                force_n: &time,
+                slide_mm: &[],
+            };
+            bins(courses, &stretches(courses), 100)
+        };
+        assert_eq!(bins_of(150).len(), 150);
+        assert!((80..=110).contains(&bins_of(151).len()));
+    }
 }

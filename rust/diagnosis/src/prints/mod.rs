@@ -54,7 +54,7 @@ impl Pressed<'_> {
 
 /// A print and what it is compared with.
 #[derive(Debug, Clone, Copy)]
-pub struct PrintCase<'a> {
+pub(crate) struct PrintCase<'a> {
     /// Its cells as they are said to lie, with rows and columns.
     pub mat: &'a Mat,
     /// Share of ink by cell; NaN where nothing is known.
@@ -141,7 +141,7 @@ pub struct Printed {
 
 /// What a print shows against a contact, and its table of measures; None for cells without rows and columns, and for a print of which no
 /// cell touched.
-pub fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
+pub(crate) fn compare(case: &PrintCase<'_>) -> Option<(Printed, Vec<Measure>)> {
     let sheet = Sheet::new(case.mat)?;
     let cells = Cells::new(&sheet, case.mat, case.inked)?;
     let field = Field::of(&sheet, &case.pressed, case.ink_kpa);
