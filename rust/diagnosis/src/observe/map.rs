@@ -118,12 +118,12 @@ fn mat(
     let normals = each().map(&mut normal).collect();
     if of_tool > 0 {
         unknown.push(format!(
-            "the study gives no normals of {of_tool} sensels: they are taken to look out of the tool where they lie"
+            "sensels of which the study gives no normals ({of_tool}) are taken to look out of the tool where they lie"
         ));
     }
     if of_travel > 0 {
         unknown.push(format!(
-            "{of_travel} sensels have no normals and lie off the tool: they are taken to look back along the travel; check their places, or give placing"
+            "sensels without normals that lie off the tool ({of_travel}) are taken to look back along the travel; check their places, or give placing"
         ));
     }
     Mat {
