@@ -189,7 +189,10 @@ def _press(job, skin, cancel, progress):
 def named(text, job):
     """A sentence of the native module with the objects' names: it knows them as "the hand" and "the product" only."""
     for role, name in (("hand", job.hand_name), ("product", ", ".join(job.part_names))):
-        text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
+        if f"he {role}" in text:
+            text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
+    if "region " not in text:
+        return text
     regions = dict(enumerate(job.region_names))
     return re.sub(r"\bregion (\d+)\b", lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
 

@@ -119,9 +119,18 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
     if skin.model == Model::Paper {
         return;
     }
-    let free: Vec<usize> = (0..found.zone.len())
-        .filter(|&k| found.force[k] == 0.0)
-        .collect();
+    let mut is_carried = vec![false; found.zone.len()];
+    let mut free = Vec::new();
+    for k in (0..found.zone.len()).filter(|&k| found.force[k] == 0.0) {
+        let site = found.zone[k];
+        let gap = &setting.detection.gaps[vertex(skin, site)];
+        // What moves less than it is away stays out.
+        let stays_out = |g: &Gap| g.distance > field[site as usize].norm();
+        is_carried[k] = gap.as_ref().is_some_and(stays_out);
+        if !is_carried[k] {
+            free.push(k);
+        }
+    }
     let carried = |&k: &usize| {
         let site = found.zone[k];
         setting.detection.positions[vertex(skin, site)] + field[site as usize]
@@ -131,7 +140,6 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
     let hints: Vec<u32> = free.iter().map(|&k| found.touch[k].triangle).collect();
     let product = setting.product;
     let gaps = product.gaps_near(&points, Some(&normals), limits(), &hints);
-    let mut is_carried = vec![false; found.zone.len()];
     for (k, gap) in free.into_iter().zip(gaps) {
         is_carried[k] = gap.is_none_or(|g| g.distance >= 0.0);
     }

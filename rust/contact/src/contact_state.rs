@@ -4,7 +4,7 @@ use thenar_surface::{Gap, Vec3};
 
 use crate::Model;
 use crate::carried::Found;
-use crate::direction::{LEAST_COSINE, yielding_directions};
+use crate::direction::{LEAST_COSINE, Sums, yielding_directions};
 use crate::linearize::{Setting, vertex};
 use crate::live::Met;
 use crate::press::Convergence;
@@ -20,6 +20,8 @@ pub(crate) struct State {
     pub touch: Vec<Gap>,
     pub slack: Vec<f64>,
     pub direction: Vec<Vec3>,
+    /// What each direction comes from, where it is an average.
+    pub sums: Vec<Sums>,
     /// Cosine between each direction and the product's normal.
     pub cosine: Vec<f64>,
     /// Travel of each zone site along its direction, mm.
@@ -44,6 +46,7 @@ impl State {
             touch: Vec::new(),
             slack: Vec::new(),
             direction: Vec::new(),
+            sums: Vec::new(),
             cosine: Vec::new(),
             travel: Vec::new(),
             misfit: 0.0,
@@ -59,6 +62,7 @@ impl State {
         self.touch = self.zone.iter().filter_map(gap_of).collect();
         debug_assert_eq!(self.touch.len(), self.zone.len());
         let normal: Vec<Vec3> = self.touch.iter().map(|g| g.normal).collect();
+        self.sums = vec![Sums::default(); self.zone.len()];
         self.direction = match skin.model {
             Model::Paper => normal,
             Model::Layer => self.averaged_directions(skin, setting, &normal),
@@ -112,9 +116,15 @@ impl State {
         (0..self.zone.len()).filter(is_solved).collect()
     }
 
+    /// Sites that are solved, ascending.
+    pub(crate) fn solved_sites(&self) -> Vec<u32> {
+        let sites = self.solved().into_iter().map(|k| self.zone[k]);
+        sites.collect()
+    }
+
     /// Averages over the penetrating sites, whatever else the zone holds: the result must not depend on its history.
-    pub(crate) fn averaged_directions(
-        &self,
+    fn averaged_directions(
+        &mut self,
         skin: &Skin,
         setting: &Setting<'_>,
         normal: &[Vec3],
@@ -125,11 +135,13 @@ impl State {
         let sites: Vec<u32> = inside.iter().map(|&k| self.zone[k]).collect();
         let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
         let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
+        let sums = |&k: &usize| self.held.get(k)?.as_ref().map(|met| met.sums);
+        let known: Vec<Option<Sums>> = inside.iter().map(sums).collect();
         let around = (&skin.sites, &skin.adjacency, setting.spacing);
-        let averaged = yielding_directions(&sites, &normals, &gaps, around);
+        let (averaged, sums) = yielding_directions(&sites, (&normals, &gaps), &known, around);
         let mut direction = normal.to_vec();
-        for (k, average) in inside.into_iter().zip(averaged) {
-            direction[k] = average;
+        for ((k, average), sums) in inside.into_iter().zip(averaged).zip(sums) {
+            (direction[k], self.sums[k]) = (average, sums);
         }
         direction
     }

@@ -84,8 +84,10 @@ pub fn solve(
     };
     let mut strayed = Vec::new();
     for round in 1.. {
-        skin.couple(&state.zone, control)?;
-        state.held = held(skin, setting, &state.zone, &strayed);
+        let again = (round > 1).then_some(&strayed[..]);
+        state.held = held(skin, setting, &state.zone, again);
+        skin.couple(&state.solved_sites(), control)?;
+        skin.memory.zone.clone_from(&state.zone);
         state.open(skin, setting);
         state.passes(skin, setting, (tolerance, control))?;
         let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
@@ -93,14 +95,17 @@ pub fn solve(
         let (stray, far) = strays(skin, found, &field, deepest);
         keep_out(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
-        keep(skin, setting, &state.found(), &state.slack);
+        keep(skin, setting, &state.found(), (&state.slack, &state.sums));
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let wanted = (tolerance, setting.accuracy.certificate());
             return Ok(state.finish((field, far_field), worst, wanted));
         }
         strayed.extend(far);
-        state.extend(lifted);
+        state.extend(match setting.accuracy {
+            Accuracy::Full => lifted,
+            Accuracy::Rough => live::ringed(skin, setting, &state.zone, lifted),
+        });
     }
     Err(ContactError::Cancelled)
 }

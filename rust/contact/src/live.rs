@@ -7,14 +7,19 @@ use thenar_surface::{Gap, Vec3};
 
 use crate::Model;
 use crate::carried::Found;
+use crate::direction::Sums;
 use crate::linearize::{Setting, vertex};
 use crate::skin::Skin;
-use crate::solve::Accuracy;
+use crate::solve::{Accuracy, holds};
 
-/// Skin nearer than this to what moved is solved with it, mm: about a tissue's thickness (tests pass from 3 to 15).
-const REACH: f64 = 6.0;
+/// Skin nearer than this to what moved is solved with it, mm: about a tissue and a half (tests pass from 6 to 15).
+const REACH: f64 = 10.0;
+/// The same about skin that is found to stray or to be lifted, mm: it is off by little (tests pass from 6 to 10).
+const REACH_AGAIN: f64 = 6.0;
 /// Share of the zone above which all of it is solved.
 const MOST: f64 = 0.7;
+/// How many times as many sites as need be are solved with a coupling that is there already.
+const MORE: f64 = 1.25;
 /// How far held skin may stray, over the deepest penetration: a half per cent of what it bears.
 const STRAY: f64 = 5e-3;
 /// Share of that from which it is solved with the next frame.
@@ -32,6 +37,8 @@ pub struct Met {
     /// As in a solve's state.
     pub touch: Gap,
     pub direction: Vec3,
+    /// What the direction comes from, where it is an average.
+    pub sums: Sums,
     pub cosine: f64,
     pub travel: f64,
     pub force: f64,
@@ -57,36 +64,36 @@ impl Held {
 }
 
 /// What each site of `zone` still holds from the last live solve; None where it is to be solved. Empty if all are.
-pub fn held(skin: &Skin, setting: &Setting<'_>, zone: &[u32], strayed: &[u32]) -> Vec<Option<Met>> {
+///
+/// `strayed`: sites that were carried off in this very press, if that is why it solves again; None in its first round.
+pub fn held(
+    skin: &Skin,
+    setting: &Setting<'_>,
+    zone: &[u32],
+    strayed: Option<&[u32]>,
+) -> Vec<Option<Met>> {
     let last = &skin.memory.held;
-    let is_small = skin.hierarchy.is_none() && !skin.memory.coupling.is_large();
     let is_live = setting.accuracy == Accuracy::Rough && skin.model == Model::Layer;
-    if !is_small || !is_live || last.zone.is_empty() {
+    if skin.hierarchy.is_some() || !is_live || last.zone.is_empty() {
         return Vec::new();
     }
     let met: Vec<Option<&Met>> = zone.iter().map(|&site| last.of(site)).collect();
-    let patch = |site: u32| skin.sites.patch[site as usize] as usize;
-    let mut is_changed = vec![false; skin.sites.patch_range.len()];
-    for (&site, met) in zone.iter().zip(&met) {
+    let is_changed = |(&site, met): (&u32, &Option<&Met>)| {
         let gap = &setting.detection.gaps[vertex(skin, site)];
         let weight = setting.weight[site as usize];
-        if !met.is_some_and(|met| met.gap == *gap && met.weight == weight) {
-            is_changed[patch(site)] = true;
-        }
-    }
-    for &site in last.strayed.iter().chain(strayed) {
-        is_changed[patch(site)] = true;
-    }
-    let mut is_open = is_changed.clone();
-    for from in (0..is_changed.len()).filter(|&p| is_changed[p]) {
-        for (near, bound) in skin.response.bounds(from as u32) {
-            is_open[near as usize] |= bound < REACH;
-        }
-    }
+        !met.is_some_and(|met| met.gap == *gap && met.weight == weight)
+    };
+    let changed = zone.iter().zip(&met).filter(|&pair| is_changed(pair));
+    let mut changed: Vec<u32> = changed.map(|(&site, _)| site).collect();
+    changed.extend(strayed.unwrap_or(&last.strayed));
+    changed.sort_unstable();
+    let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
+    let mut is_open = near(skin, &changed, reach);
+    open_coupled(skin, zone, &mut is_open);
     let held: Vec<Option<Met>> = zone
         .iter()
         .zip(met)
-        .map(|(&site, met)| met.filter(|_| !is_open[patch(site)]).cloned())
+        .map(|(&site, met)| met.filter(|_| !is_open[site as usize]).cloned())
         .collect();
     let open = held.iter().filter(|met| met.is_none()).count();
     if open as f64 > MOST * zone.len() as f64 {
@@ -95,8 +102,71 @@ pub fn held(skin: &Skin, setting: &Setting<'_>, zone: &[u32], strayed: &[u32]) -
     held
 }
 
+/// Opens all that was coupled last, where that holds every open site of `zone` and little more: it need not be coupled anew.
+fn open_coupled(skin: &Skin, zone: &[u32], is_open: &mut [bool]) {
+    let coupled = &skin.memory.between;
+    let open: Vec<u32> = zone
+        .iter()
+        .copied()
+        .filter(|&site| is_open[site as usize])
+        .collect();
+    let is_little_more = coupled.len() as f64 <= MORE * open.len() as f64;
+    if is_little_more && holds(coupled, &open) && holds(zone, coupled) {
+        coupled
+            .iter()
+            .for_each(|&site| is_open[site as usize] = true);
+    }
+}
+
+/// Which sites lie within `reach` (mm) of some of `sites` (ascending).
+fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
+    let patch_of = |site: &u32| skin.sites.patch[*site as usize];
+    let mut is_near = vec![false; skin.sites.len()];
+    for of_patch in sites.chunk_by(|a, b| patch_of(a) == patch_of(b)) {
+        let bounds = skin.response.bounds(patch_of(&of_patch[0]));
+        for (patch, _) in bounds.filter(|(_, bound)| *bound < reach) {
+            let (first, last) = skin.sites.patch_range[patch as usize];
+            let there = first as usize..last as usize;
+            for (is_near, rest) in is_near[there.clone()]
+                .iter_mut()
+                .zip(&skin.sites.rest[there])
+            {
+                let is_within = |&from: &u32| {
+                    let apart = rest.position - skin.sites.rest[from as usize].position;
+                    apart.norm_squared() < reach * reach
+                };
+                *is_near = *is_near || of_patch.iter().any(is_within);
+            }
+        }
+    }
+    is_near
+}
+
+/// Sites lifted into the product with their neighbors beyond the zone, ascending: where skin rolls on, these are next.
+pub fn ringed(skin: &Skin, setting: &Setting<'_>, zone: &[u32], mut lifted: Vec<u32>) -> Vec<u32> {
+    let beside = |&site: &u32| skin.adjacency.neighbors(vertex(skin, site));
+    let ring = lifted.iter().flat_map(beside);
+    let ring = ring.map(|&v| skin.sites.of_vertex[v as usize]);
+    let may_join = |site: &u32| {
+        let is_skin = *site != u32::MAX && skin.sites.is_skin(*site as usize);
+        is_skin
+            && setting.detection.gaps[vertex(skin, *site)].is_some()
+            && zone.binary_search(site).is_err()
+    };
+    let ring: Vec<u32> = ring.filter(may_join).collect();
+    lifted.extend(ring);
+    lifted.sort_unstable();
+    lifted.dedup();
+    lifted
+}
+
 /// Keeps a live solve for the next; forgets what there was after any other.
-pub fn keep(skin: &mut Skin, setting: &Setting<'_>, found: &Found<'_>, slack: &[f64]) {
+pub fn keep(
+    skin: &mut Skin,
+    setting: &Setting<'_>,
+    found: &Found<'_>,
+    (slack, sums): (&[f64], &[Sums]),
+) {
     if setting.accuracy != Accuracy::Rough {
         skin.memory.held = Held::default();
         return;
@@ -106,6 +176,7 @@ pub fn keep(skin: &mut Skin, setting: &Setting<'_>, found: &Found<'_>, slack: &[
         weight: setting.weight[site as usize],
         touch: found.touch[k],
         direction: found.direction[k],
+        sums: sums[k],
         cosine: found.cosine[k],
         travel: found.travel[k],
         force: found.force[k],

@@ -8,17 +8,21 @@ use crate::linearize::Solved;
 use crate::live::Held;
 use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
-use thenar_surface::{Mesh, Readings, Vec3, renew_normals, vertex_normals};
+use thenar_surface::{
+    Mesh, Readings, Vec3, renew_areas, renew_normals, vertex_areas, vertex_normals,
+};
 
 /// What one press leaves for the next.
 #[derive(Debug, Clone, Default)]
 pub struct Memory {
-    /// Zone of the last press and its coupling.
+    /// Zone of the last press.
     pub zone: Vec<u32>,
+    /// What was solved last, the zone or what of it was not held, and its coupling.
+    pub between: Vec<u32>,
     pub coupling: Rows<f32>,
-    /// The compliance of that zone, kept for its storage.
+    /// The compliance of those sites, kept for its storage.
     pub compliance: Rows<f32>,
-    /// In a large skin, the coupling of that zone, and response weight times direction at each of its sites.
+    /// In a large skin, the coupling of those sites, and response weight times direction at each of them.
     pub coupled: Coupled,
     pub along: Vec<Vec3>,
     /// Where the last solve ended.
@@ -73,28 +77,39 @@ impl Last {
 /// A posture and what was measured of it: what has not moved need not be measured again.
 #[derive(Debug, Clone, Default)]
 pub struct Seen {
-    /// Posed positions of the welded vertices, mm, and their normals.
-    posed: (Vec<Vec3>, Vec<Vec3>),
+    /// Posed positions of the welded vertices, mm.
+    posed: Vec<Vec3>,
+    shape: Shape,
     /// Their gaps to the product.
     pub readings: Readings,
 }
 
+/// What follows from a posture alone, by welded vertex.
+#[derive(Debug, Clone, Default)]
+pub struct Shape {
+    pub normals: Vec<Vec3>,
+    /// mm2.
+    pub areas: Vec<f64>,
+}
+
 impl Seen {
-    /// Vertex normals of the welded mesh in its next posture.
-    pub fn normals(&mut self, mesh: &Mesh) -> Vec<Vec3> {
-        let (before, normals) = &mut self.posed;
+    /// Normals and areas of the welded mesh in its next posture.
+    pub fn shape(&mut self, mesh: &Mesh) -> Shape {
+        let (before, shape) = (&mut self.posed, &mut self.shape);
         if before.len() == mesh.positions().len() {
             let pairs = before.iter().zip(mesh.positions());
             let has_moved: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
             if has_moved.contains(&true) {
-                renew_normals(mesh, &has_moved, normals);
+                renew_normals(mesh, &has_moved, &mut shape.normals);
+                renew_areas(mesh, &has_moved, &mut shape.areas);
             }
         } else {
-            *normals = vertex_normals(mesh);
+            shape.normals = vertex_normals(mesh);
+            shape.areas = vertex_areas(mesh);
         }
         before.clear();
         before.extend_from_slice(mesh.positions());
-        normals.clone()
+        shape.clone()
     }
 }
 

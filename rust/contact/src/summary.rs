@@ -1,6 +1,6 @@
 //! From a solved contact to what the caller reads: arrays by vertex, the region table, totals, warnings.
 
-use thenar_surface::{Gap, Mesh, Product, Vec3, vertex_areas};
+use thenar_surface::{Gap, Mesh, Product, Vec3};
 
 use crate::fields::contact_area::{EdgeData, contact_areas};
 use crate::fields::patch_peak::{Field, patch_peak};
@@ -149,8 +149,10 @@ impl Fields {
         for (site, u) in solved.displacement.iter().enumerate() {
             displacement[sites.vertex[site] as usize] = *u;
         }
-        let area: Vec<f64> = vertex_areas(posed)
-            .into_iter()
+        let area: Vec<f64> = pressed
+            .detection
+            .areas
+            .iter()
             .zip(&skin.rest_area)
             .map(|(now, rest)| now.max(LEAST_AREA_SHARE * rest))
             .collect();

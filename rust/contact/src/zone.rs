@@ -2,6 +2,7 @@
 
 use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3};
 
+use crate::memory::Shape;
 use crate::skin::Skin;
 use crate::{ContactError, Model};
 
@@ -27,6 +28,8 @@ pub struct Detection {
     pub positions: Vec<Vec3>,
     /// Posed outward normals.
     pub normals: Vec<Vec3>,
+    /// Posed areas, mm2.
+    pub areas: Vec<f64>,
     /// Signed distance and closest point, by welded vertex.
     pub gaps: Vec<Option<Gap>>,
     /// Largest penetration, by region, mm.
@@ -72,7 +75,7 @@ pub fn detect(
 ) -> Result<Detection, ContactError> {
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
     let seen = &mut skin.memory.seen;
-    let normals = seen.normals(posed);
+    let Shape { normals, areas } = seen.shape(posed);
     let facing = (&positions[..], &normals[..]);
     let mut gaps = product.gaps_after(&mut seen.readings, facing, limits());
     // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
@@ -103,6 +106,7 @@ pub fn detect(
     Ok(Detection {
         positions,
         normals,
+        areas,
         gaps,
         max_penetration,
     })

@@ -18,12 +18,7 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
 
 /// [`vertex_normals`] of a mesh of which some vertices have moved, bit for bit, from the `normals` before; `has_moved` (n).
 pub fn renew_normals(mesh: &Mesh, has_moved: &[bool], normals: &mut [Vec3]) {
-    let mut is_stale = vec![false; normals.len()];
-    for triangle in mesh.triangles() {
-        if triangle.iter().any(|&v| has_moved[v as usize]) {
-            triangle.iter().for_each(|&v| is_stale[v as usize] = true);
-        }
-    }
+    let is_stale = beside(mesh, has_moved);
     let mut sums: Vec<Vec3> = vec![Vec3::zeros(); normals.len()];
     let is_around = |vertices: &[u32; 3]| vertices.iter().any(|&v| is_stale[v as usize]);
     for (vertices, corners) in mesh.sound_triangles_where(is_around) {
@@ -34,6 +29,17 @@ pub fn renew_normals(mesh: &Mesh, has_moved: &[bool], normals: &mut [Vec3]) {
             *n = sums[k].try_normalize(1e-12).unwrap_or_default();
         }
     }
+}
+
+/// Which vertices share a triangle with one that has moved.
+fn beside(mesh: &Mesh, has_moved: &[bool]) -> Vec<bool> {
+    let mut is_beside = vec![false; has_moved.len()];
+    for triangle in mesh.triangles() {
+        if triangle.iter().any(|&v| has_moved[v as usize]) {
+            triangle.iter().for_each(|&v| is_beside[v as usize] = true);
+        }
+    }
+    is_beside
 }
 
 /// Adds the normal of one triangle to its vertices, weighted by the angle at each.
@@ -63,6 +69,21 @@ pub fn vertex_areas(mesh: &Mesh) -> Vec<f64> {
         vertices.iter().for_each(|&i| areas[i as usize] += third);
     }
     areas
+}
+
+/// [`vertex_areas`] of a mesh of which some vertices have moved, bit for bit, from the `areas` before; `has_moved` (n).
+pub fn renew_areas(mesh: &Mesh, has_moved: &[bool], areas: &mut [f64]) {
+    let is_stale = beside(mesh, has_moved);
+    let is_around = |vertices: &[u32; 3]| vertices.iter().any(|&v| is_stale[v as usize]);
+    for (area, is_stale) in areas.iter_mut().zip(&is_stale) {
+        *area = if *is_stale { 0.0 } else { *area };
+    }
+    for (vertices, [a, b, c]) in mesh.sound_triangles_where(is_around) {
+        let third = (b - a).cross(&(c - a)).norm() / 6.0;
+        for v in vertices.into_iter().map(|v| v as usize) {
+            areas[v] += if is_stale[v] { third } else { 0.0 };
+        }
+    }
 }
 
 /// Median length of the edges, mm (the upper one of two); 0 for a mesh whose triangles name one vertex only.

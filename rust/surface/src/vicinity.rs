@@ -19,14 +19,9 @@ pub(crate) struct Vicinity<'a> {
 impl<'a> Vicinity<'a> {
     /// Sorts the points `members`; their spacing is measured at some of `places`, which is not empty.
     pub(crate) fn new(points: &'a [Vec3], members: &[u32], places: &[u32]) -> Vicinity<'a> {
-        let apart = |i: u32| {
-            let others = members.iter().filter(|&&j| j != i);
-            let squared = others.map(|&j| (points[j as usize] - points[i as usize]).norm_squared());
-            squared
-                .filter(|d| *d > 0.0)
-                .fold(f64::INFINITY, f64::min)
-                .sqrt()
-        };
+        let axes: [Vec<f64>; 3] =
+            [0, 1, 2].map(|k| members.iter().map(|&j| points[j as usize][k]).collect());
+        let apart = |i: u32| nearest(&axes, points[i as usize]);
         let mut spacings: Vec<f64> = places
             .iter()
             .step_by(places.len().div_ceil(SAMPLES))
@@ -64,6 +59,27 @@ impl<'a> Vicinity<'a> {
         }
         near
     }
+}
+
+/// Distance from `p` to the nearest of some points that lies elsewhere; infinite if none does.
+fn nearest([x, y, z]: &[Vec<f64>; 3], p: Vec3) -> f64 {
+    // Eight chains: one would wait for each of its own comparisons.
+    let mut least = [f64::INFINITY; 8];
+    let mut compare = |lane: usize, [x, y, z]: [f64; 3]| {
+        let (x, y, z) = (x - p.x, y - p.y, z - p.z);
+        let squared = x * x + y * y + z * z;
+        let is_nearer = squared > 0.0 && squared < least[lane];
+        least[lane] = if is_nearer { squared } else { least[lane] };
+    };
+    let ((x8, x_rest), (y8, y_rest)) = (x.as_chunks::<8>(), y.as_chunks::<8>());
+    let (z8, z_rest) = z.as_chunks::<8>();
+    for ((x, y), z) in x8.iter().zip(y8).zip(z8) {
+        (0..8).for_each(|lane| compare(lane, [x[lane], y[lane], z[lane]]));
+    }
+    for ((x, y), z) in x_rest.iter().zip(y_rest).zip(z_rest) {
+        compare(0, [*x, *y, *z]);
+    }
+    least.into_iter().fold(f64::INFINITY, f64::min).sqrt()
 }
 
 /// `as` saturates: without spacing (one point only) all share the cell 0 or the last.

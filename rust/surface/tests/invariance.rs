@@ -6,8 +6,8 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_normals,
-    self_intersections, vertex_normals,
+    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_areas,
+    renew_normals, self_intersections, vertex_areas, vertex_normals,
 };
 
 const FULL: GapLimits = GapLimits {
@@ -233,13 +233,13 @@ proptest! {
 }
 
 #[test]
-fn readings_and_normals_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_for_bit() {
+fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_for_bit() {
     let (dented, skin) = scene();
     let other = Product::new(moved(&dented, |p| p * 1.02)).unwrap();
     let products = [Product::new(dented).unwrap(), other];
     let mut random = Random(11);
     let (mut readings, mut positions) = (Readings::default(), skin.positions().to_vec());
-    let mut normals = vertex_normals(&skin);
+    let (mut normals, mut areas) = (vertex_normals(&skin), vertex_areas(&skin));
     for frame in 0..24 {
         let middle = v(10.0, 0.0, 0.0) + random.within(5.0);
         let by = random.within(0.6);
@@ -253,6 +253,8 @@ fn readings_and_normals_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_fo
         let posed = skin.with_positions(positions.clone()).unwrap();
         renew_normals(&posed, &has_moved, &mut normals);
         assert_eq!(normals, vertex_normals(&posed), "{frame}");
+        renew_areas(&posed, &has_moved, &mut areas);
+        assert_eq!(areas, vertex_areas(&posed), "{frame}");
         let product = &products[frame / 6 % 2];
         let limits = if frame % 12 < 9 { CUT } else { FULL };
         let again = product.gaps_after(&mut readings, (&positions, &normals), limits);

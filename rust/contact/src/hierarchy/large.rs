@@ -15,18 +15,18 @@ impl Skin {
         }
     }
 
-    /// Makes the coupling of `zone` (ascending), or keeps the last one if it is the same.
+    /// Makes the coupling between the sites of `zone` (ascending), or keeps the last one if it is the same.
     ///
     /// # Errors
     /// [`ContactError::TooLarge`] before memory is taken, or `Cancelled`.
     pub(crate) fn couple(&mut self, zone: &[u32], control: &Control) -> Result<(), ContactError> {
-        if self.memory.zone == zone && !zone.is_empty() {
+        if self.memory.between == zone && !zone.is_empty() {
             return Ok(());
         }
         control.step("response", 0.0)?;
         if let Some(hierarchy) = &self.hierarchy {
             // What the last zone held is given back before the next is made.
-            (self.memory.coupled, self.memory.zone) = (Coupled::default(), Vec::new());
+            (self.memory.coupled, self.memory.between) = (Coupled::default(), Vec::new());
             self.memory.coupled = Coupled::new(hierarchy, zone, self.ground(), control)?;
         } else {
             let needed_gib = self.response.bytes(zone, &self.sites) / f64::from(1 << 30);
@@ -41,9 +41,15 @@ impl Skin {
                 self.response.make_rows(part, &self.sites);
                 control.check()?;
             }
-            self.memory.coupling = coupling(&self.response, zone, &self.sites);
+            // Until it is made, it is that of no sites: its storage is used again.
+            self.memory.between.clear();
+            coupling(
+                (&self.response, &self.sites),
+                zone,
+                &mut self.memory.coupling,
+            );
         }
-        self.memory.zone = zone.to_vec();
+        self.memory.between = zone.to_vec();
         Ok(())
     }
 
@@ -75,7 +81,7 @@ impl Skin {
             load: same.iter().map(|load| load.load).sum::<Vec3>(),
         };
         let loads: Vec<Load> = loads.chunk_by(|a, b| a.site == b.site).map(sum).collect();
-        let zone = &self.memory.zone;
+        let zone = &self.memory.between;
         let mut known = vec![None; self.sites.len()];
         if !loads
             .iter()

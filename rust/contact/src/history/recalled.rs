@@ -76,6 +76,7 @@ pub fn moved(
     let detection = Detection {
         positions,
         normals: truth.normals.clone(),
+        areas: truth.areas.clone(),
         gaps,
         max_penetration: truth.max_penetration.clone(),
     };

@@ -9,44 +9,64 @@ use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::operator::{Rows, Run};
 
-/// `K` between the sites of `zone` (ascending): symmetric, 1/mm.
-pub fn coupling(response: &Response, zone: &[u32], sites: &Sites) -> Rows<f32> {
+/// `K` between the sites of `zone` (ascending): symmetric, 1/mm. Written to `matrix`, whose storage is used again.
+pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &mut Rows<f32>) {
     let members: Vec<Members> = sites
         .patch_range
         .iter()
         .map(|&(first, last)| Members::new(zone, (first, last)))
         .collect();
-    let mut matrix = Rows::new();
-    let mut runs: Vec<Run> = Vec::new();
+    matrix.clear();
+    let patch = |site: &u32| sites.patch[*site as usize];
     let mut values: Vec<f32> = Vec::new();
-    for &site in zone {
-        runs.clear();
-        values.clear();
-        let row = response.row(site);
-        let mut diagonal = 0.0;
-        for &(patch, offset) in response.near(sites.patch[site as usize]) {
-            let members = &members[patch as usize];
-            if members.len == 0 {
-                continue;
+    for home in zone.chunk_by(|a, b| patch(a) == patch(b)) {
+        let (runs, pieces) = layout(response.near(patch(&home[0])), &members);
+        let (first, own) = (
+            sites.patch_range[patch(&home[0]) as usize].0,
+            own_offset(response, patch(&home[0])),
+        );
+        for &site in home {
+            let row = response.row(site);
+            values.clear();
+            for &(from, len) in &pieces {
+                values.extend_from_slice(&row[from as usize..][..len as usize]);
             }
-            match runs.last_mut() {
-                Some(run) if run.start + run.len == members.from => run.len += members.len,
-                _ => runs.push(Run {
-                    start: members.from,
-                    len: members.len,
-                }),
-            }
-            for &(first, len) in &members.pieces {
-                values.extend_from_slice(&row[(offset + first) as usize..][..len as usize]);
-            }
-            if patch == sites.patch[site as usize] {
-                let first = sites.patch_range[patch as usize].0;
-                diagonal = f64::from(row[(offset + site - first) as usize]);
+            let diagonal = f64::from(row[(own + site - first) as usize]);
+            matrix.push(runs.iter().copied(), values.iter().copied(), diagonal);
+        }
+    }
+}
+
+/// Runs of columns in the rows of one patch, and where their values lie there: first and number.
+fn layout(near: &[(u32, u32)], members: &[Members]) -> (Vec<Run>, Vec<(u32, u32)>) {
+    let (mut runs, mut pieces): (Vec<Run>, Vec<(u32, u32)>) = (Vec::new(), Vec::new());
+    for &(patch, offset) in near {
+        let members = &members[patch as usize];
+        if members.len == 0 {
+            continue;
+        }
+        match runs.last_mut() {
+            Some(run) if run.start + run.len == members.from => run.len += members.len,
+            _ => runs.push(Run {
+                start: members.from,
+                len: members.len,
+            }),
+        }
+        for &(first, len) in &members.pieces {
+            match pieces.last_mut() {
+                Some(last) if last.0 + last.1 == offset + first => last.1 += len,
+                _ => pieces.push((offset + first, len)),
             }
         }
-        matrix.push(runs.iter().copied(), values.iter().copied(), diagonal);
     }
-    matrix
+    (runs, pieces)
+}
+
+/// Where a patch's own sites begin in its rows.
+fn own_offset(response: &Response, patch: u32) -> u32 {
+    let near = response.near(patch);
+    let own = near.binary_search_by_key(&patch, |entry| entry.0);
+    own.map_or(0, |k| near[k].1)
 }
 
 /// What a zone holds of a patch.

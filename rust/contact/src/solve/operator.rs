@@ -66,6 +66,15 @@ impl<T: Entry> Rows<T> {
         }
     }
 
+    /// Takes all rows out; their storage stays.
+    pub fn clear(&mut self) {
+        self.run_ends.clear();
+        self.runs.clear();
+        self.value_ends.clear();
+        self.values.clear();
+        self.diagonal.clear();
+    }
+
     /// Appends a row: its runs in ascending order, their values, and its diagonal entry.
     pub fn push(
         &mut self,
