@@ -21,12 +21,12 @@ const FEW: usize = 3;
 pub fn looked_for(ready: &Prepared, (scored, effect): (&Scored, Effect)) -> Vec<(String, bool)> {
     let seen = |sign: Sign| match sign {
         Sign::ForceFallsInHold => clear(z(ready, &in_hold)),
-        Sign::ForceStaysInHold => clear(z(ready, &in_hold)).map(|falls| !falls),
+        Sign::ForceStaysInHold => unlike(z(ready, &in_hold)),
         Sign::LoopIsOpen => clear(z(ready, &in_loop)),
-        Sign::LoopIsClosed => clear(z(ready, &in_loop)).map(|is_open| !is_open),
+        Sign::LoopIsClosed => unlike(z(ready, &in_loop)),
         Sign::LaterCyclesAreSofter => clear(z(ready, &in_cycles)),
         Sign::ForceGrowsWithRate => clear(by_speed(ready)),
-        Sign::SpeedDoesNotMatter => clear(by_speed(ready)).map(|grows| !grows),
+        Sign::SpeedDoesNotMatter => unlike(by_speed(ready)),
         Sign::TrendsWithoutContact => z(ready, &apart)
             .map(|z| z.abs())
             .and_then(|z| clear(Some(z))),
@@ -48,6 +48,11 @@ pub fn looked_for(ready: &Prepared, (scored, effect): (&Scored, Effect)) -> Vec<
 /// What is clear: true well above none, false well below.
 fn clear(z: Option<f64>) -> Option<bool> {
     z.filter(|z| z.abs() > CLEAR).map(|z| z > 0.0)
+}
+
+/// Of a sign that two means are alike: false where they clearly differ, either way; that they are alike noise never shows.
+fn unlike(z: Option<f64>) -> Option<bool> {
+    clear(z).map(|_| false)
 }
 
 /// Two groups of readings of one recording whose means are compared: the first is to be larger.
@@ -165,4 +170,19 @@ fn by_speed(ready: &Prepared) -> Option<f64> {
         count += 1.0;
     }
     (count > 0.0).then(|| sum / f64::sqrt(count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2.33 standard errors are what one in a hundred draws of noise exceeds on either side.
+    #[test]
+    fn a_change_is_told_where_it_is_clear_and_sameness_only_denied() {
+        let of = |z: f64| (clear(Some(z)), unlike(Some(z)));
+        assert_eq!(of(3.0), (Some(true), Some(false)));
+        assert_eq!(of(-3.0), (Some(false), Some(false)));
+        assert_eq!(of(2.0), (None, None));
+        assert_eq!((clear(None), unlike(None)), (None, None));
+    }
 }
