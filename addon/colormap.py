@@ -36,7 +36,7 @@ def stops(name):
 def srgb(name, fraction):
     """Colours (n, 3), sRGB, at `fraction` (n,) of the range; clipped to its ends."""
     table = stops(name)
-    place = np.clip(np.nan_to_num(fraction), 0.0, 1.0) * (len(table) - 1)
+    place = _within(fraction) * (len(table) - 1)
     low = np.minimum(place.astype(np.intp), len(table) - 2)
     part = (place - low)[..., None]
     return table[low] * (1.0 - part) + table[low + 1] * part
@@ -50,8 +50,13 @@ def to_linear(color):
 
 def cover(share):
     """How far a map covers the surface (0 to 1) at `share` of its edge: a soft border where contact begins."""
-    edge = np.clip(np.nan_to_num(np.asarray(share, dtype=np.float64)), 0.0, 1.0)
+    edge = _within(np.asarray(share, dtype=np.float64))
     return edge * edge * (3.0 - 2.0 * edge)
+
+
+def _within(share):
+    """`share` clipped to 0 to 1, NaN to 0."""
+    return np.minimum(np.fmax(share, 0.0), 1.0)
 
 
 EDGE = 0.06

@@ -4,7 +4,7 @@ import re
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -13,6 +13,9 @@ from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
 from .steps import at_once
+
+SENTENCES_KEPT = 256
+"""Notes whose wording is kept: from frame to frame most of them are the same."""
 
 
 @dataclass
@@ -188,12 +191,17 @@ def _press(job, skin, cancel, progress):
 
 def named(text, job):
     """A sentence of the native module with the objects' names: it knows them as "the hand" and "the product" only."""
-    for role, name in (("hand", job.hand_name), ("product", ", ".join(job.part_names))):
+    return _named(text, (job.hand_name, ", ".join(job.part_names)), job.region_names)
+
+
+@lru_cache(maxsize=SENTENCES_KEPT)
+def _named(text, objects, region_names):
+    for role, name in zip(("hand", "product"), objects, strict=True):
         if f"he {role}" in text:
             text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
     if "region " not in text:
         return text
-    regions = dict(enumerate(job.region_names))
+    regions = dict(enumerate(region_names))
     return re.sub(r"\bregion (\d+)\b", lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
 
 
@@ -201,9 +209,14 @@ def joined(notes):
     """Notes that differ by names and numbers only become one, which counts the others."""
     alike = {}
     for note in notes:
-        alike.setdefault(re.sub(r"'[^']*'|[\d.]+", "#", note), []).append(note)
+        alike.setdefault(_kind(note), []).append(note)
     for first, *others in alike.values():
         yield first + (f" ({len(others)} more such)" if others else "")
+
+
+@lru_cache(maxsize=SENTENCES_KEPT)
+def _kind(note):
+    return re.sub(r"'[^']*'|[\d.]+", "#", note)
 
 
 def finish(context, job, contact):

@@ -19,10 +19,10 @@ class Session:
 
     job: workflow.Job
     setup: str
-    seen: str = ""
-    """Digest of pose and product at the last solve; empty to solve whatever is there."""
-    surface: str = ""
-    """Digest of the product that is prepared."""
+    seen: tuple | None = None
+    """Pose (positions and matrix) at the last solve; None to solve whatever is there."""
+    surface: list | None = None
+    """What the scene showed of the product that is prepared, as `state.shapes`."""
     skin: object = None
     """Prepared for this session alone: a solve of another scene must not change its effects or what it remembers."""
     product: object = None
@@ -75,38 +75,35 @@ def setup_of(context, hand):
     return cache.content_hash(workflow.material_numbers(hand), *effects.shown(hand), stack, groups, choices, rest)
 
 
-def follow(context, session):
-    """Bring the contact to what the scene shows now. Returns whether anything had moved.
+def follow(context, session, hand, parts):
+    """Bring the contact of the checked hand and parts to what the scene shows now. Returns whether anything had moved.
 
     Raises `Refusal` or the native module's errors; then the last contact stays as it is.
     """
-    hand, parts = check(context)
     base = nodes.base_positions(hand, context.evaluated_depsgraph_get())
     matrix = units.world_from_local(hand)
-    shapes = state.shapes(context, parts)
-    surface = cache.content_hash(*shapes)
-    seen = cache.content_hash(base, matrix, surface)
-    if seen == session.seen:
+    is_same_product = state.is_same(state.shapes(context, parts), session.surface)
+    if is_same_product and state.is_same((base, matrix), session.seen):
         return False
     job = session.job
     skin = job.reading.hand
     checks.check_finite(base, hand.name, "posed hand")
     posed = units.to_world_mm(base, matrix, skin.scale, skin.origin_mm)
-    if surface != session.surface:
+    if not is_same_product:
         _take_product(context, session, parts)
     skin = replace(skin, posed_mm=posed, matrix=matrix)
     job = replace(session.job, reading=read.Reading(skin, session.job.reading.product), seconds={})
     contact = _press(job, session)
     _write(context, session, job, contact)
-    session.job, session.seen, session.is_warm = job, seen, True
+    session.job, session.seen, session.is_warm = job, (base, matrix), True
     return True
 
 
 def settle(context, session):
     """Solve what the scene shows once more from nothing, as Solve does. Raises as `follow` does."""
-    session.seen, session.is_warm = "", False
+    session.seen, session.is_warm = None, False
     try:
-        return follow(context, session)
+        return follow(context, session, *check(context))
     finally:
         session.is_warm = True
 
@@ -116,7 +113,8 @@ def _take_product(context, session, parts):
     product = read.read_product(context, parts, skin.scale, skin.origin_mm)
     session.product = native.module.Product(product.vertices_mm, product.triangles)
     session.job = replace(session.job, reading=read.Reading(skin, product))
-    session.surface = cache.content_hash(*state.shapes(context, parts))
+    # Should the press fail, the next look tries again.
+    session.surface, session.seen = state.shapes(context, parts), None
     session.painted.clear()
 
 
@@ -157,17 +155,16 @@ def _write(context, session, job, contact):
 
 
 def _paint(session, obj, pressure, look):
-    """Pressure and its colors, computed anew only where skin presses or pressed; nothing where nothing did."""
+    """Pressure and its colors, anew only where the pressure changed; nothing where nothing presses or pressed."""
     settings, bare = look
     scale = maps.scale(maps.MAPS[maps.PRESSURE], settings)
     before = session.painted.get(obj.name)
     if before is None or before[2] != scale or len(before[0]) != len(pressure):
         tinted = colors.linear(pressure, settings, bare)
     else:
-        rows = np.flatnonzero((before[0] > 0.0) | (pressure > 0.0))
-        if not rows.size:
+        if not (before[0].any() or pressure.any()):
             return
-        tinted = before[1]
+        rows, tinted = np.flatnonzero(before[0] != pressure), before[1]
         tinted[rows] = colors.linear(pressure[rows], settings, bare)
     session.painted[obj.name] = (pressure, tinted, scale)
     attributes.write(obj.data, names.PRESSURE_KPA, "FLOAT", pressure)

@@ -88,7 +88,7 @@ def _follow(context, scene):
     hand, parts = session.check(context)
     now = _sessions.get(scene.name)
     if now is not None and now.fits(hand, parts):
-        if session.follow(context, now):
+        if session.follow(context, now, hand, parts):
             return True
         if now.setup == session.setup_of(context, hand):
             return False
@@ -97,7 +97,7 @@ def _follow(context, scene):
     _sessions.pop(scene.name, None)
     now = session.begin(context, hand, parts)
     _sessions[scene.name] = now
-    return session.follow(context, now)
+    return session.follow(context, now, hand, parts)
 
 
 def _leave(context):

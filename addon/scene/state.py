@@ -18,3 +18,13 @@ def shapes(context, objects):
                     parts.append(mesh.positions(surface))
         parts.append(tuple(group.name for group in obj.vertex_groups))
     return parts
+
+
+def is_same(parts, others):
+    """Whether two such lists, or lists of arrays, say the same; `others` may be None, which nothing is."""
+    if others is None or len(parts) != len(others):
+        return False
+    return all(
+        np.array_equal(part, other) if isinstance(part, np.ndarray) else part == other
+        for part, other in zip(parts, others, strict=True)
+    )

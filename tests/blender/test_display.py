@@ -124,3 +124,12 @@ def test_lightness_of_the_maps_rises_evenly(name):
 
     light = colormap.to_linear(colormap.srgb(name, np.linspace(0, 1, 200))) @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(np.cbrt(light)) > 0).all()
+
+
+def test_values_that_are_no_numbers_or_out_of_range_take_the_ends_of_a_map():
+    from thenar_blender import colormap
+
+    ends = colormap.stops("VIRIDIS")[[0, 0, 0, -1, -1]]
+    strange = np.array([np.nan, -np.inf, -2.0, 3.0, np.inf])
+    assert np.abs(colormap.srgb("VIRIDIS", strange) - ends).max() < 1e-12
+    assert np.array_equal(colormap.cover(strange), [0.0, 0.0, 0.0, 1.0, 1.0])

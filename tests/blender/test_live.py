@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import stage
 import thenar_blender
-from thenar_blender import headless, names, status, workflow
+from thenar_blender import headless, names, native, status, workflow
 from thenar_blender.live import session, watch
-from thenar_blender.scene import checks
+from thenar_blender.scene import checks, colors, state
 
 MM = stage.MM
 ALONE = "LIVE_ALONE"
@@ -341,3 +341,55 @@ def test_skin_that_is_let_go_is_bare_again(scene):
     assert force() == 0.0
     colors = stage.attribute(hand, names.COLOR)
     assert np.abs(painted - painted[-1]).max() > 0.1 and np.abs(colors - colors[0]).max() < 1e-6
+
+
+def test_colors_that_follow_are_those_of_the_pressure_as_a_whole(scene):
+    """Only what changed is colored anew: a slide, a tilt, a jump away and a jump back leave no old color."""
+    hand, product = stage.scene()
+    settings = bpy.context.scene.thenar
+    switch(True)
+    for move in (0.3, -0.2, 0.0, -9.0, 9.5):
+        product.location.z += move * MM
+        product.location.x += 0.4 * MM
+        product.rotation_euler.y += 0.02
+        assert follow()
+        for obj, bare in ((hand, colors.SKIN), (product, colors.BARE)):
+            whole = colors.linear(stage.attribute(obj, names.PRESSURE_KPA), settings, bare)
+            assert np.abs(stage.attribute(obj, names.COLOR) - whole).max() < 1e-5
+    assert force() > 0.0
+
+
+@pytest.mark.parametrize("mover", ["product", "hand"])
+def test_a_move_whose_press_failed_is_pressed_again(scene, monkeypatch, mover):
+    moved = dict(zip(("hand", "product"), stage.scene(), strict=True))[mover]
+    switch(True)
+    before, press = force(), session._press
+
+    def fail(*_):
+        raise native.module.SolveError("the press failed on purpose")
+
+    monkeypatch.setattr(session, "_press", fail)
+    moved.location.z += (0.3 if mover == "product" else -0.3) * MM
+    assert not follow() and "on purpose" in told().problem
+    assert not follow() and "on purpose" in told().problem, "nothing moved since, and the move is still to be pressed"
+    monkeypatch.setattr(session, "_press", press)
+    assert follow() and not told().problem
+    assert force() > before
+
+
+def test_shapes_are_the_same_only_if_every_part_is(scene):
+    _, product = stage.scene()
+    seen = state.shapes(bpy.context, [product])
+    assert state.is_same(state.shapes(bpy.context, [product]), seen)
+    assert not state.is_same(seen, None) and not state.is_same(seen, seen[:-1])
+    vertex, before = product.data.vertices[5], product.data.vertices[5].co.x
+    vertex.co.x = float(np.nextafter(np.float32(before), np.float32(1.0)))
+    product.data.update()
+    bpy.context.view_layer.update()
+    assert not state.is_same(state.shapes(bpy.context, [product]), seen), "the last digit of one coordinate counts"
+    vertex.co.x = before
+    product.data.update()
+    bpy.context.view_layer.update()
+    assert state.is_same(state.shapes(bpy.context, [product]), seen)
+    product.vertex_groups.new(name="painted")
+    assert not state.is_same(state.shapes(bpy.context, [product]), seen)
