@@ -69,7 +69,8 @@ fn small_numbers_keep_their_digits() {
     assert!(text.contains("    depth_mm: 0 to 0.02\n"), "{text}");
 }
 
-/// A GB of bytes at random, of text at random, and of text after a maker's own header: refused by line with 400 MB of address space in all.
+/// A GB of bytes at random, of text at random, and of text after a maker's own header: refused at one of its first lines, with
+/// 400 MB of address space in all.
 #[test]
 fn a_gigabyte_of_noise_is_refused_in_little_memory() {
     let folder = Folder::new("read_noise");
@@ -97,7 +98,6 @@ fn a_gigabyte_of_noise_is_refused_in_little_memory() {
             std::io::Write::write_all(&mut file, noise).unwrap();
         }
         drop(file);
-        let start = std::time::Instant::now();
         let limited = format!(
             "ulimit -v 400000; exec '{}' read '{path}'",
             env!("CARGO_BIN_EXE_thenar")
@@ -108,13 +108,13 @@ fn a_gigabyte_of_noise_is_refused_in_little_memory() {
             .unwrap();
         std::fs::remove_file(&path).unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        println!("{name}: {:.2} s; {said}", start.elapsed().as_secs_f64());
+        println!("{name}: {said}");
         assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(
-            said.contains(&format!("{name}, line ")) && said.contains("; "),
-            "{said}"
-        );
-        assert!(start.elapsed().as_secs_f64() < 5.0);
+        assert!(said.contains("; "), "{said}");
+        let (_, after) = said.split_once(&format!("{name}, line ")).unwrap();
+        let digits: String = after.chars().take_while(char::is_ascii_digit).collect();
+        let line: usize = digits.parse().unwrap();
+        assert!(line < 1000, "it read on to line {line}: {said}");
     }
 }
 
