@@ -9,6 +9,7 @@ import argparse
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -20,6 +21,8 @@ import stage
 import thenar_blender
 
 FORCES, STIFFNESSES = 20, 50
+PATIENCE_S = 180.0
+"""Without a line for as long, a batch hangs and is ended: longer than a cluster takes to begin again."""
 
 
 def run(folder, out, *more):
@@ -30,17 +33,30 @@ def run(folder, out, *more):
     )
 
 
+def patience(process):
+    """A clock that ends the process when it runs out."""
+    watch = threading.Timer(PATIENCE_S, process.kill)
+    watch.daemon = True
+    watch.start()
+    return watch
+
+
 def drain(process, on_case=None):
     """Read to the end; `on_case(count)` after each case. Returns the seconds between the first and the last case."""
     count, first = 0, None
+    watch = patience(process)
     for line in process.stdout:
+        watch.cancel()
+        watch = patience(process)
         if line.startswith("push-"):
             count += 1
             first = first or time.monotonic()
             if on_case is not None:
                 on_case(count)
-    if process.wait() != 0:
-        raise SystemExit(f"the batch ended with code {process.returncode}")
+    code = process.wait()
+    watch.cancel()
+    if code != 0:
+        raise SystemExit(f"the batch ended with code {code} after {count} cases")
     return count, time.monotonic() - first
 
 
