@@ -191,3 +191,44 @@ fn recordings_of_another_kind_do_not_hide_repeats() {
         "the areas repeat each other, too"
     );
 }
+
+/// A repeat whose first loading seems to have begun a little earlier, as the rows about it fell otherwise, is the same; one that began
+/// a tenth of its time earlier is another, and is joined by straight lines at the moments of the first.
+#[test]
+fn a_lag_of_rows_is_none_and_a_long_one_is_brought_to_the_same_moments() {
+    use super::Channel;
+    use super::alike::{Told, aligned};
+    let planted = Planted {
+        noise: 0.0,
+        memory_s: 0.0,
+        gain: 0.0,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let mut random = Random::new(1);
+    let first = repeat("one", &planted, &mut random);
+    let nothing = vec![0.0; SAMPLES];
+    fn told<'a>(measured: &'a Measured, nothing: &'a [f64]) -> Told<'a> {
+        Told {
+            measured,
+            simulated: nothing,
+            slopes: nothing,
+        }
+    }
+    for (rows, is_same) in [(3, true), (9, false)] {
+        let mut other = first.clone();
+        let starts = &mut other.moments[..rows];
+        starts.iter_mut().for_each(|m| m.phase = Phase::Apart);
+        let (times, both) = aligned(
+            Channel::Force,
+            &[told(&first, &nothing), told(&other, &nothing)],
+        );
+        assert_eq!(times.len() == SAMPLES, is_same, "{rows} rows late");
+        let shift = f64::from(rows as u32) * STEP_S;
+        for (k, time) in times.iter().enumerate() {
+            let at = if is_same { *time } else { time + shift };
+            let wanted = force(2.0 * (at / STEP_S + 1.0) / SAMPLES as f64);
+            assert!((both[1].value[k] - wanted).abs() < 1e-6 * PEAK_N, "{time}");
+        }
+    }
+}

@@ -88,3 +88,22 @@ fn own_slope(value: &[f64], simulated: &[f64], slope: &[f64]) -> Vec<f64> {
     let found = both().zip(slope).map(one);
     found.map(|s| if s.is_finite() { s } else { 0.0 }).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Skin twice as stiff as the model has twice its slope; where a reading near first touch is noise, the whole says no more than
+    /// twice or half of that, and where the model bears nothing there is no slope.
+    #[test]
+    fn the_slope_is_the_models_times_what_the_skin_bears_more_but_not_by_noise() {
+        let simulated = [0.0, 1e-3, 1e-3, 1.0, 2.0, 3.0];
+        let value = [0.5, 0.1, -0.1, 2.0, 4.0, 6.0];
+        let slope = [1.0, 0.5, 0.5, 1.0, 1.5, 2.0];
+        let found = own_slope(&value, &simulated, &slope);
+        let wanted = [0.0, 2.0, 0.5, 2.0, 3.0, 4.0];
+        for (own, wanted) in found.iter().zip(wanted) {
+            assert!((own - wanted).abs() < 1e-3, "{found:?}");
+        }
+    }
+}
