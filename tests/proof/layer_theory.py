@@ -70,17 +70,52 @@ def wave_numbers(edges):
     return (start + (node + 1.0) * panel / 2.0).ravel(), np.tile(weight * panel / 2.0, panels)
 
 
+def compliance(s, nu):
+    """[[normal by pressure, by traction], [along by pressure, by traction]] of the surface at one s, for G = k = 1.
+
+    By Navier's equations through the thickness, as above: four waves, no motion at the bone (z = -s), tractions at z = 0.
+    """
+    kappa, up, down = 3.0 - 4.0 * nu, np.exp(-s), np.exp(s)
+
+    def waves(z, up, down):
+        w = np.array([up, z * up, down, z * down])
+        u = np.array([-up, -(kappa + z) * up, down, (z - kappa) * down])
+        return w, u
+
+    top, along = waves(0.0, 1.0, 1.0)
+    slope, sheared = np.array([1.0, 1.0, -1.0, 1.0]), np.array([-1.0, -1.0 - kappa, -1.0, 1.0 + kappa])
+    normal = 2.0 * (slope - 2.0 * nu * np.array([0.0, 1.0, 0.0, 1.0]))
+    rows = np.array([*waves(-s, up, down), normal, sheared - top])
+    pressed, pulled = np.linalg.solve(rows, [0, 0, -1, 0]), np.linalg.solve(rows, [0, 0, 0, 1])
+    return np.array([[-top @ pressed, -top @ pulled], [along @ pressed, along @ pulled]])
+
+
+def under_plate(s, nu, plate):
+    """K(s) under a bonded plate: `plate(s)` is its stiffness matrix, for G = k = 1. By inverting matrices at 400 s."""
+    knots = np.geomspace(s.min(), s.max() * 1.001, 400)
+    found = []
+    for one in knots:
+        own = compliance(min(one, 12.0), nu)
+        found.append(np.linalg.inv(np.linalg.inv(own) + plate(one))[0, 0] / (1.0 - nu))
+    return np.exp(np.interp(np.log(s), np.log(knots), np.log(found)))
+
+
 def ring_compliance(edges, shear_modulus, nu, thickness, skin=(0.0, 0.0)):
     """Mean displacement (mm) of every ring under a unit force (N) on every other; rings between `edges` (n + 1).
 
-    `skin`: bending stiffness (N mm) and tension (N/mm) of a thin plate on top.
+    `skin`: bending stiffness (N mm) and tension (N/mm) of a thin plate on top; if it is bonded, its stiffness against
+    stretch (N/mm) and how far its middle lies above the layer (mm), too.
     """
     k, weight = wave_numbers(edges)
     outer = edges[:, None] * j1(np.outer(edges, k))
     ring = np.diff(outer, axis=0)  # k times the transform of a unit pressure on the ring
     factor = np.ones_like(k) if np.isinf(thickness) else transform(k * thickness, nu)
-    plate = k * (skin[0] * k**2 + skin[1]) * (1.0 - nu) / shear_modulus
-    factor = factor / (1.0 + factor * plate)
+    if len(skin) == 2:
+        plate = k * (skin[0] * k**2 + skin[1]) * (1.0 - nu) / shear_modulus
+        factor = factor / (1.0 + factor * plate)
+    else:
+        deep = thickness if np.isfinite(thickness) else 1e3 * edges[-1]
+        factor = under_plate(k * deep, nu, lambda s: bonded_plate(s / deep, skin) / shear_modulus)
     area = np.pi * np.diff(edges**2)
     spread = (ring * (weight * factor / k**2)) @ ring.T
     # Beyond the last k only K = 1 and the mean of r J1(k r)^2 r = r / (pi k) are left, on the shared edges.
@@ -92,6 +127,16 @@ def ring_compliance(edges, shear_modulus, nu, thickness, skin=(0.0, 0.0)):
     if any(skin):
         tail[:] = 0.0  # a skin answers short waves with nothing
     return (1.0 - nu) / shear_modulus * 2.0 * np.pi * (spread + tail) / np.outer(area, area)
+
+
+def bonded_plate(k, skin):
+    """Stiffness (MPa) over k against sinking and moving along of the surface under a plate, by its energy at wave number k.
+
+    Bending D k^4 w^2 / 2, tension N k^2 w^2 / 2, and stretch M k^2 v^2 / 2 of its middle, which moves by v = u - c k w.
+    """
+    bending, tension, stretch, middle = skin
+    turn = np.array([-middle * k, 1.0])
+    return (np.diag([bending * k**4 + tension * k**2, 0.0]) + stretch * k**2 * np.outer(turn, turn)) / k
 
 
 def press(profile, edges, shear_modulus, nu, thickness):

@@ -1,7 +1,8 @@
 //! Effect `stiff_skin`: a thin stiff skin over soft pulp, with its bending and, if it is stretched, its tension.
 //!
-//! The skin is a thin plate of bending stiffness `D = E t^3 / 9` (E modulus_mpa, t thickness_mm, Poisson's ratio 1/2) under
-//! `tension_n_per_mm`, without shear towards the pulp; amplitude multiplies both. Skin and pulp stiffen together: what counts is
+//! The skin is a thin plate of bending stiffness `D = E t^3 / 9` and stiffness against stretch `M = 4 E t / 3` (E modulus_mpa, t
+//! thickness_mm, Poisson's ratio 1/2) under `tension_n_per_mm`, bonded to the pulp below; amplitude multiplies all three. Strains are
+//! small: what a skin that is pressed deep gains by its own stretch is left out. Skin and pulp stiffen together: what counts is
 //! D / G0, so that the response does not depend on the depth. Needs vertices not much farther apart than the bending
 //! length `((1 - nu) D / G0)^(1/3)` to be seen.
 
@@ -18,7 +19,7 @@ pub const ENTRY: Entry = Entry {
     name: "stiff_skin",
     stage: Stage::Geometry,
     meaning: "a thin stiff skin over soft pulp",
-    amplitude: "factor of the skin's bending stiffness and tension",
+    amplitude: "factor of the skin's modulus and tension",
     most: 1.0,
     shape: &[
         ShapeNumber {
@@ -65,15 +66,18 @@ pub const ENTRY: Entry = Entry {
             sentence: "curves at different speeds lie on one another",
         },
     ],
-    source: "plate on an elastic layer: Timoshenko & Woinowsky-Krieger 1959, 8",
+    source: "plate on an elastic layer: Timoshenko & Woinowsky-Krieger 1959, 1 and 8",
 };
 
 /// The skin over a tissue, in its terms.
 pub fn sheet(effect: &ActiveEffect, region: u32, tissue: &Material) -> Sheet {
     let share = effect.amplitude_on(region) * (1.0 - tissue.poisson_ratio) / tissue.g0_mpa;
     let bending = effect.shape[MODULUS] * effect.shape[THICKNESS].powi(3) / 9.0;
+    let stretch = 4.0 / 3.0 * effect.shape[MODULUS] * effect.shape[THICKNESS];
     Sheet {
         bending: share * bending,
         tension: share * effect.shape[TENSION],
+        stretch: share * stretch,
+        middle: 0.5 * effect.shape[THICKNESS],
     }
 }

@@ -141,8 +141,7 @@ impl Tissue {
         sheets.resize(self.materials.len(), Sheet::NONE);
         for (region, (sheet, material)) in sheets.iter_mut().zip(&self.materials).enumerate() {
             let more = stiff_skin::sheet(effect, region as u32, material);
-            sheet.bending += more.bending;
-            sheet.tension += more.tension;
+            *sheet = sheet.with(&more);
         }
     }
 

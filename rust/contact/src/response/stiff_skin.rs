@@ -1,9 +1,16 @@
-//! Response of a layer under a thin stiff skin, as tables over distance.
+//! Response of a layer under a thin stiff skin that is bonded to it, as tables over distance.
 //!
-//! A plate of bending stiffness D under a tension N on top turns the layer's transfer function K into
-//! `K / (1 + K (b k^3 + t k))`, b = (1 - nu) D / G, t = (1 - nu) N / G (thin plate: Timoshenko & Woinowsky-Krieger 1959, 8). The kernel is
-//! then finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For two places with different
-//! transfer functions their geometric mean counts, as in the sibling `kernel`, and the response stays definite.
+//! A plate on top has a bending stiffness D, a stiffness M against stretch (force per width and strain), a tension N, and lies with its
+//! middle c above the layer's surface (Timoshenko & Woinowsky-Krieger 1959, 1 and 8; Kirchhoff). With K, Z and R of the layer (the sibling
+//! `bonded_layer`), Q = K R - Z^2, b = (1 - nu) D / G, t = (1 - nu) N / G, m = (1 - nu) M / G and f = b k^3 + t k, layer and plate
+//! together sink by the transfer function
+//!
+//!   (K + m k Q) / (1 + m k R + K (f + m c^2 k^3) - 2 Z m c k^2 + Q m k f),
+//!
+//! the sinking part of the inverse of `C^-1 + S`, C the layer's compliance and S the plate's stiffness for sinking and for moving
+//! along. A layer that is thin against the contact gives way by flowing along itself, which the plate hinders; without M it is
+//! `K / (1 + K f)`. The kernel is then finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For two places
+//! with different transfer functions their geometric mean counts, as in the sibling `kernel`, and the response stays definite.
 
 use libm::j0;
 use rayon::prelude::*;
@@ -34,6 +41,10 @@ pub struct Sheet {
     pub bending: f64,
     /// t = (1 - nu) N / G, mm.
     pub tension: f64,
+    /// m = (1 - nu) M / G, mm.
+    pub stretch: f64,
+    /// c, mm.
+    pub middle: f64,
 }
 
 impl Sheet {
@@ -41,11 +52,29 @@ impl Sheet {
     pub const NONE: Sheet = Sheet {
         bending: 0.0,
         tension: 0.0,
+        stretch: 0.0,
+        middle: 0.0,
     };
+
+    /// Two skins side by side: their stiffness adds up, about the middle of both.
+    pub fn with(&self, more: &Sheet) -> Sheet {
+        let stretch = self.stretch + more.stretch;
+        let moment = self.middle * self.stretch + more.middle * more.stretch;
+        Sheet {
+            bending: self.bending + more.bending,
+            tension: self.tension + more.tension,
+            stretch,
+            middle: if stretch > 0.0 { moment / stretch } else { 0.0 },
+        }
+    }
 
     fn transfer(&self, layer: &Layer, k: f64) -> f64 {
         let bare = layer.transfer(k);
-        bare / (1.0 + bare * k * (self.bending * k * k + self.tension))
+        let [z, r] = layer.along(k);
+        let (m, c) = (self.stretch * k, self.middle * k);
+        let f = k * (self.bending * k * k + self.tension);
+        let q = bare * r - z * z;
+        (bare + m * q) / (1.0 + m * r + bare * (f + m * c * c) - 2.0 * z * m * c + q * m * f)
     }
 }
 
@@ -339,7 +368,7 @@ mod tests {
         for length in [2.0f64, 6.0] {
             let sheet = Sheet {
                 bending: length.powi(3),
-                tension: 0.0,
+                ..Sheet::NONE
             };
             let tables = StiffTables::new(&[HALF_SPACE], &[sheet], 60.0);
             let exact = std::f64::consts::TAU / (27f64.sqrt() * length);
@@ -363,7 +392,7 @@ mod tests {
         };
         let sheet = Sheet {
             bending: 1e-4,
-            tension: 0.0,
+            ..Sheet::NONE
         };
         let tables = StiffTables::new(&[layer], &[sheet], 200.0);
         let bare = super::super::kernel::KernelTables::new(&[layer], 200.0);
@@ -382,5 +411,54 @@ mod tests {
             (own / (3.900_3 - bare.psi(0, 0, 0.0)) - 1.0).abs() < 0.01,
             "{own}"
         );
+    }
+
+    /// A skin that cannot be stretched holds the surface, so that the layer sinks as one between two plates: for long waves a fourth
+    /// as far (lubrication: h^3 / 12 instead of h^3 / 3).
+    #[test]
+    fn a_skin_that_is_not_stretched_makes_a_thin_layer_four_times_as_stiff() {
+        let layer = Layer {
+            thickness: 5.0,
+            poisson_ratio: 0.5,
+        };
+        let sheet = Sheet {
+            stretch: 1e9,
+            ..Sheet::NONE
+        };
+        let k = 0.01 / layer.thickness;
+        let share = sheet.transfer(&layer, k) / layer.transfer(k);
+        assert!((share - 0.25).abs() < 1e-3, "{share}");
+        // Under a half space with nu = 1/2 the surface moves along itself only where the plate turns about its middle.
+        let short = Sheet {
+            stretch: 3.0,
+            ..Sheet::NONE
+        };
+        assert!((short.transfer(&HALF_SPACE, 0.7) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_skins_are_one_of_both() {
+        let one = Sheet {
+            bending: 1.0,
+            tension: 2.0,
+            stretch: 3.0,
+            middle: 0.1,
+        };
+        let both = one.with(&Sheet { middle: 0.3, ..one });
+        let wanted = Sheet {
+            bending: 2.0,
+            tension: 4.0,
+            stretch: 6.0,
+            middle: 0.2,
+        };
+        assert!((both.middle - wanted.middle).abs() < 1e-12);
+        assert_eq!(
+            Sheet {
+                middle: 0.2,
+                ..both
+            },
+            wanted
+        );
+        assert_eq!(Sheet::NONE.with(&Sheet::NONE), Sheet::NONE);
     }
 }
