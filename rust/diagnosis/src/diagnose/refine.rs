@@ -315,6 +315,22 @@ mod tests {
     }
 
     #[test]
+    fn a_vertex_between_skin_and_none_is_skin() {
+        let mut skin = ball();
+        let (a, b) = (skin.mesh.triangles[0][0], skin.mesh.triangles[0][1]);
+        for [first, second] in [[-1, 2], [2, -1]] {
+            skin.regions = vec![2; skin.mesh.positions.len()];
+            (skin.regions[a as usize], skin.regions[b as usize]) = (first, second);
+            let mut mesh = Halving::new(&skin).unwrap();
+            let middle = mesh.middle((a, b));
+            assert_eq!(
+                mesh.regions[middle as usize], 2,
+                "else a hole of what is half skin"
+            );
+        }
+    }
+
+    #[test]
     fn regions_go_on_and_a_fine_skin_is_left_alone() {
         let mut skin = ball();
         skin.regions = skin
