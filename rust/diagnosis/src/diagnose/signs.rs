@@ -16,6 +16,8 @@ const CLEAR: f64 = 2.33;
 const SPEEDS: f64 = 2.0;
 /// Fewest readings in each of two means.
 const FEW: usize = 3;
+/// Part of the deepest depth by which the depths of two rows may differ between which a force is taken.
+const APART: f64 = 0.2;
 
 /// The sentences of an effect's signs that the recordings show clearly, and whether each holds.
 pub fn looked_for(ready: &Prepared, (scored, effect): (&Scored, Effect)) -> Vec<(String, bool)> {
@@ -55,18 +57,18 @@ fn unlike(z: Option<f64>) -> Option<bool> {
     clear(z).map(|_| false)
 }
 
-/// Two groups of readings of one recording whose means are compared: the first is to be larger.
-type Two<'a> = (Vec<&'a Row>, Vec<&'a Row>);
+/// Two groups of forces (N) of one recording whose means are compared: the first is to be larger.
+type Two = (Vec<f64>, Vec<f64>);
 
 /// Standard errors by which first means exceed second ones, over all recordings; None where no recording has both.
-fn z(ready: &Prepared, two: &dyn Fn(&Course) -> Two<'_>) -> Option<f64> {
+fn z(ready: &Prepared, two: &dyn Fn(&Course) -> Two) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for course in &ready.courses {
         let (first, second) = two(course);
         let (Some(a), Some(b)) = (mean(&first), mean(&second)) else {
             continue;
         };
-        let Some(sample) = first[0].sample else {
+        let Some(sample) = course.rows.iter().find_map(|r| r.sample) else {
             continue;
         };
         let worth = 1.0 / first.len() as f64 + 1.0 / second.len() as f64;
@@ -76,9 +78,8 @@ fn z(ready: &Prepared, two: &dyn Fn(&Course) -> Two<'_>) -> Option<f64> {
     (count > 0.0).then(|| sum / f64::sqrt(count))
 }
 
-fn mean(rows: &[&Row]) -> Option<f64> {
-    let all = rows.iter().map(|r| r.force_n).sum::<f64>();
-    (rows.len() >= FEW).then(|| all / rows.len() as f64)
+fn mean(forces: &[f64]) -> Option<f64> {
+    (forces.len() >= FEW).then(|| forces.iter().sum::<f64>() / forces.len() as f64)
 }
 
 /// Rows with a force in a phase.
@@ -89,55 +90,56 @@ fn within(course: &Course, phase: Phase) -> Vec<&Row> {
 }
 
 /// First and last third of rows.
-fn ends(rows: Vec<&Row>) -> Two<'_> {
+fn ends(rows: &[&Row]) -> Two {
     let third = rows.len() / 3;
-    (rows[..third].to_vec(), rows[rows.len() - third..].to_vec())
+    let forces = |some: &[&Row]| some.iter().map(|r| r.force_n).collect();
+    (forces(&rows[..third]), forces(&rows[rows.len() - third..]))
 }
 
-fn in_hold(course: &Course) -> Two<'_> {
-    ends(within(course, Phase::Hold))
+fn in_hold(course: &Course) -> Two {
+    ends(&within(course, Phase::Hold))
 }
 
-fn apart(course: &Course) -> Two<'_> {
-    ends(within(course, Phase::Apart))
+fn apart(course: &Course) -> Two {
+    ends(&within(course, Phase::Apart))
 }
 
-/// Rows of the first loading and of the unloading that lie within the same depths.
-fn in_loop(course: &Course) -> Two<'_> {
-    let loading: Vec<&Row> = within(course, Phase::Load)
-        .into_iter()
-        .filter(|r| r.cycle == 0)
-        .collect();
-    let unloading = within(course, Phase::Unload);
-    let deepest = course.deepest();
-    let middle = |r: &&&Row| (0.25 * deepest..0.9 * deepest).contains(&r.depth_mm);
-    let first: Vec<&Row> = loading.iter().filter(middle).copied().collect();
-    let second: Vec<&Row> = unloading.iter().filter(middle).copied().collect();
-    // The rows' depths are not the same: those that lie close are compared.
-    let nearest = |a: &&'_ Row| -> Option<usize> {
-        let off = |k: &usize| (second[*k].depth_mm - a.depth_mm).abs();
-        let found = (0..second.len()).min_by(|j, k| off(j).total_cmp(&off(k)))?;
-        (off(&found) < 0.02 * deepest).then_some(found)
-    };
-    let pairs = first.iter().filter_map(|a| Some((*a, second[nearest(a)?])));
-    pairs.unzip()
+/// The first loading and the unloading, at the same depths.
+fn in_loop(course: &Course) -> Two {
+    let mut loading = within(course, Phase::Load);
+    loading.retain(|r| r.cycle == 0);
+    at_same_depths(course.deepest(), (&loading, &within(course, Phase::Unload)))
 }
 
-/// Rows near the turning points of the first cycle and of the last.
-fn in_cycles(course: &Course) -> Two<'_> {
+/// The first loading and the last, at the same depths.
+fn in_cycles(course: &Course) -> Two {
     let last = course.rows.iter().map(|r| r.cycle).max().unwrap_or(0);
-    let deepest = course.deepest();
     let of = |cycle: u32| -> Vec<&Row> {
-        let loading = within(course, Phase::Load);
+        let mut loading = within(course, Phase::Load);
+        loading.retain(|r| r.cycle == cycle);
         loading
-            .into_iter()
-            .filter(|r| r.cycle == cycle && r.depth_mm > 0.75 * deepest)
-            .collect()
     };
     match last {
         0 => (Vec::new(), Vec::new()),
-        _ => (of(0), of(last)),
+        _ => at_same_depths(course.deepest(), (&of(0), &of(last))),
     }
+}
+
+/// Forces of the first rows between a quarter and nine tenths of the way, and those of the second at their depths: on straight lines
+/// between rows that are not farther apart than [`APART`].
+fn at_same_depths(deepest: f64, (first, second): (&[&Row], &[&Row])) -> Two {
+    let is_between = |r: &&&Row| (0.25 * deepest..0.9 * deepest).contains(&r.depth_mm);
+    let met = |depth: f64| {
+        second.windows(2).find_map(|two| {
+            let (from, to) = (two[0].depth_mm, two[1].depth_mm);
+            let share = (depth - from) / (to - from);
+            let is_met = (0.0..=1.0).contains(&share) && (to - from).abs() < APART * deepest;
+            is_met.then(|| two[0].force_n * (1.0 - share) + two[1].force_n * share)
+        })
+    };
+    let own = first.iter().filter(is_between);
+    own.filter_map(|a| Some((a.force_n, met(a.depth_mm)?)))
+        .unzip()
 }
 
 /// Standard errors by which the fastest presses of a tool bear more than the slowest, over the scatter of gains.
@@ -184,5 +186,36 @@ mod tests {
         assert_eq!(of(-3.0), (Some(false), Some(false)));
         assert_eq!(of(2.0), (None, None));
         assert_eq!((clear(None), unlike(None)), (None, None));
+    }
+
+    /// Two loadings on one line: rows of the later one lie deeper, and would seem to bear more.
+    #[test]
+    fn forces_are_compared_at_the_same_depth() {
+        let rows = |from: f64, step: f64| -> Vec<Row> {
+            let row = |k: u32| Row {
+                time_s: 0.0,
+                depth_mm: from + step * f64::from(k),
+                force_n: 3.0 * (from + step * f64::from(k)),
+                phase: Phase::Load,
+                cycle: 0,
+                sample: Some(0),
+            };
+            (0..10).map(row).collect()
+        };
+        let (first, up, down) = (rows(0.0, 0.1), rows(0.02, 0.1), rows(0.95, -0.1));
+        for second in [&up, &down] {
+            let (a, b): (Vec<&Row>, Vec<&Row>) = (first.iter().collect(), second.iter().collect());
+            let (a, b) = at_same_depths(1.0, (&a, &b));
+            assert_eq!(a.len(), 6, "0.3 to 0.8 mm");
+            assert!(
+                a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{a:?} {b:?}"
+            );
+        }
+        let (a, b): (Vec<&Row>, Vec<&Row>) = (first.iter().collect(), up.iter().collect());
+        assert!(
+            at_same_depths(0.45, (&a, &b)).0.is_empty(),
+            "rows 0.1 mm apart of 0.45"
+        );
     }
 }
