@@ -48,12 +48,16 @@ class Row:
 
 @dataclass(frozen=True)
 class Answers:
-    """What one diagnosis said: of every case, and of those to which a protocol was added, as advised and at random."""
+    """What one diagnosis said: of every case, and of those to which a protocol was added, as advised and at random.
+
+    `foretold`: by case, how often the advice that was followed says that it settles the matter.
+    """
 
     said: dict
     followed: dict = field(default_factory=dict)
     at_random: dict = field(default_factory=dict)
     could_follow: frozenset = frozenset()
+    foretold: dict = field(default_factory=dict)
 
 
 def wilson(hits, of, z=Z):
@@ -202,6 +206,7 @@ def _followed(sealed, answers):
     def is_settled(label, verdict):
         return named(verdict) == label["truth"]
 
+    recorded = [name for name in advised if name in answers.followed]
     return [
         _share(
             ("followed", "record this next, followed: settled"),
@@ -213,6 +218,17 @@ def _followed(sealed, answers):
             ("random", "  a random recording instead: settled"),
             settled(answers.at_random),
             is_settled,
+            (None, None, False),
+        ),
+        _share(
+            ("recorded", "  of those the trial can record: settled"),
+            [pair for pair, name in zip(settled(answers.followed), advised, strict=True) if name in recorded],
+            is_settled,
+            (None, None, False),
+        ),
+        _mean(
+            ("foretold", "  the same, as the advice foretold it"),
+            [answers.foretold[name] for name in recorded if name in answers.foretold],
             (None, None, False),
         ),
     ]

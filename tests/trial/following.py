@@ -21,21 +21,26 @@ def asked_for(case, verdict):
     Of those held back the closest to the first advice that any of them meets; with the tool that is pressed in turn
     whatever comes closest.
     """
+    advice = met(case, verdict)
+    if advice is None:
+        return None
+    wanted = advice["protocol"]
+    often = min(int(wanted.get("presses") or 2), MOST)
+    found = {nearest(case, cases.held_back(case), wanted)[1]: often}
+    tool = wanted.get("in_turn_with")
+    if tool:
+        like = [one for one, how in protocols.PROTOCOLS.items() if how.tool == tool]
+        found[nearest(case, like, wanted | {"radius_mm": None, "indenter": None})[1]] = often
+    return found
+
+
+def met(case, verdict):
+    """The first advice that a protocol meets of those held back; None if there is none."""
     if not is_open(case, verdict):
         return None
-    for advice in verdict.get("record_next", []):
-        wanted = advice.get("protocol", {})
-        away, name = nearest(case, cases.held_back(case), wanted)
-        if away > UNLIKE:
-            continue
-        often = min(int(wanted.get("presses") or 2), MOST)
-        found = {name: often}
-        tool = wanted.get("in_turn_with")
-        if tool:
-            like = [one for one, how in protocols.PROTOCOLS.items() if how.tool == tool]
-            found[nearest(case, like, wanted | {"radius_mm": None, "indenter": None})[1]] = often
-        return found
-    return None
+    wanted = [advice for advice in verdict["record_next"] if "protocol" in advice]
+    close = (one for one in wanted if nearest(case, cases.held_back(case), one["protocol"])[0] <= UNLIKE)
+    return next(close, None)
 
 
 def at_random(case, often=2):

@@ -64,7 +64,9 @@ def answers(who, out, names):
     folder = who.folder(out)
     said, followed, by_lot = (score.verdicts(folder, names, way) for way in ("", "followed", "at_random"))
     open_ones = {name for name, verdict in said.items() if following.is_open(name, verdict)}
-    return counts.Answers(said, followed, by_lot, frozenset(open_ones))
+    advice = {name: following.met(name, said[name]) for name in followed}
+    foretold = {name: one["probability"] for name, one in advice.items() if one and one.get("probability") is not None}
+    return counts.Answers(said, followed, by_lot, frozenset(open_ones), foretold)
 
 
 def wrong_endings(who, out, names):

@@ -82,14 +82,19 @@ def test_the_recording_that_is_asked_for_is_added(tmp_path):
     """The larger sphere is asked for in words of the study; what is held back comes closest to it."""
     held = cases.held_back(NARROW)
     wanted = following.described(NARROW, "wide sphere")
-    verdict = {"verdict": "cannot_tell", "record_next": [{"text": "larger", "protocol": dict(wanted)}]}
+    larger = {"text": "larger", "protocol": dict(wanted), "probability": 0.25}
+    verdict = {"verdict": "cannot_tell", "record_next": [larger]}
     assert "wide sphere" in held and following.asked_for(NARROW, verdict) == {"wide sphere": 2}
     near = wanted | {"radius_mm": 1.3 * wanted["radius_mm"], "presses": 8, "in_turn_with": "large"}
     assert following.asked_for(NARROW, {**verdict, "record_next": [{"protocol": near}]}) == {
         "wide sphere": 8,
         "large sphere": 8,
     }
-    assert following.asked_for(NARROW, {**verdict, "record_next": [{"protocol": {"shape": "plane"}}]}) is None
+    plane, first = {"protocol": {"shape": "plane"}}, verdict["record_next"][0]
+    assert following.asked_for(NARROW, {**verdict, "record_next": [plane]}) is None
+    assert following.met(NARROW, {**verdict, "record_next": [plane, first]}) == first
+    huge = {"protocol": wanted | {"radius_mm": 16 * wanted["radius_mm"]}}
+    assert following.asked_for(NARROW, {**verdict, "record_next": [huge]}) is None, "nothing alike is held back"
     assert following.asked_for(NARROW, {"verdict": "parameters"}) is None
     (by_lot,) = following.at_random(NARROW, 8).items()
     assert by_lot[0] in held and by_lot[1] == 8 and following.at_random(NARROW, 8) == dict([by_lot])
@@ -101,6 +106,7 @@ def test_the_recording_that_is_asked_for_is_added(tmp_path):
     assert (out / NARROW / "followed/findings.json").exists() and (out / NARROW / "at_random/findings.json").exists()
     found = prove.answers(prove.Who("thenar"), out, [NARROW])
     assert found.could_follow == {NARROW} and found.followed.keys() == found.at_random.keys() == {NARROW}
+    assert found.foretold == {NARROW: 0.25}
 
 
 def test_a_settled_case_counts_and_an_unsettled_one_does_not():
@@ -110,9 +116,13 @@ def test_a_settled_case_counts_and_an_unsettled_one_does_not():
     truth = {
         name: {"verdict": "missing_physics", "findings": [{"effect": sealed[name]["effect"]}]} for name in open_ones
     }
-    found = counts.Answers(said, truth, {}, frozenset(open_ones))
+    found = counts.Answers(said, truth, {}, frozenset(open_ones), dict.fromkeys(open_ones, 0.7))
     table = {row.key: row for row in counts.table(sealed, found)}
     assert len(open_ones) >= 12 and table["followed"].value == 1.0 and table["random"].value == 0.0
+    assert table["recorded"].of == len(open_ones) and table["foretold"].value == pytest.approx(0.7)
+    some = {name: truth[name] for name in open_ones[:6]}
+    table = {row.key: row for row in counts.table(sealed, counts.Answers(said, some, {}, frozenset(open_ones)))}
+    assert table["recorded"].of == 6 and table["recorded"].value == 1.0 and table["followed"].value < 0.51
 
 
 @pytest.mark.parametrize("how", mutations.MUTATIONS)
