@@ -1,4 +1,4 @@
-//! Recordings that could be made: every tool of a study and a larger sphere, held at every speed or in cycles.
+//! Recordings that could be made: every tool of a study and a sphere that it may lack, held at every speed or in cycles.
 
 use thenar_contact::Control;
 use thenar_recordings::Study;
@@ -13,6 +13,8 @@ use crate::fit::Fitting;
 
 /// Radius of a sphere that is asked for where the study has no other tool, over the largest in use.
 const RATIO: f64 = 2.5;
+/// Contact radius of a sphere that is asked for where no tool in use is round, over theirs.
+const NARROW: f64 = 0.5;
 /// Hold that tells clocks apart, s, if none was as long.
 const HOLD_S: f64 = 8.0;
 /// Cycles that tell what counts them from what counts time.
@@ -92,16 +94,21 @@ impl Past {
         }
     }
 
-    /// The study's tools, and a larger sphere if it has none that was not used.
-    pub fn tools(&self, study: &Study) -> Vec<(Indenter, bool)> {
+    /// The study's tools, and if all of them are in use a sphere: larger than those in use, or where none of these is round one that
+    /// touches less than they do. `contact_mm` is their contact radius.
+    pub fn tools(&self, study: &Study, contact_mm: f64) -> Vec<(Indenter, bool)> {
         let mut tools: Vec<(Indenter, bool)> =
             study.indenters.iter().map(|i| (i.clone(), true)).collect();
         let has_other = study.indenters.iter().any(|i| !self.used.contains(&i.name));
-        if !has_other && self.largest > 0.0 {
-            let shape = Shape::Sphere {
-                radius_mm: RATIO * self.largest,
-            };
-            let name = "a larger sphere".to_owned();
+        let radius_mm = match self.largest > 0.0 {
+            true => RATIO * self.largest,
+            // A sphere of radius R at depth d touches about as far as sqrt(R d).
+            false => (NARROW * contact_mm).powi(2) / self.depth_mm,
+        };
+        let is_round = radius_mm.is_finite() && radius_mm > 0.0;
+        if !has_other && is_round {
+            let shape = Shape::Sphere { radius_mm };
+            let name = "a sphere".to_owned();
             tools.push((Indenter { name, shape }, false));
         }
         tools

@@ -38,7 +38,9 @@ pub fn suggestions(
     let Some(site) = site else {
         return Ok(Vec::new());
     };
-    let tools = past.tools(study);
+    let used = ready.courses.iter().map(|c| c.place);
+    let contacts = used.map(|place| radius(&ready.elastic.places[place], ready.scales.deepest));
+    let tools = past.tools(study, contacts.fold(0.0, f64::max));
     let mut elastic = ready.elastic.clone();
     let places = placed(
         (&tools, site),

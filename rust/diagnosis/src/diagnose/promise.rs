@@ -4,7 +4,7 @@
 //! fitted anew to all recordings, the new ones among them: to first order a quadratic form of the foretold difference, with the
 //! information of what was recorded so far (Gauss-Newton) and the recording's own gain and first touch taken out (Schur
 //! complement). If the first explanation is true, the lead of its evidence grows by a normal number of mean `d / 2` and
-//! variance `d`, `d` being that squared difference in units of the noise.
+//! variance `d`, `d` being that squared difference in units of the noise, tempered as all evidence that becomes a probability is.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -58,7 +58,7 @@ impl Promise {
             .iter()
             .zip([(first, self.lead), (1.0 - first, -self.lead)])
         {
-            let left = squares.left(presses)? / self.temper;
+            let left = squares.left(presses)? / (self.temper * TEMPERATURE);
             let z = (lead + 0.5 * left - needed) / left.max(1e-9).sqrt();
             sum += share * libm::exp(log_normal_cdf(z));
         }
@@ -262,7 +262,7 @@ mod tests {
             known: DMatrix::identity(1, 1),
         };
         let promise = |lead: f64| Promise {
-            both: [plain(4.0), plain(4.0)],
+            both: [plain(4.0 * TEMPERATURE), plain(4.0 * TEMPERATURE)],
             lead,
             temper: 1.0,
         };

@@ -50,13 +50,10 @@ pub fn sentence(
                 .iter()
                 .map(|[a, b]| format!("{} and {}", words(a), words(b)))
                 .collect();
-            let settled = match next.first() {
-                Some(next) => format!(" Record next: {} ({}).", next.text, next.outlook()),
-                None => String::new(),
-            };
             format!(
-                "These recordings cannot tell {} apart.{settled}",
-                told.join(", nor ")
+                "These recordings cannot tell {} apart.{}",
+                told.join(", nor "),
+                next.first().map_or(String::new(), advised)
             )
         }
         Verdict::Instrument => {
@@ -81,5 +78,55 @@ pub fn sentence(
                 100.0 * sure
             )
         }
+    }
+}
+
+/// How often a recording settles a matter from which it is advised without reserve.
+const HOPEFUL: f64 = 0.2;
+
+/// What to record next, or that little is to be hoped of it.
+fn advised(next: &Suggestion) -> String {
+    let (text, outlook) = (&next.text, next.outlook());
+    match next.probability.is_none_or(|p| p >= HOPEFUL) {
+        true => format!(" Record next: {text} ({outlook})."),
+        false => format!(
+            " No recording with these tools is likely to settle it; the best would be: {text} ({outlook})."
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(probability: Option<f64>) -> String {
+        advised(&Suggestion {
+            text: "Press".into(),
+            indenter: None,
+            radius_mm: None,
+            in_turn_with: None,
+            site: String::new(),
+            speed_mm_s: 1.0,
+            hold_s: 8.0,
+            cycles: 1,
+            depth_mm: 1.0,
+            presses: 12,
+            settles: Vec::new(),
+            probability,
+            minutes: 30.0,
+        })
+    }
+
+    #[test]
+    fn advice_that_seldom_settles_is_given_with_its_reserve() {
+        assert_eq!(
+            said(Some(0.6)),
+            " Record next: Press (settles it in 60 % of cases, takes about 30 minutes)."
+        );
+        assert!(said(None).starts_with(" Record next: Press (takes"));
+        let poor = said(Some(0.01));
+        assert!(
+            poor.starts_with(" No recording with these tools") && poor.contains("1 % of cases")
+        );
     }
 }
