@@ -87,7 +87,7 @@ def test_a_finger_in_counts_is_compared_by_shape_and_its_second_lobe_stands_out(
 
 
 SUSPECTED = {
-    "force_ramps": "suspected, and not told apart, are drainage, relaxation, rate independent loss",
+    "force_ramps": "suspected, and not told apart, are drainage, rate independent loss, relaxation",
     "gel_creep": "adhesion is suspected",
 }
 

@@ -93,16 +93,24 @@ fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
     );
 }
 
+/// A study of one tool on skin whose force fades with one time, as that of a layer that drains nearly does.
+fn pressed_with(tool: &str, amplitude: f64) -> Study {
+    let mut study = planned();
+    study.recordings.retain(|r| r.indenter == tool);
+    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
+    let mut effect = ActiveEffect::named("relaxation", amplitude).unwrap();
+    for (name, value) in [("weight_1", 0.0), ("weight_2", 0.0), ("weight_3", 1.0)] {
+        effect = effect.with(name, value).unwrap();
+    }
+    let forces = fitting.simulate(&[effect], &Control::none()).unwrap();
+    measured(&(study, forces), &USUAL, 11)
+}
+
 /// One tool alone tells no clock that is fixed from one that grows with the contact: another tool of the study is asked for, or the
 /// same again, and not one of which nothing can be made.
 #[test]
 fn what_is_recorded_next_settles_what_one_tool_cannot() {
-    let mut study = planned();
-    study.recordings.retain(|r| r.indenter == "ball");
-    let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
-    let effect = ActiveEffect::named("relaxation", 0.5).unwrap();
-    let forces = fitting.simulate(&[effect], &Control::none()).unwrap();
-    let mut study = measured(&(study, forces), &USUAL, 11);
+    let mut study = pressed_with("ball", 0.3);
     let of_nothing = Shape::Mesh(MeshFile::default());
     for (name, shape) in [
         ("nothing", of_nothing),
@@ -132,6 +140,20 @@ fn what_is_recorded_next_settles_what_one_tool_cannot() {
     let share = next.probability.unwrap();
     assert!(share > 0.0 && share <= 1.0 && next.presses >= 2 && next.minutes > 4.0);
     assert!(found.sentence.contains("% of cases"), "{}", found.sentence);
+}
+
+/// Where nothing but a plate was pressed, a sphere that touches less is asked for: the study has no round tool to go by.
+#[test]
+fn where_only_a_plate_was_pressed_a_sphere_is_asked_for() {
+    let mut study = pressed_with("plate", 0.1);
+    study.indenters.retain(|i| i.name == "plate");
+    let found = diagnosed(&study);
+    assert_eq!(found.verdict, Verdict::CannotTell, "{}", found.sentence);
+    let next = &found.record_next[0];
+    assert_eq!(next.indenter, None, "{next:?}");
+    let radius = next.radius_mm.unwrap();
+    assert!(radius >= 2.0 * next.depth_mm - 1e-9, "{next:?}");
+    assert!(next.text.contains("a sphere of radius"), "{}", next.text);
 }
 
 /// One recording of each protocol: noise is not known, and nothing is named whatever the curve looks like.

@@ -17,62 +17,53 @@ const GROWS: f64 = 1.5;
 const RELEASE: f64 = 0.08;
 
 impl Screen<'_> {
-    /// By branch of every mechanism that fades, its decay over each row's step.
-    pub(super) fn fades(
-        &self,
-        model: &Model<'_>,
-        (one, depths): (&Course, &[f64]),
-    ) -> Vec<Vec<(f64, f64)>> {
-        let mut all = Vec::new();
-        let table = &self.elastic.places[one.place];
-        for mechanism in model.mechanisms {
-            let Acts::Fades { clock, periods } = &mechanism.acts else {
-                continue;
-            };
-            let step = |n: usize| {
-                let seconds = one.rows[n].time_s - one.rows[n - 1].time_s;
-                match clock {
-                    Clock::Time => seconds,
-                    Clock::Travel => (depths[n].max(0.0) - depths[n - 1].max(0.0)).abs(),
-                    Clock::Area { reference_mm } => {
-                        let middle = 0.5 * (depths[n].max(0.0) + depths[n - 1].max(0.0));
-                        let least = 0.1 * reference_mm;
-                        seconds * (reference_mm / radius(table, middle).max(least)).powf(GROWS)
-                    }
-                }
-            };
-            let steps: Vec<f64> = (0..depths.len())
-                .map(|n| if n == 0 { 0.0 } else { step(n) })
-                .collect();
-            for period in periods {
-                let over: Vec<f64> = steps.iter().map(|s| s / period).collect();
-                all.push(fade(&over));
-            }
-        }
-        all
-    }
-
-    /// Shares of all branches at a place.
+    /// Every branch of every mechanism that fades: its decay over each row's step, and its share.
     ///
     /// What drains leaves tissue that gives up volume, and that matters the more, the larger the contact is against the thickness: the
     /// share of drainage is in proportion to what compressibility takes from the tool's force.
-    pub(super) fn shares(&self, model: &Model<'_>, set: &Setting, place: usize) -> Vec<f64> {
-        let mut shares = Vec::new();
+    pub(super) fn fades(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (one, depths): (&Course, &[f64]),
+    ) -> (Vec<Vec<(f64, f64)>>, Vec<f64>) {
+        let (mut fades, mut shares) = (Vec::new(), Vec::new());
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            let Acts::Fades { clock, .. } = &mechanism.acts else {
+            let Acts::Fades { clock, spectrum } = &mechanism.acts else {
                 continue;
             };
             let factor = match clock {
-                Clock::Area { .. } => self.elastic.drained[place],
+                Clock::Area { .. } => self.elastic.drained[one.place],
                 _ => 1.0,
             };
-            shares.extend(
-                set.of[number]
-                    .iter()
-                    .map(|share| (share * factor).min(0.95)),
-            );
+            let steps = self.clocked(*clock, (one, depths));
+            for (period, share) in spectrum.branches(&set.of[number]) {
+                let over: Vec<f64> = steps.iter().map(|s| s / period).collect();
+                fades.push(fade(&over));
+                shares.push((share * factor).min(0.95));
+            }
         }
-        shares
+        (fades, shares)
+    }
+
+    /// By how much a clock goes on over each row's step; none over the first.
+    fn clocked(&self, clock: Clock, (one, depths): (&Course, &[f64])) -> Vec<f64> {
+        let table = &self.elastic.places[one.place];
+        let step = |n: usize| {
+            let seconds = one.rows[n].time_s - one.rows[n - 1].time_s;
+            match clock {
+                Clock::Time => seconds,
+                Clock::Travel => (depths[n].max(0.0) - depths[n - 1].max(0.0)).abs(),
+                Clock::Area { reference_mm } => {
+                    let middle = 0.5 * (depths[n].max(0.0) + depths[n - 1].max(0.0));
+                    let least = 0.1 * reference_mm;
+                    seconds * (reference_mm / radius(table, middle).max(least)).powf(GROWS)
+                }
+            }
+        };
+        (0..depths.len())
+            .map(|n| if n == 0 { 0.0 } else { step(n) })
+            .collect()
     }
 
     /// What skin that clings takes off.

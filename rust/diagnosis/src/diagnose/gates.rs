@@ -5,7 +5,7 @@ use thenar_contact::effects::Effect;
 use super::elastic::radius;
 use super::findings::Verdict;
 use super::ladder::{Rungs, Scored};
-use super::mechanism::Mechanism;
+use super::mechanism::{Acts, Mechanism};
 use super::prepare::Prepared;
 use super::sentence::words;
 
@@ -16,7 +16,8 @@ pub const DETECTED: f64 = 6.0;
 const DETECTED_STATIC: (f64, f64) = (5.5, 6.0);
 /// The same of a step in the gain, and of adhesion, which has more variants than others.
 const DETECTED_ELSE: f64 = 7.5;
-/// Evidence that a mechanism must add beside another, and what changes the elastic answer alone.
+/// Evidence that a mechanism must add beside another; and what changes the elastic answer alone beside another whose form is not as well
+/// known as that of what the tissue remembers.
 const BESIDE: f64 = 5.5;
 const STATIC_BESIDE: f64 = 10.0;
 /// Lead in evidence, nats, over every rival that bears another name; and over one that differs by its clock alone, or belongs to the
@@ -97,7 +98,9 @@ fn suspected(rungs: &Rungs) -> String {
         .singles
         .iter()
         .filter(|s| s.evidence > SUSPECTED.1 * most);
-    let names: Vec<String> = near.map(|s| words(s.mechanisms[0].effect.name())).collect();
+    let mut names: Vec<String> = near.map(|s| words(s.mechanisms[0].effect.name())).collect();
+    // No order is known of what is not told apart.
+    names.sort();
     match names.len() {
         1 => format!("{} is suspected", names[0]),
         _ => format!("suspected, and not told apart, are {}", names.join(", ")),
@@ -269,9 +272,9 @@ fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
     };
     let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
     let inexact = |k: usize| inexact(&pair.mechanisms[k]) * alone(k);
-    let least = |k: usize| match is_static(&pair.mechanisms[k]) {
-        true => STATIC_BESIDE.max(inexact(1 - k)),
-        false => BESIDE.max(inexact(1 - k)),
+    let least = |k: usize| {
+        let is_exact = !is_static(&pair.mechanisms[k]) || is_memory(&pair.mechanisms[1 - k]);
+        inexact(1 - k).max(if is_exact { BESIDE } else { STATIC_BESIDE })
     };
     let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
     pair.mechanisms[0].effect != pair.mechanisms[1].effect
@@ -287,9 +290,16 @@ fn inexact(mechanism: &Mechanism) -> f64 {
         Effect::Threshold => 0.15,
         Effect::Adhesion => 0.09,
         Effect::Saturation => 0.1,
+        Effect::StiffeningLaw => 0.17,
         _ if mechanism.is_instrument() => 0.0,
+        _ if is_memory(mechanism) => 0.02,
         _ => 0.03,
     }
+}
+
+/// True for what the tissue remembers.
+fn is_memory(mechanism: &Mechanism) -> bool {
+    matches!(mechanism.acts, Acts::Fades { .. } | Acts::Softens { .. })
 }
 
 /// True for what changes the elastic answer alone.

@@ -81,7 +81,7 @@ pub fn climb(
         from: Vec::new(),
         control,
     };
-    let mut base = trial.score(&[]);
+    let mut base = trial.score(&[], &[]);
     trial.from.clone_from(&base.refit.at);
     let gain_step = gain_step(&ready.courses, &log_gains(ready, &base));
     let clear_step = gain_step.filter(|found| found.t > STEP);
@@ -150,15 +150,29 @@ impl Trial<'_> {
         step.map_err(|_| DiagnosisError::Cancelled)
     }
 
-    fn score(&self, mechanisms: &[Mechanism]) -> Scored {
+    /// Fits from an optimum of fewer mechanisms, the first of these.
+    fn score(&self, mechanisms: &[Mechanism], from: &[f64]) -> Scored {
         let model = Model::new(self.screen, mechanisms);
-        let refit = refit(self.screen, &model, &self.from);
+        let refit = refit(self.screen, &model, from);
         Scored {
             coherent: coherent(self.screen, &refit.residual, &self.blocks),
             mechanisms: mechanisms.to_vec(),
             refit,
             evidence: 0.0,
         }
+    }
+
+    /// The best fit of one mechanism from all its starts.
+    fn single(&self, mechanism: &Mechanism) -> Scored {
+        let one = std::slice::from_ref(mechanism);
+        let mut best = self.score(one, &self.from);
+        for start in mechanism.starts() {
+            let other = self.score(one, &[&self.from[..], start].concat());
+            if other.refit.deviance < best.refit.deviance {
+                best = other;
+            }
+        }
+        best
     }
 
     /// Every variant of every single mechanism, and a step of the gain if repeats show one.
@@ -175,7 +189,7 @@ impl Trial<'_> {
         let mut all = Vec::new();
         for (k, mechanism) in tried.iter().enumerate() {
             self.step(0.6 * k as f64 / tried.len() as f64)?;
-            all.push(self.score(std::slice::from_ref(mechanism)));
+            all.push(self.single(mechanism));
         }
         Ok(all)
     }
@@ -187,9 +201,9 @@ impl Trial<'_> {
             return Ok(pairs);
         }
         let sets = sets_of_two(singles);
-        for (k, set) in sets.iter().enumerate() {
+        for (k, (better, set)) in sets.iter().enumerate() {
             self.step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
-            pairs.push(self.score(set));
+            pairs.push(self.score(set, &better.refit.at));
         }
         pairs.iter_mut().for_each(|s| scale.judge(s));
         pairs.retain(|s| shows_its_signs(self.ready, s));
@@ -212,18 +226,21 @@ fn best_of_each(ready: &Prepared, mut all: Vec<Scored>) -> Vec<Scored> {
     best
 }
 
-/// The leader with each other name, and all pairs among the best few.
-fn sets_of_two(singles: &[Scored]) -> Vec<[Mechanism; 2]> {
-    let others: Vec<&Mechanism> = singles.iter().map(|s| &s.mechanisms[0]).collect();
-    let others = &others[..others.len().min(LED)];
-    let among = singles.iter().filter(|s| s.evidence > 1.0).take(PAIRED);
-    let among: Vec<&Mechanism> = among.map(|s| &s.mechanisms[0]).collect();
+/// The leader with each other name, and all pairs among the best few; with each the one of the two that does better alone, which
+/// comes first.
+fn sets_of_two(singles: &[Scored]) -> Vec<(&Scored, [Mechanism; 2])> {
+    let others = &singles[..singles.len().min(LED)];
+    let among = others
+        .iter()
+        .filter(|s| s.evidence > 1.0)
+        .count()
+        .min(PAIRED);
     let mut sets = Vec::new();
     for (i, a) in others.iter().enumerate() {
-        for b in &others[i + 1..] {
-            let leads = among.first().is_some_and(|lead| a == lead || b == lead);
-            if leads || (among.contains(a) && among.contains(b)) {
-                sets.push([(*a).clone(), (*b).clone()]);
+        for (j, b) in others.iter().enumerate().skip(i + 1) {
+            if (i == 0 && among > 0) || j < among {
+                let both = [a, b].map(|s| s.mechanisms[0].clone());
+                sets.push((a, both));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! A screened model's free numbers: what they are, where they begin, and what they belong to.
 
-use super::mechanism::{Acts, Mechanism};
+use super::mechanism::{Acts, MEDIANS_S, Mechanism, Spectrum};
 use super::screen::Screen;
 use crate::replay::KNOTS;
 
@@ -53,7 +53,7 @@ impl<'a> Model<'a> {
         let mut coordinates = screen.shared.clone();
         for (number, mechanism) in mechanisms.iter().enumerate() {
             for k in 0..mechanism.count() {
-                let (start, low, high) = range(screen, mechanism);
+                let (start, low, high) = range(screen, mechanism, k);
                 coordinates.push(Coordinate {
                     kind: Kind::Of(number, k),
                     start,
@@ -118,10 +118,17 @@ pub struct Setting {
     pub of: Vec<Vec<f64>>,
 }
 
-/// Start and bounds of a mechanism's numbers.
-fn range(screen: &Screen<'_>, mechanism: &Mechanism) -> (f64, f64, f64) {
+/// Start and bounds of a mechanism's number.
+fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64, f64) {
     let (force, depth) = screen.most;
     match &mechanism.acts {
+        Acts::Fades {
+            spectrum: Spectrum::Smooth { widths },
+            ..
+        } if number > 0 => match number {
+            1 => (0.0, libm::log(MEDIANS_S.0), libm::log(MEDIANS_S.1)),
+            _ => (1.0, widths.0, widths.1),
+        },
         Acts::Fades { .. } => (0.03, 0.0, 0.6),
         Acts::Softens { .. } => (0.1, 0.0, 0.9),
         Acts::Clings { .. } => (0.01, 0.0, 0.6),

@@ -1,11 +1,12 @@
 //! The numbers of a screened mechanism in the catalogue's terms.
 
+use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 
 use super::elastic::{radius, skin_share};
 use super::findings::{Number, Switched};
 use super::ladder::Scored;
-use super::mechanism::{Acts, Clock, Measure, Mechanism};
+use super::mechanism::{Acts, Measure, Mechanism, Spectrum};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 
@@ -16,38 +17,51 @@ const DROP: f64 = 0.285_714;
 /// Time, in a^2 / D, of the main branch of the catalogue's drainage.
 const MAIN_BRANCH: f64 = 0.605;
 
-/// Values of a mechanism's free numbers with their standard errors, `number` being its place in the model.
-pub fn free_numbers(ready: &Prepared, scored: &Scored, number: usize) -> Vec<(f64, f64)> {
-    let screen = ready.screen();
-    let model = Model::new(&screen, &scored.mechanisms);
-    let all = model.coordinates.iter().enumerate();
-    let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
-    own.map(|(k, _)| {
-        let variance = scored.refit.covariance[(k, k)].max(0.0);
-        (scored.refit.at[k], variance.sqrt())
-    })
-    .collect()
+/// A mechanism's free numbers, with what is known of their errors.
+pub struct Free {
+    /// In the model's order.
+    pub values: Vec<f64>,
+    /// Covariance of their errors.
+    covariance: DMatrix<f64>,
 }
 
-/// Standard error of the sum of a mechanism's free numbers, of which one stands for its neighbor.
-fn sum_error(ready: &Prepared, scored: &Scored, number: usize) -> f64 {
-    let screen = ready.screen();
-    let model = Model::new(&screen, &scored.mechanisms);
-    let all = model.coordinates.iter().enumerate();
-    let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
-    let own: Vec<usize> = own.map(|(k, _)| k).collect();
-    let pairs = own.iter().flat_map(|a| own.iter().map(move |b| (*a, *b)));
-    let variance: f64 = pairs.map(|at| scored.refit.covariance[at]).sum();
-    variance.max(0.0).sqrt()
+impl Free {
+    /// Those of mechanism `number` of a model.
+    pub fn of(ready: &Prepared, scored: &Scored, number: usize) -> Free {
+        let screen = ready.screen();
+        let model = Model::new(&screen, &scored.mechanisms);
+        let all = model.coordinates.iter().enumerate();
+        let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
+        let own: Vec<usize> = own.map(|(k, _)| k).collect();
+        let covariance = &scored.refit.covariance;
+        Free {
+            values: own.iter().map(|k| scored.refit.at[*k]).collect(),
+            covariance: DMatrix::from_fn(own.len(), own.len(), |a, b| covariance[(own[a], own[b])]),
+        }
+    }
+
+    /// A sum of the numbers, each times its weight, and its standard error.
+    pub fn sum(&self, weights: &[f64]) -> (f64, f64) {
+        let value = self.values.iter().zip(weights).map(|(v, w)| v * w).sum();
+        let weights = DVector::from_column_slice(weights);
+        let variance = (&self.covariance * &weights).dot(&weights);
+        (value, variance.max(0.0).sqrt())
+    }
+
+    /// The first number and its standard error.
+    pub fn first(&self) -> (f64, f64) {
+        let mut weights = vec![0.0; self.values.len()];
+        weights[0] = 1.0;
+        self.sum(&weights)
+    }
 }
 
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
 pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, Switched) {
     let mechanism = &scored.mechanisms[number];
-    let free = free_numbers(ready, scored, number);
+    let free = Free::of(ready, scored, number);
     let effect = mechanism.effect;
-    let error = sum_error(ready, scored, number);
-    let (amplitude, numbers) = values(ready, (mechanism, &free, error));
+    let (amplitude, numbers) = values(ready, mechanism, &free);
     let unit = |name: &str| {
         let entry = effect.entry().shape.iter().find(|n| n.name == name);
         entry.map_or("1", |n| n.unit)
@@ -89,163 +103,148 @@ type Three = (f64, f64, f64);
 type Named = (&'static str, f64, f64, f64);
 
 /// Amplitude and shape numbers, each with its interval.
-fn values(
-    ready: &Prepared,
-    (mechanism, free, error_of_sum): (&Mechanism, &[(f64, f64)], f64),
-) -> (Three, Vec<Named>) {
-    let (value, error) = free[0];
-    let interval = |scale: &dyn Fn(f64) -> f64| {
-        (
-            scale(value),
-            scale(value - HALF * error),
-            scale(value + HALF * error),
-        )
-    };
+fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<Named>) {
     let whole: Three = (1.0, 1.0, 1.0);
-    let named = |name: &'static str, three: Three| vec![(name, three.0, three.1, three.2)];
     match &mechanism.acts {
-        Acts::Fades { clock, periods } => fading(
-            ready,
-            (mechanism.effect, *clock, periods),
-            (free, error_of_sum),
-        ),
+        Acts::Fades {
+            spectrum: Spectrum::Free(lengths),
+            ..
+        } => travelling(lengths, free),
+        Acts::Fades { .. } => fading(ready, mechanism.effect, free),
         Acts::Softens {
             travel_mm,
             recovery_s,
         } => {
-            let shares = interval(&|x| x.clamp(0.0, 0.95));
+            let shares = interval(free, &|x| x.clamp(0.0, 0.95));
             let shape = vec![
                 ("travel_mm", *travel_mm, travel_mm / 2.0, travel_mm * 2.0),
                 ("recovery_s", *recovery_s, 5.0, 1000.0),
             ];
             (shares, shape)
         }
-        Acts::Clings { .. } => {
-            let work = interval(&|x| work_of(ready, x.max(0.0)));
-            (whole, named("work_j_per_m2", work))
+        Acts::Tabled if mechanism.effect == Effect::StiffSkin => {
+            (interval(free, &|x| skin_share(x.max(0.0))), Vec::new())
         }
-        Acts::Tabled => {
-            let own = ready.base_material;
-            match mechanism.effect {
-                Effect::Bone => {
-                    let thickness = interval(&|x| own.thickness_mm * libm::exp(x));
-                    (whole, named("thickness_mm", thickness))
-                }
-                Effect::Compressibility => {
-                    let poisson = interval(&|x| own.poisson_ratio - x.max(0.0));
-                    (whole, named("poisson_ratio", poisson))
-                }
-                _ => (interval(&|x| skin_share(x.max(0.0))), Vec::new()),
-            }
+        acts => {
+            let told = one(ready, (mechanism.effect, acts)).map(|(name, scale)| {
+                let three = interval(free, &*scale);
+                (name, three.0, three.1, three.2)
+            });
+            (whole, told.into_iter().collect())
         }
+    }
+}
+
+/// The first number and the ends of its interval, in other terms.
+fn interval(free: &Free, scale: &dyn Fn(f64) -> f64) -> Three {
+    let (value, error) = free.first();
+    let ends = [0.0, -HALF * error, HALF * error].map(|off| scale(value + off));
+    (ends[0], ends[1], ends[2])
+}
+
+/// A number in the catalogue's terms, of the model's own.
+type Scale<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+
+/// The one number of a mechanism that has no other: its name, and its value in the catalogue's terms.
+fn one<'a>(
+    ready: &'a Prepared,
+    (effect, acts): (Effect, &Acts),
+) -> Option<(&'static str, Scale<'a>)> {
+    let own = ready.base_material;
+    let (least, most) = ready.scales.forces;
+    let (name, scale): (_, Scale<'a>) = match *acts {
+        Acts::Clings { .. } => (
+            "work_j_per_m2",
+            Box::new(move |x| work_of(ready, x.max(0.0))),
+        ),
+        Acts::Tabled if effect == Effect::Bone => (
+            "thickness_mm",
+            Box::new(move |x| own.thickness_mm * libm::exp(x)),
+        ),
+        Acts::Tabled => (
+            "poisson_ratio",
+            Box::new(move |x| own.poisson_ratio - x.max(0.0)),
+        ),
         Acts::Stiffens(measure) => {
             let (name, most) = match measure {
                 Measure::Depth => ("reference_depth_mm", ready.scales.deepest),
                 Measure::Strain => ("reference_strain", ready.screen().largest_strain()),
             };
-            (whole, named(name, interval(&|x| most / x.max(0.01))))
+            (name, Box::new(move |x| most / x.max(0.01)))
         }
-        Acts::GainStep { .. } => (whole, named("error", interval(&|x| libm::exp(x) - 1.0))),
-        Acts::Offset => (whole, named("offset_n", interval(&|x| x))),
-        Acts::Drifts { time_s } => {
-            // Mean rate over the first ten times the creep's own time.
-            let rate = |x: f64| x * libm::log1p(10.0) / (10.0 * time_s) * 60.0;
-            (whole, named("rate_n_per_min", interval(&rate)))
-        }
-        Acts::Saturates => {
-            let ceiling = interval(&|x| ready.scales.forces.1 * libm::exp(x));
-            (whole, named("ceiling_n", ceiling))
-        }
-        Acts::Blind => (
-            whole,
-            named("floor_n", interval(&|x| x.max(0.0) * ready.scales.forces.0)),
+        Acts::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
+        Acts::Offset => ("offset_n", Box::new(|x| x)),
+        // Mean rate over the first ten times the creep's own time.
+        Acts::Drifts { time_s } => (
+            "rate_n_per_min",
+            Box::new(move |x| x * libm::log1p(10.0) / (10.0 * time_s) * 60.0),
         ),
-        Acts::Yields => (
-            whole,
-            named("compliance_mm_per_n", interval(&|x| x.max(0.0))),
-        ),
-        Acts::Late => (whole, named("delay_s", interval(&|x| x))),
-    }
+        Acts::Saturates => ("ceiling_n", Box::new(move |x| most * libm::exp(x))),
+        Acts::Blind => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
+        Acts::Yields => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
+        Acts::Late => ("delay_s", Box::new(|x| x)),
+        Acts::Fades { .. } | Acts::Softens { .. } => return None,
+    };
+    Some((name, scale))
 }
 
-/// Amplitude and times of branches that fade.
-fn fading(
-    ready: &Prepared,
-    (effect, clock, periods): (Effect, Clock, &[f64]),
-    (free, error): (&[(f64, f64)], f64),
-) -> (Three, Vec<Named>) {
-    let sum: f64 = free.iter().map(|f| f.0).sum();
-    let scale = if effect == Effect::Drainage {
-        1.0 / DROP
-    } else {
-        1.0
+/// Mean of the outer thirds of a normal law, in widths from its middle.
+const OUTER: f64 = 1.090_8;
+
+/// Amplitude and times of a load that fades by a smooth spectrum.
+fn fading(ready: &Prepared, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
+    // A period so many widths from the median, and its interval.
+    let period = |widths: f64| {
+        let (log, error) = free.sum(&[0.0, 1.0, widths]);
+        let factor = libm::exp(HALF * error).min(MOST);
+        let period = libm::exp(log);
+        (period, period / factor, period * factor)
     };
-    let within = |x: f64| (x * scale).clamp(0.0, 0.99);
-    let amplitude = (
-        within(sum),
-        within(sum - HALF * error),
-        within(sum + HALF * error),
-    );
-    let each = free.iter().zip(periods);
+    if effect == Effect::Drainage {
+        let over = MAIN_BRANCH * ready.scales.radius.powi(2);
+        let (middle, low, high) = period(0.0);
+        let name = "diffusivity_mm2_per_s";
+        let diffusivity = (name, over / middle, over / high, over / low);
+        return (within(free.first(), 1.0 / DROP), vec![diffusivity]);
+    }
+    let names = ["time_1_s", "time_2_s", "time_3_s"];
+    let times = names.into_iter().zip([-OUTER, 0.0, OUTER]);
+    let times = times.map(|(name, widths)| {
+        let (period, low, high) = period(widths);
+        (name, period, low, high)
+    });
+    let third = 1.0 / 3.0;
+    let weights = ["weight_1", "weight_2", "weight_3"].map(|name| (name, third, third, third));
+    let numbers = times.chain(weights).collect();
+    (within(free.first(), 1.0), numbers)
+}
+
+/// Largest factor on a period that is told as its interval.
+const MOST: f64 = 30.0;
+
+/// Amplitude and length of a load that is lost with travel.
+fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
+    let (sum, error) = free.sum(&vec![1.0; lengths.len()]);
+    let each = free.values.iter().zip(lengths);
     let mean_log = match sum > 0.0 {
-        true => each.map(|(f, p)| f.0 * libm::log(*p)).sum::<f64>() / sum,
-        false => libm::log(periods[0]),
+        true => each.map(|(f, p)| f * libm::log(*p)).sum::<f64>() / sum,
+        false => libm::log(lengths[0]),
     };
     let mean = libm::exp(mean_log);
-    // Half a period's step either way, widened by how little the shares are known.
-    let factor = libm::exp(1.0 + HALF * error / sum.max(1e-3)).min(30.0);
-    let numbers = match (effect, clock) {
-        (Effect::Drainage, _) => {
-            let d = MAIN_BRANCH * ready.scales.radius.powi(2) / mean;
-            vec![("diffusivity_mm2_per_s", d, d / factor, d * factor)]
-        }
-        (Effect::RateIndependentLoss, _) => vec![("length_mm", mean, mean / factor, mean * factor)],
-        _ => {
-            let names = ["time_1_s", "time_2_s", "time_3_s"];
-            let weights = ["weight_1", "weight_2", "weight_3"];
-            let (free, periods) = in_three(free, periods);
-            let times = names.iter().zip(&periods).map(|(n, p)| (*n, *p, *p, *p));
-            let share = |x: f64| (x / sum.max(1e-9)).clamp(0.0, 1.0);
-            let shares = weights.iter().zip(&free).map(|(n, f)| {
-                (
-                    *n,
-                    share(f.0),
-                    share(f.0 - HALF * f.1),
-                    share(f.0 + HALF * f.1),
-                )
-            });
-            times.chain(shares).collect()
-        }
-    };
-    (amplitude, numbers)
+    // Half of a length's step either way, widened by how little the shares are known.
+    let factor = libm::exp(1.0 + HALF * error / sum.max(1e-3)).min(MOST);
+    let length = ("length_mm", mean, mean / factor, mean * factor);
+    (within((sum, error), 1.0), vec![length])
 }
 
-/// Branches of a spectrum as the catalogue's three at most: the fastest together, and the slowest, each at their mean time.
-fn in_three(free: &[(f64, f64)], periods: &[f64]) -> (Vec<(f64, f64)>, Vec<f64>) {
-    if free.len() <= 3 {
-        return (free.to_vec(), periods.to_vec());
-    }
-    let side = (free.len() - 1) / 2;
-    let parts = [
-        0..side,
-        side..free.len() - side,
-        free.len() - side..free.len(),
-    ];
-    let one = |part: std::ops::Range<usize>| {
-        let share: f64 = free[part.clone()].iter().map(|f| f.0).sum();
-        let error = free[part.clone()].iter().map(|f| f.1 * f.1).sum::<f64>();
-        let count = part.len() as f64;
-        let logs = part.clone().map(|k| {
-            let weight = if share > 0.0 {
-                free[k].0 / share
-            } else {
-                1.0 / count
-            };
-            weight * libm::log(periods[k])
-        });
-        ((share, error.sqrt()), libm::exp(logs.sum::<f64>()))
-    };
-    parts.into_iter().map(one).unzip()
+/// A share times `scale` and its interval, between none and nearly all.
+fn within((share, error): (f64, f64), scale: f64) -> Three {
+    let one = |x: f64| (x * scale).clamp(0.0, 0.99);
+    (
+        one(share),
+        one(share - HALF * error),
+        one(share + HALF * error),
+    )
 }
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits
@@ -255,4 +254,42 @@ fn work_of(ready: &Prepared, share: f64) -> f64 {
     let radii = ready.elastic.places.iter().map(|p| radius(p, deepest));
     let tool = radii.fold(1e-3, f64::max).powi(2) / deepest;
     share * ready.scales.forces.1 / (1.75 * std::f64::consts::PI * tool) * 1e3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By a sum of a million steps.
+    #[test]
+    fn outer_thirds_of_a_normal_law_lie_so_far_out() {
+        let (mut weights, mut sums) = ([0.0; 3], [0.0; 3]);
+        let at = |n: i32| -8.0 + 16.0 * (f64::from(n) + 0.5) / 1e6;
+        let whole: f64 = (0..1_000_000)
+            .map(|n| libm::exp(-0.5 * at(n).powi(2)))
+            .sum();
+        let mut before = 0.0;
+        for n in 0..1_000_000 {
+            let weight = libm::exp(-0.5 * at(n).powi(2)) / whole;
+            let third = ((3.0 * before) as usize).min(2);
+            weights[third] += weight;
+            sums[third] += weight * at(n);
+            before += weight;
+        }
+        let means: Vec<f64> = sums.iter().zip(weights).map(|(s, w)| s / w).collect();
+        for (mean, wanted) in means.iter().zip([-OUTER, 0.0, OUTER]) {
+            assert!((mean - wanted).abs() < 1e-4, "{means:?}");
+        }
+    }
+
+    #[test]
+    fn the_error_of_a_sum_takes_what_errors_share() {
+        let free = Free {
+            values: vec![1.0, 2.0],
+            covariance: DMatrix::from_row_slice(2, 2, &[4.0, -2.0, -2.0, 9.0]),
+        };
+        assert_eq!(free.first(), (1.0, 2.0));
+        assert_eq!(free.sum(&[1.0, 1.0]), (3.0, 3.0));
+        assert_eq!(free.sum(&[0.0, 1.0]), (2.0, 3.0));
+    }
 }

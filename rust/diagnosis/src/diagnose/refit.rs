@@ -109,6 +109,22 @@ pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
     }
 }
 
+/// Inverse of the normal matrix with priors where nothing is fitted: at `at`, the coordinates of `known` as they are there.
+pub fn covariance(
+    screen: &Screen<'_>,
+    model: &Model<'_>,
+    (at, known): (Vec<f64>, &[usize]),
+) -> DMatrix<f64> {
+    let now = here(screen, model, at);
+    let (mut normal, _) = system(model, &now, &slopes(screen, model, &now));
+    for k in known {
+        normal.row_mut(*k).fill(0.0);
+        normal.column_mut(*k).fill(0.0);
+        normal[(*k, *k)] = 1.0;
+    }
+    inverse(&normal)
+}
+
 /// Whitened derivatives of the predictions.
 fn slopes(screen: &Screen<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
     let mut raw = DMatrix::zeros(now.simulated.len(), model.coordinates.len());

@@ -78,8 +78,7 @@ impl Screen<'_> {
             false => 0.0,
         };
         let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
-        let fades = self.fades(model, (one, &depths));
-        let shares = self.shares(model, set, one.place);
+        let (fades, shares) = self.fades(model, set, (one, &depths));
         if !fades.is_empty() {
             let way = Way {
                 depths: &depths,

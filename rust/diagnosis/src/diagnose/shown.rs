@@ -7,9 +7,11 @@ use super::course::Course;
 use super::findings::{Curve, Finding, Rival, Switched, When, Where};
 use super::gates::{DETECTED, Decision};
 use super::ladder::{Rungs, Scored};
-use super::numbers::{free_numbers, told};
+use super::mechanism::{Acts, Mechanism, Spectrum};
+use super::model::Model;
+use super::numbers::{Free, told};
 use super::prepare::Prepared;
-use super::refit::huber;
+use super::refit::{covariance, huber};
 use super::signs::looked_for;
 use crate::Phase;
 use crate::fit::Fitting;
@@ -200,19 +202,23 @@ pub fn curves(ready: &Prepared, rungs: &Rungs, decision: &Decision<'_>) -> Vec<C
 }
 
 /// The smallest amplitude of every single effect that would have been detected; None where that is more than there can be.
+///
+/// Of a load that fades it is that of the spectrum with which a fit begins: where there is none, a fit ends at any.
 pub fn smallest_seen(
     ready: &Prepared,
     rungs: &Rungs,
 ) -> Vec<(&'static str, Option<f64>, &'static str)> {
     let mut found = Vec::new();
     for scored in &rungs.singles {
-        let free = free_numbers(ready, scored, 0);
-        let error = free
-            .iter()
-            .map(|f| f.1 * f.1)
-            .fold(f64::INFINITY, f64::min)
-            .sqrt();
-        let needed = (2.0 * (DETECTED + free.len() as f64) * rungs.temper).sqrt();
+        let mechanism = &scored.mechanisms[0];
+        let error = match mechanism.acts {
+            Acts::Fades {
+                spectrum: Spectrum::Smooth { .. },
+                ..
+            } => error_at_start(ready, rungs, mechanism),
+            _ => Free::of(ready, scored, 0).first().1,
+        };
+        let needed = (2.0 * (DETECTED + mechanism.price() as f64) * rungs.temper).sqrt();
         let (value, unit, most) = in_words(ready, scored, needed * error);
         let name = scored.mechanisms[0].effect.name();
         found.push((name, Some(value).filter(|v| *v <= most), unit));
@@ -221,9 +227,19 @@ pub fn smallest_seen(
     found
 }
 
+/// Standard error of a mechanism's first number, beside the base's as they were fitted and its others as a fit begins.
+fn error_at_start(ready: &Prepared, rungs: &Rungs, mechanism: &Mechanism) -> f64 {
+    let screen = ready.screen();
+    let model = Model::new(&screen, std::slice::from_ref(mechanism));
+    let own = rungs.base.refit.at.len();
+    let starts = model.coordinates[own..].iter().map(|c| c.start);
+    let at: Vec<f64> = rungs.base.refit.at.iter().copied().chain(starts).collect();
+    let known: Vec<usize> = (own + 1..at.len()).collect();
+    covariance(&screen, &model, (at, &known))[(own, own)].sqrt()
+}
+
 /// A size in screening's own number as a person takes it, and the largest that there can be.
 fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str, f64) {
-    use super::mechanism::Acts;
     let (least, most) = ready.scales.forces;
     let deepest = ready.scales.deepest;
     match &scored.mechanisms[0].acts {
