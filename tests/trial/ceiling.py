@@ -7,7 +7,8 @@ G0 and Glim are refitted and every press may have its own gain (4 %) and first t
 cause, `name` against the closest other single effect (its amplitude refitted too). With a detect of SEEN a cause that
 is known in form is found in half of the draws at 1 % false alarms over a list of twenty; with a name of TOLD its
 evidence leads by LEAD in half of them. `expected` is the share that such an oracle would name: no diagnosis of these
-recordings can be asked for much more. Reads the labels: for judging the trial, not for tuning.
+recordings can be asked for much more. Of two causes it must see each beside the other; of what is ambiguous by design
+it must see the cause, and no name may lead. Reads the labels: for judging the trial, not for tuning.
 """
 
 import argparse
@@ -113,6 +114,30 @@ def chance(detect, name):
     return min(norm.cdf(detect - SEEN), told)
 
 
+def beside(name, label):
+    """Of two causes: what each adds that the other, its amplitude refitted, does not take up."""
+    case = Case(name, label)
+    first, second = label["amplitudes"]
+    if label["stratum"] == "pair":
+        whole = case.signature(label["effect"], label["variant"], first)
+        parts = [case.signature(one, 0, first) for one in label["effect"].split("+")]
+    else:
+        parts = [case.signature(label["effect"], label["variant"], first), case.distortion(label["distortion"], second)]
+        whole = parts[0] + parts[1]
+    shares = [max(0.0, float(part @ whole) / float(part @ part)) for part in parts]
+    return tuple(float(np.linalg.norm(whole - share * part)) for share, part in zip(shares, parts, strict=True))
+
+
+def chance_of_both(one, other):
+    """That the oracle sees each of two causes beside the other."""
+    return norm.cdf(one - SEEN) * norm.cdf(other - SEEN)
+
+
+def chance_of_neither(detect, name):
+    """That the oracle sees a cause and finds no name for it that leads."""
+    return norm.cdf(detect - SEEN) * (1.0 - chance(99.0, name))
+
+
 def settled(name, label):
     """(detect, name) with the protocol held back that tells best, as often as can be, in turn with a known one."""
     known, often = cases.index()[name]["published"], following.MOST
@@ -141,8 +166,18 @@ def column(sealed):
     """What the oracle would reach in the rows of the table that it can be asked about."""
     found = groups(sealed)
     expected = {key: [chance(*one) for one in found[group]] for key, group in ROWS.items() if group in found}
+    for key, (stratum, what, weigh) in WEIGHED.items():
+        all_of = [weigh(*what(name, label)) for name, label in sealed.items() if label["stratum"] == stratum]
+        expected |= {key: all_of} if all_of else {}
     nothing = (float("nan"), float("nan"))
     return [counts.Row(key, key, float(np.mean(of)), len(of), nothing) for key, of in expected.items()]
+
+
+WEIGHED = {
+    "pairs": ("pair", beside, chance_of_both),
+    "mixed": ("mixed", beside, chance_of_both),
+    "ambiguous": ("ambiguous", separations, chance_of_neither),
+}
 
 
 def main():
@@ -151,12 +186,16 @@ def main():
     parser.add_argument("--split", default="trial", choices=score.SPLITS)
     head = ("of", "seen", "and told", "expected", "detect", "name")
     print(f"{'':28s}" + "".join(f"{one:>10s}" for one in head))
-    for group, of in groups(score.labels(parser.parse_args().split)).items():
+    sealed = score.labels(parser.parse_args().split)
+    for group, of in groups(sealed).items():
         seen = np.mean([one >= SEEN for one, _ in of])
         told = np.mean([one >= SEEN and (two is None or two >= TOLD) for one, two in of])
         detect, names = np.median([one for one, _ in of]), [two for _, two in of if two is not None]
         shares = f"{seen:10.2f}{told:10.2f}{np.mean([chance(*one) for one in of]):10.2f}{detect:10.1f}"
         print(f"{group:28s}{len(of):10d}{shares}" + (f"{np.median(names):10.1f}" if names else ""))
+    for row in column(sealed):
+        if row.key in WEIGHED:
+            print(f"{row.name:28s}{row.of:10d}{'':20s}{row.value:10.2f}")
 
 
 if __name__ == "__main__":

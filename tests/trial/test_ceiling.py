@@ -43,6 +43,22 @@ def test_chances_at_the_thresholds_are_even():
     assert ceiling.chance(99.0, ceiling.TOLD) == pytest.approx(0.5)
 
 
+def test_what_a_pair_adds_to_one_of_both_is_no_more_than_all_it_adds():
+    """A pair of which one half is nothing is that single effect, and the other half is not seen beside it."""
+    name, label = first(lambda one: one["stratum"] == "pair")
+    case = ceiling.Case(name, label)
+    whole = np.linalg.norm(case.signature(label["effect"], label["variant"], label["amplitudes"][0]))
+    assert all(0.0 < part <= whole + 1e-9 for part in ceiling.beside(name, label))
+    name, label = first(lambda one: one["stratum"] == "mixed")
+    one, other = ceiling.beside(name, label | {"amplitudes": [label["amplitudes"][0], 1e-9]})
+    assert one < 1e-3 < 1.0 < other and ceiling.chance_of_both(one, other) < 1e-3
+
+
+def test_what_is_seen_and_has_no_name_that_leads_is_left_open():
+    assert ceiling.chance_of_neither(99.0, 1e-6) == pytest.approx(1.0)
+    assert ceiling.chance_of_neither(0.0, 1e-6) < 1e-3 and ceiling.chance_of_neither(99.0, 30.0) < 1e-3
+
+
 def test_more_recordings_never_tell_less():
     name, label = first(lambda one: one["stratum"] == "ambiguous" and one.get("effect") == "relaxation")
     before, best = ceiling.separations(name, label), ceiling.settled(name, label)
@@ -51,6 +67,6 @@ def test_more_recordings_never_tell_less():
 
 
 def test_the_column_has_a_share_for_every_row_that_it_can_be_asked_about():
-    some = {name: label for name, label in SEALED.items() if label["stratum"] in ("single", "decoy")}
+    some = {name: label for name, label in SEALED.items() if label["stratum"] in ("single", "decoy", "pair")}
     found = {row.key: row for row in ceiling.column(dict(list(some.items())[:12]))}
-    assert found.keys() <= set(ceiling.ROWS) and all(0.0 <= row.value <= 1.0 for row in found.values())
+    assert found.keys() <= {*ceiling.ROWS, *ceiling.WEIGHED} and all(0.0 <= row.value <= 1.0 for row in found.values())
