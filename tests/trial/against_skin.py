@@ -1,0 +1,53 @@
+"""How far Thenar's stiff skin is from that of finite elements on the same pad: what small strains leave out.
+
+    python -m trial.against_skin        (in `tests`)
+
+The calibration's pad under a skin of 0.4 mm and twenty times the modulus, pressed by three spheres to 14 % of its
+thickness. Prints by how much the skin raises the force, ours and theirs. The finite elements stretch at finite strain
+and have the skin within the pad's thickness; ours lies on top.
+"""
+
+import numpy as np
+import thenar
+from proof import pressing
+from trial import make_cases, protocols, truth_runs
+
+PAD, SHEAR_MPA = "forefinger", 0.01
+SPACING_MM = 0.3  # below the skin's bending length of 0.6 mm
+ROWS = (2, 4, 7, 12)  # of the loading's, at which the table is printed
+TOOLS = {"small": "slow, small sphere", "large": "large sphere", "wide": "wide sphere"}
+
+
+def theirs(name, effect, variant, amplitude):
+    """Forces of a protocol's loading, N."""
+    first = protocols.STEPS[0]
+    return make_cases.runs()[f"{PAD}/{effect}/{variant}/{amplitude}/{name}"].astype(float)[first : 2 * first + 1]
+
+
+def ours(radius, depths, effects):
+    """Forces of a sphere on the layer, N."""
+    material = pressing.material(SHEAR_MPA, protocols.PADS[PAD][1])
+    found = []
+    for depth in depths:
+        skin, product = pressing.sphere_on_flat(radius, depth, SPACING_MM)
+        prepared = thenar.Skin(*skin, materials=[material], effects=effects)
+        found.append(prepared.press(*product).total_force_n[2])
+    return np.array(found)
+
+
+def main():
+    """Prints the table."""
+    _, tissue, _ = truth_runs.changed("stiff_skin", 0, 1.0)
+    modulus = 3.0 * SHEAR_MPA * tissue["skin_ratio"]
+    effect = thenar.Effect("stiff_skin", 1.0, modulus_mpa=modulus, thickness_mm=tissue["skin_mm"])
+    for tool, name in TOOLS.items():
+        first, radius = protocols.STEPS[0], protocols.radius(PAD, tool)
+        depths = protocols.course(PAD, name, protocols.STEPS)[first : 2 * first + 1, 1][list(ROWS)]
+        raised = (theirs(name, "stiff_skin", 0, 1.0) / theirs(name, "none", 0, 0))[list(ROWS)] - 1.0
+        own = ours(radius, depths, [effect]) / ours(radius, depths, []) - 1.0
+        rows = zip(depths, 100 * own, 100 * raised, strict=True)
+        print(f"{tool:6s}" + ", ".join(f" {d:.2f} mm: +{a:.0f} % (theirs +{b:.0f} %)" for d, a, b in rows))
+
+
+if __name__ == "__main__":
+    main()
