@@ -9,7 +9,7 @@
 use super::active::ActiveEffect;
 use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 use crate::Material;
-use crate::response::stiff_skin::Sheet;
+use crate::response::sheet::Sheet;
 
 const MODULUS: usize = 0;
 const THICKNESS: usize = 1;

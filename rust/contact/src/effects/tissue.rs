@@ -7,7 +7,7 @@ use super::catalogue::Effect;
 use super::{bone, compressibility, inclusion, region_coupling, stiff_skin};
 use crate::response::bonded_layer::Layer;
 use crate::response::rows::Geometry;
-use crate::response::stiff_skin::Sheet;
+use crate::response::sheet::Sheet;
 use crate::sites::Sites;
 use crate::{ContactError, Material};
 

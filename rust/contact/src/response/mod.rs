@@ -7,4 +7,5 @@ pub mod grid;
 pub mod kernel;
 pub mod stiff_skin;
 pub mod rows;
+pub mod sheet;
 pub mod skin_metric;

@@ -9,8 +9,7 @@ use thenar_surface::SkinDistance;
 use super::bonded_layer::Layer;
 use super::grid::RANGE_IN_THICKNESSES;
 use super::kernel::KernelTables;
-use super::skin_metric::arc_lengths;
-use super::stiff_skin::{Sheet, StiffSkin};
+use super::{sheet::Sheet, skin_metric::arc_lengths, stiff_skin::StiffSkin};
 use crate::Model;
 use crate::sites::Sites;
 

@@ -1,16 +1,7 @@
 //! Response of a layer under a thin stiff skin that is bonded to it, as tables over distance.
 //!
-//! A plate on top has a bending stiffness D, a stiffness M against stretch (force per width and strain), a tension N, and lies with its
-//! middle c above the layer's surface (Timoshenko & Woinowsky-Krieger 1959, 1 and 8; Kirchhoff). With K, Z and R of the layer (the sibling
-//! `bonded_layer`), Q = K R - Z^2, b = (1 - nu) D / G, t = (1 - nu) N / G, m = (1 - nu) M / G and f = b k^3 + t k, layer and plate
-//! together sink by the transfer function
-//!
-//!   (K + m k Q) / (1 + m k R + K (f + m c^2 k^3) - 2 Z m c k^2 + Q m k f),
-//!
-//! the sinking part of the inverse of `C^-1 + S`, C the layer's compliance and S the plate's stiffness for sinking and for moving
-//! along. A layer that is thin against the contact gives way by flowing along itself, which the plate hinders; without M it is
-//! `K / (1 + K f)`. The kernel is then finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For two places
-//! with different transfer functions their geometric mean counts, as in the sibling `kernel`, and the response stays definite.
+//! The kernel of layer and plate (the sibling `sheet`) is finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For
+//! two places with different transfer functions their geometric mean counts, as in the sibling `kernel`, and the response stays definite.
 
 use libm::j0;
 use rayon::prelude::*;
@@ -19,6 +10,7 @@ use super::bonded_layer::Layer;
 use super::grid::{KNOTS_PER_THICKNESS, RANGE_IN_THICKNESSES, RULE};
 use super::kernel::interpolate;
 use super::rows::Mix;
+use super::sheet::Sheet;
 use crate::sites::Sites;
 
 /// Wave numbers reach to this over the bending length, at most to `MOST_WAVE_NUMBER` (1/mm).
@@ -33,50 +25,6 @@ const MOST_KNOTS: usize = 2048;
 const ROOT_AREAS: (f64, f64, usize) = (0.05, 20.0, 64);
 /// Lattice sums go this far, in reciprocal spacings.
 const LATTICE_REACH: i32 = 24;
-
-/// A stiff skin in terms of the tissue below.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sheet {
-    /// b = (1 - nu) D / G, mm3.
-    pub bending: f64,
-    /// t = (1 - nu) N / G, mm.
-    pub tension: f64,
-    /// m = (1 - nu) M / G, mm.
-    pub stretch: f64,
-    /// c, mm.
-    pub middle: f64,
-}
-
-impl Sheet {
-    /// No skin of its own.
-    pub const NONE: Sheet = Sheet {
-        bending: 0.0,
-        tension: 0.0,
-        stretch: 0.0,
-        middle: 0.0,
-    };
-
-    /// Two skins side by side: their stiffness adds up, about the middle of both.
-    pub fn with(&self, more: &Sheet) -> Sheet {
-        let stretch = self.stretch + more.stretch;
-        let moment = self.middle * self.stretch + more.middle * more.stretch;
-        Sheet {
-            bending: self.bending + more.bending,
-            tension: self.tension + more.tension,
-            stretch,
-            middle: if stretch > 0.0 { moment / stretch } else { 0.0 },
-        }
-    }
-
-    fn transfer(&self, layer: &Layer, k: f64) -> f64 {
-        let bare = layer.transfer(k);
-        let [z, r] = layer.along(k);
-        let (m, c) = (self.stretch * k, self.middle * k);
-        let f = k * (self.bending * k * k + self.tension);
-        let q = bare * r - z * z;
-        (bare + m * q) / (1.0 + m * r + bare * (f + m * c * c) - 2.0 * z * m * c + q * m * f)
-    }
-}
 
 /// The stiff skin of a whole hand: its tables, and the sheet over every site.
 #[derive(Debug, Clone)]
@@ -411,54 +359,5 @@ mod tests {
             (own / (3.900_3 - bare.psi(0, 0, 0.0)) - 1.0).abs() < 0.01,
             "{own}"
         );
-    }
-
-    /// A skin that cannot be stretched holds the surface, so that the layer sinks as one between two plates: for long waves a fourth
-    /// as far (lubrication: h^3 / 12 instead of h^3 / 3).
-    #[test]
-    fn a_skin_that_is_not_stretched_makes_a_thin_layer_four_times_as_stiff() {
-        let layer = Layer {
-            thickness: 5.0,
-            poisson_ratio: 0.5,
-        };
-        let sheet = Sheet {
-            stretch: 1e9,
-            ..Sheet::NONE
-        };
-        let k = 0.01 / layer.thickness;
-        let share = sheet.transfer(&layer, k) / layer.transfer(k);
-        assert!((share - 0.25).abs() < 1e-3, "{share}");
-        // Under a half space with nu = 1/2 the surface moves along itself only where the plate turns about its middle.
-        let short = Sheet {
-            stretch: 3.0,
-            ..Sheet::NONE
-        };
-        assert!((short.transfer(&HALF_SPACE, 0.7) - 1.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn two_skins_are_one_of_both() {
-        let one = Sheet {
-            bending: 1.0,
-            tension: 2.0,
-            stretch: 3.0,
-            middle: 0.1,
-        };
-        let both = one.with(&Sheet { middle: 0.3, ..one });
-        let wanted = Sheet {
-            bending: 2.0,
-            tension: 4.0,
-            stretch: 6.0,
-            middle: 0.2,
-        };
-        assert!((both.middle - wanted.middle).abs() < 1e-12);
-        assert_eq!(
-            Sheet {
-                middle: 0.2,
-                ..both
-            },
-            wanted
-        );
-        assert_eq!(Sheet::NONE.with(&Sheet::NONE), Sheet::NONE);
     }
 }

@@ -21,6 +21,7 @@ mod next_record;
 mod numbers;
 mod placebo;
 mod planned;
+mod posterior;
 mod prepare;
 mod promise;
 mod refine;
@@ -153,7 +154,7 @@ fn told(
     ((ready, rungs, decision), next): ((&Prepared, &Rungs, Decision<'_>), Vec<Suggestion>),
     options: &DiagnoseOptions,
 ) -> Diagnosis {
-    let probabilities = gates::probabilities(rungs);
+    let probabilities = posterior::probabilities(rungs);
     let gain = decision
         .named
         .and_then(|named| gain::gain(ready, fitting.measured(), named, options.seed));
@@ -162,7 +163,7 @@ fn told(
         verdict: decision.verdict,
         sentence: String::new(),
         findings: shown::findings(study, (ready, rungs), &decision, &probabilities),
-        names_90: gates::names_90(&probabilities),
+        names_90: posterior::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
         gain,
         smallest_seen: shown::smallest_seen(ready, rungs),

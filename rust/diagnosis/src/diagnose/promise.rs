@@ -10,10 +10,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::course::Course;
 use super::elastic::Elastic;
-use super::gates::TEMPERATURE;
 use super::ladder::Scored;
 use super::model::{Coordinate, Model};
 use super::planned::{Fresh, Press, course};
+use super::posterior::TEMPERATURE;
 use super::prepare::Prepared;
 use super::screen::Screen;
 use crate::statistics::log_normal_cdf;
