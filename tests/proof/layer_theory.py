@@ -73,7 +73,7 @@ def wave_numbers(edges):
 def compliance(s, nu):
     """[[normal by pressure, by traction], [along by pressure, by traction]] of the surface at one s, for G = k = 1.
 
-    By Navier's equations through the thickness, as above: four waves, no motion at the bone (z = -s), tractions at z = 0.
+    By Navier's equations through the thickness: four waves, no motion at the bone (z = -s), tractions at z = 0.
     """
     kappa, up, down = 3.0 - 4.0 * nu, np.exp(-s), np.exp(s)
 
@@ -130,7 +130,7 @@ def ring_compliance(edges, shear_modulus, nu, thickness, skin=(0.0, 0.0)):
 
 
 def bonded_plate(k, skin):
-    """Stiffness (MPa) over k against sinking and moving along of the surface under a plate, by its energy at wave number k.
+    """Stiffness (MPa) over k against sinking and moving along of the surface under a plate, by its energy at k.
 
     Bending D k^4 w^2 / 2, tension N k^2 w^2 / 2, and stretch M k^2 v^2 / 2 of its middle, which moves by v = u - c k w.
     """

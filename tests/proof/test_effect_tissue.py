@@ -70,7 +70,8 @@ def test_stiff_skin_is_the_layered_fourier_kernel(modulus, skin_mm, tension, thi
     def gap(r):
         return RADIUS - np.sqrt(RADIUS**2 - r * r) - depth
 
-    expected = layer_theory.force_through_skin(gap, edges, (G, 0.5, thickness), (bending, tension, stretch, skin_mm / 2.0))
+    plate = (bending, tension, stretch, skin_mm / 2.0)
+    expected = layer_theory.force_through_skin(gap, edges, (G, 0.5, thickness), plate)
     bare, _, _ = layer_theory.press(gap, edges, G, 0.5, thickness)
     effect = thenar.Effect("stiff_skin", 1.0, modulus_mpa=modulus, thickness_mm=skin_mm, tension_n_per_mm=tension)
     skin, product = pressing.sphere_on_flat(RADIUS, depth, 0.25)

@@ -90,6 +90,36 @@ mod tests {
         assert!((short.transfer(&HALF_SPACE, 0.7) - 1.0).abs() < 1e-12);
     }
 
+    /// The plate's stiffness from its energy: `D k^4 w^2 + N k^2 w^2 + M k^2 (v - c k w)^2`, halved, w how far it sinks and v how far
+    /// the layer's surface moves along itself; as it sinks, its lower side is stretched.
+    #[test]
+    fn layer_and_plate_sink_by_the_inverse_of_their_stiffness() {
+        let layer = Layer {
+            thickness: 2.0,
+            poisson_ratio: 0.4,
+        };
+        let sheet = Sheet {
+            bending: 0.7,
+            tension: 0.2,
+            stretch: 1.5,
+            middle: 0.4,
+        };
+        for k in [0.2, 0.8, 2.0] {
+            let [z, r] = layer.along(k);
+            let compliance = nalgebra::Matrix2::new(layer.transfer(k), z, z, r);
+            let turn = nalgebra::Vector2::new(-sheet.middle * k, 1.0);
+            let mut stiffness = sheet.stretch * k * turn * turn.transpose();
+            stiffness[(0, 0)] += sheet.bending * k.powi(3) + sheet.tension * k;
+            let both = compliance.try_inverse().unwrap() + stiffness;
+            let wanted = both.try_inverse().unwrap()[(0, 0)];
+            let found = sheet.transfer(&layer, k);
+            assert!(
+                (found / wanted - 1.0).abs() < 1e-12,
+                "{k}: {found} {wanted}"
+            );
+        }
+    }
+
     #[test]
     fn two_skins_are_one_of_both() {
         let one = Sheet {
