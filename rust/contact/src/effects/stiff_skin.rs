@@ -55,7 +55,7 @@ pub const ENTRY: Entry = Entry {
     consequences: &[
         Consequence {
             sign: Sign::SmallToolsFeelStiffer,
-            sentence: "small tools need more force against the base model than large ones",
+            sentence: "small tools need more force against the base model than large ones, soon after first touch",
         },
         Consequence {
             sign: Sign::AreaChanges,
