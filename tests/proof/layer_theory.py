@@ -21,59 +21,11 @@ def transform(s, nu):
     return np.where(small, series, top) / bottom
 
 
-def transform_by_boundary_values(s, nu):
-    """The same K(s), found by solving Navier's equations through the thickness at one s > 0, for check.
-
-    With u_z = W(z) cos kx, u_x = U(z) sin kx, G = k = 1 and the layer from z = 0 (bonded) to z = s (loaded by p cos x),
-    the general solution (Papkovich and Neuber) has four constants, set by u = 0 below and by the tractions above.
-    """
-    kappa = 3.0 - 4.0 * nu
-    # u = (kappa B - grad terms): harmonic phi = (a1 e^z + a2 e^-z) cos x, psi = (b1 e^z + b2 e^-z) cos x along z:
-    # u_x = -d/dx (phi + z psi), u_z = -d/dz (phi + z psi) + (kappa + 1) psi.
-    rows = np.zeros((4, 4))
-    for column in range(4):
-        sign = 1.0 if column % 2 == 0 else -1.0
-        is_psi = column >= 2
-
-        def fields(z, sign=sign, is_psi=is_psi):
-            e = np.exp(sign * (z - (s if sign > 0 else 0.0)))
-            if not is_psi:
-                u, w, du, dw = e, -sign * e, sign * e, -e
-            else:
-                u, du = z * e, (1.0 + sign * z) * e
-                w, dw = (kappa - sign * z) * e, sign * (kappa - sign * z) * e - sign * e
-            return u, w, du, dw
-
-        u0, w0, _, _ = fields(0.0)
-        u1, w1, du1, dw1 = fields(s)
-        # Shear du/dz - w = 0; normal 2 (dw/dz + nu / (1 - 2 nu) div) with div = u + dw/dz = 2 (1 - 2 nu) dpsi/dz.
-        divergence = (2.0 * (1.0 - 2.0 * nu) * sign * np.exp(0.0 if sign > 0 else -s)) if is_psi else 0.0
-        pressure_part = (2.0 * sign * np.exp(0.0 if sign > 0 else -s)) if is_psi else 0.0
-        assert abs(u1 + dw1 - divergence) < 1e-9 * (1.0 + abs(dw1))
-        rows[:, column] = [u0, w0, du1 - w1, 2.0 * (dw1 + nu * pressure_part)]
-    constants = np.linalg.solve(rows, [0.0, 0.0, 0.0, -1.0])
-    top = 0.0
-    for column in range(4):
-        sign = 1.0 if column % 2 == 0 else -1.0
-        e = 1.0 if sign > 0 else np.exp(-s)
-        top += constants[column] * (-sign * e if column < 2 else (kappa - sign * s) * e)
-    return -top / (1.0 - nu)
-
-
-def wave_numbers(edges):
-    """Gauss nodes and weights on k, from 0 to where rings as fine as `edges` (mm) have nothing more to say."""
-    finest, extent = np.diff(edges).min(), edges[-1]
-    panel = min(np.pi / (2.0 * extent), 0.25)
-    panels = int(np.ceil(60.0 / finest / panel))
-    node, weight = np.polynomial.legendre.leggauss(5)
-    start = np.arange(panels)[:, None] * panel
-    return (start + (node + 1.0) * panel / 2.0).ravel(), np.tile(weight * panel / 2.0, panels)
-
-
 def compliance(s, nu):
     """[[normal by pressure, by traction], [along by pressure, by traction]] of the surface at one s, for G = k = 1.
 
-    By Navier's equations through the thickness: four waves, no motion at the bone (z = -s), tractions at z = 0.
+    By solving Navier's equations through the thickness: u_z = W(z) cos x, u_x = U(z) sin x, W = (a + b z) e^z +
+    (c + d z) e^-z; no motion at the bone (z = -s), tractions at z = 0.
     """
     kappa, up, down = 3.0 - 4.0 * nu, np.exp(-s), np.exp(s)
 
@@ -90,6 +42,16 @@ def compliance(s, nu):
     return np.array([[-top @ pressed, -top @ pulled], [along @ pressed, along @ pulled]])
 
 
+def wave_numbers(edges):
+    """Gauss nodes and weights on k, from 0 to where rings as fine as `edges` (mm) have nothing more to say."""
+    finest, extent = np.diff(edges).min(), edges[-1]
+    panel = min(np.pi / (2.0 * extent), 0.25)
+    panels = int(np.ceil(60.0 / finest / panel))
+    node, weight = np.polynomial.legendre.leggauss(5)
+    start = np.arange(panels)[:, None] * panel
+    return (start + (node + 1.0) * panel / 2.0).ravel(), np.tile(weight * panel / 2.0, panels)
+
+
 def under_plate(s, nu, plate):
     """K(s) under a bonded plate: `plate(s)` is its stiffness matrix, for G = k = 1. By inverting matrices at 400 s."""
     knots = np.geomspace(s.min(), s.max() * 1.001, 400)
@@ -100,20 +62,17 @@ def under_plate(s, nu, plate):
     return np.exp(np.interp(np.log(s), np.log(knots), np.log(found)))
 
 
-def ring_compliance(edges, shear_modulus, nu, thickness, skin=(0.0, 0.0)):
+def ring_compliance(edges, shear_modulus, nu, thickness, skin=()):
     """Mean displacement (mm) of every ring under a unit force (N) on every other; rings between `edges` (n + 1).
 
-    `skin`: bending stiffness (N mm) and tension (N/mm) of a thin plate on top; if it is bonded, its stiffness against
-    stretch (N/mm) and how far its middle lies above the layer (mm), too.
+    `skin`: bending stiffness (N mm), tension (N/mm) and stiffness against stretch (N/mm) of a thin plate that is bonded
+    on top, and how far its middle lies above the layer (mm).
     """
     k, weight = wave_numbers(edges)
     outer = edges[:, None] * j1(np.outer(edges, k))
     ring = np.diff(outer, axis=0)  # k times the transform of a unit pressure on the ring
     factor = np.ones_like(k) if np.isinf(thickness) else transform(k * thickness, nu)
-    if len(skin) == 2:
-        plate = k * (skin[0] * k**2 + skin[1]) * (1.0 - nu) / shear_modulus
-        factor = factor / (1.0 + factor * plate)
-    else:
+    if any(skin):
         deep = thickness if np.isfinite(thickness) else 1e3 * edges[-1]
         factor = under_plate(k * deep, nu, lambda s: bonded_plate(s / deep, skin) / shear_modulus)
     area = np.pi * np.diff(edges**2)
@@ -152,7 +111,7 @@ def press(profile, edges, shear_modulus, nu, thickness):
 
 
 def force_through_skin(profile, edges, material, skin):
-    """Force (N) of such a press on a layer `material` (G, nu, h) under a plate `skin` (bending N mm, tension N/mm)."""
+    """Force (N) of such a press on a layer `material` (G, nu, h) under a plate `skin` (as in `ring_compliance`)."""
     middle = np.sqrt((edges[1:] ** 2 + edges[:-1] ** 2) / 2.0)
     return lemke(ring_compliance(edges, *material, skin), profile(middle))[0].sum()
 
