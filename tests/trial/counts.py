@@ -297,3 +297,26 @@ def by_stratum(sealed, said):
         hits, of = found.get(line, (0, 0))
         found[line] = (hits + right, of + 1)
     return sorted((*line, *counts) for line, counts in found.items())
+
+
+def wrong_names(sealed, said):
+    """Lines (what it is, what else was named, whether beside the truth, how often)."""
+    found = {}
+    for name, label in sealed.items():
+        verdict = said.get(name, SILENT)
+        false = named(verdict) - set(label["names"])
+        if false:
+            truth = " + ".join(label["names"]) or label["stratum"]
+            line = (truth, " + ".join(sorted(false)), bool(named(verdict) & set(label["names"])))
+            found[line] = found.get(line, 0) + 1
+    return sorted((*line, often) for line, often in found.items())
+
+
+def exact_by_effect(sealed, said):
+    """Lines (effect, right, of) of the cases of one effect that are as severe as the noise or more."""
+    found = {}
+    for name, label in sealed.items():
+        if label["stratum"] == "single" and label["kappa"] >= REACHED:
+            hits, of = found.get(label["effect"], (0, 0))
+            found[label["effect"]] = (hits + is_exact(label, said.get(name, SILENT)), of + 1)
+    return sorted((effect, *counts) for effect, counts in found.items())

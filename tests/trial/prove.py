@@ -137,6 +137,12 @@ def _tell(asked, everyone, sealed, told, tables):
     first, *others = columns
     beside = {name: {row.key: row for row in columns[name]} for name in others}
     print(f"{first}, {asked.split}, {len(everyone[0].reads(sealed))} cases\n{score.shown(columns[first], beside)}")
+    print("one effect, kappa >= 1, exact:")
+    for effect, hits, of in counts.exact_by_effect(sealed, told[first].said):
+        print(f"  {effect}: {hits} of {of}")
+    print("wrong names:")
+    for truth, false, is_beside, often in counts.wrong_names(sealed, told[first].said):
+        print(f"  {false} {'beside' if is_beside else 'instead of'} {truth}: {often}")
     faults = {who.name: wrong_endings(who, asked.out, sealed) for who in everyone}
     for name, sentences in faults.items():
         print("\n".join(f"{name}: {sentence}" for sentence in sentences))

@@ -67,6 +67,9 @@ def test_more_recordings_never_tell_less():
 
 
 def test_the_column_has_a_share_for_every_row_that_it_can_be_asked_about():
-    some = {name: label for name, label in SEALED.items() if label["stratum"] in ("single", "decoy", "pair")}
-    found = {row.key: row for row in ceiling.column(dict(list(some.items())[:12]))}
-    assert found.keys() <= {*ceiling.ROWS, *ceiling.WEIGHED} and all(0.0 <= row.value <= 1.0 for row in found.values())
+    strata = ("single", "decoy", "pair", "mixed", "ambiguous")
+    some = [[one for one in SEALED.items() if one[1]["stratum"] == stratum][:4] for stratum in strata]
+    found = {row.key: row for row in ceiling.column(dict(sum(some, [])))}
+    assert {"severe", "instrument", *ceiling.WEIGHED} <= found.keys() <= {*ceiling.ROWS, *ceiling.WEIGHED}
+    assert found["pairs"].of == found["mixed"].of == found["ambiguous"].of == 4
+    assert all(0.0 <= row.value <= 1.0 for row in found.values())

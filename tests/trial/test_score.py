@@ -132,3 +132,17 @@ def test_a_choice_between_effects_of_the_skin_blames_the_skin():
 
     assert scored.blames_skin(undecided("relaxation", "drainage"))
     assert not scored.blames_skin(undecided("relaxation", "drift"))
+
+
+def test_wrong_names_are_told_with_what_they_stand_beside(sealed):
+    said = {name: right(label) for name, label in sealed.items()}
+    assert scored.wrong_names(sealed, said) == []
+    assert all(hits == of for _, hits, of in scored.exact_by_effect(sealed, said))
+    severe = [name for name, label in sealed.items() if label["stratum"] == "single" and label["kappa"] >= 1.0]
+    first, second = [name for name in severe if sealed[name]["effect"] == "adhesion"][:2]
+    said[first] = said[first] | {"findings": [{"effect": "adhesion"}, {"effect": "drift"}]}
+    said[second] = said[second] | {"findings": [{"effect": "drift"}]}
+    assert scored.wrong_names(sealed, said) == [("adhesion", "drift", False, 1), ("adhesion", "drift", True, 1)]
+    by_effect = {effect: (hits, of) for effect, hits, of in scored.exact_by_effect(sealed, said)}
+    hits, of = by_effect["adhesion"]
+    assert hits == of - 2 and sum(of for _, of in by_effect.values()) == rows(sealed, said)["severe"].of

@@ -35,7 +35,7 @@ impl Sheet {
         middle: 0.0,
     };
 
-    /// Two skins side by side: their stiffness adds up, about the middle of both.
+    /// Two skins in one place: their stiffness adds up, about the middle of both.
     pub fn with(&self, more: &Sheet) -> Sheet {
         let stretch = self.stretch + more.stretch;
         let moment = self.middle * self.stretch + more.middle * more.stretch;

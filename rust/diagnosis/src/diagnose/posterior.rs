@@ -3,7 +3,7 @@
 use super::gates::is_pair;
 use super::ladder::Rungs;
 
-/// Probabilities of the base and of everything that was tried, by evidence over `temperature`.
+/// Probabilities of the base and of everything that was tried, by evidence over [`TEMPERATURE`].
 pub fn probabilities(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
     let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), SILENT)];
     // A pair one of which is not needed is that single effect over again.
