@@ -9,6 +9,7 @@ use super::ladder::Scored;
 use super::mechanism::{Acts, Measure, Mechanism, Spectrum};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
+use super::refit::Refit;
 
 /// Half width of a 90 % interval in standard errors.
 const HALF: f64 = 1.645;
@@ -33,10 +34,14 @@ impl Free {
         let all = model.coordinates.iter().enumerate();
         let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
         let own: Vec<usize> = own.map(|(k, _)| k).collect();
-        let covariance = &scored.refit.covariance;
+        Free::taken(&scored.refit, &own)
+    }
+
+    /// Those of a fit.
+    fn taken(refit: &Refit, own: &[usize]) -> Free {
         Free {
-            values: own.iter().map(|k| scored.refit.at[*k]).collect(),
-            covariance: DMatrix::from_fn(own.len(), own.len(), |a, b| covariance[(own[a], own[b])]),
+            values: own.iter().map(|k| refit.at[*k]).collect(),
+            covariance: refit.covariance.select_rows(own).select_columns(own),
         }
     }
 
@@ -284,10 +289,18 @@ mod tests {
 
     #[test]
     fn the_error_of_a_sum_takes_what_errors_share() {
-        let free = Free {
-            values: vec![1.0, 2.0],
-            covariance: DMatrix::from_row_slice(2, 2, &[4.0, -2.0, -2.0, 9.0]),
+        let refit = Refit {
+            at: vec![7.0, 1.0, 2.0],
+            deviance: 0.0,
+            residual: Vec::new(),
+            simulated: Vec::new(),
+            covariance: DMatrix::from_row_slice(
+                3,
+                3,
+                &[1.0, 0.5, 0.5, 0.5, 4.0, -2.0, 0.5, -2.0, 9.0],
+            ),
         };
+        let free = Free::taken(&refit, &[1, 2]);
         assert_eq!(free.first(), (1.0, 2.0));
         assert_eq!(free.sum(&[1.0, 1.0]), (3.0, 3.0));
         assert_eq!(free.sum(&[0.0, 1.0]), (2.0, 3.0));

@@ -46,3 +46,97 @@ pub fn names_90(probabilities: &[(Vec<&'static str>, f64)]) -> Vec<Vec<&'static 
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+    use thenar_contact::effects::Effect;
+
+    use super::super::ladder::Scored;
+    use super::super::mechanism::{Mechanism, Scales, singles};
+    use super::super::refit::Refit;
+    use super::*;
+
+    fn of(effects: &[Effect], evidence: f64) -> Scored {
+        let tried = singles(Scales {
+            deepest: 1.0,
+            radius: 1.0,
+            forces: (1.0, 1.0),
+            has_bone: true,
+            has_strain: true,
+        });
+        let one = |effect: &Effect| -> Mechanism {
+            tried.iter().find(|m| m.effect == *effect).unwrap().clone()
+        };
+        Scored {
+            mechanisms: effects.iter().map(one).collect(),
+            refit: Refit {
+                at: Vec::new(),
+                deviance: 0.0,
+                residual: Vec::new(),
+                simulated: Vec::new(),
+                covariance: DMatrix::zeros(0, 0),
+            },
+            evidence,
+            coherent: 0.0,
+        }
+    }
+
+    /// One effect, another that shows nothing alone, and both with so much more evidence than the first.
+    fn beside(first: (Effect, f64), second: Effect, more: f64) -> Rungs {
+        Rungs {
+            base: of(&[], 0.0),
+            singles: vec![of(&[first.0], first.1), of(&[second], 0.0)],
+            pairs: vec![of(&[first.0, second], first.1 + more)],
+            unsteady: None,
+            gain_step: None,
+            samples: 100,
+            temper: 1.0,
+        }
+    }
+
+    fn needs_both(first: (Effect, f64), second: Effect, more: f64) -> bool {
+        let rungs = beside(first, second, more);
+        is_pair(&rungs.pairs[0], &rungs)
+    }
+
+    #[test]
+    fn a_second_effect_must_add_more_than_the_first_ones_form_leaves() {
+        use Effect::{Adhesion, Bone, Offset, Relaxation, StiffeningLaw};
+        assert!(
+            needs_both((Relaxation, 100.0), Bone, 6.0),
+            "its form is known"
+        );
+        assert!(!needs_both((Relaxation, 100.0), Bone, 5.0));
+        assert!(!needs_both((Adhesion, 60.0), Bone, 6.0), "its form is not");
+        assert!(needs_both((Adhesion, 60.0), Bone, 11.0));
+        assert!(needs_both((Adhesion, 60.0), Offset, 6.0));
+        assert!(!needs_both((Adhesion, 600.0), Offset, 11.0), "9 % of 600");
+        assert!(!needs_both((Relaxation, 400.0), Offset, 6.0), "2 % of 400");
+        assert!(
+            !needs_both((StiffeningLaw, 60.0), Relaxation, 9.0),
+            "17 % of 60"
+        );
+    }
+
+    #[test]
+    fn names_are_kept_until_they_hold_nine_tenths_and_a_needless_pair_is_none() {
+        let first = (Effect::Relaxation, 100.0);
+        let needed = probabilities(&beside(first, Effect::Offset, 8.0));
+        assert_eq!(needed[0].0, ["relaxation", "offset"]);
+        assert!((needed.iter().map(|(_, p)| p).sum::<f64>() - 1.0).abs() < 1e-12);
+        // Odds of e^(8 / 2), tempered by 2.
+        let odds = needed[0].1 / needed[1].1;
+        assert!((odds / libm::exp(4.0) - 1.0).abs() < 1e-9, "{odds}");
+        assert_eq!(names_90(&needed), [needed[0].0.clone()]);
+        let needless = probabilities(&beside(first, Effect::Offset, 5.0));
+        assert!(needless.iter().all(|(names, _)| names.len() < 2));
+        let silent = probabilities(&beside((Effect::Relaxation, 4.0), Effect::Offset, 0.0));
+        let kept = names_90(&silent).len();
+        assert_eq!(kept, 2, "7.4, 7.4 and 1 in 15.8");
+        assert!(
+            (silent[0].1 - silent[1].1).abs() < 1e-12,
+            "nothing at all is as good as 4 nats"
+        );
+    }
+}
