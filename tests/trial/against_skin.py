@@ -10,7 +10,7 @@ and have the skin within the pad's thickness; ours lies on top.
 import numpy as np
 import thenar
 from proof import pressing
-from trial import make_cases, protocols
+from trial import protocols, truths
 
 PAD, SHEAR_MPA = "forefinger", 0.01
 SKIN_MM, SKIN_RATIO = 0.4, 20.0  # as truth_runs.changed has them, which needs numba
@@ -22,7 +22,7 @@ TOOLS = {"small": "slow, small sphere", "large": "large sphere", "wide": "wide s
 def theirs(name, effect, variant, amplitude):
     """Forces of a protocol's loading, N."""
     first = protocols.STEPS[0]
-    return make_cases.runs()[f"{PAD}/{effect}/{variant}/{amplitude}/{name}"].astype(float)[first : 2 * first + 1]
+    return truths.runs()[f"{PAD}/{effect}/{variant}/{amplitude}/{name}"].astype(float)[first : 2 * first + 1]
 
 
 def ours(radius, depths, effects):

@@ -15,7 +15,7 @@ import argparse
 
 import numpy as np
 from scipy.stats import norm
-from trial import cases, counts, following, make_cases, observing, protocols, score
+from trial import cases, counts, following, make_cases, observing, protocols, score, truths
 
 SEEN, LEAD = 3.3, 5.0
 TOLD = (2.0 * LEAD) ** 0.5
@@ -38,7 +38,7 @@ class Case:
         known = [press.protocol for press in self.rest]
         self.kept = [k for k, protocol in enumerate(known) if protocol in about["published"]]
         self.kept += [known.index(protocol) for protocol, times in (more or {}).items() for _ in range(times)]
-        truth = make_cases.truth_of(self.pad, "none", 0)
+        truth = truths.truth_of(self.pad, "none", 0)
         self.white = [self._whitening(truth, self.rest[k]) for k in self.kept]
         self.basis = np.linalg.qr(self._white([truth.base(self.rest[k]) for k in self.kept]))[0]
 
@@ -51,14 +51,14 @@ class Case:
         """The same of an instrument's error; a depth misread counts as the force that it hides."""
         made = self._presses("none", 0.0)
         observing.INSTRUMENT[what](made, amplitude, np.random.default_rng(1))
-        truth, found = make_cases.truth_of(self.pad, "none", 0), []
+        truth, found = truths.truth_of(self.pad, "none", 0), []
         for k in self.kept:
             moved = made[k].stated - self.rest[k].stated
             found.append(made[k].force - self.rest[k].force - self._slope(truth, self.rest[k]) * moved)
         return self._free(found)
 
     def _presses(self, effect, amplitude, variant=0):
-        return make_cases.truth_of(self.pad, effect, variant).presses(amplitude, self.growth)
+        return truths.truth_of(self.pad, effect, variant).presses(amplitude, self.growth)
 
     def _free(self, columns):
         flat = self._white(columns)
@@ -101,7 +101,7 @@ def separations(name, label, more=None):
     least = np.linalg.norm(own)
     for other in protocols.SINGLE:
         for variant in (0, 1):
-            if other != label["effect"] and f"{case.pad}/{other}/{variant}/1.0/wide sphere" in make_cases.runs():
+            if other != label["effect"] and f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
                 rival = case.signature(other, variant, label["amplitudes"][0] or 1.0)
                 share = max(0.0, float(rival @ own) / float(rival @ rival))
                 least = min(least, np.linalg.norm(own - share * rival))
@@ -119,8 +119,9 @@ def beside(name, label):
     case = Case(name, label)
     first, second = label["amplitudes"]
     if label["stratum"] == "pair":
-        whole = case.signature(label["effect"], label["variant"], first)
-        parts = [case.signature(one, 0, first) for one in label["effect"].split("+")]
+        whole = case.signature(label["effect"], label["variant"], (first, second))
+        both = zip(label["effect"].split("+"), (first, second), strict=True)
+        parts = [case.signature(effect, 0, amplitude) for effect, amplitude in both]
     else:
         parts = [case.signature(label["effect"], label["variant"], first), case.distortion(label["distortion"], second)]
         whole = parts[0] + parts[1]

@@ -8,20 +8,18 @@ of what remains of the truth once G0 and Glim are refitted to all recordings tog
 same refit. labels.json is sealed: only score.py opens it; the index holds a salted hash of every label.
 """
 
-import functools
 import hashlib
 import json
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 from trial import observing, protocols
+from trial.truths import REPEATS, RICH, Pair, runs, truth_of
 
 HERE = Path(__file__).parent
-REPEATS, REPEAT_GAIN, ZERO_MM = 2, 0.04, 0.02
+REPEAT_GAIN, ZERO_MM = 0.04, 0.02
 NOISES = (0.01, 0.03)
 KAPPAS = (0.5, 1.0, 2.0, 4.0)
-RICH = tuple(protocols.PROTOCOLS)
 USUAL = ("slow, small sphere", "fast, small sphere", "cycles, small sphere")
 MOST_STEPS = 32000  # forces are kept as shares of each recording's largest
 
@@ -38,81 +36,6 @@ INSTEAD = (  # ambiguous by design: what is true, and the little that is recorde
 MIXES = (("relaxation", "fixture_compliance"), ("adhesion", "offset"), ("bone", "saturation"), ("relaxation", "drift"))
 
 
-class Truth:
-    """The forces of one pad with one effect (or pair) at any amplitude between 0 and 1, before scatter and noise."""
-
-    def __init__(self, pad, effect="none", variant=0):
-        self.pad = pad
-        table, self.parts, self.loading = runs(), {}, {}
-        for name in RICH:
-            rest = table[f"{pad}/none/0/0/{name}"].astype(float)
-            first, low, high = 1e-9, np.zeros_like(rest), np.zeros_like(rest)
-            if effect != "none":
-                first, high = protocols.AMPLITUDES[0], table[f"{pad}/{effect}/{variant}/1.0/{name}"] - rest
-                half = table.get(f"{pad}/{effect}/{variant}/{first}/{name}")
-                low = first * high if half is None else half - rest
-            bent = (high - low / first) / (1.0 - first)
-            time, depth = protocols.sampled(pad, name)
-            self.parts[name] = (time, depth, [along(pad, name, part, time) for part in (rest, high - bent, bent)])
-            way = protocols.course(pad, name, protocols.STEPS)[protocols.STEPS[0] : 2 * protocols.STEPS[0] + 1, 1]
-            loading = rest[protocols.STEPS[0] : 2 * protocols.STEPS[0] + 1]
-            power = np.log(loading[-1] / loading[-3]) / np.log(way[-1] / way[-3])
-            self.loading[name] = (PchipInterpolator(way, loading), way[-1], loading[-1], power)
-
-    def presses(self, amplitude, growth):
-        """Every protocol twice, the second time after all the others; forces in N for moduli (G0, Glim)."""
-        found = []
-        for repeat in range(REPEATS):
-            for number, name in enumerate(RICH):
-                time, depth, (rest, first, second) = self.parts[name]
-                force = (rest + amplitude * first + amplitude**2 * second) / 0.01 * modulus(self.pad, depth, growth)
-                order = number + repeat * len(RICH)
-                found.append(observing.Press(name, repeat, order, time, depth, depth.copy(), force))
-        return found
-
-    def base(self, press):
-        """Columns by which a recording's base model is linear in G0 and in Glim - G0, at the stated depths."""
-        within, deepest, most, power = self.loading[press.protocol]
-        stated = np.maximum(press.stated, 0.0)
-        beyond = most * (np.maximum(stated, deepest) / deepest) ** power
-        force = np.where(stated > deepest, beyond, within(np.minimum(stated, deepest))) / 0.01
-        return np.stack([force, force * modulus(self.pad, stated, (0.0, 1.0))], axis=1)
-
-
-@functools.cache
-def truth_of(pad, effect, variant):
-    """One `Truth` for all cases that share it."""
-    return Truth(pad, effect, variant)
-
-
-_RUNS = {}
-
-
-def runs():
-    """The finite elements' forces."""
-    if not _RUNS:
-        _RUNS.update(np.load(HERE / "truth_runs.npz"))
-    return _RUNS
-
-
-def modulus(pad, depth, growth):
-    """G at a depth, of (G0, Glim)."""
-    share = np.clip(depth / (0.3 * protocols.PADS[pad][1]), 0.0, 1.0)
-    return growth[0] + (growth[1] - growth[0]) * share
-
-
-def along(pad, name, force, time):
-    """Forces at other times: smooth on every leg of the motion."""
-    motion = protocols.course(pad, name, protocols.STEPS)
-    ends = protocols.legs(pad, name)[:, 0]
-    out = np.zeros_like(time)
-    for start, end in zip(ends[:-1], ends[1:], strict=True):
-        within = (motion[:, 0] >= start - 1e-9) & (motion[:, 0] <= end + 1e-9)
-        here = (time > start - 1e-9) & (time <= end + 1e-9)
-        out[here] = PchipInterpolator(motion[within, 0], force[within])(time[here])
-    return out
-
-
 def severity(truth, presses, noise):
     """(kappa, R2) of a case before scatter and noise."""
     scale = [1.0 / (noise * press.force.max()) for press in presses]
@@ -125,8 +48,8 @@ def severity(truth, presses, noise):
 
 
 def distorted(truth, growth, what, amplitudes, seed):
-    """The presses with an effect at its amplitude and a distortion at its own."""
-    presses = truth.presses(amplitudes[0], growth)
+    """The presses with an effect (or two) at its amplitude and a distortion at its own."""
+    presses = truth.presses(amplitudes if isinstance(truth, Pair) else amplitudes[0], growth)
     if what:
         forms = observing.INSTRUMENT | observing.UNLISTED
         forms[what](presses, amplitudes[1], np.random.default_rng(seed))
@@ -134,23 +57,36 @@ def distorted(truth, growth, what, amplitudes, seed):
 
 
 def amplitudes_for(plan, growth, seed):
-    """Amplitudes of the effect and of the distortion at which each alone is as severe as planned, or as can be."""
-    effect, what = plan.get("effect", "none"), plan.get("distortion")
-    one = (
-        _halved(plan, (truth_of(plan["pad"], effect, plan["variant"]), growth, None, seed)) if effect != "none" else 0.0
-    )
-    two = _halved(plan, (truth_of(plan["pad"], "none", 0), growth, what, seed)) if what else 0.0
-    return one, two
+    """Amplitudes of the effect (or of both) and of the distortion: each alone as severe as planned, or as can be."""
+    effects, what = plan.get("effect", "none").split("+"), plan.get("distortion")
+    alone = [(truth_of(plan["pad"], effect, plan["variant"]), growth, None, seed) for effect in effects]
+    found = [_halved(plan, one) if effect != "none" else 0.0 for effect, one in zip(effects, alone, strict=True)]
+    if len(found) < 2:
+        found.append(_halved(plan, (truth_of(plan["pad"], "none", 0), growth, what, seed)) if what else 0.0)
+    return tuple(found)
+
+
+def alone(plan, amplitudes, growth):
+    """How severe each of two effects is without the other."""
+    for effect, amplitude in zip(plan["effect"].split("+"), amplitudes, strict=True):
+        truth = truth_of(plan["pad"], effect, plan["variant"])
+        yield severity(truth, published(plan, truth.presses(amplitude, growth)), plan["noise"])[0]
 
 
 def _halved(plan, made_of):
-    """The amplitude, found by halving."""
+    """The amplitude, found by halving; of those computed the closest."""
     truth, growth, what, seed = made_of
+
+    def severe(amplitude):
+        presses = published(plan, distorted(truth, growth, what, (amplitude, amplitude), seed))
+        return severity(truth, presses, plan["noise"])[0]
+
+    if truth.grips:
+        return min(truth.grips, key=lambda share: abs(np.log(severe(share) / plan["kappa"])))
     low, high = 0.0, 1.0
     for _ in range(14):
         middle = 0.5 * (low + high)
-        presses = published(plan, distorted(truth, growth, what, (middle, middle), seed))
-        low, high = (middle, high) if severity(truth, presses, plan["noise"])[0] < plan["kappa"] else (low, middle)
+        low, high = (middle, high) if severe(middle) < plan["kappa"] else (low, middle)
     return low
 
 
@@ -250,7 +186,8 @@ def _as_severe(plan, growth, seed):
     amplitudes = (0.0, 0.0) if plan["stratum"] == "null" else amplitudes_for(plan, growth, seed)
     presses = distorted(truth, growth, plan.get("distortion"), amplitudes, seed)
     kappa, r2 = severity(truth, published(plan, presses), plan["noise"])
-    if plan["stratum"] == "single" and kappa < 0.9 * plan["kappa"] and plan["noise"] > NOISES[0]:
+    least = min(alone(plan, amplitudes, growth)) if plan["stratum"] == "pair" else kappa
+    if plan["stratum"] in ("single", "pair") and least < 0.9 * plan["kappa"] and plan["noise"] > NOISES[0]:
         return _as_severe(plan | {"noise": NOISES[0]}, growth, seed)
     made = {"g_mpa": growth, "wanted_kappa": plan["kappa"], "kappa": kappa, "r2": r2, "amplitudes": amplitudes}
     return plan | made, presses

@@ -8,14 +8,14 @@ Knows nothing of Thenar, as make_cases.py, and opens the labels to make recordin
 import zlib
 
 import numpy as np
-from trial import cases, make_cases, observing, protocols, score
+from trial import cases, make_cases, observing, protocols, score, truths
 
 TIMES = 12  # as often as any protocol can be recorded again
 
 
 def made(case, label):
     """Presses of every protocol, TIMES each, in the order of protocols."""
-    truth = make_cases.truth_of(cases.index()[case]["pad"], label.get("effect", "none"), label["variant"])
+    truth = truths.truth_of(cases.index()[case]["pad"], label.get("effect", "none"), label["variant"])
     random = np.random.default_rng([30, zlib.crc32(case.encode())])
     once = truth.presses(label["amplitudes"][0], label["g_mpa"])[: len(protocols.PROTOCOLS)]
     presses = []

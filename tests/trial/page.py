@@ -20,6 +20,8 @@ HOLDS = (
     "Nine of the twelve tissue effects, six pairs, seven instrument errors, four mixtures; what no list holds: a "
     "pulse, muscle tone, a blister. Spots: mat pressures of a curved pad with and without a stiff or soft ball, from "
     "three-dimensional elements; there all trial spots lie in one shape of pad, at two pitches of the mat.",
+    "Two effects, or an effect and an error of the instrument: each alone as severe as planned, or as it can be. A "
+    "grip has eleven strengths, each computed, since where it lets go depends on its strength.",
     "Noise of 1 or 3 % of a recording's largest force, coloured (0.15 s); for a part of the nulls with outliers, four "
     "times slower, or with twice the scatter between repeats; 4 % of gain and 0.02 mm of first touch from press to "
     "press.",

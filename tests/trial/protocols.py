@@ -27,10 +27,11 @@ LEAST = 0.25  # of the depth, to which a cycle goes back
 
 STEPS = (12, 9, 16, 1)  # of the finite elements, as `counts` of `course`
 AMPLITUDES = (0.5, 1.0)  # at which effects are computed
+GRIPS = (0.04, 0.06, 0.09, 0.13, 0.19, 0.27, 0.37, 0.5, 0.65, 0.82, 1.0)  # what lets go has no amplitudes between these
 COMPUTED = (  # pads on which single effects, pairs, and the second form of single effects are computed
     ("forefinger", "fingertip", "thumb", "palm"),
     ("forefinger", "fingertip", "thumb"),
-    ("fingertip",),
+    ("forefinger", "fingertip"),
 )
 TWO_FORMS = {"bone": ("forefinger", "fingertip", "thumb", "palm")}  # more pads for the second form
 SINGLE = (

@@ -47,7 +47,7 @@ def test_what_a_pair_adds_to_one_of_both_is_no_more_than_all_it_adds():
     """A pair of which one half is nothing is that single effect, and the other half is not seen beside it."""
     name, label = first(lambda one: one["stratum"] == "pair")
     case = ceiling.Case(name, label)
-    whole = np.linalg.norm(case.signature(label["effect"], label["variant"], label["amplitudes"][0]))
+    whole = np.linalg.norm(case.signature(label["effect"], label["variant"], label["amplitudes"]))
     assert all(0.0 < part <= whole + 1e-9 for part in ceiling.beside(name, label))
     name, label = first(lambda one: one["stratum"] == "mixed")
     one, other = ceiling.beside(name, label | {"amplitudes": [label["amplitudes"][0], 1e-9]})

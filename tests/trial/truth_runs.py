@@ -4,7 +4,8 @@ Knows nothing of Thenar. Run it by hand in `tests`: `pip install numba`, then `p
 on one core); what the table holds is not computed again, and what finds no equilibrium (a grip that lets go at once) is
 left out. Keys are `pad/effect/variant/amplitude/protocol`, values the forces (N, for G = 0.01 MPa) at the times of
 `course(pad, protocol, STEPS)`. Other amplitudes than those computed are drawn on the parabola or line through them and
-the pad without the effect.
+the pad without the effect; of a grip there are no others, since where it lets go depends on its strength, and a
+parabola through pulls of which some have let go and some have not would push where nothing touches.
 """
 
 import os
@@ -17,6 +18,7 @@ from trial.axisymmetric import Pad, Tissue, Tool, press
 from trial.protocols import (
     AMPLITUDES,
     COMPUTED,
+    GRIPS,
     PADS,
     PAIRS,
     PROTOCOLS,
@@ -92,6 +94,10 @@ def wanted():
             for pad in TWO_FORMS.get(effects[0], pads) if variant == 1 else pads:
                 key = f"{pad}/{'+'.join(effects)}/{variant}/{amplitude}"
                 yield key, pad, tuple((effect, variant, amplitude) for effect in effects)
+    for amplitude in GRIPS[::-1]:
+        for variant, pads in ((0, COMPUTED[1]), (1, COMPUTED[2])):
+            for pad in pads:
+                yield f"{pad}/adhesion/{variant}/{amplitude}", pad, (("adhesion", variant, amplitude),)
 
 
 def main():

@@ -68,8 +68,10 @@ impl Screen<'_> {
 
     /// What skin that clings takes off.
     ///
-    /// In the limit of a grip of its own strength (Maugis 1992; Derjaguin, Muller & Toporov 1975) the pull does not ask how
-    /// deep the tool still is: it builds up as the tool turns round, and ends where the skin lets go.
+    /// A grip that does not change the contact's shape pulls by what its traction adds up to over the gap about the contact
+    /// (Derjaguin, Muller & Toporov 1975), and that does not ask how deep the tool still is. It is only where the skin has touched:
+    /// the pull builds up as the gap at the rim of the largest contact opens, by the work done as far as that (`spanned`), and ends
+    /// where the skin lets go. Larger tools lift the skin further: by the third root of their radius (Johnson 1985, 5.5).
     pub(super) fn cling(
         &self,
         model: &Model<'_>,
@@ -81,20 +83,26 @@ impl Screen<'_> {
             .map(area)
             .fold(f64::MIN_POSITIVE, f64::max);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            let Acts::Clings { builds, lets_go } = mechanism.acts else {
+            let Acts::Clings { lets_go } = mechanism.acts else {
                 continue;
             };
-            let pull = set.of[number][0] * self.most.0 * area(one.place) / most;
-            let (mut grip, mut has_touched) = (0.0, false);
-            for n in 1..depths.len() {
-                has_touched |= depths[n] > 0.0;
-                let way = (depths[n - 1] - depths[n]) / (builds * self.most.1);
-                grip = f64::clamp(grip + way, 0.0, 1.0);
-                let over = (depths[n] / self.most.1 - lets_go) / RELEASE;
-                grip *= over.clamp(0.0, 1.0);
-                if has_touched {
-                    forces[n] -= pull * grip;
-                }
+            let size = area(one.place) / most;
+            let pull = set.of[number][0] * self.most.0 * size;
+            let range = libm::exp(set.of[number][1]) * self.most.1;
+            let lets_go = if lets_go < 0.0 {
+                lets_go * libm::cbrt(size)
+            } else {
+                lets_go
+            };
+            let mut most = 0.0;
+            for (depth, force) in depths.iter().zip(forces.iter_mut()) {
+                let over = ((depth / self.most.1 - lets_go) / RELEASE).clamp(0.0, 1.0);
+                most = if over > 0.0 {
+                    f64::max(most, *depth)
+                } else {
+                    0.0
+                };
+                *force -= pull * over * spanned(gap(most, *depth) / range);
             }
         }
     }
@@ -176,6 +184,29 @@ impl Screen<'_> {
     }
 }
 
+/// Gap at the rim of the contact that a round tool had at the depth `most`, now that it is at `depth`, mm (Johnson 1985, Eq. 3.42a, for
+/// a sphere on a half space); none where it did not touch.
+fn gap(most: f64, depth: f64) -> f64 {
+    if most <= 0.0 || depth >= most {
+        return 0.0;
+    }
+    let t = (depth / most).max(0.0);
+    let open = (t * (1.0 - t)).sqrt() + (1.0 - 2.0 * t) * libm::acos(t.sqrt());
+    most / std::f64::consts::PI * open + (-depth).max(0.0)
+}
+
+/// Part of a grip's work that is done when a gap has opened by this part of its range: its traction rises evenly up to [`PEAK`] and
+/// falls evenly to none at the range (Geubelle & Baylor 1998); rough skin does not pull all at once.
+fn spanned(gap: f64) -> f64 {
+    match gap < PEAK {
+        true => gap * gap / PEAK,
+        false => 1.0 - (1.0 - gap.min(1.0)).powi(2) / (1.0 - PEAK),
+    }
+}
+
+/// Part of a grip's range at which its traction is largest.
+const PEAK: f64 = 0.25;
+
 /// A value below `x` and below none: `x` for large x, 0 for small, smooth over `width`.
 fn soft(x: f64, width: f64) -> f64 {
     let y = x / width;
@@ -183,5 +214,50 @@ fn soft(x: f64, width: f64) -> f64 {
         x
     } else {
         width * libm::log1p(libm::exp(y.max(-700.0)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the gap itself: Hertz's displacement outside the contact (Johnson 1985, Eq. 3.42a) beside a sphere, with numbers.
+    #[test]
+    fn a_gap_opens_as_beside_hertz_contact() {
+        let (radius, most) = (9.0f64, 0.8f64);
+        let rim = (radius * most).sqrt();
+        for depth in [0.79f64, 0.6, 0.3, 0.05] {
+            let a = (radius * depth).sqrt();
+            let turned = libm::asin(a / rim);
+            let sunk = ((2.0 * a * a - rim * rim) * turned
+                + rim * a * (1.0 - (a / rim).powi(2)).sqrt())
+                / (std::f64::consts::PI * radius);
+            let wanted = rim * rim / (2.0 * radius) - depth + sunk;
+            let found = gap(most, depth);
+            assert!(
+                (found - wanted).abs() < 1e-9 * most,
+                "{depth}: {found} {wanted}"
+            );
+        }
+        assert!((gap(most, 0.0) - 0.5 * most).abs() < 1e-12);
+        assert!((gap(most, -0.1) - 0.5 * most - 0.1).abs() < 1e-12);
+        assert_eq!([gap(most, most), gap(0.0, -0.1)], [0.0, 0.0]);
+    }
+
+    /// Its work is the area under a triangle, summed.
+    #[test]
+    fn a_grip_works_by_its_traction() {
+        let traction = |s: f64| match s < PEAK {
+            true => 2.0 * s / PEAK,
+            false => 2.0 * (1.0 - s) / (1.0 - PEAK),
+        };
+        let (mut work, steps) = (0.0, 100_000);
+        for k in 0..steps {
+            let s = (f64::from(k) + 0.5) / f64::from(steps);
+            assert!((spanned(f64::from(k) / f64::from(steps)) - work).abs() < 1e-6);
+            work += traction(s) / f64::from(steps);
+        }
+        assert_eq!(spanned(1.0), 1.0);
+        assert_eq!(spanned(7.0), 1.0);
     }
 }

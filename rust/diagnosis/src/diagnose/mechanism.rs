@@ -28,18 +28,17 @@ pub enum Acts {
         /// Time without load after which 63 % has come back, s.
         recovery_s: f64,
     },
-    /// Skin that clings takes off a force in proportion to the area that was touched, once the tool has left by some way, and until
-    /// it lets go; the force on the largest contact is free, over the study's largest force.
+    /// Skin that clings takes off a force in proportion to the area that was touched, as gaps open where it touched, and until it lets
+    /// go; the force on the largest contact is free, over the study's largest force, and the logarithm of the grip's range over the
+    /// largest depth.
     Clings {
-        /// Way out over which the grip builds up, over the largest depth.
-        builds: f64,
-        /// Depth at which it lets go, over the largest depth; negative: above the skin.
+        /// Depth at which it lets go of the largest tool, over the largest depth; negative: above the skin.
         lets_go: f64,
     },
     /// A tabulated change of the response; its coordinate is free.
     Tabled,
-    /// The modulus grows as an exponential of this measure; its rate is free.
-    Stiffens(Measure),
+    /// The modulus grows with this measure by this law; its rate is free.
+    Stiffens(Measure, Growth),
     /// Later recordings of the session read more or less by a factor; its logarithm is free.
     GainStep {
         /// First recording of the session that reads otherwise.
@@ -145,11 +144,21 @@ pub enum Measure {
     Strain,
 }
 
+/// How a modulus grows with its measure x, of the laws of the effect `stiffening_law`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Growth {
+    /// `exp(rate x)`.
+    Exponential,
+    /// `1 + rate x^2`: the first terms of an exponential of the strain's energy, as Fung has it.
+    Square,
+}
+
 impl Mechanism {
     /// Number of free numbers.
     pub fn count(&self) -> usize {
         match &self.acts {
             Acts::Fades { spectrum, .. } => spectrum.count(),
+            Acts::Clings { .. } => 2,
             _ => 1,
         }
     }
@@ -176,7 +185,7 @@ impl Mechanism {
         matches!(
             self.acts,
             Acts::Tabled
-                | Acts::Stiffens(_)
+                | Acts::Stiffens(..)
                 | Acts::Offset
                 | Acts::Saturates
                 | Acts::Blind
@@ -218,10 +227,12 @@ const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.
 const SKINS: [&[f64]; 2] = [&[1.2], &[2.2]];
 
 /// Periods of a spectrum in travel, over the largest depth.
-const TRAVELS: [f64; 2] = [0.08, 0.4];
+const TRAVELS: [f64; 3] = [0.08, 0.4, 2.0];
 
 /// Depths at which skin lets go, over the largest depth: before the tool is out, as it leaves, above the skin, and not at all.
-const LETS_GO: [f64; 4] = [0.12, 0.0, -0.1, -10.0];
+const LETS_GO: [f64; 6] = [0.12, 0.0, -0.1, -0.2, -0.35, -10.0];
+/// Smallest and largest range of a grip, over the largest depth.
+pub const RANGES: (f64, f64) = (0.01, 0.5);
 
 /// Every mechanism that is tried alone, with its variants; the order decides ties.
 pub fn singles(scales: Scales) -> Vec<Mechanism> {
@@ -249,19 +260,17 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
         });
     }
     let one = |effect, acts| Mechanism { effect, acts };
-    for builds in [0.08, 0.25] {
-        let clings = LETS_GO.map(|lets_go| one(Effect::Adhesion, Acts::Clings { builds, lets_go }));
-        all.extend(clings);
-    }
+    all.extend(LETS_GO.map(|lets_go| one(Effect::Adhesion, Acts::Clings { lets_go })));
     if scales.has_bone {
         all.push(one(Effect::Bone, Acts::Tabled));
     }
     all.push(one(Effect::Compressibility, Acts::Tabled));
     all.push(one(Effect::StiffSkin, Acts::Tabled));
-    if scales.has_strain {
-        all.push(one(Effect::StiffeningLaw, Acts::Stiffens(Measure::Strain)));
+    for growth in [Growth::Exponential, Growth::Square] {
+        let grows = |measure| one(Effect::StiffeningLaw, Acts::Stiffens(measure, growth));
+        all.extend(scales.has_strain.then(|| grows(Measure::Strain)));
+        all.push(grows(Measure::Depth));
     }
-    all.push(one(Effect::StiffeningLaw, Acts::Stiffens(Measure::Depth)));
     all
 }
 

@@ -1,6 +1,6 @@
 //! A screened model's free numbers: what they are, where they begin, and what they belong to.
 
-use super::mechanism::{Acts, MEDIANS_S, Mechanism, Spectrum};
+use super::mechanism::{Acts, MEDIANS_S, Mechanism, RANGES, Spectrum};
 use super::screen::Screen;
 use crate::replay::KNOTS;
 
@@ -118,6 +118,9 @@ pub struct Setting {
     pub of: Vec<Vec<f64>>,
 }
 
+/// Range of a grip at which a fit begins, over the largest depth.
+const RANGE: f64 = 0.1;
+
 /// Start and bounds of a mechanism's number.
 fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64, f64) {
     let (force, depth) = screen.most;
@@ -131,6 +134,9 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64
         },
         Acts::Fades { .. } => (0.03, 0.0, 0.6),
         Acts::Softens { .. } => (0.1, 0.0, 0.9),
+        Acts::Clings { .. } if number > 0 => {
+            (libm::log(RANGE), libm::log(RANGES.0), libm::log(RANGES.1))
+        }
         Acts::Clings { .. } => (0.01, 0.0, 0.6),
         Acts::Tabled => match screen.elastic.variant(mechanism.effect) {
             Some(v) => {
@@ -139,7 +145,7 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64
             }
             None => (0.0, 0.0, 0.0),
         },
-        Acts::Stiffens(_) => (0.1, 0.0, 4.0),
+        Acts::Stiffens(..) => (0.1, 0.0, 4.0),
         Acts::GainStep { .. } => (0.0, -0.7, 0.7),
         Acts::Offset => (0.0, -0.3 * force, 0.3 * force),
         Acts::Drifts { .. } => (0.0, -0.3 * force, 0.3 * force),

@@ -6,7 +6,7 @@ use thenar_contact::effects::Effect;
 use super::elastic::{radius, skin_share};
 use super::findings::{Number, Switched};
 use super::ladder::Scored;
-use super::mechanism::{Acts, Measure, Mechanism, Spectrum};
+use super::mechanism::{Acts, Growth, Measure, Mechanism, Spectrum};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 use super::refit::Refit;
@@ -85,8 +85,17 @@ pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, S
     }];
     list.extend(numbers.iter().map(tell));
     let choices = match (&mechanism.acts, effect) {
-        (Acts::Stiffens(Measure::Depth), _) => vec![("law", "exponential"), ("measure", "depth")],
-        (Acts::Stiffens(Measure::Strain), _) => vec![("law", "exponential"), ("measure", "strain")],
+        (Acts::Stiffens(measure, growth), _) => {
+            let law = match growth {
+                Growth::Exponential => "exponential",
+                Growth::Square => "power",
+            };
+            let measure = match measure {
+                Measure::Depth => "depth",
+                Measure::Strain => "strain",
+            };
+            vec![("law", law), ("measure", measure)]
+        }
         (Acts::Late, _) => vec![("channel", "force")],
         (Acts::Offset, _) => vec![("channel", "force")],
         _ => Vec::new(),
@@ -127,6 +136,20 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
             ];
             (shares, shape)
         }
+        Acts::Clings { .. } => {
+            let work = interval(free, &|x| work_of(ready, x.max(0.0)));
+            let (log, error) = free.sum(&[0.0, 1.0]);
+            let (range, factor) = (
+                libm::exp(log) * ready.scales.deepest,
+                libm::exp(HALF * error),
+            );
+            let factor = factor.min(MOST);
+            let range = ("range_mm", range, range / factor, range * factor);
+            (
+                whole,
+                vec![("work_j_per_m2", work.0, work.1, work.2), range],
+            )
+        }
         Acts::Tabled if mechanism.effect == Effect::StiffSkin => {
             (interval(free, &|x| skin_share(x.max(0.0))), Vec::new())
         }
@@ -158,10 +181,6 @@ fn one<'a>(
     let own = ready.base_material;
     let (least, most) = ready.scales.forces;
     let (name, scale): (_, Scale<'a>) = match *acts {
-        Acts::Clings { .. } => (
-            "work_j_per_m2",
-            Box::new(move |x| work_of(ready, x.max(0.0))),
-        ),
         Acts::Tabled if effect == Effect::Bone => (
             "thickness_mm",
             Box::new(move |x| own.thickness_mm * libm::exp(x)),
@@ -170,12 +189,17 @@ fn one<'a>(
             "poisson_ratio",
             Box::new(move |x| own.poisson_ratio - x.max(0.0)),
         ),
-        Acts::Stiffens(measure) => {
+        Acts::Stiffens(measure, growth) => {
             let (name, most) = match measure {
                 Measure::Depth => ("reference_depth_mm", ready.scales.deepest),
                 Measure::Strain => ("reference_strain", ready.screen().largest_strain()),
             };
-            (name, Box::new(move |x| most / x.max(0.01)))
+            // The power law's exponent is the catalogue's own, 2.
+            let way = move |x: f64| match growth {
+                Growth::Exponential => x,
+                Growth::Square => x.max(0.0).sqrt(),
+            };
+            (name, Box::new(move |x| most / way(x).max(0.01)))
         }
         Acts::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
         Acts::Offset => ("offset_n", Box::new(|x| x)),
@@ -188,7 +212,7 @@ fn one<'a>(
         Acts::Blind => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
         Acts::Yields => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
         Acts::Late => ("delay_s", Box::new(|x| x)),
-        Acts::Fades { .. } | Acts::Softens { .. } => return None,
+        Acts::Fades { .. } | Acts::Softens { .. } | Acts::Clings { .. } => return None,
     };
     Some((name, scale))
 }

@@ -7,7 +7,7 @@ use super::course::Course;
 use super::findings::{Curve, Finding, Rival, Switched, When, Where};
 use super::gates::{DETECTED, Decision};
 use super::ladder::{Rungs, Scored};
-use super::mechanism::{Acts, Mechanism, Spectrum};
+use super::mechanism::{Acts, Growth, Mechanism, Spectrum};
 use super::model::Model;
 use super::numbers::{Free, told};
 use super::prepare::Prepared;
@@ -253,7 +253,8 @@ fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str,
                 (share, "of the catalogue's skin", 1.0)
             }
         },
-        Acts::Stiffens(_) | Acts::Saturates | Acts::GainStep { .. } => {
+        Acts::Stiffens(_, Growth::Square) => (size, "share of the force", 1.0),
+        Acts::Stiffens(..) | Acts::Saturates | Acts::GainStep { .. } => {
             (libm::exp(size) - 1.0, "share of the force", 1.0)
         }
         Acts::Offset | Acts::Drifts { .. } => (size, "N", most),

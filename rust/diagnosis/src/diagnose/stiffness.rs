@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use super::elastic::{Tabled, radius, rung};
-use super::mechanism::{Acts, Measure};
+use super::mechanism::{Acts, Growth, Measure};
 use super::model::{Model, Setting};
 use super::screen::Screen;
 use crate::replay::KNOTS;
@@ -28,9 +28,12 @@ impl Screen<'_> {
                     let value = set.of[number][0];
                     log += self.tabled(mechanism.effect, value, (place, depth));
                 }
-                Acts::Stiffens(measure) => {
-                    let rate = set.of[number][0];
-                    log += rate * self.measure(*measure, (place, depth));
+                Acts::Stiffens(measure, growth) => {
+                    let (rate, x) = (set.of[number][0], self.measure(*measure, (place, depth)));
+                    log += match growth {
+                        Growth::Exponential => rate * x,
+                        Growth::Square => libm::log1p(rate * x * x),
+                    };
                 }
                 _ => {}
             }
