@@ -163,14 +163,15 @@ impl Mechanism {
         }
     }
 
-    /// Where else a fit begins: that of a smooth spectrum or of a stiff skin may end in a hollow of its own.
+    /// Where else a fit begins: that of a smooth spectrum may end in a hollow of its own, 1 to 3 nats above the deepest, and a ceiling
+    /// that no reading meets does not tell where it is.
     pub fn starts(&self) -> &'static [&'static [f64]] {
         match &self.acts {
             Acts::Fades {
                 spectrum: Spectrum::Smooth { .. },
                 ..
             } => &STARTS,
-            Acts::Tabled if self.effect == Effect::StiffSkin => &SKINS,
+            Acts::Saturates => &CEILINGS,
             _ => &[],
         }
     }
@@ -223,8 +224,8 @@ pub const MEDIANS_S: (f64, f64) = (0.02, 40.0);
 const WIDTHS: [(f64, f64); 2] = [(0.05, 3.0), (0.05, 1.2)];
 /// Further starts of a smooth spectrum's numbers: narrow and fast, narrow and slow, broad.
 const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.5]];
-/// Further starts of a stiff skin's number, of those at which it is tabulated.
-const SKINS: [&[f64]; 2] = [&[1.2], &[2.2]];
+/// Further starts of the logarithm of a ceiling over the largest force.
+const CEILINGS: [&[f64]; 3] = [&[-0.03], &[-0.3], &[-0.8]];
 
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 3] = [0.08, 0.4, 2.0];
