@@ -9,6 +9,9 @@ use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::operator::{Rows, Run};
 
+/// Values of a row that are copied at a time.
+const SHORT: usize = 16;
+
 /// `K` between the sites of `zone` (ascending): symmetric, 1/mm. Written to `matrix`, whose storage is used again.
 pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &mut Rows<f32>) {
     let members: Vec<Members> = sites
@@ -18,7 +21,7 @@ pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &m
         .collect();
     matrix.clear();
     let patch = |site: &u32| sites.patch[*site as usize];
-    let mut values: Vec<f32> = Vec::new();
+    let mut values = vec![0.0; zone.len() + SHORT];
     for home in zone.chunk_by(|a, b| patch(a) == patch(b)) {
         let (runs, pieces) = layout(response.near(patch(&home[0])), &members);
         let (first, own) = (
@@ -27,14 +30,27 @@ pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &m
         );
         for &site in home {
             let row = response.row(site);
-            values.clear();
-            for &(from, len) in &pieces {
-                values.extend_from_slice(&row[from as usize..][..len as usize]);
-            }
+            let taken = take(row, &pieces, &mut values);
             let diagonal = f64::from(row[(own + site - first) as usize]);
-            matrix.push(runs.iter().copied(), values.iter().copied(), diagonal);
+            matrix.push(runs.iter().copied(), taken.iter().copied(), diagonal);
         }
     }
+}
+
+/// The `pieces` (first, number) of a row, one after the other, in `out`, which has room for them and [`SHORT`] more.
+fn take<'a>(row: &[f32], pieces: &[(u32, u32)], out: &'a mut [f32]) -> &'a [f32] {
+    let mut at = 0;
+    for &(from, len) in pieces {
+        let (from, len) = (from as usize, len as usize);
+        let (there, here) = (&row[from..], &mut out[at..]);
+        // Most pieces are short: copies of one length need no call, and the next piece covers what was too much.
+        match (there.first_chunk::<SHORT>(), here.first_chunk_mut()) {
+            (Some(there), Some(here)) if len <= SHORT => *here = *there,
+            _ => here[..len].copy_from_slice(&there[..len]),
+        }
+        at += len;
+    }
+    &out[..at]
 }
 
 /// Runs of columns in the rows of one patch, and where their values lie there: first and number.
@@ -208,11 +224,14 @@ fn accumulate<const N: usize>(field: [&mut [f64]; 3], rows: [&[f32]; N], load: [
     let [x, y, z] = field;
     let (y, z) = (&mut y[..n], &mut z[..n]);
     for i in 0..n {
+        // Sums of their own: the compiler cannot know that what is written to one axis does not change another.
+        let mut sums = [x[i], y[i], z[i]];
         for k in 0..N {
             let value = f64::from(rows[k][i]);
-            x[i] += value * load[0][k];
-            y[i] += value * load[1][k];
-            z[i] += value * load[2][k];
+            for axis in 0..3 {
+                sums[axis] += value * load[axis][k];
+            }
         }
+        [x[i], y[i], z[i]] = sums;
     }
 }
