@@ -8,9 +8,7 @@ use crate::linearize::Solved;
 use crate::live::Held;
 use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
-use thenar_surface::{
-    Mesh, Readings, Vec3, renew_areas, renew_normals, vertex_areas, vertex_normals,
-};
+use thenar_surface::{Mesh, Readings, Vec3, renew_shape, vertex_areas, vertex_normals};
 
 /// What one press leaves for the next.
 #[derive(Debug, Clone, Default)]
@@ -100,8 +98,7 @@ impl Seen {
             let pairs = before.iter().zip(mesh.positions());
             let has_moved: Vec<bool> = pairs.map(|(a, b)| a != b).collect();
             if has_moved.contains(&true) {
-                renew_normals(mesh, &has_moved, &mut shape.normals);
-                renew_areas(mesh, &has_moved, &mut shape.areas);
+                renew_shape(mesh, &has_moved, (&mut shape.normals, &mut shape.areas));
             }
         } else {
             shape.normals = vertex_normals(mesh);

@@ -33,7 +33,7 @@ pub use adjacency::Adjacency;
 pub use audit::{Audit, connected_parts};
 pub use crossings::self_intersections;
 pub use mesh::{Mesh, MeshError, Vec3};
-pub use normals::{median_edge_length, renew_areas, renew_normals, vertex_areas, vertex_normals};
+pub use normals::{median_edge_length, renew_shape, vertex_areas, vertex_normals};
 pub use product::{Gap, GapLimits, Product};
 pub use readings::Readings;
 pub use skin_distance::SkinDistance;

@@ -16,18 +16,35 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     sums
 }
 
-/// [`vertex_normals`] of a mesh of which some vertices have moved, bit for bit, from the `normals` before; `has_moved` (n).
-pub fn renew_normals(mesh: &Mesh, has_moved: &[bool], normals: &mut [Vec3]) {
+/// [`vertex_normals`] and [`vertex_areas`] of a mesh of which some vertices have moved, bit for bit, from those before.
+///
+/// `has_moved`, `normals` and `areas` (n).
+pub fn renew_shape(mesh: &Mesh, has_moved: &[bool], (normals, areas): (&mut [Vec3], &mut [f64])) {
     let is_stale = beside(mesh, has_moved);
-    let mut sums: Vec<Vec3> = vec![Vec3::zeros(); normals.len()];
     let is_around = |vertices: &[u32; 3]| vertices.iter().any(|&v| is_stale[v as usize]);
-    for (vertices, corners) in mesh.sound_triangles_where(is_around) {
-        add_angle_weighted(&mut sums, vertices, corners);
+    for ((normal, area), _) in normals
+        .iter_mut()
+        .zip(areas.iter_mut())
+        .zip(&is_stale)
+        .filter(|(_, is_stale)| **is_stale)
+    {
+        (*normal, *area) = (Vec3::zeros(), 0.0);
     }
-    for (k, n) in normals.iter_mut().enumerate() {
-        if is_stale[k] {
-            *n = sums[k].try_normalize(1e-12).unwrap_or_default();
+    for (vertices, corners) in mesh.sound_triangles_where(is_around) {
+        let [a, b, c] = corners;
+        let third = (b - a).cross(&(c - a)).norm() / 6.0;
+        let shares = angle_weighted(corners).unwrap_or_default();
+        for (v, share) in vertices.into_iter().zip(shares) {
+            let v = v as usize;
+            if is_stale[v] {
+                normals[v] += share;
+                areas[v] += third;
+            }
         }
+    }
+    let stale = normals.iter_mut().zip(&is_stale);
+    for (normal, _) in stale.filter(|(_, is_stale)| **is_stale) {
+        *normal = normal.try_normalize(1e-12).unwrap_or_default();
     }
 }
 
@@ -44,21 +61,28 @@ fn beside(mesh: &Mesh, has_moved: &[bool]) -> Vec<bool> {
 
 /// Adds the normal of one triangle to its vertices, weighted by the angle at each.
 pub(crate) fn add_angle_weighted(sums: &mut [Vec3], vertices: [u32; 3], corners: [Vec3; 3]) {
-    let [a, b, c] = corners;
+    for (vertex, share) in vertices
+        .into_iter()
+        .zip(angle_weighted(corners).into_iter().flatten())
+    {
+        sums[vertex as usize] += share;
+    }
+}
+
+/// The normal of a triangle weighted by the angle at each corner; None without area.
+fn angle_weighted([a, b, c]: [Vec3; 3]) -> Option<[Vec3; 3]> {
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let cross = ab.cross(&ac);
     let twice = cross.norm();
     if twice <= 0.0 {
-        return;
+        return None;
     }
     // The sine part of every angle is twice the area; the last angle is what the others leave.
     let at_a = twice.atan2(ab.dot(&ac));
     let at_b = twice.atan2(-ab.dot(&bc));
     let at_c = std::f64::consts::PI - at_a - at_b;
     let normal = cross / twice;
-    for (vertex, angle) in vertices.into_iter().zip([at_a, at_b, at_c]) {
-        sums[vertex as usize] += normal * angle;
-    }
+    Some([at_a, at_b, at_c].map(|angle| normal * angle))
 }
 
 /// Area of each vertex (n), mm2: a third of each triangle around it. Degenerate and duplicated triangles are ignored.
@@ -69,21 +93,6 @@ pub fn vertex_areas(mesh: &Mesh) -> Vec<f64> {
         vertices.iter().for_each(|&i| areas[i as usize] += third);
     }
     areas
-}
-
-/// [`vertex_areas`] of a mesh of which some vertices have moved, bit for bit, from the `areas` before; `has_moved` (n).
-pub fn renew_areas(mesh: &Mesh, has_moved: &[bool], areas: &mut [f64]) {
-    let is_stale = beside(mesh, has_moved);
-    let is_around = |vertices: &[u32; 3]| vertices.iter().any(|&v| is_stale[v as usize]);
-    for (area, is_stale) in areas.iter_mut().zip(&is_stale) {
-        *area = if *is_stale { 0.0 } else { *area };
-    }
-    for (vertices, [a, b, c]) in mesh.sound_triangles_where(is_around) {
-        let third = (b - a).cross(&(c - a)).norm() / 6.0;
-        for v in vertices.into_iter().map(|v| v as usize) {
-            areas[v] += if is_stale[v] { third } else { 0.0 };
-        }
-    }
 }
 
 /// Median length of the edges, mm (the upper one of two); 0 for a mesh whose triangles name one vertex only.

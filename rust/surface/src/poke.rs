@@ -31,6 +31,9 @@ const STEEPEST: f64 = 1.1;
 /// Settled neighbors needed, so that no vertex is judged by one other alone.
 const WITNESSES: usize = 2;
 
+/// The points near one, once they were sought.
+type Near = Option<Vec<u32>>;
+
 /// Points of one query, with the skin's normals.
 pub(crate) struct Skin<'a> {
     pub points: &'a [Vec3],
@@ -58,15 +61,21 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
         .filter(|&i| gaps[i as usize].is_some())
         .collect();
     let vicinity = Vicinity::new(skin.points, &seen, &away);
-    let neighbors: Vec<Vec<u32>> = away
-        .par_iter()
-        .map(|&at| neighbors(skin, &vicinity, at))
-        .collect();
     let mut is_settled: Vec<bool> = gaps.iter().map(Option::is_some).collect();
     away.iter().for_each(|&i| is_settled[i as usize] = false);
+    let mut neighbors = vec![None; away.len()];
     let mut is_unread = vec![true; away.len()];
     let mut candidates = Vec::new();
     loop {
+        // Points that were read deeper make others agree: what is near is sought where that is new.
+        let new = within_reason((&vicinity, &away), &neighbors, (product, gaps));
+        let found = new
+            .par_iter()
+            .map(|&k| self::neighbors(skin, &vicinity, away[k]));
+        let found: Vec<Vec<u32>> = found.collect();
+        for (k, found) in new.into_iter().zip(found) {
+            neighbors[k] = Some(found);
+        }
         let needed = needed(skin, (&away, &neighbors, &is_unread), (product, gaps));
         if needed.is_empty() {
             break;
@@ -75,7 +84,7 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
             let at = away[*k];
             let reading = |gap| product.readings_through(skin, at as usize, gap, limits);
             let readings = gaps[at as usize].as_ref().map_or([None; 2], reading);
-            let neighbors = neighbors[*k].clone();
+            let neighbors = neighbors[*k].clone().unwrap_or_default();
             Candidate {
                 at,
                 readings,
@@ -97,12 +106,29 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
     enclose(product, skin, &candidates, (&is_settled, gaps));
 }
 
+/// Which of the points that face away may be [`needed`], of those whose neighbors are not known: near the others no point is
+/// deep enough to agree with them.
+fn within_reason(
+    (vicinity, away): (&Vicinity, &[u32]),
+    neighbors: &[Near],
+    (product, gaps): (&Product, &[Option<Gap>]),
+) -> Vec<usize> {
+    let gap = |i: u32| gaps[i as usize].as_ref();
+    let distance = |i: u32| gap(i).map_or(f64::INFINITY, |g| g.distance);
+    let least = vicinity.least_near(away, distance);
+    let may_agree = |&k: &usize| {
+        let is_deep = distance(away[k]) + least[k] <= STEEPEST * vicinity.reach();
+        neighbors[k].is_none() && (is_deep || product.is_sheet_at(gap(away[k])))
+    };
+    (0..away.len()).filter(may_agree).collect()
+}
+
 /// Which of the points that face away to read next: those that some neighbors could agree with, as far as these are known.
 ///
 /// Through a wall a point is at least as deep as it is now away, so that most are never read.
 fn needed(
     skin: &Skin,
-    (away, neighbors, is_unread): (&[u32], &[Vec<u32>], &[bool]),
+    (away, neighbors, is_unread): (&[u32], &[Near], &[bool]),
     (product, gaps): (&Product, &[Option<Gap>]),
 ) -> Vec<usize> {
     let distance = |i: u32| {
@@ -116,6 +142,7 @@ fn needed(
     };
     let mut is_needed = vec![false; away.len()];
     for (k, near) in neighbors.iter().enumerate().filter(|(k, _)| is_unread[*k]) {
+        let Some(near) = near else { continue };
         let at = away[k];
         let agreeing = || near.iter().filter(|&&j| agrees(at, j));
         let is_sheet = product.is_sheet_at(gaps[at as usize].as_ref());

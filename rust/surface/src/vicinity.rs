@@ -11,10 +11,18 @@ const SAMPLES: usize = 64;
 /// Points sorted into the cells of a grid.
 pub(crate) struct Vicinity<'a> {
     points: &'a [Vec3],
-    /// Cell and point, sorted.
-    cells: Vec<([i64; 3], u32)>,
     reach: f64,
+    /// Cells that hold points, sorted.
+    cells: Vec<[i64; 3]>,
+    /// Where the points of each begin among `members`, and where those of the last end.
+    starts: Vec<usize>,
+    members: Vec<u32>,
+    /// By cell, the runs of cells around it: first, and one past the last.
+    around: Vec<[(u32, u32); COLUMNS]>,
 }
+
+/// Columns of cells that hold what may be near.
+const COLUMNS: usize = 9;
 
 impl<'a> Vicinity<'a> {
     /// Sorts the points `members`; their spacing is measured at some of `places`, which is not empty.
@@ -29,36 +37,89 @@ impl<'a> Vicinity<'a> {
             .collect();
         spacings.sort_unstable_by(f64::total_cmp);
         let reach = REACH * spacings[spacings.len() / 2];
-        let mut cells: Vec<([i64; 3], u32)> = members
+        let mut sorted: Vec<([i64; 3], u32)> = members
             .iter()
             .map(|&i| (cell(points[i as usize], reach), i))
             .collect();
-        cells.sort_unstable();
+        sorted.sort_unstable();
+        let mut starts = vec![0];
+        let alike = sorted.chunk_by(|a, b| a.0 == b.0);
+        let cells: Vec<[i64; 3]> = alike
+            .map(|alike| {
+                starts.push(starts[starts.len() - 1] + alike.len());
+                alike[0].0
+            })
+            .collect();
         Vicinity {
             points,
-            cells,
             reach,
+            around: columns_around(&cells),
+            cells,
+            starts,
+            members: sorted.into_iter().map(|(_, i)| i).collect(),
         }
     }
 
-    /// The points near point `i`, itself among them.
+    /// How near is near, mm.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// The points near one of the members, itself among them.
     pub(crate) fn around(&self, i: u32) -> Vec<u32> {
         let at = self.points[i as usize];
-        let [x, y, z] = cell(at, self.reach);
         let mut near = Vec::new();
-        for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
-            let [first, last] = [z.saturating_sub(1), z.saturating_add(1)]
-                .map(|z| [x.saturating_add(dx), y.saturating_add(dy), z]);
-            let from = self.cells.partition_point(|c| c.0 < first);
-            let column = self.cells[from..].iter().take_while(|c| c.0 <= last);
-            near.extend(
-                column
-                    .map(|c| c.1)
-                    .filter(|&j| (self.points[j as usize] - at).norm() <= self.reach),
-            );
+        for (first, end) in self.columns(i) {
+            let there = self.starts[first as usize]..self.starts[end as usize];
+            let is_near = |j: &u32| (self.points[*j as usize] - at).norm() <= self.reach;
+            near.extend(self.members[there].iter().copied().filter(is_near));
         }
         near
     }
+
+    /// For each of some members, what no `value` of a point near it is below.
+    pub(crate) fn least_near(&self, places: &[u32], value: impl Fn(u32) -> f64) -> Vec<f64> {
+        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        let own: Vec<f64> = self
+            .starts
+            .windows(2)
+            .map(|w| least(&mut self.members[w[0]..w[1]].iter().map(|&j| value(j))))
+            .collect();
+        let near = |&i: &u32| {
+            let runs = self.columns(i).into_iter();
+            least(
+                &mut runs
+                    .flat_map(|(first, end)| own[first as usize..end as usize].iter().copied()),
+            )
+        };
+        places.iter().map(near).collect()
+    }
+
+    fn columns(&self, i: u32) -> [(u32, u32); COLUMNS] {
+        let home = cell(self.points[i as usize], self.reach);
+        let home = self.cells.binary_search(&home);
+        home.map_or([(0, 0); COLUMNS], |k| self.around[k])
+    }
+}
+
+/// The runs of `cells` (sorted) around each of them.
+fn columns_around(cells: &[[i64; 3]]) -> Vec<[(u32, u32); COLUMNS]> {
+    let mut around = vec![[(0, 0); COLUMNS]; cells.len()];
+    let steps = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
+    for (column, (dx, dy)) in steps.enumerate() {
+        // What is around one cell lies behind what is around the cell before: one walk finds all.
+        let mut first = 0;
+        for (&[x, y, z], around) in cells.iter().zip(&mut around) {
+            let [low, high] = [z.saturating_sub(1), z.saturating_add(1)]
+                .map(|z| [x.saturating_add(dx), y.saturating_add(dy), z]);
+            while first < cells.len() && cells[first] < low {
+                first += 1;
+            }
+            let there = cells[first..].iter().take_while(|cell| **cell <= high);
+            around[column] = (first as u32, (first + there.count()) as u32);
+        }
+    }
+    around
 }
 
 /// Distance from `p` to the nearest of some points that lies elsewhere; infinite if none does.

@@ -6,8 +6,8 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_areas,
-    renew_normals, self_intersections, vertex_areas, vertex_normals,
+    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_shape,
+    self_intersections, vertex_areas, vertex_normals,
 };
 
 const FULL: GapLimits = GapLimits {
@@ -251,9 +251,8 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
             *p += if *has_moved { by } else { Vec3::zeros() };
         }
         let posed = skin.with_positions(positions.clone()).unwrap();
-        renew_normals(&posed, &has_moved, &mut normals);
+        renew_shape(&posed, &has_moved, (&mut normals, &mut areas));
         assert_eq!(normals, vertex_normals(&posed), "{frame}");
-        renew_areas(&posed, &has_moved, &mut areas);
         assert_eq!(areas, vertex_areas(&posed), "{frame}");
         let product = &products[frame / 6 % 2];
         let limits = if frame % 12 < 9 { CUT } else { FULL };
