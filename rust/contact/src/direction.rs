@@ -110,6 +110,7 @@ fn spread(b: &[Sums], (neighbors, degrees): (&[Vec<u32>], &[usize]), spacing: f6
     let (low, high) = (1.0, 1.0 + 2.0 * c * degree);
     let (middle, half) = (0.5 * (high + low), 0.5 * (high - low).max(1e-12));
     let steps = (0.5 * (high / low).sqrt() * (2.0 / AVERAGE_ACCURACY).ln()).ceil() as usize;
+    let graph = Graph::new(neighbors, degrees, c);
     let mut x = vec![Sums::default(); b.len()];
     let mut step = vec![Sums::default(); b.len()];
     let mut rho = half / middle;
@@ -124,27 +125,63 @@ fn spread(b: &[Sums], (neighbors, degrees): (&[Vec<u32>], &[usize]), spacing: f6
         } else {
             (next * rho, 2.0 * next / half)
         };
-        for (i, list) in neighbors.iter().enumerate() {
-            let mut around = [0.0; 4];
-            for &j in list {
-                for (sum, x) in around.iter_mut().zip(&x[j as usize]) {
-                    *sum += x;
-                }
-            }
-            let own = 1.0 + c * degrees[i] as f64;
-            for axis in 0..4 {
-                let residual = b[i][axis] - own * x[i][axis] + c * around[axis];
-                step[i][axis] = keep * step[i][axis] + gain * residual;
-            }
-        }
-        for (x, step) in x.iter_mut().zip(&step) {
-            for axis in 0..4 {
-                x[axis] += step[axis];
-            }
-        }
+        advance(&graph, b, (keep, gain), (&mut x, &mut step));
         rho = next;
     }
     x
+}
+
+/// Neighbors one after the other, with the diagonal of `1 + c L`.
+struct Graph {
+    strength: f64,
+    diagonal: Vec<f64>,
+    /// One past the last neighbor of each.
+    ends: Vec<u32>,
+    neighbors: Vec<u32>,
+}
+
+impl Graph {
+    fn new(neighbors: &[Vec<u32>], degrees: &[usize], strength: f64) -> Self {
+        let mut end = 0;
+        let ends = neighbors.iter().map(|list| {
+            end += list.len() as u32;
+            end
+        });
+        let own = |degree: &usize| 1.0 + strength * *degree as f64;
+        Graph {
+            strength,
+            diagonal: degrees.iter().map(own).collect(),
+            ends: ends.collect(),
+            neighbors: neighbors.concat(),
+        }
+    }
+}
+
+/// One of Chebyshev's steps: `step` becomes `keep` of itself and `gain` of the residual, and is added to `x`.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn advance(
+    graph: &Graph,
+    b: &[Sums],
+    (keep, gain): (f64, f64),
+    (x, step): (&mut [Sums], &mut [Sums]),
+) {
+    let mut from = 0;
+    let all = graph.ends.iter().zip(&graph.diagonal).zip(b).zip(&*x);
+    for ((((&to, own), b), here), step) in all.zip(&mut *step) {
+        let mut around = [0.0; 4];
+        for &j in &graph.neighbors[from as usize..to as usize] {
+            let there = &x[j as usize];
+            (0..4).for_each(|axis| around[axis] += there[axis]);
+        }
+        for axis in 0..4 {
+            let residual = b[axis] - own * here[axis] + graph.strength * around[axis];
+            step[axis] = keep * step[axis] + gain * residual;
+        }
+        from = to;
+    }
+    for (x, step) in x.iter_mut().zip(step) {
+        (0..4).for_each(|axis| x[axis] += step[axis]);
+    }
 }
 
 /// Unit direction nearest to `average` within the cone around `normal` that keeps the contact pressing.
