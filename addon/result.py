@@ -12,7 +12,7 @@ FINGERS = ("thumb", "index", "middle", "ring", "little")
 
 def fill(result, job, contact, written, notes):
     """Fill `scene.thenar.result` from a native contact, the write report and the contact's notes. Returns it."""
-    _clear_rows(result)
+    result.region_index = 0
     result.schema, result.is_valid = names.SCHEMA, True
     result.hand_name, result.product_name = job.hand_name, ", ".join(job.part_names)
     result.model, result.vertices = job.model, len(job.reading.hand.rest_mm)
@@ -40,8 +40,9 @@ def fill(result, job, contact, written, notes):
     result.made_with = f"Thenar {names.VERSION}"
     _add_regions(result, job, contact)
     _add_stages(result, job, contact)
-    for text in (*job.reading.hand.warnings, *written.notes, *notes):
-        result.warnings.add().name = text
+    texts = (*job.reading.hand.warnings, *written.notes, *notes)
+    for row, text in zip(_sized(result.warnings, len(texts)), texts, strict=True):
+        row.name = text
     return result
 
 
@@ -107,36 +108,38 @@ def _clear_rows(result):
     result.region_index = 0
 
 
+def _sized(rows, count):
+    """So many rows, those that are there kept: Live fills them anew every frame, and making one takes longer."""
+    while len(rows) > count:
+        rows.remove(len(rows) - 1)
+    while len(rows) < count:
+        rows.add()
+    return rows
+
+
 def _add_regions(result, job, contact):
-    fingers = {}
-    for index, record in enumerate(contact.regions):
-        row = result.regions.add()
-        row.name = job.region_names[index]
-        row.force_n, row.area_mm2 = record.force_n, record.area_mm2
-        row.peak_kpa = record.peak_mpa * KPA_PER_MPA
-        row.mean_kpa = record.mean_mpa * KPA_PER_MPA
-        row.depth_mm = max(record.dmax_mm, 0.0)
-        row.shear_modulus_kpa = record.g_mpa * KPA_PER_MPA
-        fingers.setdefault(finger_of(row.name), []).append(index)
+    records, fingers = contact.regions, {}
+    for index, (row, record) in enumerate(zip(_sized(result.regions, len(records)), records, strict=True)):
+        name, peak, mean = job.region_names[index], record.peak_mpa * KPA_PER_MPA, record.mean_mpa * KPA_PER_MPA
+        force, area, depth = record.force_n, record.area_mm2, max(record.dmax_mm, 0.0)
+        row.name, row.force_n, row.area_mm2, row.peak_kpa, row.mean_kpa = name, force, area, peak, mean
+        row.depth_mm, row.shear_modulus_kpa = depth, record.g_mpa * KPA_PER_MPA
+        fingers.setdefault(finger_of(name), []).append((force, area, peak, depth))
     if len(fingers) < 2:
+        result.fingers.clear()
         return
-    for name, members in fingers.items():
-        rows = [result.regions[index] for index in members]
-        total = result.fingers.add()
-        total.name = name
-        total.force_n = sum(row.force_n for row in rows)
-        total.area_mm2 = sum(row.area_mm2 for row in rows)
-        total.peak_kpa = max(row.peak_kpa for row in rows)
+    for total, (name, members) in zip(_sized(result.fingers, len(fingers)), fingers.items(), strict=True):
+        force, area, peak, depth = zip(*members, strict=True)
+        total.name, total.force_n, total.area_mm2 = name, sum(force), sum(area)
+        total.peak_kpa, total.depth_mm = max(peak), max(depth)
         total.mean_kpa = total.force_n / total.area_mm2 * KPA_PER_MPA if total.area_mm2 > 0.0 else 0.0
-        total.depth_mm = max(row.depth_mm for row in rows)
 
 
 def _add_stages(result, job, contact):
     stages = dict(job.seconds)
     for name, seconds in _items(contact.seconds):
         stages[f"press: {name}"] = seconds
-    for name, seconds in stages.items():
-        row = result.stages.add()
+    for row, (name, seconds) in zip(_sized(result.stages, len(stages)), stages.items(), strict=True):
         row.name, row.seconds = name, seconds
 
 

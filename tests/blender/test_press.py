@@ -166,3 +166,18 @@ def test_far_from_the_origin_changes_little():
         obj.location.x += 64.0  # exact in single precision beside the parts' own 0.01 mm
     bpy.context.view_layer.update()
     assert stage.solve().force_n == pytest.approx(expected, rel=1e-3)
+
+
+def test_tables_keep_no_row_of_the_result_before(scene):
+    stage.scene()
+    result = stage.solve()
+    tables = (result.regions, result.fingers, result.stages, result.warnings)
+    lengths = [len(table) for table in tables]
+    for table in tables:
+        table.add().name = "old"
+    result = stage.solve()
+    assert [len(table) for table in tables] == lengths
+    result.regions.clear()
+    result = stage.solve()
+    assert len(result.regions) == lengths[0]
+    assert sum(row.force_n for row in result.regions) == pytest.approx(result.force_n, rel=1e-6)
