@@ -4,8 +4,9 @@
 //! complex numbers, texts and objects are refused by the argument's name, what was expected and what was given.
 
 use crate::errors::Topic;
+use numpy::ndarray::IntoDimension;
 use numpy::{
-    Element, PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    Element, PyArray, PyArray1, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
     PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyArithmeticError, PyAttributeError, PyTypeError, PyValueError};
@@ -281,6 +282,13 @@ fn shown(shape: &[usize]) -> String {
 /// A numpy array (n,).
 pub fn column<T: Element>(py: Python<'_>, values: Vec<T>) -> Py<PyAny> {
     PyArray1::from_vec(py, values).into_any().unbind()
+}
+
+/// A numpy array of zeros, whose memory is not written before someone does.
+pub fn zeros<T: Element, D: IntoDimension>(py: Python<'_>, shape: D) -> Py<PyAny> {
+    PyArray::<T, D::Dim>::zeros(py, shape, false)
+        .into_any()
+        .unbind()
 }
 
 /// A numpy array (rows, columns) from values that stand row by row.

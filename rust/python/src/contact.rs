@@ -1,6 +1,6 @@
 //! `thenar.Contact`: the result of a press as numpy arrays and records.
 
-use crate::arrays::{Argument, column, rows, triple};
+use crate::arrays::{Argument, column, rows, triple, zeros};
 use crate::record::record;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -79,7 +79,7 @@ impl Contact {
             .map(|region| region_record(py, region, names))
             .collect::<PyResult<_>>()?;
         let friction = friction_record(py, contact.shear.as_ref())?;
-        let shear = contact.shear.unwrap_or_else(|| no_shear(contact.gap.len()));
+        let sheared = Sheared::new(py, contact.shear, contact.gap.len())?;
         let seconds = PyDict::new(py);
         for (stage, time) in &contact.seconds {
             seconds.set_item(stage, time)?;
@@ -110,11 +110,11 @@ impl Contact {
             offset_mm: contact.offset,
             direction: triple(py, contact.direction),
             adhesion_force_n: column(py, contact.adhesion),
-            tangential_force_n: rows(py, &shear.force)?,
-            tangential_traction_mpa: column(py, shear.traction),
-            slip_mm: rows(py, &shear.slip)?,
-            slip_margin: column(py, shear.margin),
-            is_sticking: column(py, shear.is_sticking),
+            tangential_force_n: sheared.force,
+            tangential_traction_mpa: sheared.traction,
+            slip_mm: sheared.slip,
+            slip_margin: sheared.margin,
+            is_sticking: sheared.is_sticking,
             friction,
             residual: residual_record(py, &contact.residual)?,
             convergence: convergence_record(py, &contact.convergence)?,
@@ -179,20 +179,34 @@ fn friction_record(py: Python<'_>, shear: Option<&Shear>) -> PyResult<Py<PyAny>>
     record(entries)
 }
 
-/// What a press without friction or without a drag shows.
-fn no_shear(vertices: usize) -> Shear {
-    Shear {
-        force: vec![Vec3::zeros(); vertices],
-        traction: vec![0.0; vertices],
-        slip: vec![Vec3::zeros(); vertices],
-        margin: vec![f64::NAN; vertices],
-        is_sticking: vec![false; vertices],
-        total: Vec3::zeros(),
-        travel: Vec3::zeros(),
-        turn: Vec3::zeros(),
-        dissipated: 0.0,
-        stored: 0.0,
-        residual: 0.0,
+/// What friction makes of a drag, as arrays.
+struct Sheared {
+    force: Py<PyAny>,
+    traction: Py<PyAny>,
+    slip: Py<PyAny>,
+    margin: Py<PyAny>,
+    is_sticking: Py<PyAny>,
+}
+
+impl Sheared {
+    /// Of a press of so many `vertices`; without friction or without a drag all is zero, and there is no margin.
+    fn new(py: Python<'_>, shear: Option<Shear>, vertices: usize) -> PyResult<Sheared> {
+        let Some(shear) = shear else {
+            return Ok(Sheared {
+                force: zeros::<f64, _>(py, [vertices, 3]),
+                traction: zeros::<f64, _>(py, [vertices]),
+                slip: zeros::<f64, _>(py, [vertices, 3]),
+                margin: column(py, vec![f64::NAN; vertices]),
+                is_sticking: zeros::<bool, _>(py, [vertices]),
+            });
+        };
+        Ok(Sheared {
+            force: rows(py, &shear.force)?,
+            traction: column(py, shear.traction),
+            slip: rows(py, &shear.slip)?,
+            margin: column(py, shear.margin),
+            is_sticking: column(py, shear.is_sticking),
+        })
     }
 }
 
