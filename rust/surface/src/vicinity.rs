@@ -147,3 +147,45 @@ fn nearest([x, y, z]: &[Vec<f64>; 3], p: Vec3) -> f64 {
 fn cell(p: Vec3, size: f64) -> [i64; 3] {
     [p.x / size, p.y / size, p.z / size].map(|x| x.floor() as i64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_near_and_the_least_of_it_are_those_of_a_search_in_full() {
+        // A sheet that waves, some points twice, half of them members.
+        let place = |k: u32| f64::from(k % 300);
+        let points: Vec<Vec3> = (0..640)
+            .map(|k| {
+                let (x, y) = ((place(k) * 0.37) % 7.0 - 3.0, (place(k) * 0.71) % 5.0 - 2.0);
+                Vec3::new(x, y, (2.0 * x).sin())
+            })
+            .collect();
+        let members: Vec<u32> = (0..640).filter(|k| k % 2 == 0).collect();
+        let places = &members[20..200];
+        let vicinity = Vicinity::new(&points, &members, places);
+        let value = |i: u32| f64::from(i * 7919 % 641) - 300.0;
+        let least = vicinity.least_near(places, value);
+        let mut sharp = 0;
+        for (&i, bound) in places.iter().zip(least) {
+            let apart = |j: &u32| (points[*j as usize] - points[i as usize]).norm();
+            let is_near = |j: &&u32| apart(j) <= vicinity.reach();
+            let wanted: Vec<u32> = members.iter().filter(is_near).copied().collect();
+            let mut found = vicinity.around(i);
+            found.sort_unstable();
+            assert_eq!(found, wanted);
+            let own = wanted
+                .iter()
+                .map(|&j| value(j))
+                .fold(f64::INFINITY, f64::min);
+            assert!(bound <= own, "{bound} {own}");
+            sharp += usize::from(bound == own);
+        }
+        assert!(
+            sharp > 5 && sharp < places.len(),
+            "{sharp} of {}",
+            places.len()
+        );
+    }
+}

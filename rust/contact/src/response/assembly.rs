@@ -235,3 +235,28 @@ fn accumulate<const N: usize>(field: [&mut [f64]; 3], rows: [&[f32]; N], load: [
         [x[i], y[i], z[i]] = sums;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_of_any_length_are_taken_up_to_the_end_of_a_row() {
+        let row: Vec<f32> = (0..90_u8).map(f32::from).collect();
+        let pieces = [
+            (0, 3),
+            (7, 1),
+            (9, 16),
+            (30, 17),
+            (50, 33),
+            (84, 2),
+            (87, 3),
+        ];
+        let wanted: Vec<f32> = pieces
+            .iter()
+            .flat_map(|&(from, len)| row[from as usize..(from + len) as usize].to_vec())
+            .collect();
+        let mut values = vec![f32::NAN; wanted.len() + SHORT];
+        assert_eq!(take(&row, &pieces, &mut values), wanted);
+    }
+}
