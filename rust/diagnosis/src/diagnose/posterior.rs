@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn a_second_effect_must_add_more_than_the_first_ones_form_leaves() {
-        use Effect::{Adhesion, Bone, Offset, Relaxation, StiffeningLaw};
+        use Effect::{Adhesion, Bone, CycleSoftening, Offset};
+        use Effect::{RateIndependentLoss, Relaxation, StiffeningLaw};
         assert!(
             needs_both((Relaxation, 100.0), Bone, 6.0),
             "its form is known"
@@ -113,10 +114,12 @@ mod tests {
         assert!(needs_both((Adhesion, 60.0), Offset, 6.0));
         assert!(!needs_both((Adhesion, 600.0), Offset, 11.0), "9 % of 600");
         assert!(!needs_both((Relaxation, 400.0), Offset, 6.0), "2 % of 400");
-        assert!(
-            !needs_both((StiffeningLaw, 60.0), Relaxation, 9.0),
-            "17 % of 60"
-        );
+        for law in [StiffeningLaw, CycleSoftening] {
+            assert!(!needs_both((law, 100.0), Relaxation, 12.0), "13 % of 100");
+            assert!(needs_both((law, 100.0), Relaxation, 14.0));
+        }
+        let friction = |more| needs_both((RateIndependentLoss, 300.0), CycleSoftening, more);
+        assert!(!friction(11.0) && friction(13.0), "4 % of 300");
     }
 
     #[test]
