@@ -66,7 +66,7 @@ def _maps(file):
 def _print(file):
     """An image is read once, in cells of many pixels, to refuse what is no print. Its scale is the user's to give."""
     width, height = native.module.Print.read(file, mm_per_px=1.0, cell_mm=_LOOK_PX).size_px
-    about = f"handprint of {width} x {height} pixels; give the dpi of its scan"
+    about = f"handprint of {width} x {height} pixels; its size goes by the dpi of its scan"
     return [{"name": file.name, "kind": settings.PRINT, "path": str(file), "about": about}]
 
 
