@@ -50,6 +50,7 @@ class Truth:
         _, _, rest, more = self.parts[name]
         if self.grips:
             return rest + self.added(name, amplitude)
+        # Summed in this order, so that the same cases keep their bytes.
         return rest + amplitude * more[0] + amplitude**2 * more[1]
 
     def presses(self, amplitude, growth):

@@ -59,6 +59,9 @@ fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
                 number.name, number.value, number.unit
             );
         }
+        for (name, option) in found.choices(finding.effect) {
+            text += &format!("  {name} = {option}\n");
+        }
     }
     for next in &found.record_next {
         text += &format!("record next: {} ({})\n", next.text, next.outlook());

@@ -94,15 +94,14 @@ impl Screen<'_> {
             } else {
                 lets_go
             };
-            let mut most = 0.0;
+            let mut touched = 0.0;
             for (depth, force) in depths.iter().zip(forces.iter_mut()) {
                 let over = ((depth / self.most.1 - lets_go) / RELEASE).clamp(0.0, 1.0);
-                most = if over > 0.0 {
-                    f64::max(most, *depth)
-                } else {
-                    0.0
+                touched = match over > 0.0 {
+                    true => f64::max(touched, *depth),
+                    false => 0.0,
                 };
-                *force -= pull * over * spanned(gap(most, *depth) / range);
+                *force -= pull * over * spanned(gap(touched, *depth) / range);
             }
         }
     }
@@ -206,6 +205,9 @@ fn spanned(gap: f64) -> f64 {
 
 /// Part of a grip's range at which its traction is largest.
 const PEAK: f64 = 0.25;
+/// Range of the effect `adhesion`, whose traction only falls, over that of a grip with the same work at the same mean gap: of two
+/// triangles over the gap, a third of the sum of their corners.
+pub(super) const RAMP: f64 = 1.0 + PEAK;
 
 /// A value below `x` and below none: `x` for large x, 0 for small, smooth over `width`.
 fn soft(x: f64, width: f64) -> f64 {
@@ -251,12 +253,15 @@ mod tests {
             true => 2.0 * s / PEAK,
             false => 2.0 * (1.0 - s) / (1.0 - PEAK),
         };
-        let (mut work, steps) = (0.0, 100_000);
+        let (mut work, mut moment, steps) = (0.0, 0.0, 100_000);
         for k in 0..steps {
             let s = (f64::from(k) + 0.5) / f64::from(steps);
             assert!((spanned(f64::from(k) / f64::from(steps)) - work).abs() < 1e-6);
             work += traction(s) / f64::from(steps);
+            moment += s * traction(s) / f64::from(steps);
         }
+        // A ramp's mean gap is a third of its range.
+        assert!((moment - RAMP / 3.0).abs() < 1e-6);
         assert_eq!(spanned(1.0), 1.0);
         assert_eq!(spanned(7.0), 1.0);
     }

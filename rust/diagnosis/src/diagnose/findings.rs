@@ -217,6 +217,14 @@ pub struct Switched {
     pub choices: Vec<(&'static str, &'static str)>,
 }
 
+impl Diagnosis {
+    /// What an effect that was found is to be switched on with: choices by name.
+    pub fn choices(&self, effect: &str) -> &[(&'static str, &'static str)] {
+        let own = self.effects.iter().find(|e| e.name == effect);
+        own.map_or(&[], |e| &e.choices)
+    }
+}
+
 /// All that a diagnosis says.
 #[derive(Debug, Clone)]
 pub struct Diagnosis {

@@ -153,6 +153,33 @@ pub enum Growth {
     Square,
 }
 
+impl Growth {
+    /// Its name among the laws of the effect.
+    pub fn law(self) -> &'static str {
+        match self {
+            Growth::Exponential => "exponential",
+            Growth::Square => "power",
+        }
+    }
+
+    /// Logarithm of the modulus over that at x = 0.
+    pub fn log(self, rate: f64, x: f64) -> f64 {
+        match self {
+            Growth::Exponential => rate * x,
+            Growth::Square => libm::log1p(rate * x * x),
+        }
+    }
+
+    /// The x that the effect's law takes for 1 (its reference); the power law's exponent is the catalogue's own, 2.
+    pub fn reference(self, rate: f64) -> f64 {
+        let way = match self {
+            Growth::Exponential => rate,
+            Growth::Square => rate.max(0.0).sqrt(),
+        };
+        1.0 / way.max(0.01)
+    }
+}
+
 impl Mechanism {
     /// Number of free numbers.
     pub fn count(&self) -> usize {
@@ -329,6 +356,22 @@ mod tests {
                 "{time}: {ours} {}",
                 law / whole
             );
+        }
+    }
+
+    /// As `thenar_contact::effects::stiffening_law` has its laws: `exp(x / r)` and `1 + (x / r)^2`, r its reference.
+    #[test]
+    fn a_modulus_grows_by_the_effects_own_laws() {
+        for (rate, x) in [(0.3, 0.5), (1.7, 0.9)] {
+            let square = Growth::Square;
+            let wanted = 1.0 + (x / square.reference(rate)).powi(2);
+            assert!((libm::exp(square.log(rate, x)) / wanted - 1.0).abs() < 1e-12);
+            let plain = Growth::Exponential;
+            assert!((plain.log(rate, x) - x / plain.reference(rate)).abs() < 1e-12);
+        }
+        let laws = &Effect::StiffeningLaw.entry().choices[0];
+        for growth in [Growth::Exponential, Growth::Square] {
+            assert!(laws.options.contains(&growth.law()));
         }
     }
 

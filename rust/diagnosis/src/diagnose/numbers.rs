@@ -3,10 +3,11 @@
 use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 
+use super::acting::RAMP;
 use super::elastic::{radius, skin_share};
 use super::findings::{Number, Switched};
 use super::ladder::Scored;
-use super::mechanism::{Acts, Growth, Measure, Mechanism, Spectrum};
+use super::mechanism::{Acts, Measure, Mechanism, Spectrum};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 use super::refit::Refit;
@@ -86,15 +87,11 @@ pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, S
     list.extend(numbers.iter().map(tell));
     let choices = match (&mechanism.acts, effect) {
         (Acts::Stiffens(measure, growth), _) => {
-            let law = match growth {
-                Growth::Exponential => "exponential",
-                Growth::Square => "power",
-            };
             let measure = match measure {
                 Measure::Depth => "depth",
                 Measure::Strain => "strain",
             };
-            vec![("law", law), ("measure", measure)]
+            vec![("law", growth.law()), ("measure", measure)]
         }
         (Acts::Late, _) => vec![("channel", "force")],
         (Acts::Offset, _) => vec![("channel", "force")],
@@ -139,11 +136,8 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
         Acts::Clings { .. } => {
             let work = interval(free, &|x| work_of(ready, x.max(0.0)));
             let (log, error) = free.sum(&[0.0, 1.0]);
-            let (range, factor) = (
-                libm::exp(log) * ready.scales.deepest,
-                libm::exp(HALF * error),
-            );
-            let factor = factor.min(MOST);
+            let range = libm::exp(log) * ready.scales.deepest * RAMP;
+            let factor = libm::exp(HALF * error).min(MOST);
             let range = ("range_mm", range, range / factor, range * factor);
             (
                 whole,
@@ -194,12 +188,7 @@ fn one<'a>(
                 Measure::Depth => ("reference_depth_mm", ready.scales.deepest),
                 Measure::Strain => ("reference_strain", ready.screen().largest_strain()),
             };
-            // The power law's exponent is the catalogue's own, 2.
-            let way = move |x: f64| match growth {
-                Growth::Exponential => x,
-                Growth::Square => x.max(0.0).sqrt(),
-            };
-            (name, Box::new(move |x| most / way(x).max(0.01)))
+            (name, Box::new(move |x| most * growth.reference(x)))
         }
         Acts::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
         Acts::Offset => ("offset_n", Box::new(|x| x)),

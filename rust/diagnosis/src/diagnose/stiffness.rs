@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use super::elastic::{Tabled, radius, rung};
-use super::mechanism::{Acts, Growth, Measure};
+use super::mechanism::{Acts, Measure};
 use super::model::{Model, Setting};
 use super::screen::Screen;
 use crate::replay::KNOTS;
@@ -30,10 +30,7 @@ impl Screen<'_> {
                 }
                 Acts::Stiffens(measure, growth) => {
                     let (rate, x) = (set.of[number][0], self.measure(*measure, (place, depth)));
-                    log += match growth {
-                        Growth::Exponential => rate * x,
-                        Growth::Square => libm::log1p(rate * x * x),
-                    };
+                    log += growth.log(rate, x);
                 }
                 _ => {}
             }

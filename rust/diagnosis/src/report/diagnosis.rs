@@ -48,6 +48,7 @@ fn findings(found: &Diagnosis) -> String {
             100.0 * finding.confidence
         );
         html.extend(finding.numbers.iter().map(number));
+        html.extend(found.choices(finding.effect).iter().map(choice));
         html += "</table>\n";
         html += &signs(&finding.consequences);
     }
@@ -65,6 +66,20 @@ fn number(of: &Number) -> String {
         "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
         of.name, of.value
     )
+}
+
+fn choice((name, option): &(&'static str, &'static str)) -> String {
+    format!("<tr><td class='left'>{name}</td><td>{option}</td><td></td><td></td></tr>")
+}
+
+/// Three digits, for sizes of any unit.
+fn size(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = libm::log10(value.abs().max(1e-9)).floor();
+    let after = (2.0 - before).clamp(0.0, 9.0) as usize;
+    format!("{value:.after$}")
 }
 
 /// What must show in the recordings if the effect is there, and whether it does.
@@ -146,7 +161,7 @@ fn smallest(found: &Diagnosis) -> String {
         return String::new();
     }
     let row = |(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
-        let size = value.map_or_else(|| "at no size".to_owned(), |v| format!("{v:.3}"));
+        let size = value.map_or_else(|| "at no size".to_owned(), size);
         format!(
             "<tr><td class='left'>{}</td><td>{size}</td><td class='left'>{}</td></tr>",
             escaped(&name.replace('_', " ")),
@@ -225,4 +240,16 @@ fn plot(curve: &Curve) -> String {
         beside = left - 4.0,
         upper = top + 8.0,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::size;
+
+    #[test]
+    fn a_size_of_any_unit_has_three_digits() {
+        let told = [0.000_123_4, 0.0567, 0.2, 12.345, 4321.0].map(size);
+        assert_eq!(told, ["0.000123", "0.0567", "0.200", "12.3", "4321"]);
+        assert_eq!(size(0.0), "0");
+    }
 }
