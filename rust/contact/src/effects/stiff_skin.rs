@@ -1,10 +1,11 @@
 //! Effect `stiff_skin`: a thin stiff skin over soft pulp, with its bending and, if it is stretched, its tension.
 //!
 //! The skin is a thin plate of bending stiffness `D = E t^3 / 9` and stiffness against stretch `M = 4 E t / 3` (E modulus_mpa, t
-//! thickness_mm, Poisson's ratio 1/2) under `tension_n_per_mm`, bonded to the pulp below; amplitude multiplies all three. Strains are
-//! small: what a skin that is pressed deep gains by its own stretch is left out. Skin and pulp stiffen together: what counts is
-//! D / G0, so that the response does not depend on the depth. Needs vertices not much farther apart than the bending
-//! length `((1 - nu) D / G0)^(1/3)` to be seen.
+//! thickness_mm, Poisson's ratio 1/2) under `tension_n_per_mm`, bonded to the pulp below; amplitude multiplies all three. It is part of
+//! the thickness of soft tissue over bone: the pulp below is thinner by the skin's, as far as the skin is stiffer than pulp, at most by
+//! half. Strains are small: what a skin that is pressed deep gains by its own stretch is left out. Skin and pulp stiffen together: what
+//! counts is D / G0, so that the response does not depend on the depth. Needs vertices not much farther apart than the bending length
+//! `((1 - nu) D / G0)^(1/3)` to be seen.
 
 use super::active::ActiveEffect;
 use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
@@ -71,7 +72,10 @@ pub const ENTRY: Entry = Entry {
 
 /// The skin over a tissue, in its terms.
 pub fn sheet(effect: &ActiveEffect, region: u32, tissue: &Material) -> Sheet {
-    let share = effect.amplitude_on(region) * (1.0 - tissue.poisson_ratio) / tissue.g0_mpa;
+    let amplitude = effect.amplitude_on(region);
+    let share = amplitude * (1.0 - tissue.poisson_ratio) / tissue.g0_mpa;
+    let own = amplitude * effect.shape[MODULUS];
+    let pulp = 3.0 * tissue.g0_mpa;
     let bending = effect.shape[MODULUS] * effect.shape[THICKNESS].powi(3) / 9.0;
     let stretch = 4.0 / 3.0 * effect.shape[MODULUS] * effect.shape[THICKNESS];
     Sheet {
@@ -79,5 +83,6 @@ pub fn sheet(effect: &ActiveEffect, region: u32, tissue: &Material) -> Sheet {
         tension: share * effect.shape[TENSION],
         stretch: share * stretch,
         middle: 0.5 * effect.shape[THICKNESS],
+        takes: effect.shape[THICKNESS] * (1.0 - pulp / own.max(pulp)),
     }
 }

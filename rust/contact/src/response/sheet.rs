@@ -9,7 +9,8 @@
 //!
 //! the sinking part of the inverse of `C^-1 + S`, C the layer's compliance and S the plate's stiffness for sinking and for moving
 //! along. A layer that is thin against the contact gives way by flowing along itself, which the plate hinders; without M it is
-//! `K / (1 + K f)`.
+//! `K / (1 + K f)`. The thickness of soft tissue over bone is measured from the skin's outer side, so that the layer is what the plate
+//! leaves of it.
 
 use super::bonded_layer::Layer;
 
@@ -24,7 +25,12 @@ pub struct Sheet {
     pub stretch: f64,
     /// c, mm.
     pub middle: f64,
+    /// What the skin takes of the thickness, mm.
+    pub takes: f64,
 }
+
+/// Most of a layer's thickness that skins take.
+const MOST_TAKEN: f64 = 0.5;
 
 impl Sheet {
     /// No skin of its own.
@@ -33,6 +39,7 @@ impl Sheet {
         tension: 0.0,
         stretch: 0.0,
         middle: 0.0,
+        takes: 0.0,
     };
 
     /// Two skins in one place: their stiffness adds up, about the middle of both.
@@ -44,13 +51,19 @@ impl Sheet {
             tension: self.tension + more.tension,
             stretch,
             middle: if stretch > 0.0 { moment / stretch } else { 0.0 },
+            takes: self.takes + more.takes,
         }
     }
 
-    /// Transfer function of a layer under it at wave number `k` (1/mm).
+    /// Transfer function of a layer with it at wave number `k` (1/mm).
     pub fn transfer(&self, layer: &Layer, k: f64) -> f64 {
-        let bare = layer.transfer(k);
-        let [z, r] = layer.along(k);
+        let taken = self.takes.min(MOST_TAKEN * layer.thickness);
+        let below = Layer {
+            thickness: layer.thickness - taken,
+            ..*layer
+        };
+        let bare = below.transfer(k);
+        let [z, r] = below.along(k);
         let (m, c) = (self.stretch * k, self.middle * k);
         let f = k * (self.bending * k * k + self.tension);
         let q = bare * r - z * z;
@@ -90,6 +103,27 @@ mod tests {
         assert!((short.transfer(&HALF_SPACE, 0.7) - 1.0).abs() < 1e-12);
     }
 
+    #[test]
+    fn a_skin_leaves_a_thinner_layer_and_at_least_half_of_it() {
+        let layer = |thickness| Layer {
+            thickness,
+            poisson_ratio: 0.5,
+        };
+        for (takes, left) in [(1.0, 4.0), (4.0, 2.5)] {
+            let sheet = Sheet {
+                takes,
+                ..Sheet::NONE
+            };
+            let found = sheet.transfer(&layer(5.0), 0.3);
+            assert_eq!(found, layer(left).transfer(0.3));
+        }
+        let half_space = Sheet {
+            takes: 0.5,
+            ..Sheet::NONE
+        };
+        assert_eq!(half_space.transfer(&HALF_SPACE, 0.3), 1.0);
+    }
+
     /// The plate's stiffness from its energy: `D k^4 w^2 + N k^2 w^2 + M k^2 (v - c k w)^2`, halved, w how far it sinks and v how far
     /// the layer's surface moves along itself; as it sinks, its lower side is stretched.
     #[test]
@@ -103,6 +137,7 @@ mod tests {
             tension: 0.2,
             stretch: 1.5,
             middle: 0.4,
+            takes: 0.0,
         };
         for k in [0.2, 0.8, 2.0] {
             let [z, r] = layer.along(k);
@@ -127,6 +162,7 @@ mod tests {
             tension: 2.0,
             stretch: 3.0,
             middle: 0.1,
+            takes: 0.5,
         };
         let both = one.with(&Sheet { middle: 0.3, ..one });
         let wanted = Sheet {
@@ -134,6 +170,7 @@ mod tests {
             tension: 4.0,
             stretch: 6.0,
             middle: 0.2,
+            takes: 1.0,
         };
         assert!((both.middle - wanted.middle).abs() < 1e-12);
         assert_eq!(
