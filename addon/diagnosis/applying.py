@@ -90,19 +90,9 @@ def _hand(context):
     return hand
 
 
-def _switched(found, effect):
-    """Amplitude, numbers and choices that the findings' own model gives the effect; those of the finding go before."""
-    listed = (found.get("model") or {}).get("effects") or ()
-    told = dict(next((each for each in listed if each.get("name") == effect), {}))
-    told.pop("name", None)
-    amplitude = told.pop("amplitude", None)
-    texts = {name: value for name, value in told.items() if isinstance(value, str)}
-    return amplitude, {name: told[name] for name in told if name not in texts and told[name] is not None}, texts
-
-
 def _wanted(context, found, finding, row):
-    """The finding in the terms of the hand's properties. Raises `Refusal`."""
-    amplitude, numbers, choices = _switched(found, finding["effect"])
+    """The finding in the terms of the hand's properties; its own numbers go before the model's. Raises `Refusal`."""
+    amplitude, numbers, choices = reading.switched(found, finding["effect"])
     shapes = {shape["name"]: shape["unit"] for shape in row["shape"]}
     options = {choice["name"]: choice["options"] for choice in row["choices"]}
     for name, told in (finding.get("parameters") or {}).items():

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..scene.units import KPA_PER_MPA
-from . import wording
+from . import reading, wording
 
 HEADINGS = {
     "nothing_missing": "Nothing is missing",
@@ -34,8 +34,9 @@ class Row:
 class Entry:
     """One finding.
 
-    `index` is its number, `sureness` 0 to 1 or None, `rows` its numbers, `story` where and when it shows, `signs` what
-    must show in the recordings if it is there, with whether it does, and `has_place` whether the skin can show it.
+    `index` is its number, `sureness` 0 to 1 or None, `rows` its numbers and choices, `story` where and when it shows,
+    `signs` what must show in the recordings if it is there, with whether it does, and `has_place` whether the skin can
+    show it.
     """
 
     index: int
@@ -93,7 +94,7 @@ def write(found):
         verdict=found["verdict"],
         heading=HEADINGS[found["verdict"]],
         sentence=found.get("sentence") or "",
-        entries=tuple(_entry(index, finding) for index, finding in enumerate(found.get("findings", ()))),
+        entries=tuple(_entry(found, index) for index in range(len(found.get("findings", ())))),
         phases=tuple(_phases(found)),
         rivals=tuple(_rivals(found)),
         bars=bars,
@@ -130,9 +131,12 @@ def lines(letter):
     yield from letter.notes
 
 
-def _entry(index, finding):
+def _entry(found, index):
+    finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
     rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
+    _, _, choices = reading.switched(found, finding["effect"])
+    rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     story = (wording.place(where), wording.moment(when), wording.depends(finding.get("depends_on")))
     return Entry(
         index=index,

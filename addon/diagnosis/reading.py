@@ -47,6 +47,16 @@ def finding(found, index):
     return listed[index]
 
 
+def switched(found, effect):
+    """Amplitude (None if none is told), numbers and choices (by name) that the findings' own model gives an effect."""
+    listed = (found.get("model") or {}).get("effects") or ()
+    told = dict(next((each for each in listed if each.get("name") == effect), {}))
+    told.pop("name", None)
+    amplitude = told.pop("amplitude", None)
+    choices = {name: value for name, value in told.items() if isinstance(value, str)}
+    return amplitude, {name: told[name] for name in told if name not in choices and told[name] is not None}, choices
+
+
 def rivals(found, effect):
     """Other effects that cannot be told apart from `effect` with these recordings."""
     alike = [names for names in found.get("cannot_tell", []) if effect in names]
