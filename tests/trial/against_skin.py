@@ -1,10 +1,10 @@
-"""How far Thenar's stiff skin is from that of finite elements on the same pad: what small strains leave out.
+"""How far Thenar's stiff skin is from that of finite elements: what a plate at small strains leaves out.
 
     python -m trial.against_skin        (in `tests`)
 
 The calibration's pad under a skin of 0.4 mm and twenty times the modulus, pressed by three spheres to 14 % of its
 thickness. Prints by how much the skin raises the force, ours and theirs. The finite elements stretch at finite strain
-and have the skin within the pad's thickness; ours lies on top.
+and give way through the skin, too; ours is a plate. Both lie within the pad's thickness.
 """
 
 import numpy as np

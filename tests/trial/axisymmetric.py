@@ -19,6 +19,7 @@ from trial.axisymmetric_contact import LAST, touch
 from trial.axisymmetric_elements import BRANCHES, SLIDERS, STATE, elements
 
 PENALTY = 4.0  # MPa/mm
+SKIN_LEVELS = 4  # elements through a stiff skin: with one, it bends as if it could be compressed
 
 
 @dataclass(frozen=True)
@@ -70,8 +71,8 @@ class Mesh:
         self.size = columns * (3 * levels - 1)
 
 
-def mesh_of(pad, density=1.0):
-    """The pad's mesh: even under the contact, then growing outward; levels closer at the skin."""
+def mesh_of(pad, density=1.0, skin_mm=0.0):
+    """The pad's mesh: even under the contact, then growing outward; levels closer at the top, even in a stiff skin."""
     step = pad.reach / round(26 * density)
     r = [k * step for k in range(round(26 * density) + 1)]
     while r[-1] < pad.reach + 2.2 * pad.thickness:
@@ -79,6 +80,9 @@ def mesh_of(pad, density=1.0):
         r.append(r[-1] + step)
     r = np.array(r)
     t = 1.0 - (1.0 - np.linspace(0.0, 1.0, round(9 * density) + 1)) ** 1.3
+    if skin_mm > 0.0:
+        below = 1.0 - skin_mm / pad.thickness
+        t = np.concatenate([below * t, np.linspace(below, 1.0, round(SKIN_LEVELS * density) + 1)[1:]])
     normal = np.stack([r / pad.radius, np.ones_like(r)], axis=1)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     skin = np.stack([r, -(r**2) / (2.0 * pad.radius)], axis=1)
@@ -87,7 +91,7 @@ def mesh_of(pad, density=1.0):
 
 def press(pad, tissue, tool, motion, density=1.0):
     """Force (N) on the tool at the rows (time s, depth mm) of `motion`; NaN from where no equilibrium is found."""
-    mesh = mesh_of(pad, density)
+    mesh = mesh_of(pad, density, tissue.skin_mm)
     shape = _shape(mesh, tissue)
     numbers = np.array([tissue.rate, tissue.bulk_ratio, tissue.skeleton_ratio, tissue.permeability], dtype=float)
     branches = np.array([tissue.overstress, tissue.times_s], dtype=float)
@@ -103,9 +107,8 @@ def _shape(mesh, tissue):
     columns, levels, _ = mesh.nodes.shape
     shear = np.full((columns - 1, levels - 1), tissue.shear_mpa)
     if tissue.skin_mm > 0.0:
-        top = mesh.nodes[0, -1, 1] - mesh.nodes[0, :, 1]
-        share = np.clip((tissue.skin_mm - top[1:]) / (top[:-1] - top[1:]), 0.0, 1.0)
-        shear *= 1.0 + (tissue.skin_ratio - 1.0) * share[None, :]
+        depth = mesh.nodes[0, -1, 1] - 0.5 * (mesh.nodes[0, 1:, 1] + mesh.nodes[0, :-1, 1])
+        shear[:, depth < tissue.skin_mm] *= tissue.skin_ratio
     return shear
 
 
