@@ -15,8 +15,10 @@ const POISSON: [f64; 3] = [0.49, 0.46, 0.4];
 /// Bending stiffness of a skin over that of the catalogue's skin, at which a stiff skin is tabulated.
 const SKINS: [f64; 3] = [0.02, 0.15, 1.0];
 
-/// Depths at which a table is pressed, and at which what changes it: their ratio is smooth.
-const RUNGS: (usize, usize) = (30, 5);
+/// Depths at which a table is pressed, and at which what changes it: their ratio is smooth, that of a stiff skin least so, which bears
+/// most at first touch.
+const RUNGS: usize = 30;
+const FEWER: (usize, usize) = (5, 10);
 
 /// How a table was changed, and by how much at each of its knots.
 #[derive(Debug, Clone)]
@@ -93,15 +95,19 @@ impl Elastic {
         let start = fitting.replay.tissue.materials.clone();
         let flat = flattened(&start, g_mpa);
         let (known, places) = (self.places.len(), fitting.replay.places());
-        let base = tables(fitting, (&[], &flat, RUNGS.0), (known, control))?;
+        let base = tables(fitting, (&[], &flat, RUNGS), (known, control))?;
         for (number, (effect, knots)) in plan(&start[0]).into_iter().enumerate() {
             let mut log_ratio = vec![Vec::new(); places - known];
+            let rungs = match effect {
+                Effect::StiffSkin => FEWER.1,
+                _ => FEWER.0,
+            };
             for (_, changed) in &knots {
                 let tabled = match changed {
                     None => base.clone(),
                     Some(effect) => tables(
                         fitting,
-                        (std::slice::from_ref(effect), &flat, RUNGS.1),
+                        (std::slice::from_ref(effect), &flat, rungs),
                         (known, control),
                     )?,
                 };

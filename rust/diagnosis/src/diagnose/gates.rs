@@ -271,10 +271,11 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
         rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
     };
     let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
-    let inexact = |k: usize| inexact(&pair.mechanisms[k]) * alone(k);
     let least = |k: usize| {
-        let is_exact = !is_static(&pair.mechanisms[k]) || is_memory(&pair.mechanisms[1 - k]);
-        inexact(1 - k).max(if is_exact { BESIDE } else { STATIC_BESIDE })
+        let (second, first) = (&pair.mechanisms[k], &pair.mechanisms[1 - k]);
+        let is_exact = !is_static(second) || acts_apart(first);
+        let beside = if is_exact { BESIDE } else { STATIC_BESIDE };
+        f64::max(inexact(first, second) * alone(1 - k), beside)
     };
     let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
     pair.mechanisms[0].effect != pair.mechanisms[1].effect
@@ -284,9 +285,11 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
 }
 
 /// The part of a mechanism's evidence that screening's form of it may leave for a second one to take up; the largest that any did
-/// where it was alone is half of it to all of it (calibration).
-fn inexact(mechanism: &Mechanism) -> f64 {
+/// where it was alone is half of it to all of it (calibration). What acts apart from the loading leaves least to what changes the
+/// elastic answer: none took up more than 3 nats and 0.9 %.
+fn inexact(mechanism: &Mechanism, second: &Mechanism) -> f64 {
     match mechanism.effect {
+        _ if acts_apart(mechanism) && is_answer(second) => 0.01,
         Effect::Threshold => 0.15,
         Effect::Adhesion => 0.09,
         Effect::Saturation => 0.1,
@@ -296,6 +299,19 @@ fn inexact(mechanism: &Mechanism) -> f64 {
         _ if is_memory(mechanism) => 0.02,
         _ => 0.03,
     }
+}
+
+/// True for what shows as force that fades or as skin that clings, and not in the answer to a press alone.
+fn acts_apart(mechanism: &Mechanism) -> bool {
+    is_memory(mechanism) || mechanism.effect == Effect::Adhesion
+}
+
+/// True for what changes the tissue's elastic answer by its geometry or its bulk.
+fn is_answer(mechanism: &Mechanism) -> bool {
+    matches!(
+        mechanism.effect,
+        Effect::Bone | Effect::Compressibility | Effect::StiffSkin
+    )
 }
 
 /// True for what the tissue remembers.

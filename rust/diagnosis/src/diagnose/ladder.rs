@@ -175,6 +175,22 @@ impl Trial<'_> {
         best
     }
 
+    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, and, where it has
+    /// other starts, also where it ended alone.
+    fn pair(&self, (better, set): (&Scored, &[Mechanism; 2]), singles: &[Scored]) -> Scored {
+        let plain = self.score(set, &better.refit.at);
+        let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
+        let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) else {
+            return plain;
+        };
+        let own = &alone.refit.at[self.from.len()..];
+        let other = self.score(set, &[&better.refit.at[..], own].concat());
+        match other.refit.deviance < plain.refit.deviance {
+            true => other,
+            false => plain,
+        }
+    }
+
     /// Every variant of every single mechanism, and a step of the gain if repeats show one.
     fn singles(&self, step: Option<GainStep>) -> Result<Vec<Scored>, DiagnosisError> {
         let mut tried = singles(self.ready.scales);
@@ -203,7 +219,7 @@ impl Trial<'_> {
         let sets = sets_of_two(singles);
         for (k, (better, set)) in sets.iter().enumerate() {
             self.step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
-            pairs.push(self.score(set, &better.refit.at));
+            pairs.push(self.pair((better, set), singles));
         }
         pairs.iter_mut().for_each(|s| scale.judge(s));
         pairs.retain(|s| shows_its_signs(self.ready, s));

@@ -190,8 +190,8 @@ impl Mechanism {
         }
     }
 
-    /// Where else a fit begins: that of a smooth spectrum may end in a hollow of its own, 1 to 3 nats above the deepest, and a ceiling
-    /// that no reading meets does not tell where it is.
+    /// Where else a fit begins: that of a smooth spectrum or of a stiff skin may end in a hollow of its own, 1 to 6 nats above the
+    /// deepest, and a ceiling that no reading meets does not tell where it is.
     pub fn starts(&self) -> &'static [&'static [f64]] {
         match &self.acts {
             Acts::Fades {
@@ -199,6 +199,7 @@ impl Mechanism {
                 ..
             } => &STARTS,
             Acts::Saturates => &CEILINGS,
+            Acts::Tabled if self.effect == Effect::StiffSkin => &SKINS,
             _ => &[],
         }
     }
@@ -253,6 +254,8 @@ const WIDTHS: [(f64, f64); 2] = [(0.05, 3.0), (0.05, 1.2)];
 const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.5]];
 /// Further starts of the logarithm of a ceiling over the largest force.
 const CEILINGS: [&[f64]; 3] = [&[-0.03], &[-0.3], &[-0.8]];
+/// Further starts of a stiff skin's coordinate.
+const SKINS: [&[f64]; 2] = [&[1.3], &[2.3]];
 
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 3] = [0.08, 0.4, 2.0];

@@ -103,14 +103,20 @@ mod tests {
     #[test]
     fn a_second_effect_must_add_more_than_the_first_ones_form_leaves() {
         use Effect::{Adhesion, Bone, CycleSoftening, Offset};
-        use Effect::{RateIndependentLoss, Relaxation, StiffeningLaw};
+        use Effect::{RateIndependentLoss, Relaxation, Saturation, StiffeningLaw};
         assert!(
             needs_both((Relaxation, 100.0), Bone, 6.0),
             "its form is known"
         );
         assert!(!needs_both((Relaxation, 100.0), Bone, 5.0));
-        assert!(!needs_both((Adhesion, 60.0), Bone, 6.0), "its form is not");
-        assert!(needs_both((Adhesion, 60.0), Bone, 11.0));
+        assert!(!needs_both((Relaxation, 1000.0), Bone, 9.0), "1 % of 1000");
+        assert!(needs_both((Relaxation, 1000.0), Bone, 11.0));
+        assert!(needs_both((Adhesion, 60.0), Bone, 6.0), "it acts apart");
+        assert!(
+            !needs_both((Saturation, 60.0), Bone, 8.0),
+            "its form is not known"
+        );
+        assert!(needs_both((Saturation, 60.0), Bone, 11.0));
         assert!(needs_both((Adhesion, 60.0), Offset, 6.0));
         assert!(!needs_both((Adhesion, 600.0), Offset, 11.0), "9 % of 600");
         assert!(!needs_both((Relaxation, 400.0), Offset, 6.0), "2 % of 400");

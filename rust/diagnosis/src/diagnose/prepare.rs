@@ -25,7 +25,8 @@ use crate::replay::KNOTS;
 const FORM_ERROR: [[f64; KNOTS]; 2] = [[0.01, 0.01, 0.004, 0.02], [0.05, 0.05, 0.03, 0.05]];
 /// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
 const FLAT: (f64, f64) = (0.03, 1.5);
-/// Standard deviation of first touch as an operator judges it, mm, as the fit takes it.
+/// Largest standard deviation of first touch as an operator judges it, mm, as the fit takes it. Where repeats show that first touch
+/// scatters by less, what a tool has in all its recordings is taken for no larger than that.
 const TOUCH: f64 = 0.05;
 /// Part of a recording's depth that first touch may be off by where it is read from the force.
 const UNKNOWN_TOUCH: f64 = 0.15;
@@ -165,7 +166,7 @@ impl Prepared {
             true => Vec::new(),
             false => of_place(
                 place,
-                (TOUCH.min(0.25 * deepest), deepest),
+                (touch(&self.noise).min(0.25 * deepest), deepest),
                 (is_flat(study), has_regions),
             ),
         };
@@ -257,7 +258,7 @@ fn shared(
         };
         let deep = first.deepest();
         let judged = match known[first.recording] {
-            true => TOUCH.min(0.25 * deep),
+            true => touch(noise).min(0.25 * deep),
             false => UNKNOWN_TOUCH * deep,
         };
         all.extend(of_place(place, (judged, deep), (is_flat, has_regions)));
@@ -266,6 +267,11 @@ fn shared(
         all.extend(of_course(c, course.deepest(), noise));
     }
     all
+}
+
+/// Standard deviation of the first touch that a tool has in all its recordings, mm.
+fn touch(noise: &Noise) -> f64 {
+    noise.zero_mm.map_or(TOUCH, |scatter| scatter.min(TOUCH))
 }
 
 /// What a tool at its site may be off by: its first touch as it was judged, against a depth (mm), and the model's form.
