@@ -86,3 +86,24 @@ pub fn sheet(effect: &ActiveEffect, region: u32, tissue: &Material) -> Sheet {
         takes: effect.shape[THICKNESS] * (1.0 - pulp / own.max(pulp)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::Effect;
+
+    /// 1 - 3 G / E of its thickness: nothing of a skin as soft as the pulp.
+    #[test]
+    fn a_skin_takes_of_the_thickness_what_is_stiffer_than_pulp() {
+        let tissue = Material {
+            g0_mpa: 0.01,
+            ..Material::default()
+        };
+        let mut effect = ActiveEffect::new(Effect::StiffSkin, 1.0);
+        (effect.shape[MODULUS], effect.shape[THICKNESS]) = (0.6, 0.4);
+        for (amplitude, takes) in [(1.0, 0.38), (0.1, 0.2), (0.05, 0.0), (0.0, 0.0)] {
+            effect.amplitude = amplitude;
+            assert!((sheet(&effect, 0, &tissue).takes - takes).abs() < 1e-12);
+        }
+    }
+}

@@ -2,10 +2,11 @@
 
 use super::course::Course;
 use super::elastic::radius;
-use super::mechanism::{Acts, Clock, Spectrum};
+use super::mechanism::{Acts, Clock};
 use super::memory::fade;
 use super::model::{Model, Setting};
 use super::screen::Screen;
+use super::spectrum::Spectrum;
 
 /// Power of the contact's radius with which the time of drainage grows: for small shares, and less by this for a share of 1; its bounds.
 ///
@@ -71,7 +72,6 @@ impl Screen<'_> {
         (clock, numbers): (Clock, &[f64]),
         (one, depths): (&Course, &[f64]),
     ) -> Vec<f64> {
-        let grows = growth(numbers[0]);
         let table = &self.elastic.places[one.place];
         let step = |n: usize| {
             let seconds = one.rows[n].time_s - one.rows[n - 1].time_s;
@@ -80,7 +80,7 @@ impl Screen<'_> {
                 Clock::Travel => (depths[n].max(0.0) - depths[n - 1].max(0.0)).abs(),
                 Clock::Area { reference_mm } => {
                     let middle = 0.5 * (depths[n].max(0.0) + depths[n - 1].max(0.0));
-                    let least = 0.1 * reference_mm;
+                    let (least, grows) = (0.1 * reference_mm, growth(numbers[0]));
                     seconds * (reference_mm / radius(table, middle).max(least)).powf(grows)
                 }
             }

@@ -19,6 +19,8 @@ const SKINS: [f64; 3] = [0.02, 0.15, 1.0];
 /// most at first touch.
 const RUNGS: usize = 30;
 const FEWER: (usize, usize) = (5, 10);
+// Each of the fewer depths is one of the others.
+const _: () = assert!(RUNGS.is_multiple_of(FEWER.0) && RUNGS.is_multiple_of(FEWER.1));
 
 /// How a table was changed, and by how much at each of its knots.
 #[derive(Debug, Clone)]

@@ -286,7 +286,7 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
 
 /// The part of a mechanism's evidence that screening's form of it may leave for a second one to take up; the largest that any did
 /// where it was alone is half of it to all of it (calibration). What acts apart from the loading leaves least to what changes the
-/// elastic answer: none took up more than 3 nats and 0.9 %.
+/// elastic answer: none took up more than 3.3 nats and 0.9 %.
 fn inexact(mechanism: &Mechanism, second: &Mechanism) -> f64 {
     match mechanism.effect {
         _ if acts_apart(mechanism) && is_answer(second) => 0.01,
@@ -321,14 +321,8 @@ fn is_memory(mechanism: &Mechanism) -> bool {
 
 /// True for what changes the elastic answer alone.
 fn is_static(mechanism: &Mechanism) -> bool {
-    matches!(
-        mechanism.effect,
-        Effect::Bone
-            | Effect::Compressibility
-            | Effect::StiffSkin
-            | Effect::StiffeningLaw
-            | Effect::FixtureCompliance
-    )
+    let others = [Effect::StiffeningLaw, Effect::FixtureCompliance];
+    is_answer(mechanism) || others.contains(&mechanism.effect)
 }
 
 /// Evidence from which a mechanism is said to be there.

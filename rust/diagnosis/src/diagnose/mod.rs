@@ -30,6 +30,7 @@ mod screen;
 mod sentence;
 mod shown;
 mod signs;
+mod spectrum;
 mod stiffness;
 
 pub use findings::{

@@ -1,7 +1,8 @@
 //! A screened model's free numbers: what they are, where they begin, and what they belong to.
 
-use super::mechanism::{Acts, MEDIANS_S, Mechanism, RANGES, Spectrum};
+use super::mechanism::{Acts, MEDIANS_S, Mechanism, RANGES};
 use super::screen::Screen;
+use super::spectrum::Spectrum;
 use crate::replay::KNOTS;
 
 /// A free number of the screened model.

@@ -7,10 +7,11 @@ use super::acting::RAMP;
 use super::elastic::{radius, skin_share};
 use super::findings::{Number, Switched};
 use super::ladder::Scored;
-use super::mechanism::{Acts, Measure, Mechanism, Spectrum};
+use super::mechanism::{Acts, Measure, Mechanism};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 use super::refit::Refit;
+use super::spectrum::Spectrum;
 
 /// Half width of a 90 % interval in standard errors.
 const HALF: f64 = 1.645;

@@ -166,7 +166,7 @@ impl Prepared {
             true => Vec::new(),
             false => of_place(
                 place,
-                (touch(&self.noise).min(0.25 * deepest), deepest),
+                (touch(self.noise.zero_mm).min(0.25 * deepest), deepest),
                 (is_flat(study), has_regions),
             ),
         };
@@ -258,7 +258,7 @@ fn shared(
         };
         let deep = first.deepest();
         let judged = match known[first.recording] {
-            true => touch(noise).min(0.25 * deep),
+            true => touch(noise.zero_mm).min(0.25 * deep),
             false => UNKNOWN_TOUCH * deep,
         };
         all.extend(of_place(place, (judged, deep), (is_flat, has_regions)));
@@ -269,9 +269,9 @@ fn shared(
     all
 }
 
-/// Standard deviation of the first touch that a tool has in all its recordings, mm.
-fn touch(noise: &Noise) -> f64 {
-    noise.zero_mm.map_or(TOUCH, |scatter| scatter.min(TOUCH))
+/// Standard deviation of the first touch that a tool has in all its recordings, mm, from that between repeats.
+fn touch(scatter_mm: Option<f64>) -> f64 {
+    scatter_mm.map_or(TOUCH, |scatter| scatter.min(TOUCH))
 }
 
 /// What a tool at its site may be off by: its first touch as it was judged, against a depth (mm), and the model's form.
@@ -306,5 +306,16 @@ fn about(kind: Kind, sd: f64, step: f64) -> Coordinate {
         bounds: (-MOST * sd, MOST * sd),
         prior: Some(sd),
         step,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tools_first_touch_is_known_as_well_as_repeats_show() {
+        let all = [None, Some(0.02), Some(0.4)].map(touch);
+        assert_eq!(all, [0.05, 0.02, 0.05]);
     }
 }

@@ -7,12 +7,13 @@ use super::course::Course;
 use super::findings::{Curve, Finding, Rival, Switched, When, Where};
 use super::gates::{DETECTED, Decision};
 use super::ladder::{Rungs, Scored};
-use super::mechanism::{Acts, Growth, Mechanism, Spectrum};
+use super::mechanism::{Acts, Growth, Mechanism};
 use super::model::Model;
 use super::numbers::{Free, told};
 use super::prepare::Prepared;
 use super::refit::{covariance, huber};
 use super::signs::looked_for;
+use super::spectrum::Spectrum;
 use crate::Phase;
 use crate::fit::Fitting;
 
