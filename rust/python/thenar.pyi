@@ -591,6 +591,17 @@ def hand(
     *,
     cancel: _Cancel | None = None,
 ) -> Record: ...
+def press_ball(
+    radius_mm: float,
+    depths_mm: ArrayLike,
+    thickness_mm: float,
+    poisson_ratio: float = 0.5,
+    *,
+    skin_mm: float = 0.0,
+    skin_ratio: float = 1.0,
+) -> NDArray[np.float64]:
+    """Forces over the shear modulus (mm2) of a ball on a flat layer, or on a layer under a stiff skin that stretches."""
+
 def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float64]: ...
 def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...
 def observe(signals: Mapping[str, Any], mat: Mat | None = None, effects: Sequence[Effect] | None = None) -> Record:

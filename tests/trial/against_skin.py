@@ -1,10 +1,10 @@
-"""How far Thenar's stiff skin is from that of finite elements: what a plate at small strains leaves out.
+"""How far Thenar's stiff skins are from that of finite elements: the plate of the contact model, the ball of the diagnosis.
 
     python -m trial.against_skin        (in `tests`)
 
 The calibration's pad under a skin of 0.4 mm and twenty times the modulus, pressed by three spheres to 14 % of its
-thickness. Prints by how much the skin raises the force, ours and theirs. The finite elements stretch at finite strain
-and give way through the skin, too; ours is a plate. Both lie within the pad's thickness.
+thickness. Prints by how much the skin raises the force: on a mesh, where it is a plate at small strains; under a ball
+(`thenar.press_ball`), where it gives way through its thickness and stretches; and theirs, at finite strain.
 """
 
 import numpy as np
@@ -44,9 +44,12 @@ def main():
         first, radius = protocols.STEPS[0], protocols.radius(PAD, tool)
         depths = protocols.course(PAD, name, protocols.STEPS)[first : 2 * first + 1, 1][list(ROWS)]
         raised = (theirs(name, "stiff_skin", 0, 1.0) / theirs(name, "none", 0, 0))[list(ROWS)] - 1.0
-        own = ours(radius, depths, [effect]) / ours(radius, depths, []) - 1.0
-        rows = zip(depths, 100 * own, 100 * raised, strict=True)
-        print(f"{tool:6s}" + ", ".join(f" {d:.2f} mm: +{a:.0f} % (theirs +{b:.0f} %)" for d, a, b in rows))
+        plate = ours(radius, depths, [effect]) / ours(radius, depths, []) - 1.0
+        thickness = protocols.PADS[PAD][1]
+        ball = thenar.press_ball(radius, depths, thickness, skin_mm=SKIN_MM, skin_ratio=SKIN_RATIO)
+        ball = ball / thenar.press_ball(radius, depths, thickness) - 1.0
+        rows = zip(depths, 100 * plate, 100 * ball, 100 * raised, strict=True)
+        print(f"{tool:6s}" + ", ".join(f" {d:.2f} mm: +{a:.0f}, {b:.0f} (theirs {c:.0f}) %" for d, a, b, c in rows))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 //! A [`Skin`] is prepared once from a rest mesh, its regions and materials, and pressed in any posture against any
 //! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
 
+pub mod ball;
 pub mod parameters;
 pub mod effects;
 pub mod instrument;

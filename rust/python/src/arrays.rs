@@ -151,6 +151,13 @@ impl<'a, 'py> Argument<'a, 'py> {
         })
     }
 
+    /// (n,) numbers, n at least 1.
+    pub fn list(&self) -> PyResult<Vec<f64>> {
+        self.numbers("an (n,) array of numbers", |shape| {
+            shape.len() == 1 && shape[0] > 0
+        })
+    }
+
     /// (n,) numbers.
     pub fn numbers_of(&self, n: usize) -> PyResult<Vec<f64>> {
         self.numbers(&format!("a ({n},) array of numbers"), |shape| shape == [n])

@@ -15,6 +15,7 @@ mod walk;
 mod contact;
 mod instrument;
 mod hand;
+mod ball;
 mod complementarity;
 mod recordings;
 mod study;
@@ -59,6 +60,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module
     )?)?;
     module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
+    module.add_function(wrap_pyfunction!(ball::press_ball, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
     module.add_function(wrap_pyfunction!(effects::effects, module)?)?;
     module.add_function(wrap_pyfunction!(parquet_table::parquet, module)?)?;

@@ -1,0 +1,66 @@
+//! A ball on a layer, with and without a stiff skin that stretches.
+
+use thenar_contact::ball::{Ball, StiffSkin};
+
+const DEPTHS: [f64; 6] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.77];
+
+fn forces((thickness, nu, radius): (f64, f64, f64), skin: Option<(f64, f64)>) -> Vec<f64> {
+    let skin = skin.map(|(thickness_mm, ratio)| StiffSkin {
+        thickness_mm,
+        ratio,
+    });
+    Ball::new((thickness, nu), radius, DEPTHS[5])
+        .forces(skin, &DEPTHS)
+        .unwrap()
+}
+
+/// Hertz: F = 4/3 E* sqrt(R) d^1.5 with E* = 2 G / (1 - nu).
+#[test]
+fn without_a_skin_a_half_space_answers_as_hertz_has_it() {
+    for nu in [0.5, 0.3] {
+        for (force, depth) in forces((f64::INFINITY, nu, 6.0), None).iter().zip(DEPTHS) {
+            let hertz = 8.0 / 3.0 / (1.0 - nu) * 6.0f64.sqrt() * depth.powf(1.5);
+            println!(
+                "nu {nu}, {depth} mm: {:+.2} %",
+                100.0 * (force / hertz - 1.0)
+            );
+            assert!((force / hertz - 1.0).abs() < 3e-3, "{nu} {depth}");
+        }
+    }
+}
+
+/// A thick skin on a soft layer is a half space of the skin; one as soft as the layer is the layer.
+#[test]
+fn a_skin_has_both_limits() {
+    let (plain, same) = (
+        forces((5.5, 0.5, 5.0), None),
+        forces((5.5, 0.5, 5.0), Some((0.5, 1.0))),
+    );
+    for (a, b) in same.iter().zip(&plain) {
+        assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
+    }
+    let (thick, hertz) = (
+        forces((400.0, 0.5, 5.0), Some((200.0, 1.0001))),
+        forces((f64::INFINITY, 0.5, 5.0), None),
+    );
+    for (a, b) in thick.iter().zip(&hertz) {
+        assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
+    }
+}
+
+/// Lengths twice as large: areas, and so forces over G, four times.
+#[test]
+fn forces_go_as_the_square_of_all_lengths() {
+    let skin = |scale: f64| StiffSkin {
+        thickness_mm: 0.4 * scale,
+        ratio: 20.0,
+    };
+    let at = |scale: f64| {
+        let depths = DEPTHS.map(|d| d * scale);
+        let ball = Ball::new((5.5 * scale, 0.5), 5.0 * scale, depths[5]);
+        ball.forces(Some(skin(scale)), &depths).unwrap()
+    };
+    for (a, b) in at(2.0).iter().zip(at(1.0)) {
+        assert!((a / b - 4.0).abs() < 1e-6, "{a} {b}");
+    }
+}
