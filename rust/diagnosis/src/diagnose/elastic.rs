@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
+use super::skins;
 use crate::DiagnosisError;
 use crate::fit::Fitting;
 use crate::replay::{PressTable, Table};
@@ -12,22 +13,20 @@ use crate::replay::{PressTable, Table};
 const THICKNESSES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.8];
 /// Poisson's ratios at which compressibility is tabulated, from the base's.
 const POISSON: [f64; 3] = [0.49, 0.46, 0.4];
-/// Bending stiffness of a skin over that of the catalogue's skin, at which a stiff skin is tabulated.
-const SKINS: [f64; 3] = [0.02, 0.15, 1.0];
-
-/// Depths at which a table is pressed, and at which what changes it: their ratio is smooth, that of a stiff skin least so, which bears
-/// most at first touch.
+/// Depths at which a table is pressed, and at which what changes it: their ratio is smooth.
 const RUNGS: usize = 30;
-const FEWER: (usize, usize) = (5, 10);
+const FEWER: usize = 5;
 // Each of the fewer depths is one of the others.
-const _: () = assert!(RUNGS.is_multiple_of(FEWER.0) && RUNGS.is_multiple_of(FEWER.1));
+const _: () = assert!(RUNGS.is_multiple_of(FEWER));
 
 /// How a table was changed, and by how much at each of its knots.
 #[derive(Debug, Clone)]
 pub struct Variant {
     /// What changes it.
     pub effect: Effect,
-    /// Coordinate of each knot: logarithm of the thickness over the base's, lost part of Poisson's ratio, logarithm-like stiffness.
+    /// Which of the effect's tables: a stiff skin has one by thickness.
+    pub form: usize,
+    /// Coordinate of each knot: logarithm of the thickness over the base's, lost part of Poisson's ratio, number of the skin's modulus.
     pub knots: Vec<f64>,
     /// By place, knot and rung (as many as the base has): logarithm of the force over the base's.
     pub log_ratio: Vec<Vec<Vec<f64>>>,
@@ -97,35 +96,33 @@ impl Elastic {
         let start = fitting.replay.tissue.materials.clone();
         let flat = flattened(&start, g_mpa);
         let (known, places) = (self.places.len(), fitting.replay.places());
-        let base = tables(fitting, (&[], &flat, RUNGS), (known, control))?;
-        for (number, (effect, knots)) in plan(&start[0]).into_iter().enumerate() {
+        let at: Vec<usize> = (known..places).collect();
+        let base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
+        let mut added = Vec::new();
+        for (effect, knots) in plan(&start[0]) {
             let mut log_ratio = vec![Vec::new(); places - known];
-            let rungs = match effect {
-                Effect::StiffSkin => FEWER.1,
-                _ => FEWER.0,
-            };
             for (_, changed) in &knots {
                 let tabled = match changed {
                     None => base.clone(),
                     Some(effect) => tables(
                         fitting,
-                        (std::slice::from_ref(effect), &flat, rungs),
-                        (known, control),
+                        (std::slice::from_ref(effect), &flat, FEWER),
+                        (&at, control),
                     )?,
                 };
                 for (place, (with, without)) in tabled.iter().zip(&base).enumerate() {
                     log_ratio[place].push(ratios(with, without));
                 }
             }
-            match self.variants.get_mut(number) {
-                Some(variant) => variant.log_ratio.extend(log_ratio),
-                None => self.variants.push(Variant {
-                    effect,
-                    knots: knots.into_iter().map(|(knot, _)| knot).collect(),
-                    log_ratio,
-                }),
-            }
+            added.push(Variant {
+                effect,
+                form: 0,
+                knots: knots.into_iter().map(|(knot, _)| knot).collect(),
+                log_ratio,
+            });
         }
+        added.extend(skins::tabulate(fitting, (&base, &flat), (known, control))?);
+        self.take(added);
         fitting.replay.set_effects(&[], control)?;
         self.places
             .extend(base.into_iter().map(|table| tabled(table, g_mpa)));
@@ -133,9 +130,21 @@ impl Elastic {
         Ok(())
     }
 
-    /// The variant of an effect.
-    pub fn variant(&self, effect: Effect) -> Option<&Variant> {
-        self.variants.iter().find(|v| v.effect == effect)
+    /// Tables of places that come after those that are known.
+    fn take(&mut self, added: Vec<Variant>) {
+        match self.variants.is_empty() {
+            true => self.variants = added,
+            false => {
+                let both = self.variants.iter_mut().zip(added);
+                both.for_each(|(known, more)| known.log_ratio.extend(more.log_ratio));
+            }
+        }
+    }
+
+    /// The variant of an effect, of that form.
+    pub fn variant(&self, effect: Effect, form: usize) -> Option<&Variant> {
+        let is_it = |v: &&Variant| v.effect == effect && v.form == form;
+        self.variants.iter().find(is_it)
     }
 }
 
@@ -205,24 +214,7 @@ fn plan(base: &Material) -> Vec<(Effect, Vec<Knot>)> {
     if knots.len() > 1 {
         all.push((Effect::Compressibility, knots));
     }
-    let mut knots = vec![(0.0, None)];
-    knots.extend(SKINS.iter().enumerate().map(|(k, share)| {
-        let mut skin = ActiveEffect::new(Effect::StiffSkin, *share);
-        skin.amplitude = *share;
-        ((k + 1) as f64, Some(skin))
-    }));
-    all.push((Effect::StiffSkin, knots));
     all
-}
-
-/// The stiffness of a skin at a coordinate of its variant, over that of the catalogue's skin.
-pub fn skin_share(at: f64) -> f64 {
-    if at <= 1.0 {
-        return SKINS[0] * at;
-    }
-    let k = (at.floor() as usize).min(SKINS.len() - 1);
-    let share = at - k as f64;
-    libm::exp(libm::log(SKINS[k - 1]) * (1.0 - share) + libm::log(SKINS[k]) * share)
 }
 
 /// Materials with one modulus at every depth: that of the first region, the others in proportion.
@@ -236,14 +228,19 @@ fn flattened(start: &[Material], g_mpa: f64) -> Vec<Material> {
     start.iter().map(one).collect()
 }
 
-fn tables(
+/// The tools of these places pressed with effects, materials and a number of depths.
+///
+/// # Errors
+/// What the contact model says of a press, or `Cancelled`.
+pub fn tables(
     fitting: &mut Fitting,
     (effects, materials, rungs): (&[ActiveEffect], &[Material], usize),
-    (from, control): (usize, &Control<'_>),
+    (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<PressTable>, DiagnosisError> {
     fitting.replay.set_effects(effects, control)?;
-    (from..fitting.replay.places())
-        .map(|at| {
+    places
+        .iter()
+        .map(|&at| {
             control.check().map_err(|_| DiagnosisError::Cancelled)?;
             fitting.replay.ladder((at, rungs), materials, control)
         })
@@ -251,7 +248,7 @@ fn tables(
 }
 
 /// Logarithm of one table's force over another's at the latter's rungs; at first touch, where both vanish, as at the first rung.
-fn ratios(with: &PressTable, without: &PressTable) -> Vec<f64> {
+pub fn ratios(with: &PressTable, without: &PressTable) -> Vec<f64> {
     let stride = (without.roots.len() - 1) / (with.roots.len() - 1);
     let one = |(k, a): (usize, &f64)| {
         let b = without.force[k * stride];

@@ -2,6 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
+use super::skins::THICKNESSES_MM;
 use super::spectrum::Spectrum;
 
 /// A mechanism as screening models it; its free numbers stand in the vector of parameters.
@@ -37,8 +38,8 @@ pub enum Acts {
         /// Depth at which it lets go of the largest tool, over the largest depth; negative: above the skin.
         lets_go: f64,
     },
-    /// A tabulated change of the response; its coordinate is free.
-    Tabled,
+    /// A tabulated change of the response, by the number of its table; its coordinate is free.
+    Tabled(usize),
     /// The modulus grows with this measure by this law; its rate is free.
     Stiffens(Measure, Growth),
     /// Later recordings of the session read more or less by a factor; its logarithm is free.
@@ -141,7 +142,7 @@ impl Mechanism {
                 ..
             } => &STARTS,
             Acts::Saturates => &CEILINGS,
-            Acts::Tabled if self.effect == Effect::StiffSkin => &SKINS,
+            Acts::Tabled(_) if self.effect == Effect::StiffSkin => &SKINS,
             _ => &[],
         }
     }
@@ -155,7 +156,7 @@ impl Mechanism {
     pub fn shows_in_loading(&self) -> bool {
         matches!(
             self.acts,
-            Acts::Tabled
+            Acts::Tabled(_)
                 | Acts::Stiffens(..)
                 | Acts::Offset
                 | Acts::Saturates
@@ -197,7 +198,7 @@ const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.
 /// Further starts of the logarithm of a ceiling over the largest force.
 const CEILINGS: [&[f64]; 3] = [&[-0.03], &[-0.3], &[-0.8]];
 /// Further starts of a stiff skin's coordinate.
-const SKINS: [&[f64]; 2] = [&[1.3], &[2.3]];
+const SKINS: [&[f64]; 2] = [&[2.0], &[3.5]];
 
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 3] = [0.08, 0.4, 2.0];
@@ -235,10 +236,11 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
     let one = |effect, acts| Mechanism { effect, acts };
     all.extend(LETS_GO.map(|lets_go| one(Effect::Adhesion, Acts::Clings { lets_go })));
     if scales.has_bone {
-        all.push(one(Effect::Bone, Acts::Tabled));
+        all.push(one(Effect::Bone, Acts::Tabled(0)));
     }
-    all.push(one(Effect::Compressibility, Acts::Tabled));
-    all.push(one(Effect::StiffSkin, Acts::Tabled));
+    all.push(one(Effect::Compressibility, Acts::Tabled(0)));
+    let skins = 0..THICKNESSES_MM.len();
+    all.extend(skins.map(|form| one(Effect::StiffSkin, Acts::Tabled(form))));
     for growth in [Growth::Exponential, Growth::Square] {
         let grows = |measure| one(Effect::StiffeningLaw, Acts::Stiffens(measure, growth));
         all.extend(scales.has_strain.then(|| grows(Measure::Strain)));
@@ -278,9 +280,9 @@ mod tests {
         }
     }
 
-    /// A start has a number for each that is free; a stiff skin is sought between all the stiffnesses that are tabulated.
+    /// A start has a number for each that is free; a stiff skin is sought among soft ones, as a fit by itself does, and stiff ones.
     #[test]
-    fn starts_are_whole_and_those_of_a_stiff_skin_lie_in_every_stretch_of_its_table() {
+    fn starts_are_whole_and_those_of_a_stiff_skin_lie_far_apart() {
         let tried = singles(Scales {
             deepest: 1.0,
             radius: 1.0,
@@ -297,6 +299,6 @@ mod tests {
             .find(|m| m.effect == Effect::StiffSkin)
             .unwrap();
         let stretches: Vec<usize> = skin.starts().iter().map(|s| s[0] as usize).collect();
-        assert_eq!(stretches, [1, 2], "a fit by itself begins in the first");
+        assert_eq!(stretches, [2, 3], "a fit by itself begins in the first");
     }
 }

@@ -30,6 +30,7 @@ mod screen;
 mod sentence;
 mod shown;
 mod signs;
+mod skins;
 mod spectrum;
 mod stiffness;
 

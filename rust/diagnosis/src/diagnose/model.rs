@@ -139,7 +139,7 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64
             (libm::log(RANGE), libm::log(RANGES.0), libm::log(RANGES.1))
         }
         Acts::Clings { .. } => (0.01, 0.0, 0.6),
-        Acts::Tabled => match screen.elastic.variant(mechanism.effect) {
+        Acts::Tabled(form) => match screen.elastic.variant(mechanism.effect, *form) {
             Some(v) => {
                 let (low, high) = (v.knots[0], v.knots[v.knots.len() - 1]);
                 (0.1 * high, low, high)

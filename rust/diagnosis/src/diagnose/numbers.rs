@@ -4,19 +4,22 @@ use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 
 use super::acting::RAMP;
-use super::elastic::{radius, skin_share};
+use super::elastic::radius;
 use super::findings::{Number, Switched};
 use super::ladder::Scored;
 use super::mechanism::{Acts, Measure, Mechanism};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 use super::refit::Refit;
+use super::skins::{THICKNESSES_MM, ratio};
 use super::spectrum::Spectrum;
 
 /// Half width of a 90 % interval in standard errors.
 const HALF: f64 = 1.645;
 /// Share of the force that the catalogue's drainage loses, with its own drained Poisson's ratio of 0.3.
 const DROP: f64 = 0.285_714;
+/// Factor to the middle between thicknesses of a skin that are tried.
+const BETWEEN: f64 = 1.3;
 /// Time, in a^2 / D, of the main branch of the catalogue's drainage.
 const MAIN_BRANCH: f64 = 0.605;
 
@@ -26,6 +29,8 @@ pub struct Free {
     pub values: Vec<f64>,
     /// Covariance of their errors.
     covariance: DMatrix<f64>,
+    /// The pulp's modulus at first touch as it was fitted with them, MPa.
+    shear_mpa: f64,
 }
 
 impl Free {
@@ -44,6 +49,7 @@ impl Free {
         Free {
             values: own.iter().map(|k| refit.at[*k]).collect(),
             covariance: refit.covariance.select_rows(own).select_columns(own),
+            shear_mpa: libm::exp(refit.at[0]),
         }
     }
 
@@ -145,8 +151,15 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
                 vec![("work_j_per_m2", work.0, work.1, work.2), range],
             )
         }
-        Acts::Tabled if mechanism.effect == Effect::StiffSkin => {
-            (interval(free, &|x| skin_share(x.max(0.0))), Vec::new())
+        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => {
+            let pulp = 3.0 * free.shear_mpa;
+            let modulus = interval(free, &|x| pulp * ratio(x));
+            let thick = THICKNESSES_MM[*form];
+            let shape = vec![
+                ("modulus_mpa", modulus.0, modulus.1, modulus.2),
+                ("thickness_mm", thick, thick / BETWEEN, thick * BETWEEN),
+            ];
+            (whole, shape)
         }
         acts => {
             let told = one(ready, (mechanism.effect, acts)).map(|(name, scale)| {
@@ -176,11 +189,11 @@ fn one<'a>(
     let own = ready.base_material;
     let (least, most) = ready.scales.forces;
     let (name, scale): (_, Scale<'a>) = match *acts {
-        Acts::Tabled if effect == Effect::Bone => (
+        Acts::Tabled(_) if effect == Effect::Bone => (
             "thickness_mm",
             Box::new(move |x| own.thickness_mm * libm::exp(x)),
         ),
-        Acts::Tabled => (
+        Acts::Tabled(_) => (
             "poisson_ratio",
             Box::new(move |x| own.poisson_ratio - x.max(0.0)),
         ),

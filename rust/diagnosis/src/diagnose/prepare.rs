@@ -208,7 +208,7 @@ fn scales(study: &Study, courses: &[Course], elastic: &Elastic) -> Scales {
         radius: libm::exp(logs.sum::<f64>() / elastic.places.len() as f64),
         forces,
         has_bone: elastic
-            .variant(thenar_contact::effects::Effect::Bone)
+            .variant(thenar_contact::effects::Effect::Bone, 0)
             .is_some(),
         has_strain,
     }

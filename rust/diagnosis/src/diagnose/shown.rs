@@ -246,12 +246,12 @@ fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str,
     match &scored.mechanisms[0].acts {
         Acts::Fades { .. } | Acts::Softens { .. } => (size, "share of the force", 1.0),
         Acts::Clings { .. } => (size, "share of the largest force", 1.0),
-        Acts::Tabled => match scored.mechanisms[0].effect {
+        Acts::Tabled(_) => match scored.mechanisms[0].effect {
             Effect::Bone => (libm::exp(size) - 1.0, "share of the thickness", 1.0),
             Effect::Compressibility => (size, "of Poisson's ratio", 0.5),
             _ => {
-                let share = super::elastic::skin_share(size);
-                (share, "of the catalogue's skin", 1.0)
+                let ratio = super::skins::ratio(size);
+                (ratio, "times as stiff as pulp", super::skins::MOST)
             }
         },
         Acts::Stiffens(_, Growth::Square) => (size, "share of the force", 1.0),

@@ -24,9 +24,9 @@ impl Screen<'_> {
         log += form.map(|(size, mode)| size * mode).sum::<f64>();
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             match &mechanism.acts {
-                Acts::Tabled => {
+                Acts::Tabled(form) => {
                     let value = set.of[number][0];
-                    log += self.tabled(mechanism.effect, value, (place, depth));
+                    log += self.tabled((mechanism.effect, *form), value, (place, depth));
                 }
                 Acts::Stiffens(measure, growth) => {
                     let (rate, x) = (set.of[number][0], self.measure(*measure, (place, depth)));
@@ -38,8 +38,13 @@ impl Screen<'_> {
         modulus * libm::exp(log)
     }
 
-    fn tabled(&self, effect: Effect, value: f64, (place, depth): (usize, f64)) -> f64 {
-        let Some(variant) = self.elastic.variant(effect) else {
+    fn tabled(
+        &self,
+        (effect, form): (Effect, usize),
+        value: f64,
+        (place, depth): (usize, f64),
+    ) -> f64 {
+        let Some(variant) = self.elastic.variant(effect, form) else {
             return 0.0;
         };
         let table = &self.elastic.places[place];
