@@ -14,6 +14,8 @@ mod gain;
 mod gates;
 mod ladder;
 mod local;
+#[cfg(test)]
+mod made;
 mod mechanism;
 mod memory;
 mod model;
@@ -32,6 +34,7 @@ mod shown;
 mod signs;
 mod spectrum;
 mod stiffness;
+mod trial;
 
 pub use findings::{
     Curve, Diagnosis, Finding, Gain, Number, Rival, Spread, Suggestion, Switched, Verdict, When,
