@@ -43,15 +43,6 @@ pub fn ready(
     let measured: Vec<Measured> = recordings.iter().map(|(_, all)| measured(all)).collect();
     let noise = noise(&measured, sigma);
     let courses = courses(recordings);
-    let deepest = courses.iter().map(Course::deepest).fold(0.0, f64::max);
-    let peaks = || courses.iter().map(Course::most);
-    let modulus = |kind| Coordinate {
-        kind,
-        start: 0.0,
-        bounds: (-3.0, 3.0),
-        prior: None,
-        step: 1e-3,
-    };
     let prepared = Prepared {
         whitening: Whitening::new(&measured, &noise, &vec![true; measured.len()]),
         values: recordings
@@ -61,16 +52,7 @@ pub fn ready(
         sigma: noise.sigma.concat(),
         noise,
         shared: [Kind::First, Kind::Limit].map(modulus).to_vec(),
-        scales: Scales {
-            deepest,
-            radius: 1.0,
-            forces: (
-                peaks().fold(f64::INFINITY, f64::min),
-                peaks().fold(0.0, f64::max),
-            ),
-            has_bone: false,
-            has_strain: false,
-        },
+        scales: scales(&courses),
         elastic: Elastic {
             drained: vec![1.0; tools.len()],
             studied: tools.len(),
@@ -82,6 +64,30 @@ pub fn ready(
         courses,
     };
     (prepared, measured)
+}
+
+fn modulus(kind: Kind) -> Coordinate {
+    Coordinate {
+        kind,
+        start: 0.0,
+        bounds: (-3.0, 3.0),
+        prior: None,
+        step: 1e-3,
+    }
+}
+
+fn scales(courses: &[Course]) -> Scales {
+    let peaks = || courses.iter().map(Course::most);
+    Scales {
+        deepest: courses.iter().map(Course::deepest).fold(0.0, f64::max),
+        radius: 1.0,
+        forces: (
+            peaks().fold(f64::INFINITY, f64::min),
+            peaks().fold(0.0, f64::max),
+        ),
+        has_bone: false,
+        has_strain: false,
+    }
 }
 
 fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<Course> {
