@@ -50,6 +50,34 @@ def test_colors_follow_range_and_palette():
     assert group.nodes["Range"].inputs["From Max"].default_value == 77
 
 
+def test_live_colors_anew_only_where_something_presses_or_pressed(monkeypatch):
+    from thenar_blender.live import watch
+    from thenar_blender.scene import colors as scene_colors
+
+    objects = stage.scene()
+    bpy.context.scene.thenar.live = True
+    colored, linear = [], scene_colors.linear
+    monkeypatch.setattr(
+        scene_colors, "linear", lambda pressure, *look: colored.append(len(pressure)) or linear(pressure, *look)
+    )
+
+    def lifted(move):
+        """By object, numbers of vertices that a rise of the hand (mm) colors anew, and that bear or bore pressure."""
+        colored.clear()
+        before = [stage.attribute(obj, "pressure_kpa") > 0 for obj in objects]
+        objects[0].location.z += move * stage.MM
+        bpy.context.view_layer.update()
+        assert watch.follow_now(bpy.context)
+        pressed = [was | (stage.attribute(obj, "pressure_kpa") > 0) for obj, was in zip(objects, before, strict=True)]
+        return list(colored), [int(part.sum()) for part in pressed]
+
+    for move in (-0.3, 9.0, -9.2):
+        anew, pressed = lifted(move)
+        assert len(anew) == 2 and all(0 < k <= most for k, most in zip(anew, pressed, strict=True)), (anew, pressed)
+    lifted(9.0)
+    assert lifted(1.0) == ([], [0, 0]), "nothing presses or pressed"
+
+
 def test_fit_range_covers_the_peak():
     hand, product = stage.scene()
     stage.solve()

@@ -3,6 +3,8 @@
 
 mod scenes;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use scenes::{lattice, material, paraboloid, press_posed};
 use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start};
 use thenar_surface::{Mesh, Product, Vec3};
@@ -129,4 +131,34 @@ fn other_presses_of_that_skin_know_nothing_of_it() {
     assert!(free.displacement.iter().all(|u| u.norm() < 1e-9));
     let back = follow(&mut live, &product, &posed, Start::Live);
     assert_same(&back, &full, 5);
+}
+
+/// A press that is broken off after its solve is no last press, but what it solved may be held: skin that holds it bears the forces
+/// of that posture and not those of the press before.
+#[test]
+fn held_skin_keeps_the_forces_of_a_press_that_was_broken_off() {
+    let mesh = lattice(14.0, 1.3, 0.3);
+    let product = paraboloid(60.0, 1.5, 30.0);
+    let (before, then) = (bumped(&mesh, 0.0), bumped(&mesh, 0.8));
+    let mut live = skin(&mesh);
+    follow(&mut live, &product, &before, Start::Live);
+    let is_solved = AtomicBool::new(false);
+    let control = Control {
+        cancelled: &|| is_solved.load(Ordering::Relaxed),
+        progress: &|stage, _| is_solved.store(stage == "fields", Ordering::Relaxed),
+    };
+    let press = Press {
+        product: &product,
+        posed: Some(&then),
+        force: None,
+        drag: None,
+        start: Start::Live,
+    };
+    assert!(live.press(&press, &control).is_err());
+    let shown = follow(&mut live, &product, &then, Start::Live);
+    assert_eq!(
+        shown.convergence.cg_steps, 0,
+        "nothing moved since: all of it is held"
+    );
+    assert_same(&shown, &press_posed(&mut skin(&mesh), &product, &then), 1);
 }

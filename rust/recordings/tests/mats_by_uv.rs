@@ -117,6 +117,25 @@ fn areas_come_from_the_mesh_where_the_maker_states_none() {
     );
 }
 
+/// A sensel of a mat must lie on the product, also one that reads zero throughout; only one that is missing lies nowhere.
+#[test]
+fn a_sensel_beside_every_chart_is_refused_whatever_it_reads() {
+    let beyond = format!("{FILE}columns_uv = [2, 0]\n");
+    let read = |cell: &str| {
+        let table =
+            format!("time_s,row,col,pressure_kpa\n0,0,0,3\n0,0,1,{cell}\n0,1,0,5\n0,1,1,{cell}\n");
+        load(&beyond, &quarter(0.25), &table)
+    };
+    for cell in ["4", "0"] {
+        let said = read(cell).unwrap_err();
+        let wanted = "the sensel in row 0, column 1 lies at (1.5000, 0.2500) of the UV map, outside of every chart";
+        assert!(said.contains(wanted), "{cell}: {said}");
+    }
+    let placed = read("").unwrap();
+    let is_placed: Vec<bool> = placed.iter().map(Option::is_some).collect();
+    assert_eq!(is_placed, [true, false, true, false]);
+}
+
 #[test]
 fn places_that_the_map_does_not_say_are_refused() {
     let twice = format!(

@@ -255,7 +255,11 @@ fn soft(x: f64, width: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::made::{Reading, ready, tool};
+    use super::super::mechanism::Mechanism;
     use super::*;
+    use crate::Phase;
+    use thenar_contact::effects::Effect;
 
     /// Against the gap itself: Hertz's displacement outside the contact (Johnson 1985, Eq. 3.42a) beside a sphere, with numbers.
     #[test]
@@ -309,5 +313,34 @@ mod tests {
         assert!((moment - RAMP / 3.0).abs() < 1e-6);
         assert_eq!(spanned(1.0), 1.0);
         assert_eq!(spanned(7.0), 1.0);
+    }
+
+    /// Spheres of 1 and 8 mm lift the skin until it lets go by heights as 1 to 2.
+    #[test]
+    fn larger_tools_lift_skin_by_the_third_root_of_their_radius() {
+        let (most, sigma, lets_go) = (2.0, 0.1, -0.3);
+        let depths: Vec<f64> = (0..=4000).map(|k| 2.0 - 1e-3 * f64::from(k)).collect();
+        let reading = |d: &f64| (most - d, *d, Phase::Unload, 1.0);
+        let way: Vec<Reading> = depths.iter().map(reading).collect();
+        let sphere = |radius: f64| tool(most, |d| d, move |d| (radius * d).sqrt());
+        let tools = vec![sphere(8.0), sphere(1.0)];
+        let (ready, _) = ready(tools, &[(0, way.clone()), (1, way)], sigma);
+        let screen = ready.screen();
+        let clings = [Mechanism {
+            effect: Effect::Adhesion,
+            acts: Acts::Clings { lets_go },
+        }];
+        let model = Model::new(&screen, &clings);
+        let set = model.setting(&screen, &[0.0, 0.0, 0.2, libm::log(0.1)]);
+        let highest = |course: &Course| {
+            let mut forces = vec![0.0; depths.len()];
+            screen.cling(&model, &set, ((course, &depths), &mut forces));
+            let pulled = depths.iter().zip(&forces).filter(|(_, f)| **f < 0.0);
+            pulled.map(|(d, _)| -d).fold(0.0, f64::max)
+        };
+        let heights: Vec<f64> = screen.courses.iter().map(highest).collect();
+        for (height, root) in heights.iter().zip([1.0, 0.5]) {
+            assert!((height + lets_go * most * root).abs() < 2e-3, "{heights:?}");
+        }
     }
 }

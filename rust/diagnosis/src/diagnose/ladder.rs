@@ -6,10 +6,10 @@ use thenar_contact::effects::Effect;
 use super::checks::{GainStep, Unsteady, gain_step, pulls, unsteady};
 use super::course::{changes_speed, goes_on};
 use super::mechanism::{Acts, Mechanism, singles};
-use super::model::{Kind, Model};
+use super::model::Kind;
 use super::prepare::Prepared;
-use super::refit::{Refit, refit};
-use super::screen::Screen;
+use super::refit::Refit;
+use super::trial::Trial;
 use crate::fit::blocks;
 use crate::{DiagnosisError, Measured, Phase};
 use thenar_contact::Control;
@@ -133,64 +133,7 @@ impl Scale {
     }
 }
 
-/// Tries hypotheses on one study.
-struct Trial<'a> {
-    ready: &'a Prepared,
-    screen: &'a Screen<'a>,
-    /// Samples that repeats share, by number of their block.
-    blocks: Vec<usize>,
-    /// Optimum of the base, where fits begin.
-    from: Vec<f64>,
-    control: &'a Control<'a>,
-}
-
 impl Trial<'_> {
-    fn step(&self, share: f64) -> Result<(), DiagnosisError> {
-        let step = self.control.step("trying explanations", share);
-        step.map_err(|_| DiagnosisError::Cancelled)
-    }
-
-    /// Fits from an optimum of fewer mechanisms, the first of these.
-    fn score(&self, mechanisms: &[Mechanism], from: &[f64]) -> Scored {
-        let model = Model::new(self.screen, mechanisms);
-        let refit = refit(self.screen, &model, from);
-        Scored {
-            coherent: coherent(self.screen, &refit.residual, &self.blocks),
-            mechanisms: mechanisms.to_vec(),
-            refit,
-            evidence: 0.0,
-        }
-    }
-
-    /// The best fit of one mechanism from all its starts.
-    fn single(&self, mechanism: &Mechanism) -> Scored {
-        let one = std::slice::from_ref(mechanism);
-        let mut best = self.score(one, &self.from);
-        for start in mechanism.starts() {
-            let other = self.score(one, &[&self.from[..], start].concat());
-            if other.refit.deviance < best.refit.deviance {
-                best = other;
-            }
-        }
-        best
-    }
-
-    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, and, where it has
-    /// other starts, also where it ended alone.
-    fn pair(&self, (better, set): (&Scored, &[Mechanism; 2]), singles: &[Scored]) -> Scored {
-        let plain = self.score(set, &better.refit.at);
-        let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
-        let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) else {
-            return plain;
-        };
-        let own = &alone.refit.at[self.from.len()..];
-        let other = self.score(set, &[&better.refit.at[..], own].concat());
-        match other.refit.deviance < plain.refit.deviance {
-            true => other,
-            false => plain,
-        }
-    }
-
     /// Every variant of every single mechanism, and a step of the gain if repeats show one.
     fn singles(&self, step: Option<GainStep>) -> Result<Vec<Scored>, DiagnosisError> {
         let mut tried = singles(self.ready.scales);
@@ -305,24 +248,4 @@ fn gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
         place.map_or(0.0, |k| base.refit.at[k])
     };
     (0..ready.courses.len()).map(of).collect()
-}
-
-/// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
-fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
-    let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
-    let mut sums = vec![(0.0, 0.0f64, 0.0); count];
-    for (sample, _, _) in screen.phases() {
-        let r = residual[sample].clamp(-6.0, 6.0);
-        let sum = &mut sums[blocks[sample]];
-        *sum = (sum.0 + r, sum.1 + 1.0, sum.2 + r * r);
-    }
-    let used: Vec<_> = sums.iter().filter(|s| s.1 > 1.0).collect();
-    let own: f64 = used
-        .iter()
-        .map(|(sum, n, squares)| squares - sum * sum / n)
-        .sum();
-    let degrees: f64 = used.iter().map(|s| s.1 - 1.0).sum();
-    let variance = if degrees > 0.0 { own / degrees } else { 1.0 };
-    let between: f64 = used.iter().map(|(sum, n, _)| sum * sum / n).sum();
-    (between - variance * used.len() as f64).max(0.0)
 }

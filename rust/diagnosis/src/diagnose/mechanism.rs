@@ -262,7 +262,11 @@ fn instrument() -> Vec<Mechanism> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::made::{Reading, ready, tool};
+    use super::super::model::Model;
+    use super::super::refit::refit;
     use super::*;
+    use crate::Phase;
 
     /// As `thenar_contact::effects::stiffening_law` has its laws: `exp(x / r)` and `1 + (x / r)^2`, r its reference.
     #[test]
@@ -300,5 +304,41 @@ mod tests {
             .unwrap();
         let stretches: Vec<usize> = skin.starts().iter().map(|s| s[0] as usize).collect();
         assert_eq!(stretches, [2, 3], "a fit by itself begins in the first");
+    }
+
+    /// Load that fades by travel on a spring, loaded and unloaded: `x' = d' - x |d'| / length`, in closed form.
+    fn rubbed(deepest: f64, length: f64, share: f64) -> Vec<Reading> {
+        let way = (0..=160).map(|k| f64::from(k) / 80.0 * deepest);
+        let read = |way: f64| {
+            let up = (way - deepest).max(0.0);
+            let depth = way - 2.0 * up;
+            let last = length * (1.0 - libm::exp(-way.min(deepest) / length));
+            let left = (last + length) * libm::exp(-up / length) - length;
+            let left = if up > 0.0 { left } else { last };
+            let force = 10.0 * (depth - share * (depth - left)).max(0.0);
+            let phase = if up > 0.0 { Phase::Unload } else { Phase::Load };
+            (way, depth, phase, force)
+        };
+        way.map(read).collect()
+    }
+
+    /// Lengths between those that are modeled, and beyond, from a twentieth of the largest depth to five times as much.
+    #[test]
+    fn friction_within_tissue_is_met_at_every_length() {
+        let deepest = 2.0;
+        for over in [0.05, 0.08, 0.2, 0.4, 0.8, 1.3, 2.0, 3.0, 5.0] {
+            let readings = rubbed(deepest, over * deepest, 0.4);
+            let most = readings.iter().fold(0.0, |m, r| f64::max(m, r.3));
+            let punch = tool(deepest, |depth| 10.0 * depth, |_| 1.0);
+            let (ready, _) = ready(vec![punch], &[(0, readings.clone())], 1e-3 * most);
+            let screen = ready.screen();
+            let mut all = singles(ready.scales);
+            all.retain(|m| m.effect == Effect::RateIndependentLoss);
+            let found = refit(&screen, &Model::new(&screen, &all), &[]);
+            let pairs = found.simulated.iter().zip(&readings);
+            let squares: f64 = pairs.map(|(s, r)| (s - r.3).powi(2)).sum();
+            let rms = (squares / readings.len() as f64).sqrt();
+            assert!(rms < 4e-3 * most, "{over}: {rms} N of {most} N");
+        }
     }
 }

@@ -14,6 +14,8 @@ mod gain;
 mod gates;
 mod ladder;
 mod local;
+#[cfg(test)]
+mod made;
 mod mechanism;
 mod memory;
 mod model;
@@ -33,6 +35,7 @@ mod signs;
 mod skins;
 mod spectrum;
 mod stiffness;
+mod trial;
 
 pub use findings::{
     Curve, Diagnosis, Finding, Gain, Number, Rival, Spread, Suggestion, Switched, Verdict, When,
@@ -48,6 +51,7 @@ use thenar_recordings::Study;
 use crate::comparison::Comparison;
 use crate::fit::Fitting;
 use crate::{DiagnosisError, Options, compare};
+use course::Course;
 use gates::Decision;
 use ladder::Rungs;
 use prepare::{Prepared, prepare};
@@ -74,71 +78,84 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     control: &Control<'_>,
 ) -> Result<Diagnosis, DiagnosisError> {
-    // Each part begins its own count; what the caller is told does not fall.
-    let furthest = Mutex::new(0.0);
-    let tell = |stage: &str, share: f64| {
-        let mut furthest = furthest.lock().unwrap_or_else(PoisonError::into_inner);
-        *furthest = f64::max(*furthest, share);
-        (control.progress)(stage, *furthest);
-    };
-    let part = |from: f64, to: f64| {
-        let tell = &tell;
-        move |stage: &str, share: f64| tell(stage, from + (to - from) * share.clamp(0.0, 1.0))
-    };
-    let progress = part(0.0, 0.3);
-    let within = Control {
-        cancelled: control.cancelled,
-        progress: &progress,
-    };
+    let parts = Parts::new(control);
     let asked = Options {
         seed: options.seed,
         ..Options::default()
     };
-    let comparison = compare(study, &asked, &within)?;
+    let comparison = parts.run((0.0, 0.3), |within| compare(study, &asked, within))?;
     let quiet = Control {
         cancelled: control.cancelled,
         progress: &|_, _| {},
     };
     let mut fitting = Fitting::new(study, &quiet)?;
-    control
-        .step("pressing the tools", 0.3)
-        .map_err(|_| DiagnosisError::Cancelled)?;
-    let finer = refine::refined(study, &fitting);
-    if let Some(finer) = &finer {
-        fitting = Fitting::new(finer, &quiet)?;
+    step(control, ("pressing the tools", 0.3))?;
+    if let Some(finer) = refine::refined(study, &fitting) {
+        fitting = Fitting::new(&finer, &quiet)?;
     }
-    let ready = prepare(study, &mut fitting, &quiet)?;
-    let progress = part(0.4, 0.95);
-    let within = Control {
-        cancelled: control.cancelled,
-        progress: &progress,
-    };
-    let rungs = match &ready {
-        Some(ready) => Some(ladder::climb(ready, fitting.measured(), &within)?),
-        None => None,
-    };
-    let found = match (&ready, &rungs) {
-        (Some(ready), Some(rungs)) => {
-            let decision = gates::decide(ready, rungs);
-            let next = next_record::suggestions(
-                study,
-                &mut fitting,
-                (ready, rungs),
-                (&decision.cannot_tell, &quiet),
-            )?;
-            let ladder = (ready, rungs, decision);
-            told(study, (comparison, &fitting), (ladder, next), options)
+    let found = match prepare(study, &mut fitting, &quiet)? {
+        Some(ready) => {
+            let climb = |within: &Control<'_>| ladder::climb(&ready, fitting.measured(), within);
+            let rungs = parts.run((0.4, 0.95), climb)?;
+            let ladder = (&ready, &rungs);
+            explained(study, (comparison, &mut fitting), ladder, (options, &quiet))?
         }
-        _ => local::without_curves(study, comparison),
+        None => local::without_curves(study, comparison),
     };
-    control
-        .step("diagnosing", 1.0)
-        .map_err(|_| DiagnosisError::Cancelled)?;
+    step(control, ("diagnosing", 1.0))?;
     Ok(found)
 }
 
+fn step(control: &Control<'_>, (stage, share): (&str, f64)) -> Result<(), DiagnosisError> {
+    let step = control.step(stage, share);
+    step.map_err(|_| DiagnosisError::Cancelled)
+}
+
+/// Parts of a run, each of which begins its own count; what the caller is told does not fall.
+struct Parts<'a> {
+    control: &'a Control<'a>,
+    furthest: Mutex<f64>,
+}
+
+impl<'a> Parts<'a> {
+    fn new(control: &'a Control<'a>) -> Parts<'a> {
+        Parts {
+            control,
+            furthest: Mutex::new(0.0),
+        }
+    }
+
+    /// Runs a part that takes this stretch of the whole.
+    fn run<T>(&self, (from, to): (f64, f64), part: impl FnOnce(&Control<'_>) -> T) -> T {
+        let tell = |stage: &str, share: f64| {
+            let share = from + (to - from) * share.clamp(0.0, 1.0);
+            let mut furthest = self.furthest.lock().unwrap_or_else(PoisonError::into_inner);
+            *furthest = f64::max(*furthest, share);
+            (self.control.progress)(stage, *furthest);
+        };
+        part(&Control {
+            cancelled: self.control.cancelled,
+            progress: &tell,
+        })
+    }
+}
+
+/// What the rungs decide, and what should be recorded next.
+fn explained(
+    study: &Study,
+    (comparison, fitting): (Comparison, &mut Fitting),
+    (ready, rungs): (&Prepared, &Rungs),
+    (options, quiet): (&DiagnoseOptions, &Control<'_>),
+) -> Result<Diagnosis, DiagnosisError> {
+    let decision = gates::decide(ready, rungs);
+    let asked = (&decision.cannot_tell[..], quiet);
+    let next = next_record::suggestions(study, fitting, (ready, rungs), asked)?;
+    let ladder = (ready, rungs, decision);
+    Ok(told(study, (comparison, fitting), (ladder, next), options))
+}
+
 /// What the recordings could not show.
-fn untested(courses: &[course::Course]) -> Option<String> {
+fn untested(courses: &[Course]) -> Option<String> {
     let missing = match (course::goes_on(courses), course::unloads(courses)) {
         (false, _) if !course::changes_speed(courses) => {
             "memory, hysteresis, adhesion and drift were not tested: no recording holds, unloads or changes its speed"
@@ -180,15 +197,7 @@ fn told(
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
-    let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
-    if found.gain.as_ref().is_some_and(is_no_better) {
-        found.notes.push(
-            "on held-out recordings the finding gains no more than its change on the wrong recordings at the wrong moments does"
-                .to_owned(),
-        );
-    }
-    local::add_place(study, &mut found);
-    found.notes.extend(untested(&ready.courses));
+    add_notes(study, &mut found, &ready.courses);
     found.sentence = sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
@@ -196,4 +205,17 @@ fn told(
         &decision.reason,
     );
     found
+}
+
+/// What a reader should be told besides, and the place that maps show.
+fn add_notes(study: &Study, found: &mut Diagnosis, courses: &[Course]) {
+    let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
+    if found.gain.as_ref().is_some_and(is_no_better) {
+        found.notes.push(
+            "on held-out recordings the finding gains no more than its change on the wrong recordings at the wrong moments does"
+                .to_owned(),
+        );
+    }
+    local::add_place(study, found);
+    found.notes.extend(untested(courses));
 }

@@ -238,19 +238,8 @@ fn shared(
     (courses, elastic): (&[Course], &Elastic),
     noise: &Noise,
 ) -> Vec<Coordinate> {
-    let material = fitting.replay.tissue.materials[0];
     let known = &fitting.replay.observed.is_touch_known;
-    let modulus = |kind, start: f64| Coordinate {
-        kind,
-        start: libm::log(start),
-        bounds: (libm::log(start) - MODULUS, libm::log(start) + MODULUS),
-        prior: None,
-        step: 1e-3,
-    };
-    let mut all = vec![
-        modulus(Kind::First, material.g0_mpa),
-        modulus(Kind::Limit, material.g_lim_mpa),
-    ];
+    let mut all = moduli(&fitting.replay.tissue.materials[0]).to_vec();
     let has_regions = fitting.replay.tissue.regions.len() > 1;
     for place in 0..elastic.places.len() {
         let Some(first) = courses.iter().find(|c| c.place == place) else {
@@ -267,6 +256,24 @@ fn shared(
         all.extend(of_course(c, course.deepest(), noise));
     }
     all
+}
+
+/// The modulus at first touch and the one at which it stops growing, about the study's own.
+fn moduli(material: &Material) -> [Coordinate; 2] {
+    let start = [
+        (Kind::First, material.g0_mpa),
+        (Kind::Limit, material.g_lim_mpa),
+    ];
+    start.map(|(kind, modulus)| {
+        let start = libm::log(modulus);
+        Coordinate {
+            kind,
+            start,
+            bounds: (start - MODULUS, start + MODULUS),
+            prior: None,
+            step: 1e-3,
+        }
+    })
 }
 
 /// Standard deviation of the first touch that a tool has in all its recordings, mm, from that between repeats.

@@ -14,8 +14,8 @@ pub(crate) use map::interpolated;
 pub use measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint};
 
 use nalgebra::Vector3;
-use thenar_recordings::Study;
-use thenar_recordings::study::{Data, StudyRecording};
+use thenar_recordings::study::{Data, Indenter, PlacedSensel, Site, StudyRecording};
+use thenar_recordings::{Curve, PressureMap, Study};
 
 use crate::replay::tool_at;
 
@@ -50,8 +50,42 @@ pub fn observe(study: &Study) -> Observed {
     observed
 }
 
+/// One recording, and whether its depth of first touch is known.
 fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
-    let mut measured = Measured {
+    let said = Said::of(study, recording);
+    let mut measured = unread(recording);
+    let is_touch_known = match &recording.data {
+        Data::Indentation(curve) => said.curve(curve, &mut measured),
+        Data::PressureMap {
+            map,
+            sensels,
+            motion,
+        } => {
+            let seen = (&**map, motion.as_deref());
+            said.map(seen, sensels.as_deref(), &mut measured)
+        }
+        Data::Scan {
+            mesh,
+            at_time_s,
+            depth_mm,
+            motion,
+        } => {
+            let when = (*at_time_s, *depth_mm, motion.as_deref());
+            said.scan(&mesh.positions, when, &mut measured);
+            true
+        }
+        Data::Handprint { print, ink_kpa, .. } => {
+            measured.unknown.extend(print.unknown.iter().cloned());
+            measured.unknown.extend(of_print(*ink_kpa));
+            true
+        }
+    };
+    (measured, is_touch_known)
+}
+
+/// What the study says of a recording by its name, without its data.
+fn unread(recording: &StudyRecording) -> Measured {
+    Measured {
         name: recording.name.clone(),
         protocol: match recording.protocol.as_str() {
             "" => recording.name.clone(),
@@ -65,88 +99,103 @@ fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
         scan: None,
         is_calibrated: true,
         unknown: Vec::new(),
-    };
-    let site = study.sites.iter().find(|site| site.name == recording.site);
-    let direction = site.map_or(-Vector3::z(), |site| site.direction.into());
-    match &recording.data {
-        Data::Indentation(curve) => {
-            let seen = curve::observe(curve, across(direction), MOST_MOMENTS);
-            measured.moments = seen.moments;
-            measured.samples = seen.samples;
-            measured.unknown = seen.unknown;
-            if curve.unknown.iter().any(|text| text.contains("of the tip")) {
-                measured.unknown.push(format!(
-                    "the tool '{}' is the study's assumption and not the recording's: the moduli hold for that tool alone",
-                    recording.indenter
-                ));
-            }
-            (measured, seen.is_touch_known)
+    }
+}
+
+/// What the study says of a recording's site and tool.
+struct Said<'a> {
+    study: &'a Study,
+    tool: &'a str,
+    site: Option<&'a Site>,
+    /// Direction of travel.
+    direction: Vector3<f64>,
+}
+
+impl<'a> Said<'a> {
+    fn of(study: &'a Study, recording: &'a StudyRecording) -> Said<'a> {
+        let site = study.sites.iter().find(|site| site.name == recording.site);
+        Said {
+            study,
+            tool: &recording.indenter,
+            site,
+            direction: site.map_or(-Vector3::z(), |site| site.direction.into()),
         }
-        Data::PressureMap {
+    }
+
+    fn indenter(&self) -> Option<&'a Indenter> {
+        self.study.indenters.iter().find(|i| i.name == self.tool)
+    }
+
+    fn curve(&self, curve: &Curve, measured: &mut Measured) -> bool {
+        let seen = curve::observe(curve, across(self.direction), MOST_MOMENTS);
+        measured.moments = seen.moments;
+        measured.samples = seen.samples;
+        measured.unknown = seen.unknown;
+        if curve.unknown.iter().any(|text| text.contains("of the tip")) {
+            measured.unknown.push(format!(
+                "the tool '{}' is the study's assumption and not the recording's: the moduli hold for that tool alone",
+                self.tool
+            ));
+        }
+        seen.is_touch_known
+    }
+
+    fn map(
+        &self,
+        (map, motion): (&PressureMap, Option<&Curve>),
+        sensels: Option<&[Option<PlacedSensel>]>,
+        measured: &mut Measured,
+    ) -> bool {
+        let mut placed = sensels.iter().copied().flatten().flatten();
+        let lacks = placed.any(|sensel| sensel.normal.is_none());
+        // A tool that cannot be is refused where it presses.
+        let tool = self
+            .indenter()
+            .filter(|_| lacks)
+            .zip(self.site)
+            .and_then(|(indenter, site)| tool_at(indenter, site, FAR).ok());
+        let instrument = self.study.instrument.as_ref();
+        let seen = map::Seen {
+            tool: tool.as_ref(),
             map,
             sensels,
             motion,
-        } => {
-            let lacks = sensels
-                .iter()
-                .flatten()
-                .flatten()
-                .any(|s| s.normal.is_none());
-            let indenter = study
-                .indenters
-                .iter()
-                .find(|i| lacks && i.name == recording.indenter);
-            // A tool that cannot be is refused where it presses.
-            let tool = indenter
-                .zip(site)
-                .and_then(|(indenter, site)| tool_at(indenter, site, FAR).ok());
-            let seen = map::Seen {
-                tool: tool.as_ref(),
-                map,
-                sensels: sensels.as_deref(),
-                motion: motion.as_deref(),
-                saturation: study.instrument.as_ref().and_then(|i| i.saturation_kpa),
-                threshold: study.instrument.as_ref().and_then(|i| i.threshold_kpa),
-                across: across(direction),
-                direction,
-            };
-            let is_touch_known = map::observe(&seen, &mut measured, MOST_FRAMES);
-            (measured, is_touch_known)
-        }
-        Data::Scan {
-            mesh,
-            at_time_s,
-            depth_mm,
-            motion,
-        } => {
-            let seen = scan::Seen {
-                points: &mesh.positions,
-                when: (*at_time_s, *depth_mm, motion.as_deref()),
-                across: across(direction),
-                direction,
-                site,
-                indenter: study
-                    .indenters
-                    .iter()
-                    .find(|i| i.name == recording.indenter),
-            };
-            scan::observe(&seen, &study.skin.mesh, &mut measured);
-            (measured, true)
-        }
-        Data::Handprint { print, ink_kpa, .. } => {
-            // No samples: no fit sees it.
-            measured.unknown.extend(print.unknown.iter().cloned());
-            measured.unknown.push(
-                "no parameter is fitted to it: it is compared with the model that the other recordings give, pressed as hard as the study says"
-                    .to_owned(),
-            );
-            measured.unknown.push(match *ink_kpa > 0.0 {
-                true => format!("skin is taken to leave ink where it presses with more than {ink_kpa} kPa"),
-                false => "skin is taken to leave ink wherever it touches; give ink_kpa if ink asks for more".to_owned(),
-            });
-            (measured, true)
-        }
+            saturation: instrument.and_then(|i| i.saturation_kpa),
+            threshold: instrument.and_then(|i| i.threshold_kpa),
+            across: across(self.direction),
+            direction: self.direction,
+        };
+        map::observe(&seen, measured, MOST_FRAMES)
     }
+
+    fn scan(
+        &self,
+        points: &[Vector3<f64>],
+        when: (Option<f64>, Option<f64>, Option<&Curve>),
+        measured: &mut Measured,
+    ) {
+        let seen = scan::Seen {
+            points,
+            when,
+            across: across(self.direction),
+            direction: self.direction,
+            site: self.site,
+            indenter: self.indenter(),
+        };
+        scan::observe(&seen, &self.study.skin.mesh, measured);
+    }
+}
+
+/// What cannot be known from a print; it has no samples, and no fit sees it.
+fn of_print(ink_kpa: f64) -> [String; 2] {
+    [
+        "no parameter is fitted to it: it is compared with the model that the other recordings give, pressed as hard as the study says"
+            .to_owned(),
+        match ink_kpa > 0.0 {
+            true => format!("skin is taken to leave ink where it presses with more than {ink_kpa} kPa"),
+            false => "skin is taken to leave ink wherever it touches; give ink_kpa if ink asks for more".to_owned(),
+        },
+    ]
 }
 
 /// The direction in which a slide counts: the skin's x, laid across the travel; y where x is the travel.

@@ -206,3 +206,92 @@ fn pitch(mat: &Mat, cells: &BTreeMap<[u32; 2], usize>) -> [f64; 2] {
     let side = mat.areas.first().map_or(1.0, |area| area.sqrt());
     [usual([0, 1]).unwrap_or(side), usual([1, 0]).unwrap_or(side)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::prints::PosePart;
+    use nalgebra::Vector3;
+
+    /// Cells of 1 mm from the lower left row by row: both touch, ink alone, simulated alone, neither; half a cell touches.
+    fn drawn() -> String {
+        let places = [[0, 0], [0, 1], [1, 0], [1, 1]];
+        let center = |[row, column]: [u32; 2]| Vector3::new(column.into(), row.into(), 0.0);
+        let mat = Mat {
+            centers: places.map(center).to_vec(),
+            normals: vec![Vector3::z(); 4],
+            areas: vec![1.0; 4],
+            places: places.map(Some).to_vec(),
+        };
+        let pose = || PosePart {
+            value: 0.0,
+            low: 0.0,
+            high: 0.0,
+        };
+        let print = Printed {
+            recorded: vec![1.0, 0.5, 0.49, 0.0],
+            simulated: vec![0.5, 0.49, 1.0, 0.0],
+            as_laid: vec![0.0; 4],
+            ink_kpa: 0.0,
+            pose: [pose(), pose(), pose()],
+            mirrored_overlap: 0.0,
+            is_mirrored: false,
+            regions: Vec::new(),
+            on_skin: Vec::new(),
+            beside: 0.0,
+            is_at_end: false,
+            worst: Vec::new(),
+        };
+        picture(&mat, &print, "")
+    }
+
+    /// A fill by the name that the caption gives it.
+    fn hue(fill: &str) -> &'static str {
+        let channel = |at: usize| i32::from_str_radix(&fill[at..at + 2], 16).expect("hex");
+        match [1, 3, 5].map(channel) {
+            [r, g, b] if r - b > 60 && (b..r).contains(&g) => "orange",
+            [r, g, b] if b - r > 60 && (r..b).contains(&g) => "blue",
+            [r, g, b] if r.min(g).min(b) > 220 => "paper",
+            [r, g, b] if r.max(g).max(b) - r.min(g).min(b) < 30 => "gray",
+            _ => "none of these",
+        }
+    }
+
+    /// In the picture, where rows count upward, and before the words of the legend over it.
+    #[test]
+    fn cells_and_legend_have_the_colors_of_the_caption() {
+        let svg = drawn();
+        let (mut cells, mut legend) = (Vec::new(), Vec::new());
+        for rect in svg.split("<rect ").skip(1) {
+            let of = |key: &str| {
+                let (_, after) = rect.split_once(&format!("{key}='")).expect(key);
+                after.split('\'').next().expect("a quote")
+            };
+            let number = |key: &str| of(key).parse::<f64>().expect(key);
+            if number("width") < 300.0 {
+                let one = (-number("y"), number("x"), hue(of("fill")), rect);
+                match number("y") < TOP {
+                    true => legend.push(one),
+                    false => cells.push(one),
+                }
+            }
+        }
+        cells.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let hues: Vec<&str> = cells.iter().map(|cell| cell.2).collect();
+        assert_eq!(hues, ["gray", "orange", "blue", "paper"]);
+        let told = [("gray", "both"), ("orange", "ink"), ("blue", "simulat")];
+        assert_eq!(legend.len(), told.len());
+        for (one, (hue, word)) in legend.iter().zip(told) {
+            assert!(one.2 == hue && one.3.contains(word), "{one:?}");
+        }
+    }
+
+    /// Two cells beside each other have six edges.
+    #[test]
+    fn outlines_go_around_ink_and_simulation() {
+        let svg = drawn();
+        let edges = |style: &str| svg.matches(style).count();
+        assert_eq!(edges(INK_EDGE), 6);
+        assert_eq!(edges(&format!("stroke='{SIMULATED}'")), 6);
+    }
+}

@@ -1,0 +1,212 @@
+//! Fits of hypotheses to one study, each from all its starts.
+
+use thenar_contact::Control;
+
+use super::ladder::Scored;
+use super::mechanism::Mechanism;
+use super::model::Model;
+use super::prepare::Prepared;
+use super::refit::refit;
+use super::screen::Screen;
+use crate::DiagnosisError;
+
+/// Tries hypotheses on one study.
+pub struct Trial<'a> {
+    /// The study.
+    pub ready: &'a Prepared,
+    /// Its screen.
+    pub screen: &'a Screen<'a>,
+    /// Samples that repeats share, by number of their block.
+    pub blocks: Vec<usize>,
+    /// Optimum of the base, where fits begin.
+    pub from: Vec<f64>,
+    /// Who watches.
+    pub control: &'a Control<'a>,
+}
+
+impl Trial<'_> {
+    /// Tells how far the trial has come.
+    ///
+    /// # Errors
+    /// `Cancelled`.
+    pub fn step(&self, share: f64) -> Result<(), DiagnosisError> {
+        let step = self.control.step("trying explanations", share);
+        step.map_err(|_| DiagnosisError::Cancelled)
+    }
+
+    /// Fits from an optimum of fewer mechanisms, the first of these.
+    pub fn score(&self, mechanisms: &[Mechanism], from: &[f64]) -> Scored {
+        let model = Model::new(self.screen, mechanisms);
+        let refit = refit(self.screen, &model, from);
+        Scored {
+            coherent: coherent(self.screen, &refit.residual, &self.blocks),
+            mechanisms: mechanisms.to_vec(),
+            refit,
+            evidence: 0.0,
+        }
+    }
+
+    /// The best fit of one mechanism from all its starts.
+    pub fn single(&self, mechanism: &Mechanism) -> Scored {
+        let one = std::slice::from_ref(mechanism);
+        let mut best = self.score(one, &self.from);
+        for start in mechanism.starts() {
+            let other = self.score(one, &[&self.from[..], start].concat());
+            if other.refit.deviance < best.refit.deviance {
+                best = other;
+            }
+        }
+        best
+    }
+
+    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, and, where it has
+    /// other starts, also where it ended alone.
+    pub fn pair(&self, (better, set): (&Scored, &[Mechanism; 2]), singles: &[Scored]) -> Scored {
+        let plain = self.score(set, &better.refit.at);
+        let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
+        let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) else {
+            return plain;
+        };
+        let own = &alone.refit.at[self.from.len()..];
+        let other = self.score(set, &[&better.refit.at[..], own].concat());
+        match other.refit.deviance < plain.refit.deviance {
+            true => other,
+            false => plain,
+        }
+    }
+}
+
+/// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
+fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
+    let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
+    let mut sums = vec![(0.0, 0.0f64, 0.0); count];
+    for (sample, _, _) in screen.phases() {
+        let r = residual[sample].clamp(-6.0, 6.0);
+        let sum = &mut sums[blocks[sample]];
+        *sum = (sum.0 + r, sum.1 + 1.0, sum.2 + r * r);
+    }
+    let used: Vec<_> = sums.iter().filter(|s| s.1 > 1.0).collect();
+    let own: f64 = used
+        .iter()
+        .map(|(sum, n, squares)| squares - sum * sum / n)
+        .sum();
+    let degrees: f64 = used.iter().map(|s| s.1 - 1.0).sum();
+    let variance = if degrees > 0.0 { own / degrees } else { 1.0 };
+    let between: f64 = used.iter().map(|(sum, n, _)| sum * sum / n).sum();
+    (between - variance * used.len() as f64).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::made::{Reading, ready, tool};
+    use super::super::mechanism::Acts;
+    use super::*;
+    use crate::Phase;
+    use crate::fit::blocks;
+    use thenar_contact::effects::Effect;
+
+    /// Presses of flat punches at 1 mm/s and a hold, as an amplifier with an offset reads them up to a ceiling; a spike of the first
+    /// stands above that by a factor e^spike, so that the study's largest force is no ceiling.
+    struct Clipped {
+        ceiling_n: f64,
+        offset_n: f64,
+        spike: f64,
+        /// Part of the force that fades.
+        fades: f64,
+        /// Stiffness of the punches, N/mm.
+        stiffness: &'static [f64],
+    }
+
+    impl Clipped {
+        fn readings(&self, place: usize) -> Vec<Reading> {
+            let read = |k: u32| {
+                let time = f64::from(k) / 40.0;
+                let depth = time.min(2.0);
+                let left = 1.0 - self.fades * (1.0 - libm::exp(-(time - 1.0).max(0.0) / 0.3));
+                let true_n = self.stiffness[place] * depth * left;
+                let force = match (place, k) {
+                    (0, 60) => self.ceiling_n * libm::exp(self.spike),
+                    _ => (true_n + self.offset_n).min(self.ceiling_n),
+                };
+                (time, depth, Phase::Load, force)
+            };
+            (0..=100).map(read).collect()
+        }
+
+        fn on_trial<T>(&self, ask: impl Fn(&Trial<'_>) -> T) -> T {
+            let punch = |k: &f64| tool(2.0, |depth| k * depth, |_| 1.0);
+            let places = 0..self.stiffness.len();
+            let recordings: Vec<_> = places.map(|k| (k, self.readings(k))).collect();
+            let tools = self.stiffness.iter().map(punch).collect();
+            let (ready, measured) = ready(tools, &recordings, 0.05);
+            let screen = ready.screen();
+            let mut trial = Trial {
+                ready: &ready,
+                screen: &screen,
+                blocks: blocks(&measured),
+                from: Vec::new(),
+                control: &Control::none(),
+            };
+            trial.from = trial.score(&[], &[]).refit.at;
+            ask(&trial)
+        }
+    }
+
+    const LOW: Clipped = Clipped {
+        ceiling_n: 15.0,
+        offset_n: 0.0,
+        spike: 0.9,
+        fades: 0.0,
+        stiffness: &[10.0],
+    };
+    const CEILING: Mechanism = Mechanism {
+        effect: Effect::Saturation,
+        acts: Acts::Saturates,
+    };
+
+    /// From any one start, a fit misses some of them.
+    #[test]
+    fn a_ceiling_is_found_near_the_largest_force_and_far_below_it() {
+        let middle = Clipped {
+            ceiling_n: 13.0,
+            offset_n: 0.6,
+            spike: 0.5,
+            ..LOW
+        };
+        let near = Clipped {
+            ceiling_n: 10.0,
+            offset_n: -1.5,
+            spike: 0.05,
+            fades: 0.3,
+            stiffness: &[10.0, 2.0],
+        };
+        for study in [LOW, middle, near] {
+            let found = study.on_trial(|trial| trial.single(&CEILING));
+            let at = found.refit.at.last().expect("a ceiling");
+            assert!((at + study.spike).abs() < 5e-3, "{at} {}", study.spike);
+        }
+    }
+
+    /// An offset and a ceiling far below the largest force: from the offset alone only the ceiling that was found alone leads there.
+    #[test]
+    fn a_pairs_second_begins_also_where_it_ended_alone() {
+        let study = Clipped {
+            offset_n: 1.2,
+            ..LOW
+        };
+        let offset = Mechanism {
+            effect: Effect::Offset,
+            acts: Acts::Offset,
+        };
+        let both = study.on_trial(|trial| {
+            let singles = [&offset, &CEILING].map(|m| trial.single(m));
+            let set = [offset.clone(), CEILING];
+            trial.pair((&singles[0], &set), &singles).refit.at
+        });
+        let [.., offset, ceiling] = both[..] else {
+            panic!("two numbers")
+        };
+        assert!((offset - study.offset_n).abs() < 0.02, "{offset}");
+        assert!((ceiling + study.spike).abs() < 5e-3, "{ceiling}");
+    }
+}
