@@ -19,6 +19,10 @@ const STIFFEST: f64 = 1e5;
 /// thickness and stretches by its own deflection (von Karman; Timoshenko & Woinowsky-Krieger 1959, 96). Raises SolveError for numbers
 /// that are none of a press.
 #[pyfunction]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "Python names them, with defaults"
+)]
 #[pyo3(signature = (radius_mm, depths_mm, thickness_mm, poisson_ratio = 0.5, *, skin_mm = 0.0, skin_ratio = 1.0))]
 pub fn press_ball(
     py: Python<'_>,
