@@ -600,7 +600,7 @@ def press_ball(
     skin_mm: float = 0.0,
     skin_ratio: float = 1.0,
 ) -> NDArray[np.float64]:
-    """Forces over the shear modulus (mm2) of a ball on a flat layer, or on a layer under a stiff skin that stretches."""
+    """Forces over the shear modulus (mm2) of a ball on a flat layer, bare or under a stiff skin that stretches."""
 
 def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float64]: ...
 def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...

@@ -1,4 +1,4 @@
-"""How far Thenar's stiff skins are from that of finite elements: the plate of the contact model, the ball of the diagnosis.
+"""How far Thenar's stiff skins are from that of finite elements: the contact model's plate, the diagnosis' ball.
 
     python -m trial.against_skin        (in `tests`)
 

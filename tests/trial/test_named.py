@@ -9,7 +9,13 @@ from trial import cases
 
 # Cases of the calibration split by what they hold; their labels are opened by score.py alone.
 SILENT = ("case_462", "case_157", "case_189", "case_447")
-NAMED = {"case_132": "relaxation", "case_061": "cycle_softening", "case_274": "rate_independent_loss"}
+NAMED = {
+    "case_132": "relaxation",
+    "case_061": "cycle_softening",
+    "case_274": "rate_independent_loss",
+    "case_278": "stiff_skin",
+}
+SKINS = {"case_278": (0.7, 0.348), "case_147": (0.4, 0.424)}  # planted: thickness in mm, Young's modulus in MPa
 READ = {"case_015": "saturation", "case_020": "timing"}
 
 
@@ -31,6 +37,16 @@ def test_an_effect_of_the_skin_is_named_and_predicts_what_was_held_out(case, tmp
     assert [one["effect"] for one in said["findings"]] == [NAMED[case]]
     assert said["verdict"] == "missing_physics" and [NAMED[case]] in said["names_90"]
     assert said["fit"]["reducible_error_removed"]["value"] > max(0.5, said["fit"]["placebo_removed"])
+
+
+@pytest.mark.parametrize("case", SKINS)
+def test_a_stiff_skin_bends_as_the_one_that_was_planted(case, tmp_path):
+    """What is seen first is its stiffness against bending, E t^3 / 9; thickness and modulus by themselves less."""
+    (finding,) = found(case, tmp_path)["findings"]
+    told, (thickness_mm, modulus_mpa) = finding["parameters"], SKINS[case]
+    bending = told["modulus_mpa"]["value"] * told["thickness_mm"]["value"] ** 3
+    assert 0.6 < bending / (modulus_mpa * thickness_mm**3) < 1.6
+    assert told["thickness_mm"]["low"] < thickness_mm < told["thickness_mm"]["high"]
 
 
 @pytest.mark.parametrize("case", READ)

@@ -1,5 +1,7 @@
 //! A ball on a layer, with and without a stiff skin that stretches.
 
+#![allow(clippy::unwrap_used)]
+
 use thenar_contact::ball::{Ball, StiffSkin};
 
 const DEPTHS: [f64; 6] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.77];
