@@ -10,7 +10,7 @@ use super::prepare::Prepared;
 use super::sentence::words;
 
 /// Evidence, nats, from which anything is said to be missing.
-pub const DETECTED: f64 = 6.0;
+const DETECTED: f64 = 6.0;
 /// The same of what changes the elastic answer of the skin alone, which in 37 studies without it reached 2.5 at most (calibration), and
 /// of a fixture that yields: the model's own form may be off by as much, and looks like the latter.
 const DETECTED_STATIC: (f64, f64) = (4.0, 6.0);
@@ -325,8 +325,8 @@ fn is_static(mechanism: &Mechanism) -> bool {
     is_answer(mechanism) || others.contains(&mechanism.effect)
 }
 
-/// Evidence from which a mechanism is said to be there.
-fn needed(mechanism: &Mechanism) -> f64 {
+/// Evidence from which a mechanism is said to be there, nats.
+pub fn needed(mechanism: &Mechanism) -> f64 {
     match mechanism.effect {
         Effect::FixtureCompliance => DETECTED_STATIC.1,
         Effect::Gain | Effect::Adhesion => DETECTED_ELSE,

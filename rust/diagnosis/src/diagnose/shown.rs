@@ -5,7 +5,7 @@ use thenar_recordings::Study;
 
 use super::course::Course;
 use super::findings::{Curve, Finding, Rival, Switched, When, Where};
-use super::gates::{DETECTED, Decision};
+use super::gates::{Decision, needed};
 use super::ladder::{Rungs, Scored};
 use super::mechanism::{Acts, Growth, Mechanism};
 use super::model::Model;
@@ -219,8 +219,9 @@ pub fn smallest_seen(
             } => error_at_start(ready, rungs, mechanism),
             _ => Free::of(ready, scored, 0).first().1,
         };
-        let needed = (2.0 * (DETECTED + mechanism.price() as f64) * rungs.temper).sqrt();
-        let (value, unit, most) = in_words(ready, scored, needed * error);
+        let least = needed(mechanism) + mechanism.price() as f64;
+        let errors = (2.0 * least * rungs.temper).sqrt();
+        let (value, unit, most) = in_words(ready, scored, errors * error);
         let name = scored.mechanisms[0].effect.name();
         found.push((name, Some(value).filter(|v| *v <= most), unit));
     }
