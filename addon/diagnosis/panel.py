@@ -257,7 +257,7 @@ def _draw_entry(layout, context, entry):
 def _draw_row(column, context, row):
     """A word and what stands beside it; below it where the sidebar is too narrow for both."""
     if len(row.label) + len(row.text) + 4 <= text.width(context):
-        split = column.split(factor=len(row.label) / (len(row.label) + len(row.text) + 2))
+        split = column.split(factor=(len(row.label) + 2) / (len(row.label) + len(row.text) + 4))
         split.label(text=row.label)
         beside = split.row()
         beside.alignment = "RIGHT"
