@@ -31,22 +31,12 @@ fn without_a_skin_a_half_space_answers_as_hertz_has_it() {
     }
 }
 
-/// A thick skin on a soft layer is a half space of the skin; one as soft as the layer is the layer.
 #[test]
-fn a_skin_has_both_limits() {
-    let (plain, same) = (
-        forces((5.5, 0.5, 5.0), None),
-        forces((5.5, 0.5, 5.0), Some((0.5, 1.0))),
-    );
-    for (a, b) in same.iter().zip(&plain) {
+fn a_skin_as_soft_as_the_layer_is_the_layer() {
+    let layer = (5.5, 0.5, 5.0);
+    let (with, without) = (forces(layer, Some((0.5, 1.0))), forces(layer, None));
+    for (a, b) in with.iter().zip(&without) {
         assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
-    }
-    let (thick, hertz) = (
-        forces((400.0, 0.5, 5.0), Some((200.0, 1.0001))),
-        forces((f64::INFINITY, 0.5, 5.0), None),
-    );
-    for (a, b) in thick.iter().zip(&hertz) {
-        assert!((a / b - 1.0).abs() < 0.01, "{a} {b}");
     }
 }
 

@@ -2,10 +2,10 @@
 //!
 //! How far they sink under a pressure is exact: Navier's equations through the skin's own thickness, which lies on the layer's surface
 //! compliance `C = (1 - nu) / k [[K, Z], [Z, R]]` (the sibling `bonded_layer`). What a force along the skin moves, and how far the skin's
-//! middle moves along itself, are those of a thin plate on the same layer (as in the sibling `sheet`): they count where the contact is
+//! middle moves along itself, are those of a thin plate on the same layer (the sibling `sheet`): they count where the contact is
 //! wide against the skin.
 
-use nalgebra::{Matrix2, Matrix4, Vector4};
+use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
 use super::StiffSkin;
 use crate::response::bonded_layer::Layer;
@@ -15,76 +15,53 @@ use crate::response::bonded_layer::Layer;
 pub struct Moved {
     /// w under p, 1/k.
     pub sinks: f64,
-    /// w under f.
+    /// w under f, and v under p.
     pub sinks_along: f64,
-    /// v under p.
-    pub middle: f64,
     /// v under f.
     pub middle_along: f64,
 }
 
 /// How a layer of which the skin is the uppermost part answers at wave number `k`, 1/mm.
 pub fn moved(layer: Layer, skin: StiffSkin, k: f64) -> Moved {
-    let taken = skin.thickness_mm * skin.beyond();
-    let plate = plate(thinner(layer, taken), skin, k);
-    let (b11, b12, b22) = (plate[(0, 0)], plate[(0, 1)], plate[(1, 1)]);
-    let turn = 0.5 * skin.thickness_mm * k;
-    let sinks_along = b12 - turn * b11;
+    let sheet = skin.sheet(layer.poisson_ratio);
+    let [sinks_under, coupled, along] = sheet.moves(&layer, k).map(|part| per(layer, k) * part);
+    // The skin's middle lies half a thickness above the layer's surface.
+    let turn = sheet.middle * k;
+    let sinks_along = coupled - turn * sinks_under;
     Moved {
-        sinks: sinks(thinner(layer, skin.thickness_mm), skin, k),
+        sinks: sinks(layer, skin, k),
         sinks_along,
-        middle: sinks_along,
-        middle_along: b22 - turn * b12 - turn * sinks_along,
+        middle_along: along - turn * (coupled + sinks_along),
     }
 }
 
 /// How far the bare layer sinks under a pressure of wave number `k`.
 pub fn bare(layer: Layer, k: f64) -> f64 {
-    (1.0 - layer.poisson_ratio) / k * layer.transfer(k)
+    per(layer, k) * layer.transfer(k)
 }
 
-fn thinner(layer: Layer, taken: f64) -> Layer {
-    Layer {
-        thickness: layer.thickness - taken,
-        ..layer
-    }
-}
-
-fn compliance(layer: Layer, k: f64) -> Matrix2<f64> {
-    let [z, r] = layer.along(k);
-    Matrix2::new(layer.transfer(k), z, z, r) * ((1.0 - layer.poisson_ratio) / k)
-}
-
-/// Inverse of the stiffness of layer and thin plate together, for sinking and for moving the layer's surface along itself.
-fn plate(below: Layer, skin: StiffSkin, k: f64) -> Matrix2<f64> {
-    let (bending, stretch) = (skin.bending(), skin.stretch());
-    let turn = 0.5 * skin.thickness_mm * k;
-    let kk = k * k;
-    let stiffness = Matrix2::new(
-        bending * kk * kk + stretch * kk * turn * turn,
-        -stretch * kk * turn,
-        -stretch * kk * turn,
-        stretch * kk,
-    );
-    let compliance = compliance(below, k);
-    let both = Matrix2::identity() + stiffness * compliance;
-    both.try_inverse()
-        .map_or(compliance, |inverse| compliance * inverse)
+/// What transfer functions are over: `(1 - nu) / (G k)`.
+fn per(layer: Layer, k: f64) -> f64 {
+    (1.0 - layer.poisson_ratio) / k
 }
 
 /// Sinking under a pressure, of Navier's equations through the skin: waves `exp(k z)` and `exp(-k z)`, four constants; pressure 1 and no
 /// force along at the top, and the layer's compliance at the bottom.
-fn sinks(below: Layer, skin: StiffSkin, k: f64) -> f64 {
-    let nu = below.poisson_ratio;
+fn sinks(layer: Layer, skin: StiffSkin, k: f64) -> f64 {
+    let below = Layer {
+        thickness: layer.thickness - skin.thickness_mm,
+        ..layer
+    };
     let s = k * skin.thickness_mm;
+    let nu = layer.poisson_ratio;
     let (top, bottom) = (waves(nu, 0.0, s), waves(nu, -s, s));
-    let compliance = compliance(below, k) * k;
+    let [z, r] = below.along(k);
+    let compliance = Matrix2::new(below.transfer(k), z, z, r) * (1.0 - nu);
     let g = skin.ratio;
     let matrix = Matrix4::from_fn(|row, column| {
         let [_, _, pull, shear] = top[column];
         let [up, along, pull_below, shear_below] = bottom[column];
-        let load = nalgebra::Vector2::new(-g * pull_below, g * shear_below);
-        let moved = compliance * load;
+        let moved = compliance * Vector2::new(-g * pull_below, g * shear_below);
         match row {
             0 => g * pull,
             1 => g * shear,
@@ -150,6 +127,27 @@ mod tests {
         }
     }
 
+    /// A force along the skin acts at its middle, half a thickness above the layer: the layer bears it with its moment, and the middle
+    /// moves less than the layer where the skin turns.
+    #[test]
+    fn what_acts_along_a_skin_acts_at_its_middle() {
+        let layer = Layer {
+            poisson_ratio: 0.4,
+            ..LAYER
+        };
+        let skin = skin(12.0);
+        for k in [0.2, 0.9, 3.0] {
+            let [w, coupled, v] = skin.sheet(0.4).moves(&layer, k);
+            let both = Matrix2::new(w, coupled, coupled, v) * (0.6 / k);
+            let at_middle = Vector2::new(-0.4 * k, 1.0);
+            let found = moved(layer, skin, k);
+            let wanted = [(both * at_middle).x, at_middle.dot(&(both * at_middle))];
+            for (found, wanted) in [found.sinks_along, found.middle_along].iter().zip(wanted) {
+                assert!((found / wanted - 1.0).abs() < 1e-9, "{k}: {found} {wanted}");
+            }
+        }
+    }
+
     /// Waves that are short against the skin see a half space of the skin, long ones a thin plate on the layer.
     #[test]
     fn short_waves_see_the_skin_and_long_ones_a_plate() {
@@ -161,7 +159,7 @@ mod tests {
         };
         for k in [0.1, 0.5, 1.5] {
             let exact = moved(LAYER, thin, k).sinks;
-            let plate = plate(thinner(LAYER, 0.02), thin, k)[(0, 0)];
+            let plate = per(LAYER, k) * thin.sheet(0.5).transfer(&LAYER, k);
             assert!((exact / plate - 1.0).abs() < 2e-3, "{k}: {exact} {plate}");
         }
     }

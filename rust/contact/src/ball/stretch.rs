@@ -6,9 +6,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::StiffSkin;
-use super::layers::{Moved, moved};
+use super::layers::moved;
 use super::rings::Rings;
+use super::{StiffSkin, touch};
 use crate::response::bonded_layer::Layer;
 
 /// Part of a new tension that is taken in a turn, relative change of the force that ends them, and how many there are at most.
@@ -19,115 +19,177 @@ const TURNS: usize = 60;
 /// What pressures on rings, and tensions of `w'^2 / 2` at their edges, do: matrices, for G = 1.
 pub struct Stretching {
     /// How far down rings move: under pressures, and under tensions.
-    pub sunk: [DMatrix<f64>; 2],
+    sunk: [DMatrix<f64>; 2],
     /// Slopes at the edges.
     slopes: [DMatrix<f64>; 2],
-    /// Tension at the edges by the motion along, without that of `w'^2 / 2`, N/mm.
-    tension: [DMatrix<f64>; 2],
+    /// Strain outwards and half of that all around, at the edges, by the motion along.
+    strains: [DMatrix<f64>; 2],
     /// Stiffness against stretch beyond that of pulp, mm.
     stretch: f64,
 }
 
-impl Stretching {
-    /// Of a layer of which the skin is the uppermost part.
-    pub fn new(rings: &Rings, layer: Layer, skin: StiffSkin) -> Stretching {
-        let answers: Vec<Moved> = rings.waves.iter().map(|k| moved(layer, skin, *k)).collect();
-        let by_wave = |loads: &DMatrix<f64>, of: fn(&Moved) -> f64| {
-            DMatrix::from_fn(loads.nrows(), loads.ncols(), |n, i| {
-                of(&answers[n]) * loads[(n, i)]
-            })
-        };
-        let (pressures, tensions) = (rings.pressures(), rings.tensions());
-        let down = [
-            by_wave(&pressures, |m| m.sinks),
-            by_wave(&tensions, |m| m.sinks_along),
-        ];
-        let along = [
-            by_wave(&pressures, |m| m.middle),
-            by_wave(&tensions, |m| m.middle_along),
-        ];
-        let stretch = skin.stretch() * skin.beyond();
-        Stretching {
-            sunk: [rings.sunk(&down[0]), rings.sunk(&down[1])],
-            slopes: [rings.slopes(&down[0]), rings.slopes(&down[1])],
-            tension: along.map(|waves| rings.strains(&waves) * stretch),
-            stretch,
-        }
-    }
-
-    /// Forces over G, mm2, at rising `depths` of a ball; `touch` solves the contact of a compliance and gaps. None where the tension
-    /// does not settle.
-    pub fn forces(
-        &self,
-        rings: &Rings,
-        gap: &dyn Fn(f64) -> DVector<f64>,
-        (depths, touch): (&[f64], Touch<'_>),
-    ) -> Option<Vec<f64>> {
-        let mut state = State {
-            tension: DVector::zeros(rings.edges.len()),
-            own: DVector::zeros(rings.edges.len()),
-        };
-        let mut last = 0.0f64;
-        depths
-            .iter()
-            .map(|&depth| {
-                if last > 0.0 {
-                    state.tension *= depth / last;
-                    state.own *= depth / last;
-                }
-                last = depth;
-                let gaps = gap(depth);
-                let mut force = 0.0;
-                for _ in 0..TURNS {
-                    let before = force;
-                    force = self.turn(rings, (&gaps, touch), &mut state)?;
-                    if (force - before).abs() <= SAME * force {
-                        return Some(force);
-                    }
-                }
-                None
-            })
-            .collect()
-    }
-
-    /// One turn: the contact under the tension that is known, then the tension of this contact. Returns the force.
-    fn turn(
-        &self,
-        rings: &Rings,
-        (gaps, touch): (&DVector<f64>, Touch<'_>),
-        state: &mut State,
-    ) -> Option<f64> {
-        let edges = rings.edges.len();
-        // Pressure that the tension bears, by slopes.
-        let borne = |slopes: &DMatrix<f64>| {
-            DMatrix::from_fn(rings.len(), slopes.ncols(), |i, j| {
-                let flux = |e: usize| rings.edges[e] * state.tension[e] * slopes[(e, j)];
-                (flux(i) - flux(i + 1)) / rings.half_area(i)
-            })
-        };
-        let bears = borne(&DMatrix::identity(edges, edges));
-        let loop_back = DMatrix::identity(edges, edges) + &self.slopes[0] * &bears;
-        let inverse = loop_back.try_inverse()?;
-        let under_pressure = &inverse * &self.slopes[0];
-        let under_own = &inverse * (&self.slopes[1] * &state.own);
-        let compliance = &self.sunk[0] - &self.sunk[0] * (&bears * &under_pressure);
-        let lifted = &self.sunk[1] * &state.own - &self.sunk[0] * (&bears * &under_own);
-        let pressure = touch(&compliance, &(gaps - lifted));
-        let slopes = under_pressure * &pressure + under_own;
-        let own = slopes.map(|slope| 0.5 * self.stretch * slope * slope);
-        let rest = &pressure - bears * slopes;
-        let tension = &self.tension[0] * rest + &self.tension[1] * &own + &own;
-        state.tension += (tension - &state.tension) * TAKEN;
-        state.own += (own - &state.own) * TAKEN;
-        Some(rings.force(&pressure))
-    }
+/// A contact under a tension that was known before.
+struct Pressed {
+    /// On the ball.
+    pressure: DVector<f64>,
+    /// The part of it that the tension does not bear.
+    rest: DVector<f64>,
+    /// The tension of `w'^2 / 2` at the edges, over G, mm.
+    own: DVector<f64>,
 }
-
-/// Pressures on rings of a compliance and gaps.
-pub type Touch<'a> = &'a dyn Fn(&DMatrix<f64>, &DVector<f64>) -> DVector<f64>;
 
 /// Tension at the edges, and the part of it that is of `w'^2 / 2`, over G, mm.
 struct State {
     tension: DVector<f64>,
     own: DVector<f64>,
+}
+
+impl Stretching {
+    /// Of a layer of which the skin is the uppermost part.
+    pub fn new(rings: &Rings, layer: Layer, skin: StiffSkin) -> Stretching {
+        let down = [
+            rings.under_pressure(|k| moved(layer, skin, k).sinks),
+            rings.under_tension(|k| moved(layer, skin, k).sinks_along),
+        ];
+        let along = [
+            rings.under_pressure(|k| moved(layer, skin, k).sinks_along),
+            rings.under_tension(|k| moved(layer, skin, k).middle_along),
+        ];
+        Stretching {
+            sunk: down.each_ref().map(|waves| rings.sunk(waves)),
+            slopes: down.each_ref().map(|waves| rings.slopes(waves)),
+            strains: along.map(|waves| rings.strains(&waves)),
+            stretch: skin.stretch(),
+        }
+    }
+
+    /// Forces over G, mm2, at rising `depths` of a ball. None where the tension does not settle.
+    pub fn forces(&self, rings: &Rings, radius: f64, depths: &[f64]) -> Option<Vec<f64>> {
+        let presses = self.presses(rings, radius, depths)?;
+        Some(presses.iter().map(|p| rings.force(&p.pressure)).collect())
+    }
+
+    fn presses(&self, rings: &Rings, radius: f64, depths: &[f64]) -> Option<Vec<Pressed>> {
+        let nothing = DVector::zeros(rings.edges.len());
+        let mut state = State {
+            tension: nothing.clone(),
+            own: nothing,
+        };
+        let mut last = depths.first().copied()?;
+        let one = |depth: &f64| {
+            state.tension *= depth / last;
+            state.own *= depth / last;
+            last = *depth;
+            self.settled(rings, &rings.gaps(radius, *depth), &mut state)
+        };
+        depths.iter().map(one).collect()
+    }
+
+    /// The contact whose tension is the one that it gives.
+    fn settled(&self, rings: &Rings, gaps: &DVector<f64>, state: &mut State) -> Option<Pressed> {
+        let mut before = 0.0;
+        for _ in 0..TURNS {
+            let pressed = self.pressed(rings, gaps, state)?;
+            let tension = self.along(&pressed) * self.stretch + &pressed.own;
+            state.tension += (tension - &state.tension) * TAKEN;
+            state.own += (&pressed.own - &state.own) * TAKEN;
+            let force = rings.force(&pressed.pressure);
+            if (force - before).abs() <= SAME * force {
+                return Some(pressed);
+            }
+            before = force;
+        }
+        None
+    }
+
+    /// The contact under the tension that is known.
+    fn pressed(&self, rings: &Rings, gaps: &DVector<f64>, state: &State) -> Option<Pressed> {
+        let edges = rings.edges.len();
+        // The pressure on a ring that the tension bears, by slopes: what flows in at its inner edge less what flows out.
+        let bears = DMatrix::from_fn(rings.len(), edges, |ring, edge| {
+            let flows = rings.edges[edge] * state.tension[edge] / rings.half_area(ring);
+            match edge {
+                inner if inner == ring => flows,
+                outer if outer == ring + 1 => -flows,
+                _ => 0.0,
+            }
+        });
+        let fed_back = DMatrix::identity(edges, edges) + &self.slopes[0] * &bears;
+        let inverse = fed_back.try_inverse()?;
+        let by_pressure = &inverse * &self.slopes[0];
+        let by_own = &inverse * (&self.slopes[1] * &state.own);
+        let compliance = &self.sunk[0] - &self.sunk[0] * (&bears * &by_pressure);
+        let lifted = &self.sunk[1] * &state.own - &self.sunk[0] * (&bears * &by_own);
+        let pressure = touch(&compliance, &(gaps - lifted));
+        let slopes = by_pressure * &pressure + by_own;
+        Some(Pressed {
+            rest: &pressure - bears * &slopes,
+            own: slopes.map(|slope| 0.5 * self.stretch * slope * slope),
+            pressure,
+        })
+    }
+
+    /// Strains of the motion along.
+    fn along(&self, pressed: &Pressed) -> DVector<f64> {
+        &self.strains[0] * &pressed.rest + &self.strains[1] * &pressed.own
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rings::width;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// What the layers store, what the stretch of `w'^2 / 2` stores by itself, and what it stores against the strain of the motion along.
+    fn stored(of: &Stretching, rings: &Rings, pressed: &Pressed) -> f64 {
+        let sunk = &of.sunk[0] * &pressed.rest + &of.sunk[1] * &pressed.own;
+        let strain = of.along(pressed);
+        let by_ring = |i: usize| TAU * rings.half_area(i) * pressed.rest[i] * sunk[i];
+        let by_edge = |i: usize| {
+            let own = pressed.own[i];
+            TAU * rings.edges[i] * width(&rings.edges, i) * own * (strain[i] + own / of.stretch)
+        };
+        let rings_store: f64 = (0..rings.len()).map(by_ring).sum();
+        let edges_store: f64 = (0..rings.edges.len()).map(by_edge).sum();
+        0.5 * (rings_store + edges_store)
+    }
+
+    /// Nothing is lost in springs: the force's work is the energy that layers and stretch store. A wrong tension, or one that pulls
+    /// otherwise than it stretches, breaks this by more than the steps of depth do.
+    #[test]
+    fn the_work_of_the_force_is_stored() {
+        let layer = Layer {
+            thickness: 5.5,
+            poisson_ratio: 0.5,
+        };
+        let depths: Vec<f64> = (1..=60).map(|k| 0.8 * f64::from(k) / 60.0).collect();
+        for (radius, thickness_mm, ratio) in
+            [(5.0, 0.4, 20.0), (11.0, 0.3, 60.0), (28.0, 0.7, 20.0)]
+        {
+            let contact = f64::sqrt(0.8 * radius);
+            let rings = Rings::new(1.6 * contact, 3.0 * contact + 9.0);
+            let skin = StiffSkin {
+                thickness_mm,
+                ratio,
+            };
+            let stretching = Stretching::new(&rings, layer, skin);
+            let presses = stretching.presses(&rings, radius, &depths).unwrap();
+            let force = |p: &Pressed| rings.force(&p.pressure);
+            let stored = |p: &Pressed| stored(&stretching, &rings, p);
+            let worked: f64 = presses
+                .windows(2)
+                .map(|two| 0.5 * (force(&two[0]) + force(&two[1])) * depths[0])
+                .sum();
+            let gained = stored(&presses[59]) - stored(&presses[0]);
+            println!(
+                "ball of {radius} mm: {:+.2} %",
+                100.0 * (gained / worked - 1.0)
+            );
+            assert!(
+                (gained / worked - 1.0).abs() < 2e-3,
+                "{radius}: {gained} {worked}"
+            );
+        }
+    }
 }

@@ -10,7 +10,8 @@
 //! the sinking part of the inverse of `C^-1 + S`, C the layer's compliance and S the plate's stiffness for sinking and for moving
 //! along. A layer that is thin against the contact gives way by flowing along itself, which the plate hinders; without M it is
 //! `K / (1 + K f)`. The thickness of soft tissue over bone is measured from the skin's outer side, so that the layer is what the plate
-//! leaves of it.
+//! leaves of it. Under f along the skin and in how far the layer's surface moves along itself, both together have `Z + m c k Q` and
+//! `R + Q (f + m c^2 k^3)` over the same.
 
 use super::bonded_layer::Layer;
 
@@ -57,6 +58,11 @@ impl Sheet {
 
     /// Transfer function of a layer with it at wave number `k` (1/mm).
     pub fn transfer(&self, layer: &Layer, k: f64) -> f64 {
+        self.moves(layer, k)[0]
+    }
+
+    /// How a layer with it moves at wave number `k` (1/mm): `[K, Z, R]`, as those of the layer (`Layer::along`).
+    pub fn moves(&self, layer: &Layer, k: f64) -> [f64; 3] {
         let taken = self.takes.min(MOST_TAKEN * layer.thickness);
         let below = Layer {
             thickness: layer.thickness - taken,
@@ -67,7 +73,8 @@ impl Sheet {
         let (m, c) = (self.stretch * k, self.middle * k);
         let f = k * (self.bending * k * k + self.tension);
         let q = bare * r - z * z;
-        (bare + m * q) / (1.0 + m * r + bare * (f + m * c * c) - 2.0 * z * m * c + q * m * f)
+        let whole = 1.0 + m * r + bare * (f + m * c * c) - 2.0 * z * m * c + q * m * f;
+        [bare + m * q, z + m * c * q, r + (f + m * c * c) * q].map(|part| part / whole)
     }
 }
 
@@ -146,12 +153,13 @@ mod tests {
             let mut stiffness = sheet.stretch * k * turn * turn.transpose();
             stiffness[(0, 0)] += sheet.bending * k.powi(3) + sheet.tension * k;
             let both = compliance.try_inverse().unwrap() + stiffness;
-            let wanted = both.try_inverse().unwrap()[(0, 0)];
-            let found = sheet.transfer(&layer, k);
-            assert!(
-                (found / wanted - 1.0).abs() < 1e-12,
-                "{k}: {found} {wanted}"
-            );
+            let wanted = both.try_inverse().unwrap();
+            let found = sheet.moves(&layer, k);
+            for (found, place) in found.iter().zip([(0, 0), (0, 1), (1, 1)]) {
+                let wanted = wanted[place];
+                assert!((found - wanted).abs() < 1e-12, "{k}: {found} {wanted}");
+            }
+            assert_eq!(sheet.transfer(&layer, k), found[0]);
         }
     }
 
