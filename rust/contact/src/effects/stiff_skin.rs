@@ -3,10 +3,9 @@
 //! The skin is a thin plate of bending stiffness `D = E t^3 / 9` and stiffness against stretch `M = 4 E t / 3` (E modulus_mpa, t
 //! thickness_mm, Poisson's ratio 1/2) under `tension_n_per_mm`, bonded to the pulp below; amplitude multiplies all three. It is part of
 //! the thickness of soft tissue over bone: the pulp below is thinner by the skin's, as far as the skin is stiffer than pulp, at most by
-//! half. Strains are small: what a skin that is pressed deep gains by its own stretch is left out
-//! (the sibling `ball` has it, for balls). Skin and pulp stiffen together: what
-//! counts is D / G0, so that the response does not depend on the depth. Needs vertices not much farther apart than the bending length
-//! `((1 - nu) D / G0)^(1/3)` to be seen.
+//! half. Strains are small: what a skin that is pressed deep gains by its own stretch is left out (for balls the crate's `ball` has it).
+//! Skin and pulp stiffen together: what counts is D / G0, so that the response does not depend on the depth. Needs vertices not much
+//! farther apart than the bending length `((1 - nu) D / G0)^(1/3)` to be seen.
 
 use super::active::ActiveEffect;
 use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};

@@ -99,29 +99,10 @@ impl Elastic {
         let at: Vec<usize> = (known..places).collect();
         let base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
         let mut added = Vec::new();
-        for (effect, knots) in plan(&start[0]) {
-            let mut log_ratio = vec![Vec::new(); places - known];
-            for (_, changed) in &knots {
-                let tabled = match changed {
-                    None => base.clone(),
-                    Some(effect) => tables(
-                        fitting,
-                        (std::slice::from_ref(effect), &flat, FEWER),
-                        (&at, control),
-                    )?,
-                };
-                for (place, (with, without)) in tabled.iter().zip(&base).enumerate() {
-                    log_ratio[place].push(ratios(with, without));
-                }
-            }
-            added.push(Variant {
-                effect,
-                form: 0,
-                knots: knots.into_iter().map(|(knot, _)| knot).collect(),
-                log_ratio,
-            });
+        for planned in plan(&start[0]) {
+            added.push(changed(fitting, planned, (&base, &flat), (&at, control))?);
         }
-        added.extend(skins::tabulate(fitting, (&base, &flat), (known, control))?);
+        added.extend(skins::tabulate(fitting, (&base, &flat), (&at, control))?);
         self.take(added);
         fitting.replay.set_effects(&[], control)?;
         self.places
@@ -162,6 +143,35 @@ impl Variant {
             (at - self.knots[k]) / (self.knots[k + 1] - self.knots[k]),
         )
     }
+}
+
+/// What an effect changes of the base tables of these places, on the mesh.
+fn changed(
+    fitting: &mut Fitting,
+    (effect, knots): (Effect, Vec<Knot>),
+    (base, flat): (&[PressTable], &[Material]),
+    (places, control): (&[usize], &Control<'_>),
+) -> Result<Variant, DiagnosisError> {
+    let mut log_ratio = vec![Vec::new(); places.len()];
+    for (_, changed) in &knots {
+        let tabled = match changed {
+            None => base.to_vec(),
+            Some(effect) => tables(
+                fitting,
+                (std::slice::from_ref(effect), flat, FEWER),
+                (places, control),
+            )?,
+        };
+        for (place, (with, without)) in tabled.iter().zip(base).enumerate() {
+            log_ratio[place].push(ratios(with, without));
+        }
+    }
+    Ok(Variant {
+        effect,
+        form: 0,
+        knots: knots.into_iter().map(|(knot, _)| knot).collect(),
+        log_ratio,
+    })
 }
 
 /// By place, part of the force that is lost with the smallest Poisson's ratio, over the mean of those studied.

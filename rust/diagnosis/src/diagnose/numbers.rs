@@ -11,15 +11,13 @@ use super::mechanism::{Acts, Measure, Mechanism};
 use super::model::{Kind, Model};
 use super::prepare::Prepared;
 use super::refit::Refit;
-use super::skins::{THICKNESSES_MM, ratio};
+use super::skins::{ratio, thickness};
 use super::spectrum::Spectrum;
 
 /// Half width of a 90 % interval in standard errors.
 const HALF: f64 = 1.645;
 /// Share of the force that the catalogue's drainage loses, with its own drained Poisson's ratio of 0.3.
 const DROP: f64 = 0.285_714;
-/// Factor from one thickness of a skin that is tried to the next: neighbors explain recordings nearly alike.
-const NEXT: f64 = 1.8;
 /// Time, in a^2 / D, of the main branch of the catalogue's drainage.
 const MAIN_BRANCH: f64 = 0.605;
 
@@ -154,10 +152,10 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
         Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => {
             let pulp = 3.0 * free.shear_mpa;
             let modulus = interval(free, &|x| pulp * ratio(x));
-            let thick = THICKNESSES_MM[*form];
+            let thick = thickness(*form);
             let shape = vec![
                 ("modulus_mpa", modulus.0, modulus.1, modulus.2),
-                ("thickness_mm", thick, thick / NEXT, thick * NEXT),
+                ("thickness_mm", thick.0, thick.1, thick.2),
             ];
             (whole, shape)
         }

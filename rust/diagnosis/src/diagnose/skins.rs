@@ -40,14 +40,25 @@ pub fn ratio(at: f64) -> f64 {
     libm::exp(libm::log(RATIOS[k]) * (1.0 - share) + libm::log(RATIOS[k + 1]) * share)
 }
 
-/// Tables of the places whose base tables are given, the first of which is place `known`, by thickness; materials have one modulus.
+/// A thickness that is tried, mm, and the next ones below and above, which explain recordings nearly alike; beyond the ends in the same
+/// ratio.
+pub fn thickness(form: usize) -> (f64, f64, f64) {
+    let own = THICKNESSES_MM[form];
+    let next = |at: Option<usize>| at.and_then(|at| THICKNESSES_MM.get(at).copied());
+    let (below, above) = (next(form.checked_sub(1)), next(Some(form + 1)));
+    let low = below.or(above.map(|above| own * own / above));
+    let high = above.or(below.map(|below| own * own / below));
+    (own, low.unwrap_or(own), high.unwrap_or(own))
+}
+
+/// Tables of `places`, whose base tables are given, by thickness; materials have one modulus.
 ///
 /// # Errors
 /// What the contact model says of a press, or `Cancelled`.
 pub fn tabulate(
     fitting: &mut Fitting,
     (base, flat): (&[PressTable], &[Material]),
-    (known, control): (usize, &Control<'_>),
+    (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<Variant>, DiagnosisError> {
     let mut round = Vec::new();
     for table in base {
@@ -58,7 +69,7 @@ pub fn tabulate(
     let others: Vec<usize> = (0..base.len())
         .filter(|place| round[*place].is_none())
         .collect();
-    let meshed = meshed(fitting, ((base, &others), flat), (known, control))?;
+    let meshed = meshed(fitting, ((base, &others), flat), (places, control))?;
     let one = |(form, thickness_mm): (usize, f64)| {
         let log_ratio = (0..base.len()).map(|place| match &round[place] {
             Some(tables) => tables[form].clone(),
@@ -81,20 +92,18 @@ pub fn tabulate(
 fn ball(table: &PressTable, material: &Material) -> Option<Ball> {
     let root = table.roots.last().copied()?;
     let deepest = root * root;
-    let at = |share: usize| {
-        let k = (table.roots.len() - 1) * share / 4;
-        (table.roots[k].powi(2), table.force[k] / material.g0_mpa)
-    };
-    let (half, whole) = (at(3), at(4));
+    let at = |k: usize| (table.roots[k].powi(2), table.force[k] / material.g0_mpa);
+    let last = table.roots.len() - 1;
+    let (before, whole) = (at(last * 3 / 4), at(last));
     let layer = (material.thickness_mm, material.poisson_ratio);
     let most = RADII.0 * material.thickness_mm.min(10.0 * deepest);
     let mut radius = (2.0 * deepest).max(1.0);
     for _ in 0..SOUGHT {
         let ball = Ball::new(layer, radius, deepest);
-        let found = ball.forces(None, &[half.0, whole.0])?;
+        let found = ball.forces(None, &[before.0, whole.0])?;
         let off = whole.1 / found[1];
         if (off - 1.0).abs() < 0.1 * ROUND {
-            let is_round = (half.1 / found[0] / off - 1.0).abs() < ROUND;
+            let is_round = (before.1 / found[0] / off - 1.0).abs() < ROUND;
             return is_round.then_some(ball);
         }
         // Force goes as the radius to between 1/2 and 1.
@@ -132,18 +141,18 @@ fn of_ball(ball: &Ball, table: &PressTable, most: f64) -> Option<Vec<Vec<Vec<f64
     THICKNESSES_MM.into_iter().map(knots).collect()
 }
 
-/// By place and knot of [`MESHED`], the logarithm of force over the base's.
+/// By place (`others` are numbers of base tables) and knot of [`MESHED`], the logarithm of force over the base's.
 fn meshed(
     fitting: &mut Fitting,
-    ((base, places), flat): ((&[PressTable], &[usize]), &[Material]),
-    (known, control): (usize, &Control<'_>),
+    ((base, others), flat): ((&[PressTable], &[usize]), &[Material]),
+    (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
-    let none = |place: &usize| vec![vec![0.0; base[*place].roots.len()]];
-    let mut found: Vec<Vec<Vec<f64>>> = places.iter().map(none).collect();
-    if places.is_empty() {
+    let none = |other: &usize| vec![vec![0.0; base[*other].roots.len()]];
+    let mut found: Vec<Vec<Vec<f64>>> = others.iter().map(none).collect();
+    if others.is_empty() {
         return Ok(found);
     }
-    let at: Vec<usize> = places.iter().map(|place| known + place).collect();
+    let at: Vec<usize> = others.iter().map(|other| places[*other]).collect();
     for ratio in &MESHED[1..] {
         let mut skin = ActiveEffect::new(Effect::StiffSkin, 1.0);
         (skin.shape[0], skin.shape[1]) = (3.0 * flat[0].g0_mpa * ratio, MESHED_MM);
@@ -152,8 +161,8 @@ fn meshed(
             (std::slice::from_ref(&skin), flat, RUNGS),
             (&at, control),
         )?;
-        for ((of, place), table) in found.iter_mut().zip(places).zip(&with) {
-            of.push(ratios(table, &base[*place]));
+        for ((of, other), table) in found.iter_mut().zip(others).zip(&with) {
+            of.push(ratios(table, &base[*other]));
         }
     }
     Ok(found)
@@ -234,5 +243,13 @@ mod tests {
         }
         assert!((ratio(1.5) / (2.5f64 * 6.0).sqrt() - 1.0).abs() < 1e-12);
         assert_eq!(ratio(-0.2), 1.0);
+    }
+
+    #[test]
+    fn a_thickness_is_told_with_its_neighbors() {
+        let all: Vec<(f64, f64, f64)> = (0..THICKNESSES_MM.len()).map(thickness).collect();
+        assert_eq!(all[1], (0.5, 0.3, 0.9));
+        assert!((all[0].1 / 0.18 - 1.0).abs() < 1e-12 && all[0].2 == 0.5);
+        assert!((all[2].2 / 1.62 - 1.0).abs() < 1e-12 && all[2].1 == 0.5);
     }
 }
