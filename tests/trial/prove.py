@@ -5,9 +5,12 @@
 Verdicts are kept in `target/prove/<case>`, those of the baselines in `target/prove/<baseline>/<case>`, and are not
 asked for twice (running.py), so a run that was cut goes on. Where the diagnosis cannot tell and asks for a recording
 that the case holds back, the study with that recording, made as often as was asked, is kept in `<case>/followed`, and
-one with a recording drawn by lot in `<case>/at_random`. A wrong exit
-counts as saying nothing and is listed. Prints the table and writes `table.json` and `page.html`. Exits with 1 if a row
-of the diagnosis falls short of what it must be.
+one with a recording drawn by lot in `<case>/at_random`. A wrong exit counts as saying nothing and is listed. Prints
+the table and writes `table.json` and `page.html`. Exits with 1 if a row of the diagnosis falls short of what it must be.
+
+The thresholds of the diagnosis (rust/diagnosis/src/diagnose: gates.rs, checks.rs, prepare.rs) were set on
+`--split calibration` alone: detection above what its nulls reach, the lead over rivals and what a name may leave
+between its single effects and its unlisted ones.
 """
 
 import argparse
@@ -143,6 +146,9 @@ def _tell(asked, everyone, sealed, told, tables):
     print("wrong names:")
     for truth, false, is_beside, often in counts.wrong_names(sealed, told[first].said):
         print(f"  {false} {'beside' if is_beside else 'instead of'} {truth}: {often}")
+    print("largest evidence where nothing is missing, nats:")
+    for effect, nats in counts.reached(sealed, told[first].said):
+        print(f"  {effect}: {nats:.1f}")
     faults = {who.name: wrong_endings(who, asked.out, sealed) for who in everyone}
     for name, sentences in faults.items():
         print("\n".join(f"{name}: {sentence}" for sentence in sentences))
