@@ -54,10 +54,14 @@ fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
         text += &format!("{} ({:.0} %)\n", finding.effect, 100.0 * finding.confidence);
         for number in &finding.numbers {
             let (low, high) = number.interval;
-            text += &format!(
-                "  {} = {:.4} ({low:.4} to {high:.4}) {}\n",
-                number.name, number.value, number.unit
-            );
+            let between = match low < high {
+                true => format!("{low:.4} to {high:.4}"),
+                false => "not fitted".to_owned(),
+            };
+            let unit = if number.unit == "1" { "" } else { number.unit };
+            let line = format!("  {} = {:.4} ({between}) {unit}", number.name, number.value);
+            text += line.trim_end();
+            text += "\n";
         }
         for (name, option) in found.choices(finding.effect) {
             text += &format!("  {name} = {option}\n");

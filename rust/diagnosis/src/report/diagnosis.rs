@@ -2,22 +2,16 @@
 
 use super::page::page;
 use super::svg::escaped;
-use crate::diagnose::{Curve, Diagnosis, Gain, Number, Rival};
+use super::traces::plot;
+use crate::diagnose::{Diagnosis, Finding, Gain, Number, Rival};
 use std::fmt::Write;
 
-/// Width and height of a plot, px.
-const PLOT: (f64, f64) = (470.0, 250.0);
-/// Margins left, right, top and bottom, px.
-const MARGIN: [f64; 4] = [52.0, 12.0, 24.0, 34.0];
 /// Recordings that are drawn.
 const MOST_CURVES: usize = 6;
 
 /// A self-contained page, UTF-8: the diagnosis first, then the comparison that it started from.
 pub fn diagnosis_html(found: &Diagnosis) -> String {
-    let mut html = format!(
-        "<section class='diagnosis'><h2>Diagnosis</h2><p class='lead'>{}</p>\n",
-        escaped(&found.sentence)
-    );
+    let mut html = "<section class='diagnosis'>\n".to_owned();
     html += &findings(found);
     if let Some(gain) = &found.gain {
         html += &gained(gain);
@@ -33,9 +27,15 @@ pub fn diagnosis_html(found: &Diagnosis) -> String {
         .collect();
     let _ = writeln!(
         html,
-        "<h3>What stands behind it</h3><ul>{notes}</ul></section>"
+        "<h3>What stands behind it</h3><ul>{notes}</ul></section>\n<section><h2>With parameters alone</h2><p class='sentence'>{}</p>{}</section>",
+        escaped(&found.comparison.sentence),
+        match found.findings.is_empty() {
+            true => "",
+            false =>
+                "<p class='meta'>This weighs all that is left at once; what stands above was sought cause by cause, and sees less.</p>",
+        }
     );
-    page(&found.comparison, &html)
+    page(&found.comparison, (&found.sentence, &html))
 }
 
 fn findings(found: &Diagnosis) -> String {
@@ -47,12 +47,23 @@ fn findings(found: &Diagnosis) -> String {
             escaped(&finding.effect.replace('_', " ")),
             100.0 * finding.confidence
         );
-        html.extend(finding.numbers.iter().map(number));
+        html.extend(told(finding).map(number));
         html.extend(found.choices(finding.effect).iter().map(choice));
         html += "</table>\n";
         html += &signs(&finding.consequences);
     }
     html
+}
+
+/// Numbers that say something: an amplitude of 1 beside others is none that was found.
+fn told(finding: &Finding) -> impl Iterator<Item = &Number> {
+    let is_whole =
+        |of: &Number| of.name == "amplitude" && of.value == 1.0 && of.interval.0 >= of.interval.1;
+    let has_others = finding.numbers.len() > 1;
+    finding
+        .numbers
+        .iter()
+        .filter(move |of| !(has_others && is_whole(of)))
 }
 
 fn number(of: &Number) -> String {
@@ -180,65 +191,8 @@ fn curves(found: &Diagnosis) -> String {
     }
     let plots: String = found.curves.iter().take(MOST_CURVES).map(plot).collect();
     format!(
-        "<h3>Before and after</h3><div class='pair'>{plots}</div><p class='meta'>Force over time: dots measured, orange with parameters alone, \
-blue with what was found.</p>\n"
-    )
-}
-
-fn plot(curve: &Curve) -> String {
-    let range = |lists: &[&Vec<f64>]| {
-        lists
-            .iter()
-            .flat_map(|l| l.iter())
-            .fold((0.0, f64::MIN_POSITIVE), |(low, high): (f64, f64), v| {
-                (low.min(*v), high.max(*v))
-            })
-    };
-    let (t0, t1) = range(&[&curve.time_s]);
-    let (low, high) = range(&[&curve.measured_n, &curve.before_n, &curve.after_n]);
-    let [left, right, top, bottom] = MARGIN;
-    let x = |t: f64| left + (PLOT.0 - left - right) * (t - t0) / (t1 - t0).max(1e-12);
-    let y =
-        |f: f64| PLOT.1 - bottom - (PLOT.1 - top - bottom) * (f - low) / (high - low).max(1e-12);
-    let line = |values: &Vec<f64>, color: &str| {
-        let points: String = curve
-            .time_s
-            .iter()
-            .zip(values)
-            .map(|(t, f)| format!("{:.1},{:.1} ", x(*t), y(*f)))
-            .collect();
-        format!(
-            "<polyline points='{}' fill='none' stroke='{color}' stroke-width='1.6'/>",
-            points.trim_end()
-        )
-    };
-    let dots: String = curve
-        .time_s
-        .iter()
-        .zip(&curve.measured_n)
-        .map(|(t, f)| {
-            format!(
-                "<circle cx='{:.1}' cy='{:.1}' r='1.7' fill='#5c6770'/>",
-                x(*t),
-                y(*f)
-            )
-        })
-        .collect();
-    format!(
-        "<figure><svg viewBox='0 0 {w} {h}' width='{w}' role='img' aria-label='{name}'><text x='{left}' y='15' font-size='12'>{name}</text>\
-<line x1='{left}' y1='{base}' x2='{end}' y2='{base}' stroke='#9aa4ac'/><line x1='{left}' y1='{top}' x2='{left}' y2='{base}' stroke='#9aa4ac'/>\
-<text x='{end}' y='{under}' font-size='11' text-anchor='end'>{t1:.1} s</text><text x='{beside}' y='{upper}' font-size='11' text-anchor='end'>{high:.3} N</text>\
-{dots}{}{}</svg></figure>",
-        line(&curve.before_n, "#e69f00"),
-        line(&curve.after_n, "#0072b2"),
-        w = PLOT.0,
-        h = PLOT.1,
-        name = escaped(&curve.recording),
-        base = PLOT.1 - bottom,
-        end = PLOT.0 - right,
-        under = PLOT.1 - 14.0,
-        beside = left - 4.0,
-        upper = top + 8.0,
+        "<h3>Before and after</h3><div class='pair'>{plots}</div><p class='meta'>Above, force over time: dots measured, dashes with parameters \
+alone, blue with what was found. Below, the same less what parameters alone give: dots what they leave, blue what was found adds.</p>\n"
     )
 }
 

@@ -6,6 +6,7 @@
 mod colors;
 mod svg;
 mod ticks;
+mod traces;
 mod axes;
 mod curves;
 mod bars;

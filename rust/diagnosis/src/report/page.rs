@@ -31,11 +31,11 @@ ol,ul{margin:.3em 0;padding-left:1.25em}li{margin:.22em 0}\
 
 /// A self-contained page, UTF-8.
 pub fn comparison_html(comparison: &Comparison) -> String {
-    page(comparison, "")
+    page(comparison, (&comparison.sentence, ""))
 }
 
-/// The page with what stands before the comparison.
-pub fn page(comparison: &Comparison, before: &str) -> String {
+/// The page with its first sentence and what stands before the comparison.
+pub fn page(comparison: &Comparison, (sentence, before): (&str, &str)) -> String {
     let title = match comparison.title.is_empty() {
         true => "Recordings and simulation",
         false => comparison.title.as_str(),
@@ -51,7 +51,7 @@ pub fn page(comparison: &Comparison, before: &str) -> String {
 <header><p class='maker'>Thenar \u{00b7} recordings beside simulation</p><h1>{title}</h1>\n\
 <p class='lead'>{}</p></header>\n{before}{}{}{}{recordings}{}</body></html>\n",
         env!("CARGO_PKG_VERSION"),
-        escaped(&comparison.sentence),
+        escaped(sentence),
         tables::overview(comparison),
         sections::location(comparison),
         fitted(comparison),
