@@ -35,7 +35,7 @@ pub struct Choice {
     pub radius_mm: Option<f64>,
     /// Whether a recording used the tool.
     pub is_known: bool,
-    /// Name of a tool in use that is pressed in turn with it.
+    /// Name of the tool that is pressed in turn with it.
     pub in_turn_with: Option<String>,
     /// The press, and that of the tool in turn.
     pub presses: Vec<Press>,
@@ -114,6 +114,11 @@ impl Past {
         tools
     }
 
+    /// True for the name of a tool in use.
+    pub fn is_used(&self, name: &str) -> bool {
+        self.used.iter().any(|used| used == name)
+    }
+
     fn depth_of(&self, tool: &Indenter) -> f64 {
         match &tool.shape {
             Shape::Sphere { radius_mm } => self.depth_mm.min(DEEPEST * radius_mm),
@@ -121,7 +126,7 @@ impl Past {
         }
     }
 
-    /// Every tool held at every speed, and in cycles at the middle one: alone, and in turn with the tool in use that differs most.
+    /// Every tool held at every speed, and in cycles at the middle one: alone, and in turn with its partners.
     pub fn choices(
         &self,
         (tools, places): (&[(Indenter, bool)], &[Option<usize>]),
@@ -133,9 +138,7 @@ impl Past {
             both.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)))
         };
         for (tool, is_own, place) in known() {
-            let apart = |other: usize| libm::log(contact(other) / contact(place)).abs();
-            let used = known().filter(|(t, _, p)| *p != place && self.used.contains(&t.name));
-            let other = used.max_by(|a, b| apart(a.2).total_cmp(&apart(b.2)));
+            let partners = self.partners((tool, place), (tools, places), contact);
             for (speed_mm_s, hold_s, cycles) in self.ways() {
                 let press = |(tool, place): (&Indenter, usize)| Press {
                     place,
@@ -147,14 +150,14 @@ impl Past {
                 let alone = Choice {
                     indenter: is_own.then(|| tool.name.clone()),
                     radius_mm: radius_of(tool),
-                    is_known: self.used.contains(&tool.name),
+                    is_known: self.is_used(&tool.name),
                     in_turn_with: None,
                     minutes: self.minutes(&press((tool, place))),
                     presses: vec![press((tool, place))],
                 };
-                if let Some((other, _, place)) = other {
+                for (other, place) in &partners {
                     let mut both = alone.clone();
-                    let press = press((other, place));
+                    let press = press((other, *place));
                     both.minutes += self.minutes(&press);
                     both.presses.push(press);
                     both.in_turn_with = Some(other.name.clone());
@@ -164,6 +167,31 @@ impl Past {
             }
         }
         all
+    }
+
+    /// What a tool is pressed in turn with: the tool in use that differs most, and for one that is not in use also such a one that the
+    /// study has, if that differs more.
+    fn partners<'a>(
+        &self,
+        (tool, place): (&Indenter, usize),
+        (tools, places): (&'a [(Indenter, bool)], &[Option<usize>]),
+        contact: &dyn Fn(usize) -> f64,
+    ) -> Vec<(&'a Indenter, usize)> {
+        let apart = |other: &(&Indenter, usize)| libm::log(contact(other.1) / contact(place)).abs();
+        let most = |is_used: bool| {
+            let known = tools.iter().zip(places);
+            let others = known.filter_map(|((other, is_own), at)| {
+                let at = at.filter(|at| *at != place && *is_own)?;
+                (self.is_used(&other.name) == is_used).then_some((other, at))
+            });
+            others.max_by(|a, b| apart(a).total_cmp(&apart(b)))
+        };
+        let used = most(true);
+        let least = used.as_ref().map_or(0.0, apart);
+        // Of two that are not in use each is the other's partner: once is enough.
+        let fresh = most(false)
+            .filter(|other| !self.is_used(&tool.name) && other.1 > place && apart(other) > least);
+        used.into_iter().chain(fresh).collect()
     }
 
     /// Speed, hold and cycles of what can be done with a tool.

@@ -23,6 +23,7 @@ mod next_record;
 mod numbers;
 mod placebo;
 mod planned;
+mod possible;
 mod posterior;
 mod prepare;
 mod promise;

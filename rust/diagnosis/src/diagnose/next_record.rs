@@ -8,6 +8,7 @@ use super::elastic::{Elastic, radius};
 use super::findings::Suggestion;
 use super::gates::{are_clocks, have_sizes, lead, opponents};
 use super::ladder::Rungs;
+use super::possible::possible;
 use super::prepare::Prepared;
 use super::promise::{Between, Promise};
 use crate::DiagnosisError;
@@ -16,7 +17,7 @@ use crate::fit::Fitting;
 /// Numbers of presses that are asked for.
 const PRESSES: [u32; 5] = [2, 4, 6, 8, 12];
 /// Probability of settling from which no more presses are asked for.
-const ENOUGH: f64 = 0.85;
+const ENOUGH: f64 = 0.9;
 /// Pairs of names that are looked into.
 const PAIRS: usize = 3;
 
@@ -94,11 +95,13 @@ fn best<'a>(
 ) -> Option<(&'a Choice, u32, f64)> {
     let two = opponents(rungs, pair)?;
     let needed = lead(two[0], two[1])?;
+    let screen = ready.screen();
     let between = Between {
         ready,
         study,
         elastic,
         two,
+        possible: two.map(|of| possible(&screen, of, rungs.temper)),
         temper: rungs.temper,
     };
     let contact = |place: usize| radius(&elastic.places[place], ready.scales.deepest);
@@ -155,7 +158,8 @@ fn told(
         n => format!("{n} cycles without a hold"),
     };
     let (in_turn, each) = match &choice.in_turn_with {
-        Some(name) => (format!(", in turn with '{name}'"), " each"),
+        Some(name) if past.is_used(name) => (format!(", in turn with '{name}'"), " each"),
+        Some(name) => (format!(", in turn with '{name}', not used so far"), " each"),
         None => (String::new(), ""),
     };
     let text = format!(

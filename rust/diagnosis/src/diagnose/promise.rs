@@ -4,47 +4,77 @@
 //! fitted anew to all recordings, the new ones among them: to first order a quadratic form of the foretold difference, with the
 //! information of what was recorded so far (Gauss-Newton) and the recording's own gain and first touch taken out (Schur
 //! complement). If the first explanation is true, the lead of its evidence grows by a normal number of mean `d / 2` and
-//! variance `d`, `d` being that squared difference in units of the noise, tempered as all evidence that becomes a probability is.
+//! variance `d`, `d` being that squared difference in units of the noise, tempered as all evidence that becomes a probability is. What
+//! the recordings leave open of the true one's numbers (`possible.rs`) is open in what it foretells: then it, too, has to be fitted anew,
+//! and what that leaves is taken off its lead.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::course::Course;
 use super::elastic::Elastic;
 use super::ladder::Scored;
 use super::model::{Coordinate, Model};
 use super::planned::{Fresh, Press, course};
+use super::possible::Possible;
 use super::posterior::TEMPERATURE;
 use super::prepare::Prepared;
 use super::screen::Screen;
 use crate::statistics::log_normal_cdf;
 use thenar_recordings::Study;
 
-/// What the difference of two explanations on a new recording comes to.
+/// What recordings that are yet to be made come to under either of two explanations.
 pub struct Promise {
-    /// With the first true and the second fitted, and the other way round.
-    both: [Squares; 2],
+    /// With the first true, and with the second.
+    both: [Foreseen; 2],
     /// Evidence of the first over that of the second, so far.
     lead: f64,
     /// What deviances are divided by.
     temper: f64,
 }
 
-/// Squares of the foretold difference of presses made in turn, and of the slopes of what is fitted, in units of the noise.
+/// What comes of an explanation that is true.
+struct Foreseen {
+    /// How probable each of its possible numbers is.
+    shares: Vec<f64>,
+    /// What the other explanation leaves of it, and it itself with the numbers that it has so far.
+    rival: Squares,
+    own: Squares,
+}
+
+impl Foreseen {
+    /// How often the lead comes to `needed` from `lead`, with deviances over `temper`.
+    fn probability(&self, presses: u32, (lead, needed, temper): (f64, f64, f64)) -> Option<f64> {
+        let (rival, own) = (self.rival.left(presses)?, self.own.left(presses)?);
+        let mut sum = 0.0;
+        for (share, (rival, own)) in self.shares.iter().zip(rival.iter().zip(&own)) {
+            let spread = (rival + own) / temper;
+            let z = (lead + 0.5 * (rival - own) / temper - needed) / spread.max(1e-9).sqrt();
+            sum += share * libm::exp(log_normal_cdf(z));
+        }
+        Some(sum)
+    }
+}
+
+/// Squares of what a fit is off by on presses made in turn, one for each of what may be true, and of the slopes of what is fitted, in
+/// units of the noise.
 struct Squares {
-    difference: f64,
-    across: DVector<f64>,
+    off: Vec<f64>,
+    /// By number that is fitted and truth.
+    across: DMatrix<f64>,
     slopes: DMatrix<f64>,
     /// What earlier recordings say of what is fitted.
     known: DMatrix<f64>,
 }
 
 impl Squares {
-    /// Squared difference that is left if each is made `presses` times; None if the fit has no answer.
-    fn left(&self, presses: u32) -> Option<f64> {
+    /// What is left of each square if each press is made `presses` times; None if the fit has no answer.
+    fn left(&self, presses: u32) -> Option<Vec<f64>> {
         let n = f64::from(presses);
         let across = &self.across * n;
-        let factor = (&self.known + &self.slopes * n).cholesky()?;
-        Some((n * self.difference - across.dot(&factor.solve(&across))).max(0.0))
+        let taken = (&self.known + &self.slopes * n).cholesky()?.solve(&across);
+        let one =
+            |(k, off): (usize, &f64)| (n * off - across.column(k).dot(&taken.column(k))).max(0.0);
+        Some(self.off.iter().enumerate().map(one).collect())
     }
 }
 
@@ -52,17 +82,9 @@ impl Promise {
     /// How often the lead of the true one comes to `needed`, nats, if each press is made that many times.
     pub fn probability(&self, presses: u32, needed: f64) -> Option<f64> {
         let first = 1.0 / (1.0 + libm::exp(-self.lead / TEMPERATURE));
-        let mut sum = 0.0;
-        for (squares, (share, lead)) in self
-            .both
-            .iter()
-            .zip([(first, self.lead), (1.0 - first, -self.lead)])
-        {
-            let left = squares.left(presses)? / (self.temper * TEMPERATURE);
-            let z = (lead + 0.5 * left - needed) / left.max(1e-9).sqrt();
-            sum += share * libm::exp(log_normal_cdf(z));
-        }
-        Some(sum)
+        let temper = self.temper * TEMPERATURE;
+        let of = |k: usize, lead: f64| self.both[k].probability(presses, (lead, needed, temper));
+        Some(first * of(0, self.lead)? + (1.0 - first) * of(1, -self.lead)?)
     }
 }
 
@@ -76,13 +98,15 @@ pub struct Between<'a> {
     pub elastic: &'a Elastic,
     /// Two explanations.
     pub two: [&'a Scored; 2],
+    /// What the numbers of each may be.
+    pub possible: [Vec<Possible>; 2],
     /// What deviances are divided by.
     pub temper: f64,
 }
 
 impl Between<'_> {
-    /// What presses that are made in turn promise, at most one of them with a tool that was not used so far; None where the earlier
-    /// recordings leave a fit without an answer.
+    /// What presses that are made in turn promise, each with a tool of its own; None where the earlier recordings leave a fit without an
+    /// answer.
     pub fn promise(&self, presses: &[Press]) -> Option<Promise> {
         let ready = self.ready;
         let number = ready.courses.len();
@@ -103,15 +127,16 @@ impl Between<'_> {
             shared,
             ..ready.screen()
         };
-        let foretold = |of: &Scored| Foretold::new(&screen, of, (number, &ready.shared, &of_place));
-        let [a, b] = [foretold(self.two[0])?, foretold(self.two[1])?];
+        let new = (number, ready.shared.len(), &of_place[..]);
+        let foretold = |k: usize| Foretold::new(&screen, (self.two[k], &self.possible[k]), new);
+        let [a, b] = [foretold(0)?, foretold(1)?];
         let noise = |(course, forces): (&Course, &Vec<f64>)| {
             let most = forces.iter().fold(0.0, |m, f| f64::max(m, *f));
             Fresh::new(ready, course, ready.noise_share() * most)
         };
         let noise: Vec<Fresh> = courses[number..].iter().zip(&a.forces).map(noise).collect();
         Some(Promise {
-            both: [a.squares(&b, &noise), b.squares(&a, &noise)],
+            both: [a.beside(&b, &noise), b.beside(&a, &noise)],
             lead: self.two[0].evidence - self.two[1].evidence,
             temper: self.temper,
         })
@@ -122,6 +147,8 @@ impl Between<'_> {
 struct Foretold {
     /// By recording.
     forces: Vec<Vec<f64>>,
+    /// The same with what else its numbers may be, and how probable these are; its own are the first.
+    possible: Vec<(f64, Vec<Vec<f64>>)>,
     /// By recording, slopes by coordinate; and of the recording's own coordinates times what these scatter by.
     slopes: Vec<Vec<Vec<f64>>>,
     own: Vec<Vec<Vec<f64>>>,
@@ -129,58 +156,81 @@ struct Foretold {
 }
 
 impl Foretold {
+    /// On the recordings from number `new` of the screen, whose coordinates stand after the `first` of earlier ones.
     fn new(
         screen: &Screen<'_>,
-        of: &Scored,
-        (new, before, of_place): (usize, &[Coordinate], &[Coordinate]),
+        (of, possible): (&Scored, &[Possible]),
+        (new, first, of_place): (usize, usize, &[Coordinate]),
     ) -> Option<Foretold> {
         let model = Model::new(screen, &of.mechanisms);
-        let (first, last) = (before.len(), screen.shared.len());
-        let mut at = of.refit.at[..first].to_vec();
-        at.resize(last, 0.0);
-        at.extend_from_slice(&of.refit.at[first..]);
-        let set = model.setting(screen, &at);
-        let mut all = Foretold {
-            forces: Vec::new(),
-            slopes: Vec::new(),
-            own: Vec::new(),
-            known: known(&of.refit.covariance, (first, of_place))?,
+        let last = screen.shared.len();
+        let longer = |known: &[f64]| {
+            let mut at = known[..first].to_vec();
+            at.resize(last, 0.0);
+            at.extend_from_slice(&known[first..]);
+            at
         };
+        let forces = |at: &[f64]| -> Vec<Vec<f64>> {
+            let set = model.setting(screen, at);
+            let all = new..screen.courses.len();
+            all.map(|course| screen.forces(&model, &set, course))
+                .collect()
+        };
+        let at = longer(&of.refit.at);
+        let foretold = forces(&at);
+        let (mut slopes, mut owns) = (Vec::new(), Vec::new());
         let own = first + of_place.len()..last;
-        for course in new..screen.courses.len() {
-            let forces = screen.forces(&model, &set, course);
-            let (mut slopes, mut others) = (Vec::new(), Vec::new());
+        for (k, forces) in foretold.iter().enumerate() {
+            let (mut shared, mut others) = (Vec::new(), Vec::new());
             for (number, coordinate) in model.coordinates.iter().enumerate() {
-                let found = screen.slopes((&model, &at), (number, course), &forces);
+                let found = screen.slopes((&model, &at), (number, new + k), forces);
                 if !own.contains(&number) {
-                    slopes.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
+                    shared.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
                 } else if let Some(slope) = found {
                     let sd = coordinate.prior.unwrap_or(0.0);
                     others.push(slope.iter().map(|s| s * sd).collect());
                 }
             }
-            all.forces.push(forces);
-            all.slopes.push(slopes);
-            all.own.push(others);
+            slopes.push(shared);
+            owns.push(others);
         }
-        Some(all)
+        let one = |p: &Possible| (p.share, forces(&longer(&p.at)));
+        Some(Foretold {
+            forces: foretold,
+            possible: possible.iter().map(one).collect(),
+            slopes,
+            own: owns,
+            known: known(&of.refit.covariance, (first, of_place))?,
+        })
     }
 
-    /// Squares if this one is true and `other` is fitted, of all recordings together.
-    fn squares(&self, other: &Foretold, noise: &[Fresh]) -> Squares {
-        let n = other.known.nrows();
-        let mut sum = DMatrix::zeros(n + 1, n + 1);
+    /// What comes if this one is true, of all recordings together.
+    fn beside(&self, rival: &Foretold, noise: &[Fresh]) -> Foreseen {
+        Foreseen {
+            shares: self.possible.iter().map(|(share, _)| *share).collect(),
+            rival: rival.squares(&self.possible, noise),
+            own: self.squares(&self.possible, noise),
+        }
+    }
+
+    /// Squares if this one is fitted to each of what may be true.
+    fn squares(&self, truths: &[(f64, Vec<Vec<f64>>)], noise: &[Fresh]) -> Squares {
+        let (m, n) = (truths.len(), self.known.nrows());
+        let mut sum = DMatrix::zeros(m + n, m + n);
         for (course, noise) in noise.iter().enumerate() {
-            let both = self.forces[course].iter().zip(&other.forces[course]);
-            let off: Vec<f64> = both.map(|(a, b)| a - b).collect();
-            let columns = std::iter::once(&off).chain(&other.slopes[course]);
-            sum += noise.square((columns, &other.own[course]));
+            let off = |(_, forces): &(f64, Vec<Vec<f64>>)| -> Vec<f64> {
+                let both = forces[course].iter().zip(&self.forces[course]);
+                both.map(|(a, b)| a - b).collect()
+            };
+            let off: Vec<Vec<f64>> = truths.iter().map(off).collect();
+            let columns = off.iter().chain(&self.slopes[course]);
+            sum += noise.square((columns, &self.own[course]));
         }
         Squares {
-            difference: sum[(0, 0)],
-            across: sum.view((1, 0), (n, 1)).column(0).into_owned(),
-            slopes: sum.view((1, 1), (n, n)).into_owned(),
-            known: other.known.clone(),
+            off: (0..m).map(|k| sum[(k, k)]).collect(),
+            across: sum.view((m, 0), (n, m)).into_owned(),
+            slopes: sum.view((m, m), (n, n)).into_owned(),
+            known: self.known.clone(),
         }
     }
 }
@@ -202,6 +252,8 @@ fn known(
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DVector;
+
     use super::*;
     use crate::random::Random;
 
@@ -216,13 +268,16 @@ mod tests {
         let owns: Vec<Vec<f64>> = (0..own).map(|_| column()).collect();
         let known = DMatrix::from_diagonal(&DVector::from_vec(vec![0.3, 1.0, 2.0, 5.0]));
         let noise = Fresh::white(0.1, rows);
-        let sum = noise.square((std::iter::once(&off).chain(&slopes), &owns));
-        let squares = Squares {
-            difference: sum[(0, 0)],
-            across: sum.view((1, 0), (fitted, 1)).column(0).into_owned(),
-            slopes: sum.view((1, 1), (fitted, fitted)).into_owned(),
+        let foretold = Foretold {
+            forces: vec![vec![0.0; rows]],
+            possible: Vec::new(),
+            slopes: vec![slopes.clone()],
+            own: vec![owns.clone()],
             known: known.clone(),
         };
+        let nothing = vec![0.0; rows];
+        let truths = [nothing, off.clone()].map(|forces| (0.5, vec![forces]));
+        let squares = foretold.squares(&truths, &[noise]);
         let width = fitted + own * presses;
         let mut stacked = DMatrix::zeros(rows * presses + width, width);
         let mut side = DVector::zeros(rows * presses + width);
@@ -249,20 +304,27 @@ mod tests {
         let fit = stacked.clone().svd(true, true).solve(&side, 1e-14).unwrap();
         let left = (&side - &stacked * fit).norm_squared();
         let said = squares.left(presses as u32).unwrap();
-        assert!((said - left).abs() < 1e-9 * left, "{said} {left}");
+        assert_eq!(said[0], 0.0);
+        assert!((said[1] - left).abs() < 1e-9 * left, "{} {left}", said[1]);
     }
 
     /// A lead that grows by a normal number of mean d / 2 and variance d.
     #[test]
     fn the_probability_is_that_of_the_lead() {
-        let plain = |difference: f64| Squares {
-            difference,
-            across: DVector::zeros(1),
+        let plain = |off: &[f64]| Squares {
+            off: off.to_vec(),
+            across: DMatrix::zeros(1, off.len()),
             slopes: DMatrix::zeros(1, 1),
             known: DMatrix::identity(1, 1),
         };
+        let foreseen = |shares: &[f64], rival: &[f64], own: &[f64]| Foreseen {
+            shares: shares.to_vec(),
+            rival: plain(rival),
+            own: plain(own),
+        };
+        let four = 4.0 * TEMPERATURE;
         let promise = |lead: f64| Promise {
-            both: [plain(4.0 * TEMPERATURE), plain(4.0 * TEMPERATURE)],
+            both: [(); 2].map(|()| foreseen(&[1.0], &[four], &[0.0])),
             lead,
             temper: 1.0,
         };
@@ -275,9 +337,17 @@ mod tests {
         let sure = promise(0.0).probability(12, 4.0).unwrap();
         assert!((sure - 0.998_05).abs() < 2e-5, "{sure}");
         let never = Promise {
-            both: [plain(0.0), plain(0.0)],
+            both: [(); 2].map(|()| foreseen(&[1.0], &[0.0], &[0.0])),
             ..promise(0.0)
         };
         assert!(never.probability(12, 4.0).unwrap() < 1e-9);
+        // Numbers that are open: half of the time as above, half of the time as much as the rival leaves is left by the true one itself.
+        let open = Promise {
+            both: [(); 2].map(|()| foreseen(&[0.5, 0.5], &[four, four], &[0.0, four])),
+            ..promise(0.0)
+        };
+        // Then the lead stays 0 on average, and 4 is one deviation, 4, away: 15.87 % of cases.
+        let both = open.probability(2, 4.0).unwrap();
+        assert!((both - 0.5 * (0.5 + 0.158_66)).abs() < 1e-4, "{both}");
     }
 }
