@@ -147,6 +147,15 @@ impl Mechanism {
         }
     }
 
+    /// The number with which it does nothing, where it has but one and there is such a number; a ceiling so high that nothing meets it.
+    pub fn nothing(&self) -> Option<f64> {
+        match self.acts {
+            Acts::Blind | Acts::Fades { .. } | Acts::Clings { .. } => None,
+            Acts::Saturates => Some(HIGHEST),
+            _ => Some(0.0),
+        }
+    }
+
     /// Numbers that a fit can make use of: shares of neighboring branches stand for each other, and none is below 0.
     pub fn price(&self) -> usize {
         self.count().min(3)
@@ -195,6 +204,8 @@ pub const MEDIANS_S: (f64, f64) = (0.02, 40.0);
 pub(super) const WIDTHS: [(f64, f64); 2] = [(0.05, 3.0), (0.05, 1.2)];
 /// Further starts of a smooth spectrum's numbers: narrow and fast, narrow and slow, broad.
 const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.5]];
+/// Largest logarithm of a ceiling over the largest force.
+pub const HIGHEST: f64 = 0.7;
 /// Further starts of the logarithm of a ceiling over the largest force.
 const CEILINGS: [&[f64]; 3] = [&[-0.03], &[-0.3], &[-0.8]];
 /// Further starts of a stiff skin's coordinate.

@@ -1,6 +1,6 @@
 //! A screened model's free numbers: what they are, where they begin, and what they belong to.
 
-use super::mechanism::{Acts, MEDIANS_S, Mechanism, RANGES};
+use super::mechanism::{Acts, HIGHEST, MEDIANS_S, Mechanism, RANGES};
 use super::screen::Screen;
 use super::spectrum::Spectrum;
 use crate::replay::KNOTS;
@@ -150,7 +150,7 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64
         Acts::GainStep { .. } => (0.0, -0.7, 0.7),
         Acts::Offset => (0.0, -0.3 * force, 0.3 * force),
         Acts::Drifts { .. } => (0.0, -0.3 * force, 0.3 * force),
-        Acts::Saturates => (-0.1, -2.0, 0.7),
+        Acts::Saturates => (-0.1, -2.0, HIGHEST),
         Acts::Blind => (
             f64::max(0.1, 1.5 * screen.least_floor),
             screen.least_floor,

@@ -105,10 +105,14 @@ mod tests {
         use Effect::{Adhesion, Bone, CycleSoftening, Offset};
         use Effect::{RateIndependentLoss, Relaxation, Saturation, StiffeningLaw};
         assert!(
-            needs_both((Relaxation, 100.0), Bone, 6.0),
+            needs_both((Relaxation, 100.0), Bone, 4.5),
             "its form is known"
         );
-        assert!(!needs_both((Relaxation, 100.0), Bone, 5.0));
+        assert!(!needs_both((Relaxation, 100.0), Bone, 3.5));
+        assert!(
+            !needs_both((CycleSoftening, 100.0), Bone, 5.0),
+            "not so well"
+        );
         assert!(!needs_both((Relaxation, 1000.0), Bone, 9.0), "1 % of 1000");
         assert!(needs_both((Relaxation, 1000.0), Bone, 11.0));
         assert!(needs_both((Adhesion, 60.0), Bone, 6.0), "it acts apart");
@@ -126,6 +130,8 @@ mod tests {
         }
         let friction = |more| needs_both((RateIndependentLoss, 300.0), CycleSoftening, more);
         assert!(!friction(11.0) && friction(13.0), "4 % of 300");
+        let beside = |more| needs_both((RateIndependentLoss, 700.0), Bone, more);
+        assert!(!beside(13.0) && beside(15.0), "2 % of 700");
     }
 
     #[test]

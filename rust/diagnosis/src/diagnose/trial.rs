@@ -51,28 +51,35 @@ impl Trial<'_> {
         let one = std::slice::from_ref(mechanism);
         let mut best = self.score(one, &self.from);
         for start in mechanism.starts() {
-            let other = self.score(one, &[&self.from[..], start].concat());
-            if other.refit.deviance < best.refit.deviance {
-                best = other;
-            }
+            best = lower(best, self.score(one, &[&self.from[..], start].concat()));
         }
         best
     }
 
-    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, and, where it has
-    /// other starts, also where it ended alone.
+    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, where it has other
+    /// starts also where it ended alone, and where that is worse than the better one by itself, where it does nothing.
     pub fn pair(&self, (better, set): (&Scored, &[Mechanism; 2]), singles: &[Scored]) -> Scored {
-        let plain = self.score(set, &better.refit.at);
+        let from = |start: &[f64]| self.score(set, &[&better.refit.at[..], start].concat());
+        let mut best = from(&[]);
         let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
-        let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) else {
-            return plain;
-        };
-        let own = &alone.refit.at[self.from.len()..];
-        let other = self.score(set, &[&better.refit.at[..], own].concat());
-        match other.refit.deviance < plain.refit.deviance {
-            true => other,
-            false => plain,
+        if let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) {
+            best = lower(best, from(&alone.refit.at[self.from.len()..]));
         }
+        if let Some(nothing) = set[1]
+            .nothing()
+            .filter(|_| best.refit.deviance > better.refit.deviance)
+        {
+            best = lower(best, from(&[nothing]));
+        }
+        best
+    }
+}
+
+/// The one that fits better.
+fn lower(one: Scored, other: Scored) -> Scored {
+    match other.refit.deviance < one.refit.deviance {
+        true => other,
+        false => one,
     }
 }
 
@@ -99,7 +106,7 @@ fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::made::{Reading, ready, tool};
-    use super::super::mechanism::Acts;
+    use super::super::mechanism::{Acts, singles};
     use super::*;
     use crate::Phase;
     use crate::fit::blocks;
@@ -208,5 +215,39 @@ mod tests {
         };
         assert!((offset - study.offset_n).abs() < 0.02, "{offset}");
         assert!((ceiling + study.spike).abs() < 5e-3, "{ceiling}");
+    }
+
+    /// What begins with nothing answers as what it is added to, and so ends no worse.
+    #[test]
+    fn a_mechanism_at_its_nothing_changes_nothing() {
+        LOW.on_trial(|trial| {
+            let base = Model::new(trial.screen, &[]);
+            let without = trial.screen.all_forces(&base, &trial.from);
+            let mut all = singles(trial.ready.scales);
+            all.retain(|m| !matches!(m.acts, Acts::Tabled(_)));
+            let found: Vec<Effect> = all
+                .iter()
+                .filter(|m| m.nothing().is_some())
+                .map(|m| m.effect)
+                .collect();
+            assert!(
+                found.contains(&Effect::Saturation) && found.contains(&Effect::FixtureCompliance),
+                "{found:?}"
+            );
+            for mechanism in all {
+                let Some(nothing) = mechanism.nothing() else {
+                    continue;
+                };
+                let model = Model::new(trial.screen, std::slice::from_ref(&mechanism));
+                let at = [&trial.from[..], &[nothing]].concat();
+                let with = trial.screen.all_forces(&model, &at).concat();
+                let most = with
+                    .iter()
+                    .zip(without.concat())
+                    .map(|(a, b)| (a - b).abs());
+                let most = most.fold(0.0, f64::max);
+                assert!(most < 1e-9, "{}: {most} N", mechanism.effect.name());
+            }
+        });
     }
 }
