@@ -267,3 +267,73 @@ fn pressed(
     }
     done.map(|()| place)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Spheres of 5, 11 and 28 mm, of which these are in use.
+    fn pairs(used: &[&str]) -> Vec<(String, Option<String>)> {
+        let past = Past {
+            site: String::new(),
+            used: used.iter().map(|name| (*name).to_owned()).collect(),
+            largest: 28.0,
+            speeds: vec![1.0],
+            depth_mm: 0.8,
+            hold_s: 8.0,
+            rest_s: 120.0,
+        };
+        let radii = [("large", 11.0), ("small", 5.0), ("wide", 28.0)];
+        let sphere = |(name, radius_mm): (&str, f64)| {
+            let shape = Shape::Sphere { radius_mm };
+            let name = name.to_owned();
+            (Indenter { name, shape }, true)
+        };
+        let tools = radii.map(sphere);
+        let contact = |place: usize| (radii[place].1 * 0.8).sqrt();
+        let all = past.choices((&tools, &[Some(0), Some(1), Some(2)]), &contact);
+        let mut found: Vec<(String, Option<String>)> = all
+            .into_iter()
+            .map(|c| (c.indenter.unwrap_or_default(), c.in_turn_with))
+            .collect();
+        found.dedup();
+        found.retain(|(_, other)| other.is_some());
+        found.sort();
+        found.dedup();
+        found
+    }
+
+    fn pair(one: &str, other: &str) -> (String, Option<String>) {
+        (one.to_owned(), Some(other.to_owned()))
+    }
+
+    #[test]
+    fn two_tools_that_were_not_used_are_pressed_in_turn_where_they_differ_more() {
+        let wanted = [
+            pair("small", "large"),
+            pair("small", "wide"),
+            pair("wide", "large"),
+        ];
+        assert_eq!(
+            pairs(&["large"]),
+            wanted,
+            "5 and 28 differ more than either and 11"
+        );
+        let wanted = [
+            pair("large", "small"),
+            pair("large", "wide"),
+            pair("wide", "small"),
+        ];
+        assert_eq!(
+            pairs(&["small"]),
+            wanted,
+            "11 differs more from 28 than from 5"
+        );
+        let wanted = [
+            pair("large", "wide"),
+            pair("small", "wide"),
+            pair("wide", "small"),
+        ];
+        assert_eq!(pairs(&["small", "wide"]), wanted);
+    }
+}

@@ -143,13 +143,19 @@ mod tests {
         assert!((needed.iter().map(|(_, p)| p).sum::<f64>() - 1.0).abs() < 1e-12);
         // Odds of e^8, tempered.
         let odds = needed[0].1 / needed[1].1;
-        assert!((odds / libm::exp(8.0 / TEMPERATURE) - 1.0).abs() < 1e-9, "{odds}");
+        assert!(
+            (odds / libm::exp(8.0 / TEMPERATURE) - 1.0).abs() < 1e-9,
+            "{odds}"
+        );
         assert_eq!(names_90(&needed), [needed[0].0.clone()]);
         let needless = probabilities(&beside(first, Effect::Offset, 5.0));
         assert!(needless.iter().all(|(names, _)| names.len() < 2));
         let silent = probabilities(&beside((Effect::Relaxation, 4.0), Effect::Offset, 0.0));
         let kept = names_90(&silent).len();
-        assert_eq!(kept, 2, "e^(4 / 1.5) = 14.4, as much again, and 1 for nothing of either");
+        assert_eq!(
+            kept, 2,
+            "e^(4 / 1.5) = 14.4, as much again, and 1 for nothing of either"
+        );
         assert!(
             (silent[0].1 - silent[1].1).abs() < 1e-12,
             "nothing at all is as good as 4 nats"
