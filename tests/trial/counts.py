@@ -320,14 +320,3 @@ def exact_by_effect(sealed, said):
             hits, of = found.get(label["effect"], (0, 0))
             found[label["effect"]] = (hits + is_exact(label, said.get(name, SILENT)), of + 1)
     return sorted((effect, *counts) for effect, counts in found.items())
-
-
-def reached(sealed, said):
-    """Lines (effect, largest evidence in nats) of the effects that were tried alone on cases without any."""
-    found = {}
-    for name, label in sealed.items():
-        rivals = said.get(name, SILENT).get("rivals", []) if label["stratum"] == "null" else []
-        for effects, evidence in ((one["effects"], one["evidence"]) for one in rivals):
-            if len(effects) == 1:
-                found[effects[0]] = max(evidence, found.get(effects[0], evidence))
-    return sorted(found.items())

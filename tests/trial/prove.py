@@ -6,11 +6,11 @@ Verdicts are kept in `target/prove/<case>`, those of the baselines in `target/pr
 asked for twice (running.py), so a run that was cut goes on. Where the diagnosis cannot tell and asks for a recording
 that the case holds back, the study with that recording, made as often as was asked, is kept in `<case>/followed`, and
 one with a recording drawn by lot in `<case>/at_random`. A wrong exit counts as saying nothing and is listed. Prints
-the table and writes `table.json` and `page.html`. Exits with 1 if a row of the diagnosis falls short of what it must be.
+the table and writes `table.json` and `page.html`. Exits with 1 if a row of the diagnosis falls short of what it must
+be.
 
 The thresholds of the diagnosis (rust/diagnosis/src/diagnose: gates.rs, checks.rs, prepare.rs) were set on
-`--split calibration` alone: detection above what its nulls reach, the lead over rivals and what a name may leave
-between its single effects and its unlisted ones.
+`--split calibration` alone, and what they rest on is printed with it (thresholds.py).
 """
 
 import argparse
@@ -20,7 +20,7 @@ import os
 import shutil
 from pathlib import Path
 
-from trial import cases, ceiling, counts, findings, following, mutations, page, running, score, subset
+from trial import cases, ceiling, counts, findings, following, mutations, page, running, score, subset, thresholds
 from trial.baselines.peers import BASELINES
 
 ROOT = Path(__file__).parents[2]
@@ -146,9 +146,8 @@ def _tell(asked, everyone, sealed, told, tables):
     print("wrong names:")
     for truth, false, is_beside, often in counts.wrong_names(sealed, told[first].said):
         print(f"  {false} {'beside' if is_beside else 'instead of'} {truth}: {often}")
-    print("largest evidence where nothing is missing, nats:")
-    for effect, nats in counts.reached(sealed, told[first].said):
-        print(f"  {effect}: {nats:.1f}")
+    if asked.split == "calibration":
+        print("\n".join(thresholds.lines(sealed, told[first].said)))
     faults = {who.name: wrong_endings(who, asked.out, sealed) for who in everyone}
     for name, sentences in faults.items():
         print("\n".join(f"{name}: {sentence}" for sentence in sentences))

@@ -146,15 +146,3 @@ def test_wrong_names_are_told_with_what_they_stand_beside(sealed):
     by_effect = {effect: (hits, of) for effect, hits, of in scored.exact_by_effect(sealed, said)}
     hits, of = by_effect["adhesion"]
     assert hits == of - 2 and sum(of for _, of in by_effect.values()) == rows(sealed, said)["severe"].of
-
-
-def test_what_nulls_reach_is_the_largest_of_what_was_tried_alone(sealed):
-    nulls = [name for name, label in sealed.items() if label["stratum"] == "null"]
-    other = next(name for name, label in sealed.items() if label["stratum"] == "single")
-
-    def tried(*rivals):
-        return {"verdict": "parameters", "rivals": [{"effects": e.split("+"), "evidence": v} for e, v in rivals]}
-
-    said = {nulls[0]: tried(("bone", -0.2), ("offset", 1.5), ("bone+offset", 9.0)), nulls[1]: tried(("bone", -1.0))}
-    said |= {nulls[2]: {"verdict": "parameters", "rivals": []}, other: tried(("bone", 30.0), ("drift", 3.0))}
-    assert scored.reached(sealed, said) == [("bone", -0.2), ("offset", 1.5)]

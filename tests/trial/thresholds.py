@@ -1,0 +1,69 @@
+"""What the thresholds of the diagnosis rest on: evidence that is reached, led by and taken up where it should not be.
+
+Printed by `cargo xtask prove -- --split calibration`. The thresholds stand in rust/diagnosis/src/diagnose/gates.rs; no
+case of the trial is looked at for them.
+"""
+
+
+def reached(sealed, said):
+    """Largest evidence, nats, of every effect that was tried alone on cases without any."""
+    found = {}
+    for name, label in sealed.items():
+        if label["stratum"] == "null" and name in said:
+            for effect, nats in _alone(said[name]).items():
+                found[effect] = max(nats, found.get(effect, nats))
+    return found
+
+
+def led_by(sealed, said):
+    """Largest lead, nats, of another name over the one that is there, of cases of one effect: by effect and name."""
+    found = {}
+    for truth, verdict in _of_one(sealed, said):
+        alone = _alone(verdict)
+        for name, nats in alone.items() if truth in alone else ():
+            if name != truth and nats > alone[truth]:
+                found[truth, name] = max(nats - alone[truth], found.get((truth, name), 0.0))
+    return found
+
+
+def taken_up(sealed, said):
+    """Most nats that a second name adds to the one that is there, and as a part of its own: by effect and name."""
+    found = {}
+    for truth, verdict in _of_one(sealed, said):
+        alone = _alone(verdict)
+        for one in verdict["rivals"] if truth in alone else ():
+            if len(one["effects"]) == 2 and truth in one["effects"]:
+                (second,) = set(one["effects"]) - {truth}
+                more = one["evidence"] - max(alone[truth], alone.get(second, 0.0))
+                most, share = found.get((truth, second), (0.0, 0.0))
+                found[truth, second] = max(most, more), max(share, more / alone[truth])
+    return {key: pair for key, pair in found.items() if pair[0] > 0.0}
+
+
+def lines(sealed, said):
+    """All of it as lines of text, the largest first."""
+    told = ["largest evidence where nothing is missing, nats:"]
+    told += [f"  {effect}: {nats:.1f}" for effect, nats in _sorted(reached(sealed, said))]
+    told.append("largest lead of another name over the one that is there, nats:")
+    told += [f"  {other} over {truth}: {nats:.1f}" for (truth, other), nats in _sorted(led_by(sealed, said))]
+    told.append("most that a second name adds where one is there, nats and part of the first's:")
+    for (truth, second), (nats, share) in _sorted(taken_up(sealed, said)):
+        told.append(f"  {second} beside {truth}: {nats:.1f}, {100.0 * share:.1f} %")
+    return told
+
+
+def _of_one(sealed, said):
+    """(effect or error that is there, verdict) of cases of one that show it at all."""
+    for name, label in sealed.items():
+        if label["stratum"] in ("single", "ambiguous", "decoy") and said.get(name, {}).get("rivals"):
+            yield label.get("effect") or label["distortion"], said[name]
+
+
+def _alone(verdict):
+    """Evidence by name of what was tried alone."""
+    return {one["effects"][0]: one["evidence"] for one in verdict.get("rivals", []) if len(one["effects"]) == 1}
+
+
+def _sorted(found):
+    """Pairs, the largest value first."""
+    return sorted(found.items(), key=lambda pair: pair[1], reverse=True)
