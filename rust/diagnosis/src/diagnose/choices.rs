@@ -133,11 +133,9 @@ impl Past {
         contact: &dyn Fn(usize) -> f64,
     ) -> Vec<Choice> {
         let mut all = Vec::new();
-        let known = || {
-            let both = tools.iter().zip(places);
-            both.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)))
-        };
-        for (tool, is_own, place) in known() {
+        let known = tools.iter().zip(places);
+        let known = known.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)));
+        for (tool, is_own, place) in known {
             let partners = self.partners((tool, place), (tools, places), contact);
             for (speed_mm_s, hold_s, cycles) in self.ways() {
                 let press = |(tool, place): (&Indenter, usize)| Press {
@@ -155,14 +153,14 @@ impl Past {
                     minutes: self.minutes(&press((tool, place))),
                     presses: vec![press((tool, place))],
                 };
-                for (other, place) in &partners {
-                    let mut both = alone.clone();
-                    let press = press((other, *place));
+                let in_turn = partners.iter().map(|(other, place)| {
+                    let (press, mut both) = (press((other, *place)), alone.clone());
                     both.minutes += self.minutes(&press);
                     both.presses.push(press);
                     both.in_turn_with = Some(other.name.clone());
-                    all.push(both);
-                }
+                    both
+                });
+                all.extend(in_turn);
                 all.push(alone);
             }
         }

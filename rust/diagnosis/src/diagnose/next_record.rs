@@ -58,12 +58,7 @@ pub fn suggestions(
             continue;
         };
         let one = told(&past, choice, (*pair, presses, probability));
-        let is_same = |f: &&mut Suggestion| {
-            f.indenter == one.indenter
-                && (f.speed_mm_s, f.hold_s, f.cycles) == (one.speed_mm_s, one.hold_s, one.cycles)
-                && f.in_turn_with == one.in_turn_with
-        };
-        match found.iter_mut().find(is_same) {
+        match found.iter_mut().find(|other| other.asks_as(&one)) {
             Some(same) => same.join(one),
             None => found.push(one),
         }
@@ -72,6 +67,14 @@ pub fn suggestions(
 }
 
 impl Suggestion {
+    /// True for the same recording, however often.
+    fn asks_as(&self, other: &Suggestion) -> bool {
+        let way = |of: &Suggestion| (of.speed_mm_s, of.hold_s, of.cycles);
+        self.indenter == other.indenter
+            && self.in_turn_with == other.in_turn_with
+            && way(self) == way(other)
+    }
+
     /// Lets the same recording settle another pair too.
     fn join(&mut self, other: Suggestion) {
         let more = other.settles.iter().filter(|n| !self.settles.contains(n));
@@ -136,11 +139,8 @@ fn enough(promise: &Promise, needed: f64) -> Option<(u32, f64)> {
     last
 }
 
-fn told(
-    past: &Past,
-    choice: &Choice,
-    (pair, times, probability): ([&'static str; 2], u32, f64),
-) -> Suggestion {
+/// With what to press and how.
+fn said(past: &Past, choice: &Choice) -> String {
     let press = &choice.presses[0];
     let other = if choice.is_known {
         ""
@@ -157,15 +157,31 @@ fn told(
         1 => format!("hold {:.0} s", press.hold_s),
         n => format!("{n} cycles without a hold"),
     };
-    let (in_turn, each) = match &choice.in_turn_with {
-        Some(name) if past.is_used(name) => (format!(", in turn with '{name}'"), " each"),
-        Some(name) => (format!(", in turn with '{name}', not used so far"), " each"),
-        None => (String::new(), ""),
+    let in_turn = match &choice.in_turn_with {
+        Some(name) if past.is_used(name) => format!(", in turn with '{name}'"),
+        Some(name) => format!(", in turn with '{name}', not used so far"),
+        None => String::new(),
     };
+    let (depth, speed) = (press.depth_mm, press.speed_mm_s);
+    format!("{tool} to {depth:.2} mm at {speed:.2} mm/s, {how}{in_turn}")
+}
+
+fn told(
+    past: &Past,
+    choice: &Choice,
+    (pair, times, probability): ([&'static str; 2], u32, f64),
+) -> Suggestion {
+    let press = &choice.presses[0];
+    let (with, each) = (
+        said(past, choice),
+        if choice.in_turn_with.is_some() {
+            " each"
+        } else {
+            ""
+        },
+    );
     let text = format!(
-        "Press with {tool} to {:.2} mm at {:.2} mm/s, {how}{in_turn}, {times} times{each}: {} and {} then differ",
-        press.depth_mm,
-        press.speed_mm_s,
+        "Press with {with}, {times} times{each}: {} and {} then differ",
         pair[0].replace('_', " "),
         pair[1].replace('_', " ")
     );

@@ -90,29 +90,31 @@ pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, S
         unit: "1",
     }];
     list.extend(numbers.iter().map(tell));
-    let choices = match (&mechanism.acts, effect) {
-        (Acts::Stiffens(measure, growth), _) => {
+    let switched = Switched {
+        name: effect.name(),
+        amplitude: amplitude.0,
+        numbers: numbers.iter().map(|n| (n.0, n.1)).collect(),
+        choices: choices(mechanism),
+    };
+    (list, switched)
+}
+
+/// Choices that the catalogue leaves, by name.
+fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
+    let mut choices = match &mechanism.acts {
+        Acts::Stiffens(measure, growth) => {
             let measure = match measure {
                 Measure::Depth => "depth",
                 Measure::Strain => "strain",
             };
             vec![("law", growth.law()), ("measure", measure)]
         }
-        (Acts::Late, _) => vec![("channel", "force")],
-        (Acts::Offset, _) => vec![("channel", "force")],
+        Acts::Late | Acts::Offset => vec![("channel", "force")],
         _ => Vec::new(),
     };
-    let known = |name: &str| effect.entry().choices.iter().any(|c| c.name == name);
-    let switched = Switched {
-        name: effect.name(),
-        amplitude: amplitude.0,
-        numbers: numbers.iter().map(|n| (n.0, n.1)).collect(),
-        choices: choices
-            .into_iter()
-            .filter(|(name, _)| known(name))
-            .collect(),
-    };
-    (list, switched)
+    let known = mechanism.effect.entry().choices;
+    choices.retain(|(name, _)| known.iter().any(|c| c.name == *name));
+    choices
 }
 
 type Three = (f64, f64, f64);
@@ -140,25 +142,10 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
         }
         Acts::Clings { .. } => {
             let work = interval(free, &|x| work_of(ready, x.max(0.0)));
-            let (log, error) = free.sum(&[0.0, 1.0]);
-            let range = libm::exp(log) * ready.scales.deepest * RAMP;
-            let factor = libm::exp(HALF * error).min(MOST);
-            let range = ("range_mm", range, range / factor, range * factor);
-            (
-                whole,
-                vec![("work_j_per_m2", work.0, work.1, work.2), range],
-            )
+            let work = ("work_j_per_m2", work.0, work.1, work.2);
+            (whole, vec![work, reach(ready, free)])
         }
-        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => {
-            let pulp = 3.0 * free.shear_mpa;
-            let modulus = interval(free, &|x| pulp * ratio(x));
-            let thick = thickness(*form);
-            let shape = vec![
-                ("modulus_mpa", modulus.0, modulus.1, modulus.2),
-                ("thickness_mm", thick.0, thick.1, thick.2),
-            ];
-            (whole, shape)
-        }
+        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => (whole, skin(*form, free)),
         acts => {
             let told = one(ready, (mechanism.effect, acts)).map(|(name, scale)| {
                 let three = interval(free, &*scale);
@@ -167,6 +154,25 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
             (whole, told.into_iter().collect())
         }
     }
+}
+
+/// Modulus and thickness of a stiff skin.
+fn skin(form: usize, free: &Free) -> Vec<Named> {
+    let pulp = 3.0 * free.shear_mpa;
+    let modulus = interval(free, &|x| pulp * ratio(x));
+    let thick = thickness(form);
+    vec![
+        ("modulus_mpa", modulus.0, modulus.1, modulus.2),
+        ("thickness_mm", thick.0, thick.1, thick.2),
+    ]
+}
+
+/// Range of a grip.
+fn reach(ready: &Prepared, free: &Free) -> Named {
+    let (log, error) = free.sum(&[0.0, 1.0]);
+    let range = libm::exp(log) * ready.scales.deepest * RAMP;
+    let factor = libm::exp(HALF * error).min(MOST);
+    ("range_mm", range, range / factor, range * factor)
 }
 
 /// The first number and the ends of its interval, in other terms.

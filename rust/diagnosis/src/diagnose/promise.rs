@@ -8,6 +8,8 @@
 //! the recordings leave open of the true one's numbers (`possible.rs`) is open in what it foretells: then it, too, has to be fitted anew,
 //! and what that leaves is taken off its lead.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 
 use super::course::Course;
@@ -178,28 +180,17 @@ impl Foretold {
         };
         let at = longer(&of.refit.at);
         let foretold = forces(&at);
-        let (mut slopes, mut owns) = (Vec::new(), Vec::new());
         let own = first + of_place.len()..last;
-        for (k, forces) in foretold.iter().enumerate() {
-            let (mut shared, mut others) = (Vec::new(), Vec::new());
-            for (number, coordinate) in model.coordinates.iter().enumerate() {
-                let found = screen.slopes((&model, &at), (number, new + k), forces);
-                if !own.contains(&number) {
-                    shared.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
-                } else if let Some(slope) = found {
-                    let sd = coordinate.prior.unwrap_or(0.0);
-                    others.push(slope.iter().map(|s| s * sd).collect());
-                }
-            }
-            slopes.push(shared);
-            owns.push(others);
-        }
+        let slopes = |(k, forces): (usize, &Vec<f64>)| {
+            slopes((screen, &model, &at), (new + k, forces), &own)
+        };
+        let (slopes, own) = foretold.iter().enumerate().map(slopes).unzip();
         let one = |p: &Possible| (p.share, forces(&longer(&p.at)));
         Some(Foretold {
             forces: foretold,
             possible: possible.iter().map(one).collect(),
             slopes,
-            own: owns,
+            own,
             known: known(&of.refit.covariance, (first, of_place))?,
         })
     }
@@ -233,6 +224,26 @@ impl Foretold {
             known: self.known.clone(),
         }
     }
+}
+
+/// Slopes of a recording's forces by all coordinates but the numbers `own`, and by those of `own` that move them, times what these
+/// scatter by.
+fn slopes(
+    (screen, model, at): (&Screen<'_>, &Model<'_>, &[f64]),
+    (course, forces): (usize, &[f64]),
+    own: &Range<usize>,
+) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    let (mut shared, mut others) = (Vec::new(), Vec::new());
+    for (number, coordinate) in model.coordinates.iter().enumerate() {
+        let found = screen.slopes((model, at), (number, course), forces);
+        if !own.contains(&number) {
+            shared.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
+        } else if let Some(slope) = found {
+            let sd = coordinate.prior.unwrap_or(0.0);
+            others.push(slope.iter().map(|s| s * sd).collect());
+        }
+    }
+    (shared, others)
 }
 
 /// Information that the earlier recordings hold, with that of a new tool's coordinates after the `first` shared ones.
