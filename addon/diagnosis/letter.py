@@ -131,18 +131,10 @@ def lines(letter):
     yield from letter.notes
 
 
-def _sizes(parameters):
-    """Numbers of a finding; an amplitude that is 1 and nothing else says that the other numbers tell the size."""
-    amplitude = parameters.get("amplitude") or {}
-    is_whole = len(parameters) > 1 and amplitude.get("low") == amplitude.get("high") == 1.0
-    shown = {key: told for key, told in parameters.items() if not (is_whole and key == "amplitude")}
-    return [Row(wording.title(key), wording.value(told)) for key, told in shown.items()]
-
-
 def _entry(found, index):
     finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
-    rows = _sizes(finding.get("parameters") or {})
+    rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     story = (wording.place(where), wording.moment(when), wording.depends(finding.get("depends_on")))

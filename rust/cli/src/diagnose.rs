@@ -53,12 +53,7 @@ fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
     for finding in &found.findings {
         text += &format!("{} ({:.0} %)\n", finding.effect, 100.0 * finding.confidence);
         for number in &finding.numbers {
-            let (low, high) = number.interval;
-            let between = match low < high {
-                true => format!("{low:.4} to {high:.4}"),
-                false => "not fitted".to_owned(),
-            };
-            let unit = if number.unit == "1" { "" } else { number.unit };
+            let (between, unit) = number.told();
             let line = format!("  {} = {:.4} ({between}) {unit}", number.name, number.value);
             text += line.trim_end();
             text += "\n";

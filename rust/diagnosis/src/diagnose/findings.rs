@@ -49,6 +49,18 @@ pub struct Number {
     pub unit: &'static str,
 }
 
+impl Number {
+    /// The interval, and the unit if it has one.
+    pub fn told(&self) -> (String, &'static str) {
+        let (low, high) = self.interval;
+        let between = match low < high {
+            true => format!("{low:.4} to {high:.4}"),
+            false => "not fitted".to_owned(),
+        };
+        (between, if self.unit == "1" { "" } else { self.unit })
+    }
+}
+
 /// Where a finding is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Where {

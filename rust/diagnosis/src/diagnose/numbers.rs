@@ -73,30 +73,30 @@ pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, S
     let free = Free::of(ready, scored, number);
     let effect = mechanism.effect;
     let (amplitude, numbers) = values(ready, mechanism, &free);
-    let unit = |name: &str| {
-        let entry = effect.entry().shape.iter().find(|n| n.name == name);
-        entry.map_or("1", |n| n.unit)
-    };
-    let tell = |(name, value, low, high): &(&'static str, f64, f64, f64)| Number {
-        name,
-        value: *value,
-        interval: (low.min(*high), low.max(*high)),
-        unit: unit(name),
-    };
-    let mut list: Vec<Number> = vec![Number {
-        name: "amplitude",
-        value: amplitude.0,
-        interval: (amplitude.1, amplitude.2),
-        unit: "1",
-    }];
-    list.extend(numbers.iter().map(tell));
     let switched = Switched {
         name: effect.name(),
         amplitude: amplitude.0,
         numbers: numbers.iter().map(|n| (n.0, n.1)).collect(),
         choices: choices(mechanism),
     };
-    (list, switched)
+    (list(effect, amplitude, &numbers), switched)
+}
+
+/// What is told of an effect. Where other numbers say how much, the amplitude of 1 with which they are switched on is none that was found.
+fn list(effect: Effect, amplitude: Three, numbers: &[Named]) -> Vec<Number> {
+    let unit = |name: &str| {
+        let entry = effect.entry().shape.iter().find(|n| n.name == name);
+        entry.map_or("1", |n| n.unit)
+    };
+    let tell = |&(name, value, low, high): &Named| Number {
+        name,
+        value,
+        interval: (low.min(high), low.max(high)),
+        unit: unit(name),
+    };
+    let is_found = amplitude != WHOLE || numbers.is_empty();
+    let own = is_found.then_some(("amplitude", amplitude.0, amplitude.1, amplitude.2));
+    own.iter().chain(numbers).map(tell).collect()
 }
 
 /// Choices that the catalogue leaves, by name.
@@ -119,10 +119,11 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
 
 type Three = (f64, f64, f64);
 type Named = (&'static str, f64, f64, f64);
+/// Amplitude of an effect whose other numbers say how much.
+const WHOLE: Three = (1.0, 1.0, 1.0);
 
 /// Amplitude and shape numbers, each with its interval.
 fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<Named>) {
-    let whole: Three = (1.0, 1.0, 1.0);
     match &mechanism.acts {
         Acts::Fades {
             spectrum: Spectrum::Free(lengths),
@@ -143,15 +144,15 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
         Acts::Clings { .. } => {
             let work = interval(free, &|x| work_of(ready, x.max(0.0)));
             let work = ("work_j_per_m2", work.0, work.1, work.2);
-            (whole, vec![work, reach(ready, free)])
+            (WHOLE, vec![work, reach(ready, free)])
         }
-        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => (whole, skin(*form, free)),
+        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => (WHOLE, skin(*form, free)),
         acts => {
             let told = one(ready, (mechanism.effect, acts)).map(|(name, scale)| {
                 let three = interval(free, &*scale);
                 (name, three.0, three.1, three.2)
             });
-            (whole, told.into_iter().collect())
+            (WHOLE, told.into_iter().collect())
         }
     }
 }
@@ -316,6 +317,19 @@ mod tests {
         for (mean, wanted) in means.iter().zip([-OUTER, 0.0, OUTER]) {
             assert!((mean - wanted).abs() < 1e-4, "{means:?}");
         }
+    }
+
+    #[test]
+    fn an_amplitude_that_only_says_whole_is_left_out_beside_other_numbers() {
+        let names = |amplitude: Three, numbers: &[Named]| -> Vec<&str> {
+            let told = list(Effect::StiffSkin, amplitude, numbers);
+            told.iter().map(|number| number.name).collect()
+        };
+        let modulus = ("modulus_mpa", 0.2, 0.1, 0.3);
+        assert_eq!(names(WHOLE, &[modulus]), ["modulus_mpa"]);
+        assert_eq!(names(WHOLE, &[]), ["amplitude"]);
+        let part = (0.34, 0.31, 0.37);
+        assert_eq!(names(part, &[modulus]), ["amplitude", "modulus_mpa"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::page::page;
 use super::svg::escaped;
 use super::traces::plot;
-use crate::diagnose::{Diagnosis, Finding, Gain, Number, Rival};
+use crate::diagnose::{Diagnosis, Gain, Number, Rival, Verdict};
 use std::fmt::Write;
 
 /// Recordings that are drawn.
@@ -29,10 +29,10 @@ pub fn diagnosis_html(found: &Diagnosis) -> String {
         html,
         "<h3>What stands behind it</h3><ul>{notes}</ul></section>\n<section><h2>With parameters alone</h2><p class='sentence'>{}</p>{}</section>",
         escaped(&found.comparison.sentence),
-        match found.findings.is_empty() {
-            true => "",
-            false =>
-                "<p class='meta'>This weighs all that is left at once; what stands above was sought cause by cause, and sees less.</p>",
+        match found.verdict {
+            Verdict::NothingMissing | Verdict::Parameters => "",
+            _ =>
+                "<p class='meta'>This weighs all that is left at once; what stands above was sought cause by cause, which finds smaller effects.</p>",
         }
     );
     page(&found.comparison, (&found.sentence, &html))
@@ -47,7 +47,7 @@ fn findings(found: &Diagnosis) -> String {
             escaped(&finding.effect.replace('_', " ")),
             100.0 * finding.confidence
         );
-        html.extend(told(finding).map(number));
+        html.extend(finding.numbers.iter().map(number));
         html.extend(found.choices(finding.effect).iter().map(choice));
         html += "</table>\n";
         html += &signs(&finding.consequences);
@@ -55,24 +55,8 @@ fn findings(found: &Diagnosis) -> String {
     html
 }
 
-/// Numbers that say something: an amplitude of 1 beside others is none that was found.
-fn told(finding: &Finding) -> impl Iterator<Item = &Number> {
-    let is_whole =
-        |of: &Number| of.name == "amplitude" && of.value == 1.0 && of.interval.0 >= of.interval.1;
-    let has_others = finding.numbers.len() > 1;
-    finding
-        .numbers
-        .iter()
-        .filter(move |of| !(has_others && is_whole(of)))
-}
-
 fn number(of: &Number) -> String {
-    let (low, high) = of.interval;
-    let between = match low < high {
-        true => format!("{low:.4} to {high:.4}"),
-        false => "not fitted".to_owned(),
-    };
-    let unit = if of.unit == "1" { "" } else { of.unit };
+    let (between, unit) = of.told();
     format!(
         "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
         of.name, of.value
