@@ -132,11 +132,14 @@ impl Past {
         (tools, places): (&[(Indenter, bool)], &[Option<usize>]),
         contact: &dyn Fn(usize) -> f64,
     ) -> Vec<Choice> {
-        let mut all = Vec::new();
+        let (mut all, mut paired) = (Vec::new(), Vec::new());
         let known = tools.iter().zip(places);
         let known = known.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)));
         for (tool, is_own, place) in known {
-            let partners = self.partners((tool, place), (tools, places), contact);
+            let mut partners = self.partners((tool, place), (tools, places), contact);
+            // Each may be the other's partner: once is enough.
+            partners.retain(|(_, other)| !paired.contains(&[*other, place]));
+            paired.extend(partners.iter().map(|(_, other)| [place, *other]));
             for (speed_mm_s, hold_s, cycles) in self.ways() {
                 let press = |(tool, place): (&Indenter, usize)| Press {
                     place,
@@ -186,9 +189,7 @@ impl Past {
         };
         let used = most(true);
         let least = used.as_ref().map_or(0.0, apart);
-        // Of two that are not in use each is the other's partner: once is enough.
-        let fresh = most(false)
-            .filter(|other| !self.is_used(&tool.name) && other.1 > place && apart(other) > least);
+        let fresh = most(false).filter(|other| !self.is_used(&tool.name) && apart(other) > least);
         used.into_iter().chain(fresh).collect()
     }
 
@@ -269,9 +270,10 @@ fn pressed(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeMap;
 
-    /// Spheres of 5, 11 and 28 mm, of which these are in use.
-    fn pairs(used: &[&str]) -> Vec<(String, Option<String>)> {
+    /// Which spheres are pressed in turn where these are in use, in the study's order of `radii` (mm), and in how many ways each.
+    fn pairs(radii: [(&str, f64); 3], used: &[&str]) -> BTreeMap<String, usize> {
         let past = Past {
             site: String::new(),
             used: used.iter().map(|name| (*name).to_owned()).collect(),
@@ -281,57 +283,45 @@ mod tests {
             hold_s: 8.0,
             rest_s: 120.0,
         };
-        let radii = [("large", 11.0), ("small", 5.0), ("wide", 28.0)];
         let sphere = |(name, radius_mm): (&str, f64)| {
             let shape = Shape::Sphere { radius_mm };
             let name = name.to_owned();
             (Indenter { name, shape }, true)
         };
-        let tools = radii.map(sphere);
         let contact = |place: usize| (radii[place].1 * 0.8).sqrt();
-        let all = past.choices((&tools, &[Some(0), Some(1), Some(2)]), &contact);
-        let mut found: Vec<(String, Option<String>)> = all
-            .into_iter()
-            .map(|c| (c.indenter.unwrap_or_default(), c.in_turn_with))
-            .collect();
-        found.dedup();
-        found.retain(|(_, other)| other.is_some());
-        found.sort();
-        found.dedup();
+        let places = [Some(0), Some(1), Some(2)];
+        let all = past.choices((&radii.map(sphere), &places), &contact);
+        let in_turn = |c: Choice| {
+            let mut both = [c.indenter?, c.in_turn_with?];
+            both.sort();
+            Some(both.join("+"))
+        };
+        let mut found = BTreeMap::new();
+        for pair in all.into_iter().filter_map(in_turn) {
+            *found.entry(pair).or_default() += 1;
+        }
         found
     }
 
-    fn pair(one: &str, other: &str) -> (String, Option<String>) {
-        (one.to_owned(), Some(other.to_owned()))
-    }
-
+    /// 5 and 28 mm differ more than either and 11, and 11 differs more from 28 than from 5. Each pair comes once in each way: at two
+    /// speeds, and in cycles.
     #[test]
     fn two_tools_that_were_not_used_are_pressed_in_turn_where_they_differ_more() {
-        let wanted = [
-            pair("small", "large"),
-            pair("small", "wide"),
-            pair("wide", "large"),
-        ];
-        assert_eq!(
-            pairs(&["large"]),
-            wanted,
-            "5 and 28 differ more than either and 11"
-        );
-        let wanted = [
-            pair("large", "small"),
-            pair("large", "wide"),
-            pair("wide", "small"),
-        ];
-        assert_eq!(
-            pairs(&["small"]),
-            wanted,
-            "11 differs more from 28 than from 5"
-        );
-        let wanted = [
-            pair("large", "wide"),
-            pair("small", "wide"),
-            pair("wide", "small"),
-        ];
-        assert_eq!(pairs(&["small", "wide"]), wanted);
+        let radii = [("large", 11.0), ("small", 5.0), ("wide", 28.0)];
+        for turn in 0..3 {
+            let mut radii = radii;
+            radii.rotate_left(turn);
+            for (used, wanted) in [
+                (&["large"][..], ["large+small", "large+wide", "small+wide"]),
+                (&["small"], ["large+small", "large+wide", "small+wide"]),
+                (
+                    &["small", "wide"],
+                    ["large+wide", "small+wide", "small+wide"],
+                ),
+            ] {
+                let wanted = wanted.map(|pair| (pair.to_owned(), 3));
+                assert_eq!(pairs(radii, used), BTreeMap::from(wanted), "{used:?}");
+            }
+        }
     }
 }

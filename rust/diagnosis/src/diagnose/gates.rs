@@ -270,11 +270,11 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
     let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
     let least = |k: usize| {
         let (second, first) = (&pair.mechanisms[k], &pair.mechanisms[1 - k]);
-        let is_tissues = is_static(second) && !second.is_instrument();
-        let beside = match is_static(second) {
-            true if is_tissues && CLOCKS.contains(&first.effect) => DETECTED_STATIC.0,
-            true if !acts_apart(first) => STATIC_BESIDE,
-            _ => BESIDE,
+        let beside = match first {
+            _ if !is_static(second) => BESIDE,
+            _ if CLOCKS.contains(&first.effect) && !second.is_instrument() => DETECTED_STATIC.0,
+            _ if acts_apart(first) => BESIDE,
+            _ => STATIC_BESIDE,
         };
         f64::max(inexact(first, second) * alone(1 - k), beside)
     };

@@ -16,7 +16,7 @@ pub struct Possible {
     pub share: f64,
 }
 
-/// The optimum of an explanation, and its fits with one of its mechanisms' numbers held beside it; `temper`: what deviances are divided
+/// The optimum of an explanation first, and its fits with one of its mechanisms' numbers held beside it; `temper`: what deviances are divided
 /// by. Standard errors are of the optimum's neighborhood, so that a number of which little is known is held at its bounds; how probable
 /// it is there says the fit.
 pub fn possible(screen: &Screen<'_>, of: &Scored, temper: f64) -> Vec<Possible> {

@@ -136,7 +136,11 @@ impl Between<'_> {
             let most = forces.iter().fold(0.0, |m, f| f64::max(m, *f));
             Fresh::new(ready, course, ready.noise_share() * most)
         };
-        let noise: Vec<Fresh> = courses[number..].iter().zip(&a.forces).map(noise).collect();
+        let noise: Vec<Fresh> = courses[number..]
+            .iter()
+            .zip(a.forces())
+            .map(noise)
+            .collect();
         Some(Promise {
             both: [a.beside(&b, &noise), b.beside(&a, &noise)],
             lead: self.two[0].evidence - self.two[1].evidence,
@@ -147,9 +151,7 @@ impl Between<'_> {
 
 /// An explanation's forces on new recordings, and how they change with what is fitted.
 struct Foretold {
-    /// By recording.
-    forces: Vec<Vec<f64>>,
-    /// The same with what else its numbers may be, and how probable these are; its own are the first.
+    /// By recording, with all that its numbers may be, and how probable these are; the optimum's are the first.
     possible: Vec<(f64, Vec<Vec<f64>>)>,
     /// By recording, slopes by coordinate; and of the recording's own coordinates times what these scatter by.
     slopes: Vec<Vec<Vec<f64>>>,
@@ -178,21 +180,25 @@ impl Foretold {
             all.map(|course| screen.forces(&model, &set, course))
                 .collect()
         };
-        let at = longer(&of.refit.at);
-        let foretold = forces(&at);
+        let one = |p: &Possible| (p.share, forces(&longer(&p.at)));
+        let possible: Vec<_> = possible.iter().map(one).collect();
+        let (at, best) = (longer(&of.refit.at), &possible.first()?.1);
         let own = first + of_place.len()..last;
         let slopes = |(k, forces): (usize, &Vec<f64>)| {
             slopes((screen, &model, &at), (new + k, forces), &own)
         };
-        let (slopes, own) = foretold.iter().enumerate().map(slopes).unzip();
-        let one = |p: &Possible| (p.share, forces(&longer(&p.at)));
+        let (slopes, own) = best.iter().enumerate().map(slopes).unzip();
         Some(Foretold {
-            forces: foretold,
-            possible: possible.iter().map(one).collect(),
+            possible,
             slopes,
             own,
             known: known(&of.refit.covariance, (first, of_place))?,
         })
+    }
+
+    /// At the optimum, by recording.
+    fn forces(&self) -> &[Vec<f64>] {
+        &self.possible[0].1
     }
 
     /// What comes if this one is true, of all recordings together.
@@ -210,7 +216,7 @@ impl Foretold {
         let mut sum = DMatrix::zeros(m + n, m + n);
         for (course, noise) in noise.iter().enumerate() {
             let off = |(_, forces): &(f64, Vec<Vec<f64>>)| -> Vec<f64> {
-                let both = forces[course].iter().zip(&self.forces[course]);
+                let both = forces[course].iter().zip(&self.forces()[course]);
                 both.map(|(a, b)| a - b).collect()
             };
             let off: Vec<Vec<f64>> = truths.iter().map(off).collect();
@@ -280,8 +286,7 @@ mod tests {
         let known = DMatrix::from_diagonal(&DVector::from_vec(vec![0.3, 1.0, 2.0, 5.0]));
         let noise = Fresh::white(0.1, rows);
         let foretold = Foretold {
-            forces: vec![vec![0.0; rows]],
-            possible: Vec::new(),
+            possible: vec![(1.0, vec![vec![0.0; rows]])],
             slopes: vec![slopes.clone()],
             own: vec![owns.clone()],
             known: known.clone(),
