@@ -4,6 +4,7 @@ Rows of shares have Wilson's 95 % bounds, rows of medians and means those of the
 `answers` are verdicts by case; cases without one say nothing. Every row has a `key` by which others refer to it.
 """
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -310,6 +311,27 @@ def wrong_names(sealed, said):
             line = (truth, " + ".join(sorted(false)), bool(named(verdict) & set(label["names"])))
             found[line] = found.get(line, 0) + 1
     return sorted((*line, often) for line, often in found.items())
+
+
+def endings(sealed, said):
+    """Lines (verdict or what was named, how often) of the ambiguous cases, the most frequent first."""
+    found = Counter(_ending(label, said.get(name, SILENT)) for name, label in sealed.items() if _is_ambiguous(label))
+    return found.most_common()
+
+
+def _is_ambiguous(label):
+    return label["stratum"] == "ambiguous"
+
+
+def _ending(label, verdict):
+    if is_undecided(label, verdict):
+        return "the right set"
+    false = named(verdict) - truth_of(label)
+    if not named(verdict):
+        return verdict["verdict"].replace("_", " ")
+    if not false:
+        return "named what is true"
+    return "named what imitates it" if false <= set(label["names"]) else "named something else"
 
 
 def exact_by_effect(sealed, said):

@@ -143,6 +143,9 @@ def _tell(asked, everyone, sealed, told, tables):
     print("one effect, kappa >= 1, exact:")
     for effect, hits, of in counts.exact_by_effect(sealed, told[first].said):
         print(f"  {effect}: {hits} of {of}")
+    print("ambiguous:")
+    for ending, often in counts.endings(sealed, told[first].said):
+        print(f"  {ending}: {often}")
     print("wrong names:")
     for truth, false, is_beside, often in counts.wrong_names(sealed, told[first].said):
         print(f"  {false} {'beside' if is_beside else 'instead of'} {truth}: {often}")

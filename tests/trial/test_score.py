@@ -89,6 +89,30 @@ def test_an_open_gate_shows(sealed):
     assert found["ambiguous"].value == 0.0
 
 
+def test_endings_of_ambiguous_cases_tell_a_truth_from_its_look_alike_and_from_neither(sealed):
+    doubtful = {name: label for name, label in sealed.items() if label["stratum"] == "ambiguous"}
+    said = {name: right(label) for name, label in doubtful.items()}
+    first, second, third, fourth, fifth = list(doubtful)[:5]
+
+    def name(case, effect):
+        said[case] = {"verdict": "missing_physics", "findings": [{"effect": effect}]}
+
+    (other,) = set(doubtful[second]["names"]) - {doubtful[second]["effect"]}
+    name(first, doubtful[first]["effect"])
+    name(second, other)
+    name(third, "adhesion")
+    said[fourth] = {"verdict": "nothing_missing", "findings": []}
+    del said[fifth]
+    assert dict(scored.endings(sealed, said)) == {
+        "the right set": len(doubtful) - 5,
+        "named what is true": 1,
+        "named what imitates it": 1,
+        "named something else": 1,
+        "nothing missing": 1,
+        "insufficient data": 1,
+    }
+
+
 def test_a_place_off_by_more_than_a_pitch_is_no_place(sealed):
     said = {name: right(label) for name, label in sealed.items()}
     for name, label in sealed.items():
