@@ -3,6 +3,7 @@
 mod alike;
 mod frames;
 mod repeats;
+mod restricted;
 mod scans;
 mod smoothing;
 mod together;

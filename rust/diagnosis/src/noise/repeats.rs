@@ -3,24 +3,18 @@
 use nalgebra::Vector2;
 
 use super::alike::{Told, aligned};
+use super::restricted;
 use super::together::Together;
 use super::{Channel, POOLED_DEGREES};
 use crate::observe::Measured;
 use crate::observe::scatter::median;
 
 /// Deviations beyond this many standard deviations are outliers, and not noise.
-const OUTLIER: f64 = 3.5;
+pub(super) const OUTLIER: f64 = 3.5;
 /// Variance that values within `OUTLIER` standard deviations of a normal law keep.
 const KEPT_VARIANCE: f64 = 0.9935;
 /// Fewest samples of a channel from which noise is told.
 pub(super) const LEAST_SAMPLES: usize = 8;
-/// Largest correlation of neighbors that a correction leads to.
-const MOST_CARRY: f64 = 0.97;
-/// Ratios of memory to sampling interval that are tried.
-const MEMORIES: [f64; 16] = [
-    0.0, 0.3, 0.5, 0.7, 0.9, 1.2, 1.5, 1.9, 2.4, 3.0, 3.8, 4.8, 6.0, 7.5, 9.5, 12.0,
-];
-
 /// Recordings of one protocol with one tool at one place, by number; two or more.
 pub type Group = Vec<usize>;
 
@@ -133,7 +127,7 @@ impl Repeats {
             Channel::Scan => return super::scans::scatter(&self.groups, measured),
             _ => {}
         }
-        let told = |&k: &usize| Told {
+        let beside = |&k: &usize| Told {
             measured: &measured[k],
             simulated: &simulated[k],
             slopes: &slopes[k],
@@ -142,7 +136,7 @@ impl Repeats {
             .groups
             .iter()
             .filter_map(|group| {
-                let repeats: Vec<Told<'_>> = group.iter().map(told).collect();
+                let repeats: Vec<Told<'_>> = group.iter().map(beside).collect();
                 Some((group, Together::new(aligned(self.channel, &repeats))?))
             })
             .collect();
@@ -153,15 +147,18 @@ impl Repeats {
         if all.is_empty() {
             return None;
         }
-        let memory_s = memory(&all);
-        let shares: Vec<(f64, f64)> = all.iter().map(|d| d.share(memory_s)).collect();
+        let told = restricted::told(&all);
+        let memory_s = told.memory_s;
+        let of_most =
+            |(d, (sigma, degrees)): (&Deviations, &(f64, f64))| (sigma / d.most, *degrees);
+        let shares: Vec<(f64, f64)> = all.iter().zip(&told.sizes).map(of_most).collect();
         let degrees: f64 = shares.iter().map(|s| s.1).sum();
         let pooled = (shares.iter().map(|(s, n)| s * s * n).sum::<f64>() / degrees).sqrt();
         let shrunk = |(own, n): &(f64, f64)| {
             ((own * own * n + pooled * pooled * POOLED_DEGREES) / (n + POOLED_DEGREES)).sqrt()
         };
         let between = between(&all, &shares, memory_s);
-        let (step, drawn_from) = pooled_steps(&all, memory_s);
+        let (step, drawn_from) = pooled_steps(&all, &told);
         let of_group = all.iter().zip(&shares);
         let each = of_group.flat_map(|(d, s)| d.group.iter().map(move |k| (*k, shrunk(s))));
         Some(Scatter {
@@ -179,22 +176,11 @@ impl Repeats {
 }
 
 impl Deviations {
-    /// Standard deviation as a part of the largest value, and its degrees of freedom for noise with that memory.
-    fn share(&self, memory_s: f64) -> (f64, f64) {
-        let (m, n) = (self.rest.len() as f64, self.time.len() as f64);
-        let scale = (m / (m - 1.0)).sqrt();
-        let all = self.rest.iter().flatten().map(|u| u * scale);
-        let sigma = spread(&all.collect::<Vec<f64>>());
-        let sigma = sigma * (n / (n - 2.0)).sqrt();
-        let carry = self.carry(memory_s);
-        // Equivalent number of independent squares of an AR(1) series.
-        let worth = (1.0 - carry * carry) / (1.0 + carry * carry);
-        (sigma / self.most, ((m - 1.0) * (n - 2.0) * worth).max(1.0))
-    }
-
     /// Deviations made independent, over the standard deviation of the noise, by repeat.
-    fn whitened(&self, memory_s: f64) -> Vec<Vec<f64>> {
-        let sigma = spread(&self.rest.concat());
+    fn whitened(&self, (sigma, memory_s): (f64, f64)) -> Vec<Vec<f64>> {
+        let m = self.rest.len() as f64;
+        // The repeats' own mean takes part of each.
+        let sigma = sigma * ((m - 1.0) / m).sqrt();
         let steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
         let series = |rest: &Vec<f64>| -> Vec<f64> {
             (1..rest.len())
@@ -208,18 +194,6 @@ impl Deviations {
             true => self.rest.iter().map(series).collect(),
             false => Vec::new(),
         }
-    }
-
-    /// A memory that was told from these deviations, without the part that taking out a course of two numbers hides: the
-    /// correlation of neighbors is found too small by (2 + 4 rho) / n (Kendall 1954, for a line taken out).
-    fn longer(&self, memory_s: f64) -> f64 {
-        let n = self.time.len() as f64;
-        let found = self.carry(memory_s);
-        if found == 0.0 {
-            return 0.0;
-        }
-        let carry = ((found + 2.0 / n) / (1.0 - 4.0 / n)).min(MOST_CARRY);
-        memory_s * libm::log(found) / libm::log(carry)
     }
 
     /// Variance of what differs as a whole, for noise of variance 1 with that memory.
@@ -238,17 +212,14 @@ impl Deviations {
         }
         sum
     }
-
-    /// Correlation of neighboring samples.
-    fn carry(&self, memory_s: f64) -> f64 {
-        let mut steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
-        carry(median(&mut steps), memory_s)
-    }
 }
 
 /// Standard deviation of the whitened deviations of all groups, and those over it.
-fn pooled_steps(all: &[Deviations], memory_s: f64) -> (f64, Vec<f64>) {
-    let groups: Vec<Vec<Vec<f64>>> = all.iter().map(|d| d.whitened(memory_s)).collect();
+fn pooled_steps(all: &[Deviations], told: &restricted::Told) -> (f64, Vec<f64>) {
+    let of_group = all.iter().zip(&told.sizes);
+    let groups: Vec<Vec<Vec<f64>>> = of_group
+        .map(|(d, (sigma, _))| d.whitened((*sigma, told.memory_s)))
+        .collect();
     let size = spread(&groups.concat().concat());
     if size.is_nan() || size == 0.0 {
         return (1.0, Vec::new());
@@ -291,54 +262,6 @@ pub fn spread(values: &[f64]) -> f64 {
         return rough;
     }
     (sum / count / KEPT_VARIANCE).sqrt()
-}
-
-/// The memory under which the deviations are likeliest, s.
-fn memory(all: &[Deviations]) -> f64 {
-    let mut steps: Vec<f64> = all
-        .iter()
-        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]))
-        .collect();
-    let step = median(&mut steps);
-    let unlikeliness = |memory_s: f64| -> f64 {
-        all.iter()
-            .map(|d| {
-                let sigma = spread(&d.rest.iter().flatten().copied().collect::<Vec<f64>>());
-                d.rest
-                    .iter()
-                    .map(|series| minus_log_likelihood(series, d, (memory_s, sigma)))
-                    .sum::<f64>()
-            })
-            .sum()
-    };
-    let mut best = (f64::INFINITY, 0.0);
-    for ratio in MEMORIES {
-        let memory_s = ratio * step;
-        let found = unlikeliness(memory_s);
-        if found < best.0 {
-            best = (found, memory_s);
-        }
-    }
-    let corrected = all.iter().map(|d| d.longer(best.1)).sum::<f64>();
-    corrected / all.len() as f64
-}
-
-fn minus_log_likelihood(series: &[f64], of: &Deviations, (memory_s, sigma): (f64, f64)) -> f64 {
-    if sigma == 0.0 {
-        return 0.0;
-    }
-    let (mut sum, is_outlier) = (0.0, |v: f64| v.abs() > OUTLIER * sigma);
-    for k in 1..series.len() {
-        // An outlier is remembered by nothing.
-        if is_outlier(series[k]) || is_outlier(series[k - 1]) {
-            continue;
-        }
-        let carry = carry(of.time[k] - of.time[k - 1], memory_s);
-        let left = 1.0 - carry * carry;
-        let step = (series[k] - carry * series[k - 1]) / sigma;
-        sum += 0.5 * (step * step / left + libm::log(left));
-    }
-    sum
 }
 
 /// Standard deviations between repeats of gain and zero: what exceeds the error of finding them, with `(nu + 2) / nu` for few repeats.
