@@ -20,12 +20,7 @@ from trial import cases, counts, following, make_cases, observing, protocols, sc
 SEEN, LEAD = 3.3, 5.0
 TOLD = (2.0 * LEAD) ** 0.5
 STEP_MM = 1e-3
-ROWS = {
-    "severe": "one effect, kappa >= 1",
-    "mild": "one effect, kappa 0.5",
-    "instrument": "decoys",
-    "followed": "  with the best recording",
-}
+RICH = 0.9
 
 
 class Case:
@@ -93,25 +88,30 @@ def _apply(sigma, keep, basis, shrink, column):
 
 
 def separations(name, label, more=None):
-    """(detect, name) of a case of one effect with presses added; of an instrument's error (detect, None)."""
+    """(detect, name) of a case of one effect or of an instrument's error, with presses added."""
     case = Case(name, label, more)
     if label["stratum"] == "decoy":
-        return float(np.linalg.norm(case.distortion(label["distortion"], label["amplitudes"][1]))), None
+        own = case.distortion(label["distortion"], label["amplitudes"][1])
+        return float(np.linalg.norm(own)), _closest(case, own, 1.0)
     own = case.signature(label["effect"], label["variant"], label["amplitudes"][0])
+    return float(np.linalg.norm(own)), _closest(case, own, label["amplitudes"][0] or 1.0, label["effect"])
+
+
+def _closest(case, own, amplitude, but=None):
+    """What the other effect of the skin leaves that leaves least, its amplitude refitted."""
     least = np.linalg.norm(own)
     for other in protocols.SINGLE:
         for variant in (0, 1):
-            if other != label["effect"] and f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
-                rival = case.signature(other, variant, label["amplitudes"][0] or 1.0)
+            if other != but and f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
+                rival = case.signature(other, variant, amplitude)
                 share = max(0.0, float(rival @ own) / float(rival @ rival))
                 least = min(least, np.linalg.norm(own - share * rival))
-    return float(np.linalg.norm(own)), float(least)
+    return float(least)
 
 
 def chance(detect, name):
     """That the oracle finds a cause and that its evidence leads by LEAD (normal, mean name^2 / 2, deviation name)."""
-    told = 1.0 if name is None else norm.cdf(name / 2.0 - LEAD / max(name, 1e-9))
-    return min(norm.cdf(detect - SEEN), told)
+    return min(norm.cdf(detect - SEEN), norm.cdf(name / 2.0 - LEAD / max(name, 1e-9)))
 
 
 def beside(name, label):
@@ -163,22 +163,40 @@ def groups(sealed):
     return found | {name: severe[name] for name in sorted(severe)}
 
 
-def column(sealed):
-    """What the oracle would reach in the rows of the table that it can be asked about."""
-    found = groups(sealed)
-    expected = {key: [chance(*one) for one in found[group]] for key, group in ROWS.items() if group in found}
-    for key, (stratum, what, weigh) in WEIGHED.items():
-        all_of = [weigh(*what(name, label)) for name, label in sealed.items() if label["stratum"] == stratum]
-        expected |= {key: all_of} if all_of else {}
-    nothing = (float("nan"), float("nan"))
-    return [counts.Row(key, key, float(np.mean(of)), len(of), nothing) for key, of in expected.items()]
+def chances(sealed):
+    """By row of the table, what the oracle's chance is in every case that counts there."""
+    found = {}
+    for name, label in sealed.items():
+        key = label["stratum"]
+        if key == "single":
+            key = "severe" if label["kappa"] >= counts.REACHED else "mild"
+        if key in ASKED:
+            row, what, weigh = ASKED[key]
+            found.setdefault(row, {})[name] = float(weigh(*what(name, label)))
+        if key == "ambiguous" and cases.held_back(name):
+            found.setdefault("followed", {})[name] = float(chance(*settled(name, label)))
+    return found
 
 
-WEIGHED = {
-    "pairs": ("pair", beside, chance_of_both),
+ASKED = {
+    "severe": ("severe", separations, chance),
+    "mild": ("mild", separations, chance),
+    "decoy": ("instrument", separations, chance),
+    "pair": ("pairs", beside, chance_of_both),
     "mixed": ("mixed", beside, chance_of_both),
     "ambiguous": ("ambiguous", separations, chance_of_neither),
 }
+
+
+def column(found):
+    """What the oracle would reach in the rows of the table that it can be asked about; `found` as `chances` has it."""
+    nothing = (float("nan"), float("nan"))
+    return [counts.Row(key, key, float(np.mean([*of.values()])), len(of), nothing) for key, of in found.items()]
+
+
+def rich(found):
+    """By row, the cases that the oracle answers in RICH of its draws: their recordings hold the answer."""
+    return {key: [name for name, share in of.items() if share >= RICH] for key, of in found.items()}
 
 
 def main():
@@ -190,12 +208,12 @@ def main():
     sealed = score.labels(parser.parse_args().split)
     for group, of in groups(sealed).items():
         seen = np.mean([one >= SEEN for one, _ in of])
-        told = np.mean([one >= SEEN and (two is None or two >= TOLD) for one, two in of])
-        detect, names = np.median([one for one, _ in of]), [two for _, two in of if two is not None]
+        told = np.mean([one >= SEEN and two >= TOLD for one, two in of])
+        detect, names = np.median(of, axis=0)
         shares = f"{seen:10.2f}{told:10.2f}{np.mean([chance(*one) for one in of]):10.2f}{detect:10.1f}"
-        print(f"{group:28s}{len(of):10d}{shares}" + (f"{np.median(names):10.1f}" if names else ""))
-    for row in column(sealed):
-        if row.key in WEIGHED:
+        print(f"{group:28s}{len(of):10d}{shares}{names:10.1f}")
+    for row in column(chances(sealed)):
+        if row.key in ("pairs", "mixed", "ambiguous"):
             print(f"{row.name:28s}{row.of:10d}{'':20s}{row.value:10.2f}")
 
 

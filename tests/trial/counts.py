@@ -313,6 +313,15 @@ def wrong_names(sealed, said):
     return sorted((*line, often) for line, often in found.items())
 
 
+def among(sealed, said, rich):
+    """Lines (row's key, right, of) of the cases that `rich` lists by row."""
+    rules = {"instrument": _told_instrument, "ambiguous": is_undecided}
+    for key, names in rich.items():
+        if key != "followed":
+            right = rules.get(key, is_exact)
+            yield key, sum(right(sealed[name], said.get(name, SILENT)) for name in names), len(names)
+
+
 def endings(sealed, said):
     """Lines (verdict or what was named, how often) of the ambiguous cases, the most frequent first."""
     found = Counter(_ending(label, said.get(name, SILENT)) for name, label in sealed.items() if _is_ambiguous(label))

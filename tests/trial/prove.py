@@ -136,13 +136,17 @@ def main():
 
 def _tell(asked, everyone, sealed, told, tables):
     """Prints and writes; returns the exit code."""
-    columns = {name: _able(name, table) for name, table in tables.items()} | {"oracle": ceiling.column(sealed)}
+    chances = ceiling.chances(sealed)
+    columns = {name: _able(name, table) for name, table in tables.items()} | {"oracle": ceiling.column(chances)}
     first, *others = columns
     beside = {name: {row.key: row for row in columns[name]} for name in others}
     print(f"{first}, {asked.split}, {len(everyone[0].reads(sealed))} cases\n{score.shown(columns[first], beside)}")
     print("one effect, kappa >= 1, exact:")
     for effect, hits, of in counts.exact_by_effect(sealed, told[first].said):
         print(f"  {effect}: {hits} of {of}")
+    print("of those that the oracle answers in 9 of 10 draws:")
+    for key, hits, of in counts.among(sealed, told[first].said, ceiling.rich(chances)):
+        print(f"  {key}: {hits} of {of}")
     print("ambiguous:")
     for ending, often in counts.endings(sealed, told[first].said):
         print(f"  {ending}: {often}")
