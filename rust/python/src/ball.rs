@@ -14,10 +14,10 @@ const STIFFEST: f64 = 1e5;
 
 /// Forces of a ball on a flat layer over bone, over the layer's shear modulus G: (n,), mm2.
 ///
-/// `depths_mm` (n,), each deeper than the one before, from a 250th of the deepest, down to the ball's radius at most, where the ball is
-/// the paraboloid of its radius, as Hertz has it; `thickness_mm` of the layer, which may be infinite. With `skin_mm` the layer's
-/// uppermost part is a skin of `skin_ratio` times the modulus, which gives way through its thickness and stretches by its own deflection
-/// (von Karman; Timoshenko & Woinowsky-Krieger 1959, 96). Raises SolveError for numbers that are none of a press.
+/// `depths_mm` (n,), each deeper than the one before, from a 250th of the deepest, down to the ball's radius at most; `thickness_mm` of
+/// the layer, which may be infinite: then Sneddon's sphere (1965). With `skin_mm` the layer's uppermost part is a skin of `skin_ratio`
+/// times the modulus, which gives way through its thickness and stretches by its own deflection (von Karman; Timoshenko &
+/// Woinowsky-Krieger 1959, 96). Raises SolveError for numbers that are none of a press.
 #[pyfunction]
 #[expect(
     clippy::too_many_arguments,

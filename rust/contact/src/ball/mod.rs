@@ -1,6 +1,6 @@
 //! A ball that is pressed into a flat layer, with or without a stiff skin that stretches: round, and so a matter of rings.
 //!
-//! The ball is the paraboloid of its radius, as Hertz has it: at a depth of 0.15 radii a sphere bears 3 % less, with a skin or without.
+//! Without a skin it is as exact as its rings: on a half space within 0.2 % of Sneddon's sphere (1965), from a fifteenth of the deepest depth.
 //! The contact model on meshes takes a stiff skin for a plate at small strains. Here the skin gives way through its own thickness
 //! (`layers`) and is stretched by its own deflection (`stretch`): what a ball meets that is small against the skin, and what it meets
 //! once it has sunk in. Against the finite elements of `tests/trial` see `python -m trial.against_skin`.

@@ -86,9 +86,11 @@ impl Rings {
     /// How far a ball of `radius` at `depth`, mm, overlaps rings at rest.
     pub fn gaps(&self, radius: f64, depth: f64) -> DVector<f64> {
         let middle = |ring: usize| 0.5 * (self.edges[ring] + self.edges[ring + 1]);
-        DVector::from_fn(self.len(), |ring, _| {
-            depth - middle(ring).powi(2) / (2.0 * radius)
-        })
+        let above = |r: f64| match r < radius {
+            true => radius - (radius * radius - r * r).sqrt(),
+            false => f64::INFINITY,
+        };
+        DVector::from_fn(self.len(), |ring, _| depth - above(middle(ring)))
     }
 
     /// Sum of pressures over their rings.
