@@ -9,7 +9,7 @@ use crate::noise::Whitened;
 /// Residuals beyond this many standard deviations pull with a constant force.
 pub const HUBER: f64 = 3.0;
 /// Most steps.
-const MOST_STEPS: usize = 25;
+const MOST_STEPS: usize = 60;
 /// Gain of the deviance below which a fit has settled.
 const SETTLED: f64 = 0.02;
 
