@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
+use super::balls::{self, Known};
 use super::skins;
 use crate::DiagnosisError;
 use crate::fit::Fitting;
@@ -45,6 +46,8 @@ pub struct Tabled {
     pub radius: Vec<f64>,
     /// Deepest depth that was recorded, mm.
     pub deepest: f64,
+    /// Whether its forces are known without the mesh.
+    pub is_exact: bool,
 }
 
 /// All tables of a study.
@@ -60,16 +63,18 @@ pub struct Elastic {
     pub drained: Vec<f64>,
     /// Number of places that the study's recordings use; others come after them.
     pub studied: usize,
+    /// Whether the skin is flat about every site.
+    pub is_flat: bool,
 }
 
 impl Elastic {
-    /// Presses every tool at its site, at the modulus `g_mpa`.
+    /// Presses every tool at its site, at the modulus `g_mpa`; `is_flat`: the skin is flat about every site.
     ///
     /// # Errors
     /// What the contact model says of a press, or `Cancelled`.
     pub fn new(
         fitting: &mut Fitting,
-        g_mpa: f64,
+        (g_mpa, is_flat): (f64, bool),
         control: &Control<'_>,
     ) -> Result<Elastic, DiagnosisError> {
         let mut elastic = Elastic {
@@ -78,6 +83,7 @@ impl Elastic {
             limit_depth: fitting.replay.tissue.materials[0].d_lim_mm,
             drained: Vec::new(),
             studied: fitting.replay.places(),
+            is_flat,
         };
         elastic.add(fitting, g_mpa, control)?;
         Ok(elastic)
@@ -97,16 +103,26 @@ impl Elastic {
         let flat = flattened(&start, g_mpa);
         let (known, places) = (self.places.len(), fitting.replay.places());
         let at: Vec<usize> = (known..places).collect();
-        let base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
-        let mut added = Vec::new();
-        for planned in plan(&start[0]) {
-            added.push(changed(fitting, planned, (&base, &flat), (&at, control))?);
+        let mut base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
+        let balls = balls::known(fitting, self.is_flat, (&at, &base, &flat));
+        for (table, ball) in base.iter_mut().zip(&balls) {
+            if let Some(exact) = ball.as_ref().and_then(|ball| ball.forces(None)) {
+                table.force = exact.iter().map(|force| force * g_mpa).collect();
+            }
         }
-        added.extend(skins::tabulate(fitting, (&base, &flat), (&at, control))?);
+        let mut added = Vec::new();
+        let on = (&base[..], &balls[..], &flat[..]);
+        for planned in plan(&start[0]) {
+            added.push(changed(fitting, planned, on, (&at, control))?);
+        }
+        added.extend(skins::tabulate(fitting, on, (&at, control))?);
         self.take(added);
         fitting.replay.set_effects(&[], control)?;
-        self.places
-            .extend(base.into_iter().map(|table| tabled(table, g_mpa)));
+        let tabled = |(table, ball): (PressTable, &Option<Known>)| Tabled {
+            is_exact: ball.is_some(),
+            ..tabled(table, g_mpa)
+        };
+        self.places.extend(base.into_iter().zip(&balls).map(tabled));
         self.drained = drained(&self.variants, (self.studied, places));
         Ok(())
     }
@@ -145,25 +161,32 @@ impl Variant {
     }
 }
 
-/// What an effect changes of the base tables of these places, on the mesh.
+/// What an effect changes of the base tables of these places: of known balls, and of others on the mesh.
 fn changed(
     fitting: &mut Fitting,
     (effect, knots): (Effect, Vec<Knot>),
-    (base, flat): (&[PressTable], &[Material]),
+    (base, balls, flat): (&[PressTable], &[Option<Known>], &[Material]),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Variant, DiagnosisError> {
     let mut log_ratio = vec![Vec::new(); places.len()];
     for (_, changed) in &knots {
-        let tabled = match changed {
-            None => base.to_vec(),
-            Some(effect) => tables(
-                fitting,
-                (std::slice::from_ref(effect), flat, FEWER),
-                (places, control),
-            )?,
-        };
-        for (place, (with, without)) in tabled.iter().zip(base).enumerate() {
-            log_ratio[place].push(ratios(with, without));
+        for (place, without) in base.iter().enumerate() {
+            let Some(effect) = changed else {
+                log_ratio[place].push(vec![0.0; without.roots.len()]);
+                continue;
+            };
+            let exact = balls[place].as_ref().and_then(|b| b.forces(Some(effect)));
+            let with = match exact {
+                Some(force) => PressTable {
+                    force: force.iter().map(|f| f * flat[0].g0_mpa).collect(),
+                    ..without.clone()
+                },
+                None => {
+                    let how = (std::slice::from_ref(effect), flat, FEWER);
+                    tables(fitting, how, (&places[place..=place], control))?.remove(0)
+                }
+            };
+            log_ratio[place].push(ratios(&with, without));
         }
     }
     Ok(Variant {
@@ -294,6 +317,7 @@ fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
         deepest: last * last,
         rungs,
         roots: table.roots,
+        is_exact: false,
     }
 }
 

@@ -31,6 +31,7 @@ pub fn tool(deepest: f64, force: impl Fn(f64) -> f64, radius: impl Fn(f64) -> f6
         deepest,
         rungs,
         roots,
+        is_exact: false,
     }
 }
 
@@ -59,6 +60,7 @@ pub fn ready(
             places: tools,
             variants: Vec::new(),
             limit_depth: LIMIT_MM,
+            is_flat: true,
         },
         base_material: Material::finger_layer(),
         courses,

@@ -4,6 +4,7 @@
 //! by tables of elastic presses and springs that remember (`memory.rs`), under the same noise and priors as the fit.
 
 mod acting;
+mod balls;
 mod checks;
 mod choices;
 mod course;

@@ -53,7 +53,7 @@ pub fn suggestions(
     let mut found: Vec<Suggestion> = Vec::new();
     for pair in pairs.iter().take(PAIRS) {
         control.check().map_err(|_| DiagnosisError::Cancelled)?;
-        let best = best((study, ready, &elastic), rungs, (*pair, &choices));
+        let best = best((ready, &elastic), rungs, (*pair, &choices));
         let Some((choice, presses, probability)) = best else {
             continue;
         };
@@ -92,7 +92,7 @@ impl Suggestion {
 
 /// The choice that soonest settles a pair with enough probability, or else that does so most often, and with how many presses.
 fn best<'a>(
-    (study, ready, elastic): (&Study, &Prepared, &Elastic),
+    (ready, elastic): (&Prepared, &Elastic),
     rungs: &Rungs,
     (pair, choices): ([&str; 2], &'a [Choice]),
 ) -> Option<(&'a Choice, u32, f64)> {
@@ -101,7 +101,6 @@ fn best<'a>(
     let screen = ready.screen();
     let between = Between {
         ready,
-        study,
         elastic,
         two,
         possible: two.map(|of| possible(&screen, of, rungs.temper)),

@@ -22,7 +22,6 @@ use super::posterior::TEMPERATURE;
 use super::prepare::Prepared;
 use super::screen::Screen;
 use crate::statistics::log_normal_cdf;
-use thenar_recordings::Study;
 
 /// What recordings that are yet to be made come to under either of two explanations.
 pub struct Promise {
@@ -94,8 +93,6 @@ impl Promise {
 pub struct Between<'a> {
     /// The recordings so far.
     pub ready: &'a Prepared,
-    /// The study.
-    pub study: &'a Study,
     /// Tables, also of tools that were not used so far.
     pub elastic: &'a Elastic,
     /// Two explanations.
@@ -117,7 +114,7 @@ impl Between<'_> {
         for (k, press) in presses.iter().enumerate() {
             courses.push(course(press, number + k));
             let which = (press.place, number + k);
-            let (place, own) = ready.coordinates_of(self.study, which, press.depth_mm);
+            let (place, own) = ready.coordinates_of(self.elastic, which, press.depth_mm);
             of_place.extend(place);
             all_own.extend(own);
         }

@@ -8,6 +8,7 @@ use thenar_contact::ball::{Ball, StiffSkin};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
+use super::balls::Known;
 use super::elastic::{Variant, ratios, tables};
 use crate::DiagnosisError;
 use crate::fit::Fitting;
@@ -57,14 +58,18 @@ pub fn thickness(form: usize) -> (f64, f64, f64) {
 /// What the contact model says of a press, or `Cancelled`.
 pub fn tabulate(
     fitting: &mut Fitting,
-    (base, flat): (&[PressTable], &[Material]),
+    (base, balls, flat): (&[PressTable], &[Option<Known>], &[Material]),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<Variant>, DiagnosisError> {
     let mut round = Vec::new();
-    for table in base {
+    for (table, known) in base.iter().zip(balls) {
         control.check().map_err(|_| DiagnosisError::Cancelled)?;
         let most = MOST_TAKEN * flat[0].thickness_mm;
-        round.push(ball(table, &flat[0]).and_then(|ball| of_ball(&ball, table, most)));
+        let alike = match known {
+            Some(known) => known.ball(),
+            None => ball(table, &flat[0]),
+        };
+        round.push(alike.and_then(|ball| of_ball(&ball, table, most)));
     }
     let others: Vec<usize> = (0..base.len())
         .filter(|place| round[*place].is_none())

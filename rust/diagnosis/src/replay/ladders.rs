@@ -108,6 +108,11 @@ impl Replay {
         self.press(place, materials, control)
     }
 
+    /// Radius, mm, of the tool at a place (by number), if it is a ball.
+    pub fn ball(&self, place: usize) -> Option<f64> {
+        self.places[place].ball
+    }
+
     /// What a ladder depends on: where all is linear in the moduli, those of the start stand for all.
     pub(super) fn key(&self, materials: &[Material]) -> Key {
         let start = self.tissue.materials[0].g0_mpa;

@@ -85,6 +85,8 @@ struct Place {
     indenter: String,
     site: String,
     tool: Product,
+    /// Radius, mm, of a tool that is a ball.
+    ball: Option<f64>,
     direction: Vec3,
     /// mm; of all its recordings.
     deepest: f64,
@@ -387,6 +389,7 @@ impl Place {
             indenter: indenter.name.clone(),
             site: site.name.clone(),
             tool: tool::tool(indenter, site, reach)?,
+            ball: tool::ball(indenter),
             direction: site.direction.into(),
             deepest: 0.0,
             kept: Vec::new(),

@@ -47,15 +47,21 @@ pub fn tool(indenter: &Indenter, site: &Site, reach: f64) -> Result<Product, Dia
     Product::new(mesh).map_err(refused)
 }
 
+/// Radius, mm, of a tool that is a ball.
+pub fn ball(indenter: &Indenter) -> Option<f64> {
+    match indenter.shape {
+        Shape::Sphere { radius_mm } => Some(radius_mm),
+        _ => None,
+    }
+}
+
 /// Depth, in radii of a ball, from which its simulated force is too low. Against Hertz' force, which it follows within 7 % up to there, a ball of
 /// 2 or 4 mm on a half space has 84 % at 0.82 radii and 63 % at 0.96, and 73 to 82 % beyond; on 12 mm of tissue it falls by the same parts.
 const TOO_DEEP: f64 = 0.7;
 
 /// What a reader should know of a ball that is pressed `deepest` mm; None where its force holds.
 pub fn too_deep(indenter: &Indenter, deepest: f64) -> Option<String> {
-    let Shape::Sphere { radius_mm } = indenter.shape else {
-        return None;
-    };
+    let radius_mm = ball(indenter)?;
     (deepest > TOO_DEEP * radius_mm).then(|| {
         format!(
             "the sphere '{}' is pressed {} mm deep and has a radius of {} mm: the model's skin gives way along its own normal and does not close \

@@ -1,0 +1,47 @@
+"""How far Thenar's ball on a layer is from the trial's finite elements where nothing is planted: at finite strain.
+
+    python -m trial.against_ball        (in `tests`)
+
+The calibration's pads under their three spheres. Of the force over `thenar.press_ball`, as a logarithm over depth,
+prints the ways in which a form may be off (whole, tilt, bend, first touch; `stiffness::modes` in Rust), then what is
+left of the first three once all tools of a pad share what a pair of moduli takes up.
+"""
+
+import numpy as np
+import thenar
+from trial import protocols, truths
+
+SHEAR_MPA = 0.01
+FIRST = 0.05  # part of the depth over which an error at first touch dies away, as `stiffness` has it
+TOOLS = {"small": "slow, small sphere", "large": "large sphere", "wide": "wide sphere"}
+
+
+def departure(pad, tool):
+    """(whole, tilt, bend, first) of a tool, as logarithms."""
+    first = protocols.STEPS[0]
+    rows = slice(first + 1, 2 * first + 1)
+    depths = protocols.course(pad, TOOLS[tool], protocols.STEPS)[rows, 1]
+    theirs = truths.runs()[f"{pad}/none/0/0/{TOOLS[tool]}"].astype(float)[rows]
+    ours = SHEAR_MPA * thenar.press_ball(protocols.radius(pad, tool), depths, protocols.PADS[pad][1])
+    u = depths / depths[-1]
+    ways = np.stack([np.ones_like(u), 2.0 * u - 1.0, 6.0 * u * (u - 1.0) + 1.0, np.exp(-u / FIRST)], axis=1)
+    weight = u**1.5  # as readings of even noise weigh the logarithm of such a force
+    return np.linalg.lstsq(weight[:, None] * ways, weight * np.log(theirs / ours), rcond=None)[0]
+
+
+def main():
+    """Prints the table."""
+    left = []
+    for pad, (split, *_) in protocols.PADS.items():
+        if split == "calibration":
+            found = np.array([departure(pad, tool) for tool in TOOLS])
+            left.append(found[:, :3] - found[:, :3].mean(axis=0))
+            for tool, ways in zip(TOOLS, 100.0 * found, strict=True):
+                print(f"{pad:10s} {tool:6s} " + ", ".join(f"{way:+.2f}" for way in ways) + " %")
+    # Of three tools each way has two degrees of freedom left.
+    rms = 100.0 * np.sqrt((np.concatenate(left) ** 2).sum(axis=0) / (2 * len(left)))
+    print(f"rms of what tools do not share: whole {rms[0]:.2f}, tilt {rms[1]:.2f}, bend {rms[2]:.2f} %")
+
+
+if __name__ == "__main__":
+    main()
