@@ -29,18 +29,26 @@ def departure(pad, tool):
     return np.linalg.lstsq(weight[:, None] * ways, weight * np.log(theirs / ours), rcond=None)[0]
 
 
+def departures():
+    """By pad of the calibration, a row of `departure` for every tool."""
+    pads = [pad for pad, (split, *_) in protocols.PADS.items() if split == "calibration"]
+    return {pad: np.array([departure(pad, tool) for tool in TOOLS]) for pad in pads}
+
+
+def not_shared(found):
+    """rms of whole, tilt and bend that the tools of a pad do not share; of three, two degrees of freedom are left."""
+    left = np.concatenate([rows[:, :3] - rows[:, :3].mean(axis=0) for rows in found.values()])
+    return np.sqrt((left**2).sum(axis=0) / (2 * len(found)))
+
+
 def main():
     """Prints the table."""
-    left = []
-    for pad, (split, *_) in protocols.PADS.items():
-        if split == "calibration":
-            found = np.array([departure(pad, tool) for tool in TOOLS])
-            left.append(found[:, :3] - found[:, :3].mean(axis=0))
-            for tool, ways in zip(TOOLS, 100.0 * found, strict=True):
-                print(f"{pad:10s} {tool:6s} " + ", ".join(f"{way:+.2f}" for way in ways) + " %")
-    # Of three tools each way has two degrees of freedom left.
-    rms = 100.0 * np.sqrt((np.concatenate(left) ** 2).sum(axis=0) / (2 * len(left)))
-    print(f"rms of what tools do not share: whole {rms[0]:.2f}, tilt {rms[1]:.2f}, bend {rms[2]:.2f} %")
+    found = departures()
+    for pad, rows in found.items():
+        for tool, ways in zip(TOOLS, 100.0 * rows, strict=True):
+            print(f"{pad:10s} {tool:6s} " + ", ".join(f"{way:+.2f}" for way in ways) + " %")
+    whole, tilt, bend = 100.0 * not_shared(found)
+    print(f"rms of what tools do not share: whole {whole:.2f}, tilt {tilt:.2f}, bend {bend:.2f} %")
 
 
 if __name__ == "__main__":
