@@ -300,6 +300,7 @@ fn of_place(
     all
 }
 
+/// As [`FORM_ERROR`] has it for the tool and the skin of a place.
 fn form_error(elastic: &Elastic, place: usize) -> [f64; KNOTS] {
     let is_exact = elastic.places[place].is_exact;
     FORM_ERROR[if is_exact {
@@ -331,7 +332,20 @@ fn about(kind: Kind, sd: f64, step: f64) -> Coordinate {
 
 #[cfg(test)]
 mod tests {
+    use super::super::made::{ready, tool};
     use super::*;
+
+    #[test]
+    fn the_form_of_a_known_ball_is_surest_and_that_of_round_skin_least() {
+        let tools = (0..2).map(|_| tool(1.0, |d| d, |_| 1.0)).collect();
+        let (mut ready, _) = ready(tools, &[], 0.1);
+        ready.elastic.places[1].is_exact = true;
+        let of = |elastic: &Elastic, place: usize| form_error(elastic, place)[0];
+        let flat = [0, 1].map(|place| of(&ready.elastic, place));
+        ready.elastic.is_flat = false;
+        let round = of(&ready.elastic, 0);
+        assert!(flat[1] < flat[0] && flat[0] < round);
+    }
 
     #[test]
     fn a_tools_first_touch_is_known_as_well_as_repeats_show() {
