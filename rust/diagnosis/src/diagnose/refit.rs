@@ -125,6 +125,31 @@ pub fn covariance(
     inverse(&normal)
 }
 
+/// What is left of changed predictions (each of all samples, stacked) once a model's coordinates are fitted to them, to first order about
+/// `at`: squared, in units of the noise.
+pub fn left_by_fit(
+    screen: &Screen<'_>,
+    model: &Model<'_>,
+    (at, changed): (&[f64], &[Vec<f64>]),
+) -> Vec<f64> {
+    let now = here(screen, model, at.to_vec());
+    let jacobian = slopes(screen, model, &now);
+    // Not as in a fit, where outliers weigh less: the change has none.
+    let mut normal = jacobian.tr_mul(&jacobian);
+    for (k, c) in model.coordinates.iter().enumerate() {
+        normal[(k, k)] += c.prior.map_or(0.0, |sd| 1.0 / (sd * sd));
+    }
+    let inverse = inverse(&normal);
+    let one = |changed: &Vec<f64>| {
+        let off = changed.iter().zip(&now.simulated).map(|(a, b)| a - b);
+        let off = DMatrix::from_iterator(changed.len(), 1, off);
+        let off = screen.whitening.derivatives(&off, &now.whitened);
+        let pull = jacobian.tr_mul(&off);
+        off.norm_squared() - pull.dot(&(&inverse * &pull))
+    };
+    changed.iter().map(one).collect()
+}
+
 /// Whitened derivatives of the predictions.
 fn slopes(screen: &Screen<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
     let mut raw = DMatrix::zeros(now.simulated.len(), model.coordinates.len());
@@ -227,5 +252,42 @@ fn inverse(normal: &DMatrix<f64>) -> DMatrix<f64> {
             DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] / (scale[i] * scale[j]))
         }
         None => DMatrix::from_diagonal_element(n, n, 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::made::{Reading, ready, tool};
+    use super::*;
+    use crate::Phase;
+
+    /// A punch of 1 N/mm pressed to 2 mm after ten readings in the air: a modulus takes up what is in proportion to the force, and nothing of
+    /// what the air reads.
+    #[test]
+    fn what_a_modulus_can_imitate_does_not_stay() {
+        let reading = |k: u32| -> Reading {
+            let depth = 0.1 * (f64::from(k) - 10.0);
+            (f64::from(k), depth, Phase::Load, depth.max(0.0))
+        };
+        let readings: Vec<Reading> = (0..=30).map(reading).collect();
+        let sigma = 0.05;
+        let (ready, _) = ready(vec![tool(2.0, |d| d, |_| 1.0)], &[(0, readings)], sigma);
+        let screen = ready.screen();
+        let model = Model::new(&screen, &[]);
+        let fitted = refit(&screen, &model, &[]);
+        let stiffer = fitted.simulated.iter().map(|f| 1.02 * f).collect();
+        let air = |(k, f): (usize, &f64)| if k < 10 { f + 0.2 } else { *f };
+        let offset = fitted.simulated.iter().enumerate().map(air).collect();
+        let left = left_by_fit(&screen, &model, (&fitted.at, &[stiffer, offset]));
+        let whole: f64 = fitted
+            .simulated
+            .iter()
+            .map(|f| (0.02 * f / sigma).powi(2))
+            .sum();
+        assert!(whole > 4.0 && left[0] < 1e-3 * whole, "{left:?}");
+        assert!(
+            (left[1] / (10.0 * (0.2 / sigma).powi(2)) - 1.0).abs() < 1e-9,
+            "{left:?}"
+        );
     }
 }

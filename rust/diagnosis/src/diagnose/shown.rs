@@ -11,7 +11,7 @@ use super::mechanism::{Acts, Growth, Mechanism};
 use super::model::Model;
 use super::numbers::{Free, told};
 use super::prepare::Prepared;
-use super::refit::{covariance, huber};
+use super::refit::{covariance, huber, left_by_fit};
 use super::signs::looked_for;
 use super::spectrum::Spectrum;
 use crate::Phase;
@@ -212,16 +212,19 @@ pub fn smallest_seen(
     let mut found = Vec::new();
     for scored in &rungs.singles {
         let mechanism = &scored.mechanisms[0];
-        let error = match mechanism.acts {
+        let least = needed(mechanism) + mechanism.price() as f64;
+        let errors = (2.0 * least * rungs.temper).sqrt();
+        let size = match mechanism.acts {
             Acts::Fades {
                 spectrum: Spectrum::Smooth { .. },
                 ..
-            } => error_at_start(ready, rungs, mechanism),
-            _ => Free::of(ready, scored, 0).first().1,
+            } => errors * error_at_start(ready, rungs, mechanism),
+            Acts::Tabled(_) if mechanism.effect == Effect::StiffSkin => {
+                size_that_leaves(ready, rungs, (mechanism, errors))
+            }
+            _ => errors * Free::of(ready, scored, 0).first().1,
         };
-        let least = needed(mechanism) + mechanism.price() as f64;
-        let errors = (2.0 * least * rungs.temper).sqrt();
-        let (value, unit, most) = in_words(ready, scored, errors * error);
+        let (value, unit, most) = in_words(ready, scored, size);
         let name = scored.mechanisms[0].effect.name();
         found.push((name, Some(value).filter(|v| *v <= most), unit));
     }
@@ -239,6 +242,36 @@ fn error_at_start(ready: &Prepared, rungs: &Rungs, mechanism: &Mechanism) -> f64
     let known: Vec<usize> = (own + 1..at.len()).collect();
     covariance(&screen, &model, (at, &known))[(own, own)].sqrt()
 }
+
+/// The size from which a mechanism leaves so many standard deviations once the base is fitted to it; beyond its bounds if it does at none. Of a skin,
+/// which adds little at first: a standard error at no skin at all would say that it is never seen.
+fn size_that_leaves(
+    ready: &Prepared,
+    rungs: &Rungs,
+    (mechanism, errors): (&Mechanism, f64),
+) -> f64 {
+    let screen = ready.screen();
+    let model = Model::new(&screen, std::slice::from_ref(mechanism));
+    let base = &rungs.base.refit.at;
+    let most = model.coordinates[base.len()].bounds.1;
+    let sizes: Vec<f64> = (0..=SIZES)
+        .map(|k| most * k as f64 / SIZES as f64)
+        .collect();
+    let of =
+        |size: &f64| screen.stacked(&screen.all_forces(&model, &[base, &[*size][..]].concat()));
+    let changed: Vec<Vec<f64>> = sizes.iter().map(of).collect();
+    let squares = left_by_fit(&screen, &Model::new(&screen, &[]), (base, &changed));
+    let left: Vec<f64> = squares.iter().map(|s| s.max(0.0).sqrt()).collect();
+    let Some(k) = left.iter().position(|left| *left >= errors) else {
+        return 2.0 * most;
+    };
+    let before = k.saturating_sub(1);
+    let share = (errors - left[before]) / (left[k] - left[before]).max(f64::MIN_POSITIVE);
+    sizes[before] + share.min(1.0) * (sizes[k] - sizes[before])
+}
+
+/// Sizes at which a mechanism is tried.
+const SIZES: usize = 24;
 
 /// A size in screening's own number as a person takes it, and the largest that there can be.
 fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str, f64) {
