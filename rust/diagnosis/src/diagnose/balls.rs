@@ -21,6 +21,8 @@ pub struct Known {
     layer: (f64, f64),
     /// Roots of the depths of its table, mm^0.5.
     roots: Vec<f64>,
+    /// Forces there over the modulus, mm2.
+    pub bare: Vec<f64>,
 }
 
 /// By place whose table from the mesh is given: the ball that it is. Skin of one region that is flat, and a ball that presses it as the mesh
@@ -42,15 +44,18 @@ pub fn known(
 
 impl Known {
     fn of(radius_mm: f64, material: &Material, table: &PressTable) -> Option<Known> {
-        let known = Known {
+        let mut known = Known {
             radius_mm,
             layer: (material.thickness_mm, material.poisson_ratio),
             roots: table.roots.clone(),
+            bare: Vec::new(),
         };
-        let exact = known.forces(None)?;
-        let pairs = exact.iter().zip(&table.force).skip(exact.len() * 3 / 4);
+        known.bare = known.forces(known.layer)?;
+        let last = known.bare.len() * 3 / 4;
+        let pairs = known.bare.iter().zip(&table.force).skip(last);
         let agrees = |(a, b): (&f64, &f64)| (b / material.g0_mpa / a - 1.0).abs() < AGREES;
-        pairs.into_iter().all(agrees).then_some(known)
+        let is_it = pairs.into_iter().all(agrees);
+        is_it.then_some(known)
     }
 
     /// The ball over its layer, to its deepest depth.
@@ -63,18 +68,23 @@ impl Known {
         (deepest < self.radius_mm).then(|| Ball::new(layer, self.radius_mm, deepest))
     }
 
-    /// The layer with what changes it; None for an effect that changes more than thickness and Poisson's ratio.
-    fn layer_with(&self, effect: &ActiveEffect) -> Option<(f64, f64)> {
-        match effect.effect {
-            Effect::Bone => Some((effect.shape[0], self.layer.1)),
-            Effect::Compressibility => Some((self.layer.0, effect.shape[0])),
-            _ => None,
-        }
+    /// By how much an effect changes the force, as a logarithm, by depth of the table; None for one that changes more of the layer than its
+    /// thickness and Poisson's ratio.
+    pub fn changed(&self, effect: &ActiveEffect) -> Option<Vec<f64>> {
+        let forces = self.forces(match effect.effect {
+            Effect::Bone => (effect.shape[0], self.layer.1),
+            Effect::Compressibility => (self.layer.0, effect.shape[0]),
+            _ => return None,
+        })?;
+        let log = |(with, bare): (&f64, &f64)| libm::log(with / bare);
+        let mut logs: Vec<f64> = forces.iter().zip(&self.bare).map(log).collect();
+        // At first touch, where both vanish, as at the first rung.
+        logs[0] = logs[1];
+        Some(logs)
     }
 
-    /// Forces over the modulus, mm2, by depth of the table, with what changes the layer; None where they are not known.
-    pub fn forces(&self, with: Option<&ActiveEffect>) -> Option<Vec<f64>> {
-        let layer = with.map_or(Some(self.layer), |effect| self.layer_with(effect))?;
+    /// Forces over the modulus, mm2, by depth of the table, on a layer.
+    fn forces(&self, layer: (f64, f64)) -> Option<Vec<f64>> {
         let deepest = self.roots.last()?;
         let first = self
             .roots
@@ -91,20 +101,8 @@ impl Known {
 
 #[cfg(test)]
 mod tests {
+    use super::super::made::press_table;
     use super::*;
-
-    fn table(force: impl Fn(f64) -> f64) -> PressTable {
-        let roots: Vec<f64> = (0..=30)
-            .map(|k| 0.7f64.sqrt() * f64::from(k) / 30.0)
-            .collect();
-        PressTable {
-            force: roots.iter().map(|root| force(root * root)).collect(),
-            area: vec![0.0; roots.len()],
-            loads: Vec::new(),
-            touched: vec![true],
-            roots,
-        }
-    }
 
     fn half_space(poisson_ratio: f64) -> Material {
         Material {
@@ -120,47 +118,55 @@ mod tests {
     fn a_ball_is_known_by_what_it_presses_and_answers_as_hertz_has_it() {
         let hertz = |nu: f64, d: f64| 8.0 / 3.0 / (1.0 - nu) * 40.0f64.sqrt() * libm::pow(d, 1.5);
         let material = half_space(0.5);
-        let meshed = |share: f64| table(move |d| 0.01 * share * hertz(0.5, d));
+        let meshed = |share: f64| press_table(0.7, move |d| 0.01 * share * hertz(0.5, d));
         assert!(Known::of(40.0, &material, &meshed(0.9)).is_none());
         let known = Known::of(40.0, &material, &meshed(1.02)).unwrap();
         let mut softer = ActiveEffect::new(Effect::Compressibility, 1.0);
         softer.shape[0] = 0.3;
-        for (with, nu) in [(None, 0.5), (Some(&softer), 0.3)] {
-            let found = known.forces(with).unwrap();
-            assert_eq!(found[0], 0.0);
-            for (force, root) in found.iter().zip(&known.roots).skip(1) {
-                let (off, share) = (force / hertz(nu, root * root) - 1.0, root * root / 0.7);
-                let most = if share > 0.04 { 0.008 } else { 0.06 };
-                assert!(off.abs() < most, "{nu}, {share}: {off}");
-            }
+        let changed = known.changed(&softer).unwrap();
+        assert_eq!((known.bare[0], changed[0]), (0.0, changed[1]));
+        for (k, root) in known.roots.iter().enumerate().skip(1) {
+            let (depth, share) = (root * root, root * root / 0.7);
+            let most = if share > 0.04 { 0.008 } else { 0.06 };
+            let off = known.bare[k] / hertz(0.5, depth) - 1.0;
+            assert!(off.abs() < most, "{share}: {off}");
+            // 1 / (1 - 0.3) for 1 / (1 - 0.5), at all depths.
+            assert!((changed[k] - libm::log(0.5 / 0.7)).abs() < 1e-9);
         }
     }
 
-    /// A layer of half the thickness under bone is what bone nearer to the skin makes of it.
+    /// On 5 mm, to 0.64 mm.
+    fn thick(radius_mm: f64) -> Known {
+        Known {
+            radius_mm,
+            layer: (5.0, 0.5),
+            roots: vec![0.0, 0.4, 0.8],
+            bare: Vec::new(),
+        }
+    }
+
+    /// Bone at half the depth is a layer of half the thickness.
     #[test]
     fn bone_nearer_to_the_skin_is_a_thinner_layer() {
-        let thin = |thickness_mm: f64| Known {
-            radius_mm: 6.0,
-            layer: (thickness_mm, 0.5),
-            roots: vec![0.0, 0.4, 0.8],
-        };
+        let mut known = thick(6.0);
+        known.bare = known.forces(known.layer).unwrap();
         let mut bone = ActiveEffect::new(Effect::Bone, 1.0);
         bone.shape[0] = 2.5;
-        assert_eq!(thin(5.0).forces(Some(&bone)), thin(2.5).forces(None));
-        let (near, far) = (
-            thin(2.5).forces(None).unwrap(),
-            thin(5.0).forces(None).unwrap(),
+        let (thinner, changed) = (
+            known.forces((2.5, 0.5)).unwrap(),
+            known.changed(&bone).unwrap(),
         );
-        assert!(near[2] > 1.1 * far[2]);
+        for k in [1, 2] {
+            assert!((changed[k] - libm::log(thinner[k] / known.bare[k])).abs() < 1e-12);
+        }
+        assert!(changed[2] > 0.1, "the deepest feels it");
+        let other = ActiveEffect::new(Effect::StiffSkin, 1.0);
+        assert!(known.changed(&other).is_none());
     }
 
     #[test]
     fn a_ball_that_is_sunk_to_its_middle_is_not_known() {
-        let deep = Known {
-            radius_mm: 0.6,
-            layer: (5.0, 0.5),
-            roots: vec![0.0, 0.4, 0.8],
-        };
-        assert!(deep.forces(None).is_none() && deep.ball().is_none());
+        let deep = thick(0.6);
+        assert!(deep.forces(deep.layer).is_none() && deep.ball().is_none());
     }
 }

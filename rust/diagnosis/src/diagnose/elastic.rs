@@ -106,8 +106,8 @@ impl Elastic {
         let mut base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
         let balls = balls::known(fitting, self.is_flat, (&at, &base, &flat));
         for (table, ball) in base.iter_mut().zip(&balls) {
-            if let Some(exact) = ball.as_ref().and_then(|ball| ball.forces(None)) {
-                table.force = exact.iter().map(|force| force * g_mpa).collect();
+            if let Some(ball) = ball {
+                table.force = ball.bare.iter().map(|force| force * g_mpa).collect();
             }
         }
         let mut added = Vec::new();
@@ -175,18 +175,15 @@ fn changed(
                 log_ratio[place].push(vec![0.0; without.roots.len()]);
                 continue;
             };
-            let exact = balls[place].as_ref().and_then(|b| b.forces(Some(effect)));
-            let with = match exact {
-                Some(force) => PressTable {
-                    force: force.iter().map(|f| f * flat[0].g0_mpa).collect(),
-                    ..without.clone()
-                },
+            let exact = balls[place].as_ref().and_then(|b| b.changed(effect));
+            log_ratio[place].push(match exact {
+                Some(logs) => logs,
                 None => {
                     let how = (std::slice::from_ref(effect), flat, FEWER);
-                    tables(fitting, how, (&places[place..=place], control))?.remove(0)
+                    let pressed = tables(fitting, how, (&places[place..=place], control))?;
+                    ratios(&pressed[0], without)
                 }
-            };
-            log_ratio[place].push(ratios(&with, without));
+            });
         }
     }
     Ok(Variant {

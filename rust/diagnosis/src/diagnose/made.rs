@@ -10,7 +10,7 @@ use super::model::{Coordinate, Kind};
 use super::prepare::Prepared;
 use crate::noise::{CHANNELS, Noise, Whitening};
 use crate::observe::{Censoring, Measured, Moment, Phase, Quantity, Sample};
-use crate::replay::Table;
+use crate::replay::{PressTable, Table};
 
 /// Depth at which the modulus of made tissue stops growing, mm.
 const LIMIT_MM: f64 = 3.0;
@@ -32,6 +32,18 @@ pub fn tool(deepest: f64, force: impl Fn(f64) -> f64, radius: impl Fn(f64) -> f6
         rungs,
         roots,
         is_exact: false,
+    }
+}
+
+/// The same as it is pressed: forces, N, by depth.
+pub fn press_table(deepest: f64, force: impl Fn(f64) -> f64) -> PressTable {
+    let made = tool(deepest, force, |_| 0.0);
+    PressTable {
+        force: made.rungs,
+        area: made.radius,
+        loads: Vec::new(),
+        touched: vec![true],
+        roots: made.roots,
     }
 }
 

@@ -193,19 +193,8 @@ fn of_plate(meshed: &[Vec<f64>], thickness_mm: f64) -> Vec<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::made::press_table as table;
     use super::*;
-
-    fn table(deepest: f64, force: impl Fn(f64) -> f64) -> PressTable {
-        let root = |k: usize| deepest.sqrt() * k as f64 / 30.0;
-        let roots: Vec<f64> = (0..=30).map(root).collect();
-        PressTable {
-            force: roots.iter().map(|root| force(root * root)).collect(),
-            area: vec![0.0; roots.len()],
-            loads: Vec::new(),
-            touched: vec![true],
-            roots,
-        }
-    }
 
     /// Hertz' force on a half space is that of its own ball; a flat punch's, which grows as the depth, is that of none.
     #[test]

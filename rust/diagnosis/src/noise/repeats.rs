@@ -13,6 +13,8 @@ use crate::observe::scatter::median;
 pub(super) const OUTLIER: f64 = 3.5;
 /// Variance that values within `OUTLIER` standard deviations of a normal law keep.
 const KEPT_VARIANCE: f64 = 0.9935;
+/// Least part of a sample's variance that the one before does not tell.
+pub(super) const LEAST_FRESH: f64 = 1e-6;
 /// Fewest samples of a channel from which noise is told.
 pub(super) const LEAST_SAMPLES: usize = 8;
 /// Recordings of one protocol with one tool at one place, by number; two or more.
@@ -185,8 +187,8 @@ impl Deviations {
         let series = |rest: &Vec<f64>| -> Vec<f64> {
             (1..rest.len())
                 .map(|k| {
-                    let carry = carry(steps[k - 1], memory_s);
-                    (rest[k] - carry * rest[k - 1]) / sigma / (1.0 - carry * carry).sqrt()
+                    let carried = carry(steps[k - 1], memory_s);
+                    fresh(rest[k], rest[k - 1], carried) / sigma
                 })
                 .collect()
         };
@@ -250,6 +252,11 @@ pub fn carry(step: f64, memory_s: f64) -> f64 {
         true => libm::exp(-step.max(0.0) / memory_s),
         false => 0.0,
     }
+}
+
+/// What is new in a value, of which `carried` of the one before is left, in units of all that it could be.
+pub(super) fn fresh(now: f64, before: f64, carried: f64) -> f64 {
+    (now - carried * before) / (1.0 - carried * carried).max(LEAST_FRESH).sqrt()
 }
 
 /// Standard deviation without outliers.

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::repeats::{Deviations, OUTLIER, carry, spread};
+use super::repeats::{Deviations, LEAST_FRESH, OUTLIER, carry, fresh, spread};
 use crate::observe::scatter::median;
 
 /// Ratios of memory to sampling interval between which the likeliest is sought, and how finely.
@@ -14,8 +14,6 @@ const LEAST: f64 = 0.15;
 const MOST: f64 = 30.0;
 const TRIED: usize = 24;
 const HALVINGS: usize = 4;
-/// Least part of a sample's variance that the one before does not tell.
-const LEAST_FRESH: f64 = 1e-6;
 /// How much likelier a memory must be than none, nats, to be believed.
 const BELIEVED: f64 = 2.0;
 
@@ -121,18 +119,16 @@ fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
     let mut sum = 0.0;
     for &k in kept {
         let carried = before.map_or(0.0, |j| carry(of.time[k] - of.time[j], memory_s));
-        let size = (1.0 - carried * carried).max(LEAST_FRESH).sqrt();
-        let fresh = |values: &dyn Fn(usize) -> f64| {
-            (values(k) - before.map_or(0.0, |j| carried * values(j))) / size
-        };
-        let along = Vector2::new(fresh(&|k| of.along[k].x), fresh(&|k| of.along[k].y));
+        let of_all =
+            |values: &dyn Fn(usize) -> f64| fresh(values(k), before.map_or(0.0, values), carried);
+        let along = Vector2::new(of_all(&|k| of.along[k].x), of_all(&|k| of.along[k].y));
         gram += along * along.transpose();
         for (series, pull) in of.rest.iter().zip(&mut pulls) {
-            let own = fresh(&|k| series[k]);
+            let own = of_all(&|k| series[k]);
             sum += own * own;
             *pull += along * own;
         }
-        log += 2.0 * libm::log(size);
+        log += libm::log((1.0 - carried * carried).max(LEAST_FRESH));
         before = Some(k);
     }
     // Scaled, so that what one adds beside the other can be told.
