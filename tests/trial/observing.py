@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 CORRELATION_S = 0.15
+SLOWER = 4.0  # memory of slow noise
 
 
 @dataclass
@@ -119,7 +120,7 @@ def scatter(presses, random, gain_share, zero_mm):
 
 def disturb(presses, random, noise, kind):
     """Colored noise, a share of each recording's largest force; of `kind` normal, outliers or slow."""
-    memory = 4.0 * CORRELATION_S if kind == "slow" else CORRELATION_S
+    memory = SLOWER * CORRELATION_S if kind == "slow" else CORRELATION_S
     for press in presses:
         keep = np.exp(-np.diff(press.time, prepend=press.time[0]) / memory)
         white = random.standard_normal(len(press.time))

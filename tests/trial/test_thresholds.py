@@ -47,3 +47,18 @@ def test_lines_begin_with_the_largest_and_a_case_without_verdict_is_left_out():
     lines = thresholds.lines(SEALED, {name: SAID[name] for name in ("null", "one")})
     assert lines[1:3] == ["  offset: 1.5", "  bone: -0.2"]
     assert lines[-1] == "  bone beside relaxation: 2.0, 4.0 %"
+
+
+def test_slow_noise_is_held_against_what_it_is():
+    """Variance times memory: 1.1 squared times 0.3 s over 0.15 s, and for slow noise four times as long."""
+    told = {"evidence": {"noise_share": 0.01, "noise_step": 1.1, "noise_memory_s": 0.3}}
+    plain = {"stratum": "single", "noise": 0.01}
+    sealed = {
+        "plain": plain,
+        "slow": plain | {"stratum": "null", "scatter": "slow"},
+        "outliers": plain | {"stratum": "null", "scatter": "outliers"},
+        "pulse": plain | {"stratum": "unlisted"},
+    }
+    least, middle, most = thresholds.noise(sealed, dict.fromkeys(sealed, told))
+    assert (least, middle, most) == pytest.approx((0.605, 0.5 * (0.605 + 2.42), 2.42))
+    assert thresholds.noise(sealed, {}) is None

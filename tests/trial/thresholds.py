@@ -4,6 +4,22 @@ Printed by `cargo xtask prove -- --split calibration`. The thresholds stand in r
 case of the trial is looked at for them.
 """
 
+import numpy as np
+from trial import observing
+
+
+def noise(sealed, said):
+    """Slow noise as repeats tell it, over what it is: (least, median, most) by study, of variance times memory."""
+    found = []
+    for name, label in sealed.items():
+        told = said.get(name, {}).get("evidence", {})
+        is_plain = label["stratum"] not in ("unlisted", "poor") and label.get("scatter") != "outliers"
+        if is_plain and "noise" in label and told.get("noise_memory_s"):
+            memory = observing.CORRELATION_S * (observing.SLOWER if label.get("scatter") == "slow" else 1.0)
+            size = told["noise_share"] * told["noise_step"]
+            found.append(size**2 * told["noise_memory_s"] / (label["noise"] ** 2 * memory))
+    return (min(found), float(np.median(found)), max(found)) if found else None
+
 
 def reached(sealed, said):
     """Largest evidence, nats, of every effect that was tried alone on cases without any."""
@@ -44,6 +60,8 @@ def lines(sealed, said):
     """All of it as lines of text, the largest first."""
     told = ["largest evidence where nothing is missing, nats:"]
     told += [f"  {effect}: {nats:.1f}" for effect, nats in _sorted(reached(sealed, said))]
+    least, middle, most = noise(sealed, said) or (np.nan, np.nan, np.nan)
+    told.append(f"slow noise that repeats tell, over what it is: median {middle:.2f}, {least:.2f} to {most:.2f}")
     told.append("largest lead of another name over the one that is there, nats:")
     told += [f"  {other} over {truth}: {nats:.1f}" for (truth, other), nats in _sorted(led_by(sealed, said))]
     told.append("most that a second name adds where one is there, nats and part of the first's:")

@@ -20,8 +20,8 @@ use crate::replay::KNOTS;
 /// on flat skin (`balls`), of another tool there, and on any other skin.
 ///
 /// Against the finite elements of the calibration's flat pads without effects balls are off by 0.4 % in the whole, by 0.3 % in their tilt and
-/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by 0.5, 0.7 and
-/// 0.2 %; on the round fingertip of `tests/proof` the layer is off by up to 9 %.
+/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more; on the
+/// round fingertip of `tests/proof` the layer is off by up to 9 %.
 const FORM_ERROR: [[f64; KNOTS]; 3] = [
     [0.006, 0.006, 0.003, 0.02],
     [0.01, 0.01, 0.004, 0.02],
