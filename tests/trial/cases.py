@@ -1,6 +1,6 @@
 """The trial's cases as study folders: reads the public indices and what was recorded, never the labels.
 
-    for case in names("trial"): write(case, folder)
+    for case in names("trial"): write(case, folder)         # or "second", "calibration"
 
 A case's folder is a study (recordings' format in README): curves of force over depth on a flat pad, each
 protocol twice. `held_back(case)` names the protocols that it does not publish; `follow_up(case, wanted, folder)` adds
@@ -23,23 +23,27 @@ from scipy.spatial import Delaunay
 from trial import protocols, studies
 
 HERE = Path(__file__).parent
+KINDS = ("", "local_", "second_")  # of files
 
 
 @functools.cache
 def index():
-    """Both public indices: by case the split, the pad, what is published of it, and where its recordings are kept."""
-    both = [json.loads((HERE / name).read_text())["cases"] for name in ("cases.json", "local_cases.json")]
-    return both[0] | both[1]
+    """The public indices: by case the split, the pad, what is published of it, and where its recordings are kept."""
+    each = [json.loads((HERE / f"{kind}cases.json").read_text())["cases"] for kind in KINDS]
+    return each[0] | each[1] | each[2]
 
 
 @functools.cache
 def _numbers():
-    with np.load(HERE / "cases.npz") as curves, np.load(HERE / "local_cases.npz") as maps:
-        return {name: table[name] for table in (curves, maps) for name in table.files}
+    found = {}
+    for kind in KINDS:
+        with np.load(HERE / f"{kind}cases.npz") as table:
+            found |= {name: table[name] for name in table.files}
+    return found
 
 
 def names(split):
-    """Cases of `trial` or `calibration`."""
+    """Cases of `trial`, `calibration` or `second`."""
     return [name for name, case in index().items() if case["split"] == split]
 
 
@@ -71,8 +75,8 @@ def curve(case, number):
     one = recordings(case)[number]
     time, _ = protocols.sampled(index()[case]["pad"], one["protocol"])
     rows = slice(one["first"], one["first"] + len(time))
-    table = _numbers()
-    return time, table["depth"][rows] * protocols.STEP_MM, table["force"][rows] * one["step_n"]
+    table, kind = _numbers(), "second_" if index()[case]["split"] == "second" else ""
+    return time, table[f"{kind}depth"][rows] * protocols.STEP_MM, table[f"{kind}force"][rows] * one["step_n"]
 
 
 def recorded_next(case, wanted):

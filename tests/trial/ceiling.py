@@ -20,14 +20,15 @@ from trial import cases, counts, following, make_cases, observing, protocols, sc
 SEEN, LEAD = 3.3, 5.0
 TOLD = (2.0 * LEAD) ** 0.5
 STEP_MM = 1e-3
-RICH = 0.9
 
 
 class Case:
-    """A case's recordings in the units of their noise, with what is refitted taken out; `more` presses by protocol."""
+    """A case's recordings in the units of their noise, with what is refitted taken out; `more` presses by protocol.
 
-    def __init__(self, name, label, more=None):
-        about = cases.index()[name]
+    `about`: the pad, and which protocols are published, as the public index has them.
+    """
+
+    def __init__(self, about, label, more=None):
         self.label, self.pad, self.growth = label, about["pad"], label["g_mpa"]
         self.rest = self._presses("none", 0.0)
         known = [press.protocol for press in self.rest]
@@ -87,26 +88,39 @@ def _apply(sigma, keep, basis, shrink, column):
     return rows[:, 0] if np.ndim(column) == 1 else rows
 
 
-def separations(name, label, more=None):
+def separations(about, label, more=None):
     """(detect, name) of a case of one effect or of an instrument's error, with presses added."""
-    case = Case(name, label, more)
+    own, but, case = _own(about, label, more)
+    return float(np.linalg.norm(own)), min(_left(case, own, label["amplitudes"][but is None] or 1.0, but).values())
+
+
+def closest(about, label):
+    """The other effect of the skin that leaves least of a case's own, its amplitude refitted."""
+    own, but, case = _own(about, label)
+    left = _left(case, own, label["amplitudes"][0] or 1.0, but)
+    return min(left, key=left.get)
+
+
+def _own(about, label, more=None):
+    """What a case's cause adds, the effect's name if it is one of the skin, and the case."""
+    case = Case(about, label, more)
     if label["stratum"] == "decoy":
-        own = case.distortion(label["distortion"], label["amplitudes"][1])
-        return float(np.linalg.norm(own)), _closest(case, own, 1.0)
-    own = case.signature(label["effect"], label["variant"], label["amplitudes"][0])
-    return float(np.linalg.norm(own)), _closest(case, own, label["amplitudes"][0] or 1.0, label["effect"])
+        return case.distortion(label["distortion"], label["amplitudes"][1]), None, case
+    return case.signature(label["effect"], label["variant"], label["amplitudes"][0]), label["effect"], case
 
 
-def _closest(case, own, amplitude, but=None):
-    """What the other effect of the skin leaves that leaves least, its amplitude refitted."""
-    least = np.linalg.norm(own)
+def _left(case, own, amplitude, but):
+    """What every other effect of the skin leaves of `own`, its amplitude refitted; no more than there is."""
+    found = {}
     for other in protocols.SINGLE:
+        found[other] = float(np.linalg.norm(own))
         for variant in (0, 1):
-            if other != but and f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
+            if f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
                 rival = case.signature(other, variant, amplitude)
                 share = max(0.0, float(rival @ own) / float(rival @ rival))
-                least = min(least, np.linalg.norm(own - share * rival))
-    return float(least)
+                found[other] = min(found[other], float(np.linalg.norm(own - share * rival)))
+    found.pop(but, None)
+    return found
 
 
 def chance(detect, name):
@@ -114,9 +128,9 @@ def chance(detect, name):
     return min(norm.cdf(detect - SEEN), norm.cdf(name / 2.0 - LEAD / max(name, 1e-9)))
 
 
-def beside(name, label):
+def beside(about, label):
     """Of two causes: what each adds that the other, its amplitude refitted, does not take up."""
-    case = Case(name, label)
+    case = Case(about, label)
     first, second = label["amplitudes"]
     if label["stratum"] == "pair":
         whole = case.signature(label["effect"], label["variant"], (first, second))
@@ -141,9 +155,9 @@ def chance_of_neither(detect, name):
 
 def settled(name, label):
     """(detect, name) with the protocol held back that tells best, as often as can be, in turn with a known one."""
-    known, often = cases.index()[name]["published"], following.MOST
-    tried = [{one: often, other: often} for one in cases.held_back(name) for other in known]
-    return max((separations(name, label, more) for more in tried), key=lambda pair: pair[1])
+    about, often = cases.index()[name], following.MOST
+    tried = [{one: often, other: often} for one in cases.held_back(name) for other in about["published"]]
+    return max((separations(about, label, more) for more in tried), key=lambda pair: pair[1])
 
 
 def groups(sealed):
@@ -151,14 +165,14 @@ def groups(sealed):
     found, severe = {}, {}
     for name, label in sealed.items():
         if label["stratum"] == "single":
-            big, kind = label["kappa"] >= counts.REACHED, separations(name, label)
+            big, kind = label["kappa"] >= counts.REACHED, separations(cases.index()[name], label)
             found.setdefault("one effect, kappa >= 1" if big else "one effect, kappa 0.5", []).append(kind)
             severe.setdefault(f"  {label['effect']}" if big else "  at kappa 0.5", []).append(kind)
         elif label["stratum"] == "decoy":
-            found.setdefault("decoys", []).append(separations(name, label))
+            found.setdefault("decoys", []).append(separations(cases.index()[name], label))
             severe.setdefault(f"  {label['distortion']}", []).append(found["decoys"][-1])
         elif label["stratum"] == "ambiguous" and cases.held_back(name):
-            found.setdefault("ambiguous", []).append(separations(name, label))
+            found.setdefault("ambiguous", []).append(separations(cases.index()[name], label))
             found.setdefault("  with the best recording", []).append(settled(name, label))
     return found | {name: severe[name] for name in sorted(severe)}
 
@@ -170,9 +184,9 @@ def chances(sealed):
         key = label["stratum"]
         if key == "single":
             key = "severe" if label["kappa"] >= counts.REACHED else "mild"
-        if key in ASKED:
+        if key in ASKED and counts.holds_answer(label):
             row, what, weigh = ASKED[key]
-            found.setdefault(row, {})[name] = float(weigh(*what(name, label)))
+            found.setdefault(row, {})[name] = float(weigh(*what(cases.index()[name], label)))
         if key == "ambiguous" and cases.held_back(name):
             found.setdefault("followed", {})[name] = float(chance(*settled(name, label)))
     return found
@@ -195,8 +209,8 @@ def column(found):
 
 
 def rich(found):
-    """By row, the cases that the oracle answers in RICH of its draws: their recordings hold the answer."""
-    return {key: [name for name, share in of.items() if share >= RICH] for key, of in found.items()}
+    """By row, the cases that the oracle answers in nine of ten draws: their recordings hold the answer."""
+    return {key: [name for name, share in of.items() if share >= counts.RICH] for key, of in found.items()}
 
 
 def main():

@@ -17,6 +17,7 @@ CONCEALED = 0.98
 Z = 1.959963984540054
 SCATTERS = ("normal", "outliers", "slow", "wide", "maps")
 GOOD = 0.75  # of the reducible error
+RICH = 0.9  # of the oracle's draws that give the answer: recordings that hold it
 
 
 @dataclass(frozen=True)
@@ -117,6 +118,11 @@ def is_modest(label, verdict):
     return verdict["verdict"] in ("insufficient_data", "cannot_tell") and not named(verdict)
 
 
+def holds_answer(label):
+    """Whether its recordings do, as far as the label tells: those of the first trial tell nothing."""
+    return label.get("chance", 1.0) >= RICH
+
+
 def table(sealed, answers):
     """Rows of the score, in their order."""
     answers = answers if isinstance(answers, Answers) else Answers(answers)
@@ -127,11 +133,12 @@ def table(sealed, answers):
 
     severe = [pair for pair in of("single") if pair[0]["kappa"] >= REACHED]
     mild = [pair for pair in of("single") if 0.5 * REACHED <= pair[0]["kappa"] < REACHED]
+    told = [pair for pair in of("decoy") if holds_answer(pair[0])]
     found = [
         _share(("nulls", "nulls: a missing effect claimed"), of("null"), _blamed, (0.02, 0.01, True)),
         *(_nulls_of(kind, of("null")) for kind in SCATTERS),
         _share(("decoys", "decoys: blamed on the skin"), of("decoy"), _blamed, (0.05, 0.03, True)),
-        _share(("instrument", "decoys: named as the instrument"), of("decoy"), _told_instrument, (None, 0.9, False)),
+        _share(("instrument", "decoys: named as the instrument"), told, _told_instrument, (None, 0.9, False)),
         _share(("severe", "one effect, kappa >= 1: exact"), severe, is_exact, (0.85, 0.95, False)),
         _share(("mild", "one effect, kappa 0.5: exact"), mild, is_exact, (None, 0.8, False)),
         _share(("wrong", "a wrong name anywhere"), pairs, _wrong, (0.05, 0.02, True)),
@@ -267,7 +274,7 @@ def _gains(severe):
 
 def _about(pairs, said):
     """What the trial itself is: how well its truths hide, and how much of it was answered."""
-    hidden = [pair for pair in pairs if pair[0]["stratum"] not in ("null", "poor", "local", "faint")]
+    hidden = [pair for pair in pairs if pair[0]["stratum"] not in ("null", "poor", "local", "faint", "beyond")]
     return [
         _share(
             ("concealed", "concealed: R2 >= 0.98 after refitting the base"),

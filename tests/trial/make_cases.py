@@ -23,9 +23,11 @@ KAPPAS = (0.5, 1.0, 2.0, 4.0)
 USUAL = ("slow, small sphere", "fast, small sphere", "cycles, small sphere")
 MOST_STEPS = 32000  # forces are kept as shares of each recording's largest
 
-# How many of each stratum: (trial, calibration).
-NULLS = {"normal": (40, 16), "outliers": (20, 8), "slow": (20, 8), "wide": (20, 8)}
-DECOYS, SINGLE, PAIR, UNLISTED, MIXED, AMBIGUOUS, POOR = (7, 3), (5, 2), (4, 2), (8, 3), (3, 1), (5, 2), (4, 2)
+SEEDS = {"trial": 20, "calibration": 10, "second": 40}
+# How many of each stratum, in the order of SEEDS.
+NULLS = {"normal": (40, 16, 60), "outliers": (20, 8, 40), "slow": (20, 8, 30), "wide": (20, 8, 30)}
+DECOYS, SINGLE, PAIR, UNLISTED = (7, 3, 8), (5, 2, 5), (4, 2, 4), (8, 3, 8)
+MIXED, AMBIGUOUS, POOR = (3, 1, 5), (5, 2, 8), (4, 2, 2)
 ALIKE = 0.3  # what may remain, over the noise, of an effect that another imitates
 INSTEAD = (  # ambiguous by design: what is true, and the little that is recorded of it
     ("relaxation", USUAL[:2]),
@@ -135,7 +137,7 @@ def with_rival(plan, presses):
 
 def plans(split):
     """Every case of a split as a plan, in the order of the strata; the numbers are drawn from the plan's own seed."""
-    which = 0 if split == "trial" else 1
+    which = list(SEEDS).index(split)
     for scatter, counts in NULLS.items():
         yield from ({"stratum": "null", "scatter": scatter, "names": []} for _ in range(counts[which]))
     for name in observing.INSTRUMENT:
@@ -161,9 +163,9 @@ def plans(split):
         yield from (dict(poor) for _ in range(POOR[which]))
 
 
-def drawn(plan, split, number):
-    """(plan with what is drawn, presses with scatter and noise, presses held back)."""
-    seed = [{"trial": 20, "calibration": 10}[split], number]
+def drawn(plan, split, number, placed=None):
+    """(plan with what is drawn, presses with scatter and noise); `placed` may move it to another stratum."""
+    seed = [SEEDS[split], number]
     random = np.random.default_rng(seed)
     plan = {"noise": float(random.choice(NOISES, p=[0.65, 0.35])), "pad": str(random.choice(_pads(plan, split)))} | plan
     usual = plan["stratum"] == "null" and random.random() < 0.25
@@ -173,7 +175,7 @@ def drawn(plan, split, number):
     low = np.exp(random.uniform(np.log(0.005), np.log(0.015)))
     growth = (float(low), float(low * random.uniform(0.9, 2.5)))
     plan, presses = _as_severe(plan, growth, seed)
-    plan = with_rival(plan, published(plan, presses))
+    plan = (placed or with_rival)(plan, published(plan, presses))
     wide = 2.0 if plan.get("scatter") == "wide" else 1.0
     observing.scatter(presses, random, wide * REPEAT_GAIN, wide * ZERO_MM)
     observing.disturb(presses, random, plan["noise"], plan.get("scatter", "normal"))
@@ -209,8 +211,13 @@ def main():
     """Draws every case, shuffles them, and writes the three files."""
     splits = ("trial", "calibration")
     found = [(split, *drawn(plan, split, k)) for split in splits for k, plan in enumerate(plans(split))]
-    shuffled = np.random.default_rng(99).permutation(len(found))
-    salt = hashlib.sha256(np.random.default_rng(5).bytes(16)).hexdigest()[:16]
+    write(found, "", (99, 5))
+
+
+def write(found, kind, seeds):
+    """Writes (split, plan, presses) shuffled, as the three files of a `kind`; `seeds`: of the order, of the salt."""
+    shuffled = np.random.default_rng(seeds[0]).permutation(len(found))
+    salt = hashlib.sha256(np.random.default_rng(seeds[1]).bytes(16)).hexdigest()[:16]
     public, labels, forces, depths, first = {}, {}, [], [], 0
     for number, where in enumerate(shuffled):
         split, plan, presses = found[where]
@@ -222,13 +229,16 @@ def main():
             first += len(press.force)
         label = {key: value for key, value in plan.items() if key not in ("pad", "published")}
         sealed = hashlib.sha256((salt + json.dumps(label, sort_keys=True)).encode()).hexdigest()
-        name = f"case_{number:03d}"
+        name = f"{kind or 'case_'}{number:03d}"
         public[name] = {"split": split, "pad": plan["pad"], "label": sealed, "first": begin, "steps_n": steps}
         public[name] |= {"published": list(plan["published"]), "repeats": plan.get("repeats", REPEATS)}
         labels[name] = label
-    np.savez_compressed(HERE / "cases.npz", force=np.concatenate(forces), depth=np.concatenate(depths))
-    (HERE / "cases.json").write_text(json.dumps({"cases": public}, indent=None).replace('"case_', '\n"case_') + "\n")
-    (HERE / "labels.json").write_text(json.dumps({"salt": salt, "labels": labels}).replace('"case_', '\n"case_') + "\n")
+    kept = {f"{kind}force": np.concatenate(forces), f"{kind}depth": np.concatenate(depths)}
+    np.savez_compressed(HERE / f"{kind}cases.npz", **kept)
+    lines = {"cases": {"cases": public}, "labels": {"salt": salt, "labels": labels}}
+    for what, table in lines.items():
+        text = json.dumps(table).replace(f'"{kind or "case_"}', f'\n"{kind or "case_"}')
+        (HERE / f"{kind}{what}.json").write_text(text + "\n")
 
 
 if __name__ == "__main__":

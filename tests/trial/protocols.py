@@ -1,6 +1,6 @@
 """Pads, tools and protocols of the trial, and when each protocol presses how deep. mm, s.
 
-Calibration and trial share no pad, no tool and no speed.
+Calibration, trial and second trial share no pad, no tool and no speed.
 """
 
 from dataclasses import dataclass
@@ -13,9 +13,13 @@ PADS = {  # split, thickness over bone, radii of the three spheres; flat, as the
     "fingertip": ("trial", 5.0, 4.0, 9.0, 25.0),
     "thumb": ("trial", 6.5, 6.0, 13.0, 30.0),
     "palm": ("trial", 9.0, 8.5, 19.0, 50.0),
+    "ring_finger": ("second", 4.3, 3.8, 9.5, 20.0),
+    "heel_of_hand": ("second", 7.4, 5.5, 14.0, 42.0),
+    "hypothenar": ("second", 10.5, 9.0, 24.0, 52.0),
 }
+SECOND = tuple(pad for pad, about in PADS.items() if about[0] == "second")
 TOOLS = ("small", "large", "wide")
-SPEEDS = {"calibration": (0.4, 1.6, 4.0), "trial": (0.5, 2.0, 6.0)}  # slow, middle, fast
+SPEEDS = {"calibration": (0.4, 1.6, 4.0), "trial": (0.5, 2.0, 6.0), "second": (0.7, 2.5, 5.0)}  # slow, middle, fast
 STRAIN = 0.14  # depth over thickness
 HOLD_S = 8.0
 REST_S = 3.0  # without contact, at the end
@@ -29,11 +33,11 @@ STEPS = (12, 9, 16, 1)  # of the finite elements, as `counts` of `course`
 AMPLITUDES = (0.5, 1.0)  # at which effects are computed
 GRIPS = (0.04, 0.06, 0.09, 0.13, 0.19, 0.27, 0.37, 0.5, 0.65, 0.82, 1.0)  # what lets go has no amplitudes between these
 COMPUTED = (  # pads on which single effects, pairs, and the second form of single effects are computed
-    ("forefinger", "fingertip", "thumb", "palm"),
-    ("forefinger", "fingertip", "thumb"),
-    ("forefinger", "fingertip"),
+    ("forefinger", "fingertip", "thumb", "palm", *SECOND),
+    ("forefinger", "fingertip", "thumb", *SECOND),
+    ("forefinger", "fingertip", *SECOND),
 )
-TWO_FORMS = {"bone": ("forefinger", "fingertip", "thumb", "palm")}  # more pads for the second form
+TWO_FORMS = {"bone": ("forefinger", "fingertip", "thumb", "palm", *SECOND)}  # more pads for the second form
 SINGLE = (
     "relaxation",
     "adhesion",

@@ -1,6 +1,9 @@
 """`cargo xtask prove`: every case of the blind trial through the diagnosis and the baselines, then the table.
 
-    cargo xtask prove [-- --split calibration --subset fixed --only thenar,bic --workers N --mutate labels]
+    cargo xtask prove [-- --split second --subset fixed --only thenar,bic --workers N --mutate labels]
+
+Splits: `trial` (as drawn, whatever its recordings hold), `second` (other pads, tools, speeds and seeds; asked for what
+its recordings hold: make_second.py), `calibration`.
 
 Verdicts are kept in `target/prove/<case>`, those of the baselines in `target/prove/<baseline>/<case>`, and are not
 asked for twice (running.py), so a run that was cut goes on. Where the diagnosis cannot tell and asks for a recording

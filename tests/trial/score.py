@@ -14,17 +14,18 @@ import math
 from pathlib import Path
 
 from trial import counts
+from trial.cases import KINDS
 from trial.counts import Answers
 
 HERE = Path(__file__).parent
 MARKS = {True: "met", False: "NOT MET", None: ""}
-SPLITS = ("trial", "calibration")
+SPLITS = ("trial", "calibration", "second")
 
 
 def labels(split, folder=HERE):
     """Sealed labels by case. Raises ValueError for one that is not what the index's hash says."""
     found = {}
-    for kind in ("", "local_"):
+    for kind in KINDS:
         index = json.loads((folder / f"{kind}cases.json").read_text())["cases"]
         sealed = json.loads((folder / f"{kind}labels.json").read_text())
         for name, label in sealed["labels"].items():

@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
-from trial import ceiling, following, make_cases, protocols, score
+from trial import cases, ceiling, following, make_cases, protocols, score
 
 SEALED = score.labels("calibration")
+
+
+def about(name):
+    return cases.index()[name]
 
 
 def first(test):
@@ -16,13 +20,13 @@ def test_a_changed_gain_is_seen_as_well_as_its_scatter_allows():
     for name, label in SEALED.items():
         if label["stratum"] == "decoy" and label["distortion"] == "gain":
             bound = label["amplitudes"][1] * np.sqrt(10.0) / 2.0 / make_cases.REPEAT_GAIN
-            detect, _ = ceiling.separations(name, label)
+            detect, _ = ceiling.separations(about(name), label)
             assert 0.6 * bound < detect < 1.02 * bound
 
 
 def test_separation_grows_with_the_amplitude_and_is_none_without():
     name, label = first(lambda one: one["stratum"] == "single" and one["effect"] == "relaxation")
-    case, amplitude = ceiling.Case(name, label), label["amplitudes"][0]
+    case, amplitude = ceiling.Case(about(name), label), label["amplitudes"][0]
     none, half, whole = (
         np.linalg.norm(case.signature("relaxation", label["variant"], share * amplitude)) for share in (0.0, 0.5, 1.0)
     )
@@ -31,9 +35,9 @@ def test_separation_grows_with_the_amplitude_and_is_none_without():
 
 def test_a_name_is_never_easier_than_its_detection_and_parameters_are_no_cause():
     name, label = first(lambda one: one["stratum"] == "single" and one["effect"] == "drainage")
-    detect, told = ceiling.separations(name, label)
+    detect, told = ceiling.separations(about(name), label)
     assert 0.0 < told <= detect
-    case = ceiling.Case(name, label)
+    case = ceiling.Case(about(name), label)
     stiffer = [1.3 * case.rest[k].force for k in case.kept]
     assert np.linalg.norm(case._free(stiffer)) < 0.02 * np.linalg.norm(case._white(stiffer))
 
@@ -46,11 +50,11 @@ def test_chances_at_the_thresholds_are_even():
 def test_what_a_pair_adds_to_one_of_both_is_no_more_than_all_it_adds():
     """A pair of which one half is nothing is that single effect, and the other half is not seen beside it."""
     name, label = first(lambda one: one["stratum"] == "pair")
-    case = ceiling.Case(name, label)
+    case = ceiling.Case(about(name), label)
     whole = np.linalg.norm(case.signature(label["effect"], label["variant"], label["amplitudes"]))
-    assert all(0.0 < part <= whole + 1e-9 for part in ceiling.beside(name, label))
+    assert all(0.0 < part <= whole + 1e-9 for part in ceiling.beside(about(name), label))
     name, label = first(lambda one: one["stratum"] == "mixed")
-    one, other = ceiling.beside(name, label | {"amplitudes": [label["amplitudes"][0], 1e-9]})
+    one, other = ceiling.beside(about(name), label | {"amplitudes": [label["amplitudes"][0], 1e-9]})
     assert one < 1e-3 < 1.0 < other and ceiling.chance_of_both(one, other) < 1e-3
 
 
@@ -61,15 +65,15 @@ def test_what_is_seen_and_has_no_name_that_leads_is_left_open():
 
 def test_more_recordings_never_tell_less():
     name, label = first(lambda one: one["stratum"] == "ambiguous" and one.get("effect") == "relaxation")
-    before, best = ceiling.separations(name, label), ceiling.settled(name, label)
+    before, best = ceiling.separations(about(name), label), ceiling.settled(name, label)
     held = {one: following.MOST for one in protocols.PROTOCOLS}
-    assert before[1] < ceiling.TOLD and before[1] <= best[1] <= ceiling.separations(name, label, held)[1] + 1e-9
+    assert before[1] < ceiling.TOLD and before[1] <= best[1] <= ceiling.separations(about(name), label, held)[1] + 1e-9
 
 
 def test_an_error_that_looks_like_the_skin_is_seen_and_not_told():
     """A fixture that yields takes off as much of the force as tissue that gives up volume: seen, and hard to name."""
     looks = [
-        ceiling.separations(name, label)
+        ceiling.separations(about(name), label)
         for name, label in SEALED.items()
         if label.get("distortion") == "fixture_compliance" and label["stratum"] == "decoy"
     ]
