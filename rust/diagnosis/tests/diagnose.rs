@@ -4,7 +4,8 @@
 
 mod scenes;
 
-use scenes::laboratory::{USUAL, clean, measured, planned};
+use scenes::laboratory::{Laboratory, USUAL, clean, clean_of, measured, planned, planned_on};
+use scenes::pad;
 use serde_json::Value;
 use thenar_contact::{ActiveEffect, Control};
 use thenar_diagnosis::diagnose::Verdict;
@@ -43,6 +44,45 @@ fn a_study_without_anything_missing_blames_nobody_and_says_what_it_would_have_se
         findings_json(&found),
         findings_json(&diagnosed(&study)),
         "the same seed gives the same bytes"
+    );
+}
+
+/// Three times the noise hides larger effects, and no effect is seen from a smaller size.
+#[test]
+fn what_would_have_been_seen_grows_with_the_noise() {
+    let seen = |noise: f64| {
+        let laboratory = Laboratory { noise, ..USUAL };
+        diagnosed(&measured(&clean(), &laboratory, 5)).smallest_seen
+    };
+    let (quiet, loud) = (seen(0.01), seen(0.03));
+    let mut larger = 0;
+    for ((name, less, _), (other, more, _)) in quiet.iter().zip(&loud) {
+        assert_eq!(name, other);
+        let (less, more) = (less.unwrap_or(f64::INFINITY), more.unwrap_or(f64::INFINITY));
+        assert!(more >= 0.9 * less, "{name}: {less} to {more}");
+        larger += usize::from(more > 1.5 * less);
+    }
+    assert!(2 * larger > quiet.len(), "{quiet:?} {loud:?}");
+    let skin = quiet.iter().find(|s| s.0 == "stiff_skin").unwrap();
+    assert!(skin.1.is_some_and(|ratio| ratio > 1.0), "{skin:?}");
+}
+
+/// Round skin is pressed on its mesh, whatever the tool; on flat skin a ball is not, and the reader is told.
+#[test]
+fn how_well_the_elastic_answer_is_known_is_told() {
+    let note = |study: &Study| {
+        let notes = diagnosed(study).notes;
+        let found = notes.into_iter().find(|note| note.contains("pressed"));
+        found.unwrap()
+    };
+    let round = note(&measured(&clean(), &USUAL, 5));
+    assert_eq!(round, "pressed on the mesh; its forces may be off by 5 %");
+    let flat = clean_of(planned_on(pad(f64::INFINITY, 12.0, 0.7)));
+    let flat = note(&measured(&flat, &USUAL, 5));
+    assert!(flat.contains("known to 0.6 %"), "{flat}");
+    assert!(
+        flat.ends_with("that of 1 of 2 tools, on the mesh, to 1 %"),
+        "{flat}"
     );
 }
 

@@ -56,7 +56,7 @@ use crate::{DiagnosisError, Options, compare};
 use course::Course;
 use gates::Decision;
 use ladder::Rungs;
-use prepare::{Prepared, prepare};
+use prepare::{Prepared, form_note, prepare};
 
 /// What a diagnosis is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -199,7 +199,7 @@ fn told(
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
-    add_notes(study, &mut found, &ready.courses);
+    add_notes(study, &mut found, ready);
     found.sentence = sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
@@ -210,7 +210,7 @@ fn told(
 }
 
 /// What a reader should be told besides, and the place that maps show.
-fn add_notes(study: &Study, found: &mut Diagnosis, courses: &[Course]) {
+fn add_notes(study: &Study, found: &mut Diagnosis, ready: &Prepared) {
     let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
     if found.gain.as_ref().is_some_and(is_no_better) {
         found.notes.push(
@@ -219,5 +219,6 @@ fn add_notes(study: &Study, found: &mut Diagnosis, courses: &[Course]) {
         );
     }
     local::add_place(study, found);
-    found.notes.extend(untested(courses));
+    found.notes.push(form_note(&ready.elastic));
+    found.notes.extend(untested(&ready.courses));
 }

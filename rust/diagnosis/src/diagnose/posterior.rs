@@ -49,6 +49,7 @@ mod tests {
     use nalgebra::DMatrix;
     use thenar_contact::effects::Effect;
 
+    use super::super::gates::needed;
     use super::super::ladder::Scored;
     use super::super::mechanism::{Mechanism, Scales, singles};
     use super::super::refit::Refit;
@@ -95,6 +96,20 @@ mod tests {
     fn needs_both(first: (Effect, f64), second: Effect, more: f64) -> bool {
         let rungs = beside(first, second, more);
         is_pair(&rungs.pairs[0], &rungs)
+    }
+
+    /// What the calibration's nulls reach, nats (`cargo xtask prove -- --split calibration`).
+    #[test]
+    fn what_nulls_reach_is_no_detection() {
+        let reached = [
+            (Effect::Relaxation, 2.4),
+            (Effect::StiffSkin, 2.1),
+            (Effect::Offset, 4.3),
+        ];
+        for (effect, most) in reached {
+            let least = needed(&of(&[effect], 0.0).mechanisms[0]);
+            assert!(least > 1.3 * most, "{}: {least}", effect.name());
+        }
     }
 
     #[test]

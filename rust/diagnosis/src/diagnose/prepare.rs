@@ -310,6 +310,26 @@ fn form_error(elastic: &Elastic, place: usize) -> [f64; KNOTS] {
     }]
 }
 
+/// How well the elastic answers of the study's tools are known, in words.
+pub fn form_note(elastic: &Elastic) -> String {
+    let percent = |form: [f64; KNOTS]| 100.0 * form[0];
+    let meshed = percent(FORM_ERROR[1 + usize::from(!elastic.is_flat)]);
+    let places = &elastic.places[..elastic.studied];
+    let balls = places.iter().filter(|place| place.is_exact).count();
+    let known = format!(
+        "a ball on flat skin is pressed without a mesh, and its force known to {} %",
+        percent(FORM_ERROR[0])
+    );
+    match (balls, places.len() - balls) {
+        (0, _) => format!("pressed on the mesh; its forces may be off by {meshed} %"),
+        (_, 0) => known,
+        (_, others) => format!(
+            "{known}; that of {others} of {} tools, on the mesh, to {meshed} %",
+            places.len()
+        ),
+    }
+}
+
 /// What a recording may be off by: its first touch, and its gain where repeats show that it scatters.
 fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coordinate> {
     let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);

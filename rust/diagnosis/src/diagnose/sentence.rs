@@ -65,7 +65,7 @@ pub fn sentence(
         Verdict::MissingPhysics => {
             let when = findings.first().and_then(|f| f.when.as_ref());
             let when = when.map_or(String::new(), |w| {
-                format!(", seen most in the {} phase", w.phase)
+                format!(", seen most {}", when_in_words(w.phase))
             });
             let gained = gain.map_or(String::new(), |g| {
                 format!(
@@ -78,6 +78,17 @@ pub fn sentence(
                 100.0 * sure
             )
         }
+    }
+}
+
+/// A phase as a person would say it.
+fn when_in_words(phase: &str) -> &str {
+    match phase {
+        "load" => "while pressing in",
+        "hold" => "while holding",
+        "slide" => "while sliding",
+        "unload" => "while letting go",
+        _ => "at rest",
     }
 }
 

@@ -248,6 +248,40 @@ mod tests {
         assert_eq!(degrees, n as f64 - 2.0);
     }
 
+    /// Against the restricted likelihood with whole matrices (Harville 1977), of every third sample left out: what it
+    /// gains from one memory to another, and the squares.
+    #[test]
+    fn it_is_the_likelihood_of_whole_matrices() {
+        let of = deviations(0.4, &mut Random::new(3));
+        let kept: Vec<usize> = (0..of.time.len()).filter(|k| k % 3 != 1).collect();
+        let columns = DMatrix::from_fn(kept.len(), 2, |k, j| of.along[kept[k]][j]);
+        let whole = |memory_s: f64| {
+            let apart = |i: usize, j: usize| (of.time[kept[i]] - of.time[kept[j]]).abs();
+            let all = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+                libm::exp(-apart(i, j) / memory_s)
+            });
+            let root = all.cholesky().unwrap();
+            let gram = columns.transpose() * root.solve(&columns);
+            let inverse = gram.clone().try_inverse().unwrap();
+            let squares = of.rest.iter().map(|series| {
+                let own = DVector::from_fn(kept.len(), |k, _| series[kept[k]]);
+                let pull = columns.transpose() * root.solve(&own);
+                own.dot(&root.solve(&own)) - pull.dot(&(&inverse * &pull))
+            });
+            let sum: f64 = squares.sum();
+            let degrees = kept.len() as f64 - 2.0;
+            let logs = libm::log(root.determinant()) + libm::log(gram.determinant());
+            (sum, -0.5 * (logs + degrees * libm::log(sum / degrees)))
+        };
+        let own = |memory_s: f64| {
+            let (sum, _, likelihood) = left(&of, &kept, memory_s);
+            (sum, likelihood)
+        };
+        let gained = |by: &dyn Fn(f64) -> (f64, f64)| by(0.9).1 - by(0.2).1;
+        assert!((own(0.4).0 / whole(0.4).0 - 1.0).abs() < 1e-9);
+        assert!((gained(&own) - gained(&whole)).abs() < 1e-6);
+    }
+
     /// A reading far from all others is left out, and so is one that is far only from its neighbors.
     #[test]
     fn outliers_are_left_out() {

@@ -3,6 +3,7 @@
 use thenar_contact::Control;
 use thenar_diagnosis::Fitting;
 use thenar_recordings::Study;
+use thenar_recordings::meshes::MeshFile;
 use thenar_recordings::study::Shape;
 
 use super::{Dice, add, curve, curve_of, material, pad, press_hold_release, study};
@@ -33,8 +34,13 @@ pub const USUAL: Laboratory = Laboratory {
 
 /// Plate and ball, two speeds, three repeats each, on a pad of about 250 vertices; forces are still those of nothing.
 pub fn planned() -> Study {
+    planned_on(pad(8.0, 7.0, 0.9))
+}
+
+/// The same on other skin.
+pub fn planned_on(skin: MeshFile) -> Study {
     let mut study = study(
-        pad(8.0, 7.0, 0.9),
+        skin,
         material(TRUE_G0, TRUE_GLIM, 7.0),
         vec![
             ("plate", Shape::Plane),
@@ -62,7 +68,11 @@ pub fn planned() -> Study {
 
 /// What the model itself says of the planned study.
 pub fn clean() -> (Study, Vec<Vec<f64>>) {
-    let study = planned();
+    clean_of(planned())
+}
+
+/// The same of another study.
+pub fn clean_of(study: Study) -> (Study, Vec<Vec<f64>>) {
     let forces = Fitting::new(&study, &Control::none())
         .unwrap()
         .simulate(&[], &Control::none())
