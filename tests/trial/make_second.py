@@ -44,7 +44,7 @@ def main():
     """Draws every case and writes the three files."""
     split = "second"
     plans = enumerate(make_cases.plans(split))
-    make_cases.write([(split, *make_cases.drawn(plan, split, k, placed)) for k, plan in plans], "second_", (98, 6))
+    make_cases.write([(split, *make_cases.drawn(plan, split, k, placed)) for k, plan in plans], "second_", (97, 7))
 
 
 if __name__ == "__main__":

@@ -159,13 +159,14 @@ impl Screen<'_> {
         }
     }
 
-    /// What the instrument makes of the forces.
+    /// What the instrument makes of the forces of a recording, by its gain.
     pub(super) fn read(
         &self,
         model: &Model<'_>,
         set: &Setting,
-        (one, forces): (&Course, &mut Vec<f64>),
+        (one, gain, forces): (&Course, f64, &mut Vec<f64>),
     ) {
+        forces.iter_mut().for_each(|f| *f *= gain);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             if !mechanism.is_instrument() {
                 continue;
@@ -182,14 +183,14 @@ impl Screen<'_> {
                         *force += value * libm::log1p((row.time_s - start) / time_s);
                     }
                 }
-                Acts::Saturates => {
-                    let ceiling = self.most.0 * libm::exp(value);
+                Acts::Saturates(stage) => {
+                    let ceiling = stage.reads(self.most.0 * libm::exp(value), gain);
                     for force in forces.iter_mut() {
                         *force = ceiling - soft(ceiling - *force, 0.02 * ceiling);
                     }
                 }
-                Acts::Blind => {
-                    let floor = value * self.least_peak;
+                Acts::Blind(stage) => {
+                    let floor = stage.reads(value * self.least_peak, gain);
                     let width = 0.01 * self.least_peak;
                     for force in forces.iter_mut() {
                         let x = ((*force - floor) / width).clamp(-40.0, 40.0);

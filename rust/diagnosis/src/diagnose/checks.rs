@@ -5,6 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::course::{Course, Row};
 use super::screen::Screen;
 use crate::Phase;
+use crate::noise::Noise;
 use crate::observe::scatter::median;
 
 /// Fewest deviations with and without contact from which they are compared.
@@ -35,6 +36,26 @@ struct Deviations {
     along: Vec<[f64; 2]>,
     /// Seconds spent under load and without.
     seconds: [f64; 2],
+}
+
+/// Noise under load over that without, from which the skin itself is unsteady.
+const UNSTEADY: f64 = 2.0;
+/// How often noise alone may show a rhythm as clear as one that is told.
+const BY_CHANCE: f64 = 0.005;
+
+/// What in the repeats themselves no effect on the list does, in words; None where noise suffices.
+pub fn restless(noise: &Noise, unsteady: Option<Unsteady>) -> Option<String> {
+    if let Some(rhythm) = noise.rhythm.filter(|r| r.chance < BY_CHANCE) {
+        return Some(format!(
+            "under load repeats of one protocol differ by a rhythm of {:.2} Hz ({:.0} a minute), in step with nothing that was done",
+            rhythm.hz,
+            rhythm.per_minute()
+        ));
+    }
+    let is_unsteady = unsteady.is_some_and(|u| u.ratio > u.least.max(UNSTEADY));
+    is_unsteady.then(|| {
+        "repeats of one protocol differ more under load than without, by more than gain and first touch".to_owned()
+    })
 }
 
 /// True if the force pulls where a fit with adhesion says so: a necessary sign, looked for in what was measured.

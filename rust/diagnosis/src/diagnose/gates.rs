@@ -2,6 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
+use super::checks::restless;
 use super::elastic::radius;
 use super::findings::Verdict;
 use super::ladder::{Rungs, Scored};
@@ -32,8 +33,6 @@ const QUIET: f64 = 0.12;
 /// Coherent misfit per sample that no name explains, from which something unlisted is there: where nothing is missing it reaches 0.08, under
 /// a blister at least 0.22 (calibration).
 const UNLISTED: f64 = 0.13;
-/// Noise under load over that without, from which the skin itself is unsteady.
-const UNSTEADY: f64 = 2.0;
 /// Evidence of a listed effect from which unsteady skin does not keep it from being named.
 const BEYOND_UNSTEADY: f64 = 60.0;
 
@@ -67,14 +66,9 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         return silent(Verdict::InsufficientData, &reason);
     }
     let best = rungs.singles.first();
-    let is_unsteady = rungs
-        .unsteady
-        .is_some_and(|u| u.ratio > u.least.max(UNSTEADY));
-    if is_unsteady && !best.is_some_and(|b| b.evidence > BEYOND_UNSTEADY) {
-        return silent(
-            Verdict::Unlisted,
-            "repeats of one protocol differ more under load than without, by more than gain and first touch",
-        );
+    let is_clear = best.is_some_and(|b| b.evidence > BEYOND_UNSTEADY);
+    if let Some(reason) = restless(&ready.noise, rungs.unsteady).filter(|_| !is_clear) {
+        return silent(Verdict::Unlisted, &reason);
     }
     match best.filter(|b| b.evidence >= needed(&b.mechanisms[0])) {
         None => undetected(ready, rungs),

@@ -172,6 +172,7 @@ fn noise(measured: &[Measured], sigma: f64) -> Noise {
         zero_mm: None,
         step: [1.0; CHANNELS.len()],
         drawn_from: Default::default(),
+        rhythm: None,
         notes: Vec::new(),
     }
 }

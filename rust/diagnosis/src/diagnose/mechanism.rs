@@ -55,13 +55,32 @@ pub enum Acts {
         time_s: f64,
     },
     /// Readings bend over below a ceiling; its logarithm is free.
-    Saturates,
+    Saturates(Stage),
     /// Readings below a floor are none; the floor over the smallest peak is free.
-    Blind,
+    Blind(Stage),
     /// The stage travels further than the tool, by this much per newton.
     Yields,
     /// The force is stamped late, s.
     Late,
+}
+
+/// Where in the chain a ceiling or a floor stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// After all that differs in gain from recording to recording: the same reading in all.
+    Last,
+    /// Before it, as in a sensor whose amplifier is set anew for each recording: the same force in all.
+    First,
+}
+
+impl Stage {
+    /// A limit as it reads in a recording of this gain.
+    pub fn reads(self, limit: f64, gain: f64) -> f64 {
+        match self {
+            Stage::Last => limit,
+            Stage::First => limit * gain,
+        }
+    }
 }
 
 /// What makes a load fade.
@@ -141,7 +160,7 @@ impl Mechanism {
                 spectrum: Spectrum::Smooth { .. },
                 ..
             } => &STARTS,
-            Acts::Saturates => &CEILINGS,
+            Acts::Saturates(_) => &CEILINGS,
             Acts::Tabled(_) if self.effect == Effect::StiffSkin => &SKINS,
             _ => &[],
         }
@@ -150,8 +169,8 @@ impl Mechanism {
     /// The number with which it does nothing, where it has but one and there is such a number; a ceiling so high that nothing meets it.
     pub fn nothing(&self) -> Option<f64> {
         match self.acts {
-            Acts::Blind | Acts::Fades { .. } | Acts::Clings { .. } => None,
-            Acts::Saturates => Some(HIGHEST),
+            Acts::Blind(_) | Acts::Fades { .. } | Acts::Clings { .. } => None,
+            Acts::Saturates(_) => Some(HIGHEST),
             _ => Some(0.0),
         }
     }
@@ -168,8 +187,8 @@ impl Mechanism {
             Acts::Tabled(_)
                 | Acts::Stiffens(..)
                 | Acts::Offset
-                | Acts::Saturates
-                | Acts::Blind
+                | Acts::Saturates(_)
+                | Acts::Blind(_)
                 | Acts::Yields
         )
     }
@@ -264,8 +283,9 @@ fn instrument() -> Vec<Mechanism> {
     let one = |effect, acts| Mechanism { effect, acts };
     let mut all = vec![one(Effect::Offset, Acts::Offset)];
     all.extend([1.0, 6.0].map(|time_s| one(Effect::Drift, Acts::Drifts { time_s })));
-    all.push(one(Effect::Saturation, Acts::Saturates));
-    all.push(one(Effect::Threshold, Acts::Blind));
+    let stages = [Stage::Last, Stage::First];
+    all.extend(stages.map(|stage| one(Effect::Saturation, Acts::Saturates(stage))));
+    all.extend(stages.map(|stage| one(Effect::Threshold, Acts::Blind(stage))));
     all.push(one(Effect::FixtureCompliance, Acts::Yields));
     all.push(one(Effect::Timing, Acts::Late));
     all

@@ -199,6 +199,9 @@ fn told(
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
+    let restless = checks::restless(&ready.noise, rungs.unsteady);
+    let beside = restless.filter(|_| found.verdict != Verdict::Unlisted);
+    found.notes.extend(beside);
     add_notes(study, &mut found, ready);
     found.sentence = sentence::sentence(
         found.verdict,

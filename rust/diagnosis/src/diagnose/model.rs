@@ -150,8 +150,8 @@ fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64
         Acts::GainStep { .. } => (0.0, -0.7, 0.7),
         Acts::Offset => (0.0, -0.3 * force, 0.3 * force),
         Acts::Drifts { .. } => (0.0, -0.3 * force, 0.3 * force),
-        Acts::Saturates => (-0.1, -2.0, HIGHEST),
-        Acts::Blind => (
+        Acts::Saturates(_) => (-0.1, -2.0, HIGHEST),
+        Acts::Blind(_) => (
             f64::max(0.1, 1.5 * screen.least_floor),
             screen.least_floor,
             0.9,

@@ -177,6 +177,22 @@ impl Prepared {
         (of_place, of_course(course, deepest, &self.noise))
     }
 
+    /// The least reading that stands out of the noise, over the smallest peak: of the middle recording of those whose noise is small enough.
+    fn seen_floor(&self) -> f64 {
+        let peak = self.scales.forces.0;
+        let seen = self.courses.iter().filter_map(|course| {
+            let samples = course.rows.iter().filter_map(|row| row.sample);
+            let least = FLOOR * samples.map(|k| self.sigma[k]).fold(0.0, f64::max);
+            let readings = course.rows.iter().filter(|row| row.sample.is_some());
+            let above = readings.map(|row| row.force_n).filter(|f| *f > least);
+            (least < 0.5 * peak).then(|| above.fold(peak, f64::min) / peak)
+        });
+        match &mut seen.collect::<Vec<f64>>()[..] {
+            [] => self.noise_share() * FLOOR,
+            found => median(found),
+        }
+    }
+
     /// The screen of these recordings.
     pub fn screen(&self) -> Screen<'_> {
         Screen {
@@ -188,6 +204,7 @@ impl Prepared {
             most: (self.scales.forces.1, self.scales.deepest),
             least_peak: self.scales.forces.0,
             least_floor: FLOOR * self.noise_share(),
+            seen_floor: self.seen_floor(),
         }
     }
 }

@@ -12,8 +12,11 @@ use super::stiffness::modes;
 use crate::Phase;
 use crate::noise::Whitening;
 
-/// Rounds in which the force is sought to which a stage yields.
-const YIELDS: usize = 5;
+/// Most rounds in which the force is sought to which a stage yields, the part of the largest force to which it is found, and the largest
+/// part of a round's change that the next may be foreseen to make.
+const YIELDS: usize = 6;
+const FOUND: f64 = 1e-6;
+const STIFFEST: f64 = 0.5;
 
 /// What all screened models of a study share.
 pub struct Screen<'a> {
@@ -33,6 +36,8 @@ pub struct Screen<'a> {
     pub least_peak: f64,
     /// Floor over it, below which readings cannot be told from noise.
     pub least_floor: f64,
+    /// The least reading over it that stands out of the noise, of the middle recording.
+    pub seen_floor: f64,
 }
 
 /// What a tool at its site answers for the numbers of a model.
@@ -46,20 +51,44 @@ struct Answer {
 impl Screen<'_> {
     /// Forces of one recording's rows, N.
     pub fn forces(&self, model: &Model<'_>, set: &Setting, course: usize) -> Vec<f64> {
-        let mut forces: Vec<f64> = self.courses[course]
-            .rows
-            .iter()
-            .map(|r| r.force_n)
-            .collect();
+        let rows = self.courses[course].rows.iter();
+        let known: Vec<f64> = rows.map(|r| r.force_n).collect();
         let yields = model.mechanisms.iter().any(|m| m.acts == Acts::Yields);
-        // A stage that yields moves by the true force, which is sought; the measured one is only where the search begins.
-        for _ in 0..if yields { YIELDS } else { 1 } {
-            forces = self.pressed(model, set, (course, &forces));
-        }
+        let mut forces = match yields {
+            true => self.yielding(model, set, (course, known)),
+            false => self.pressed(model, set, (course, &known)),
+        };
         let gain = libm::exp(set.gain[course]);
-        forces.iter_mut().for_each(|f| *f *= gain);
-        self.read(model, set, (&self.courses[course], &mut forces));
+        self.read(model, set, (&self.courses[course], gain, &mut forces));
         forces
+    }
+
+    /// Forces on the tool where the stage yields to them: what is measured is only where the search begins, and a stage that is as soft as
+    /// the skin would not let it end by itself (each row is led on by Aitken's rule).
+    fn yielding(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, mut at): (usize, Vec<f64>),
+    ) -> Vec<f64> {
+        for _ in 0..YIELDS {
+            let once = self.pressed(model, set, (course, &at));
+            let twice = self.pressed(model, set, (course, &once));
+            let mut off = 0.0f64;
+            for ((at, once), twice) in at.iter_mut().zip(&once).zip(&twice) {
+                let (first, second) = (once - *at, twice - once);
+                off = off.max(first.abs());
+                let part = match first == 0.0 {
+                    true => 0.0,
+                    false => (second / first).min(STIFFEST),
+                };
+                *at += first / (1.0 - part);
+            }
+            if off < FOUND * self.most.0 {
+                break;
+            }
+        }
+        at
     }
 
     /// Forces on the tool of one recording, where the stage yields to forces that are known.

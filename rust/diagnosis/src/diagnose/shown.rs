@@ -289,11 +289,11 @@ fn in_words(ready: &Prepared, scored: &Scored, size: f64) -> (f64, &'static str,
             }
         },
         Acts::Stiffens(_, Growth::Square) => (size, "share of the force", 1.0),
-        Acts::Stiffens(..) | Acts::Saturates | Acts::GainStep { .. } => {
+        Acts::Stiffens(..) | Acts::Saturates(_) | Acts::GainStep { .. } => {
             (libm::exp(size) - 1.0, "share of the force", 1.0)
         }
         Acts::Offset | Acts::Drifts { .. } => (size, "N", most),
-        Acts::Blind => (size * least, "N", most),
+        Acts::Blind(_) => (size * least, "N", most),
         Acts::Yields => (size, "mm/N", deepest / most.max(1e-12)),
         Acts::Late => (size, "s", longest(ready)),
     }
@@ -349,6 +349,11 @@ pub fn evidence(ready: &Prepared, rungs: &Rungs) -> Vec<(&'static str, f64)> {
     if let Some(unsteady) = rungs.unsteady {
         all.push(("noise_under_load_over_without", unsteady.ratio));
         all.push(("noise_of_one_size_up_to", unsteady.least));
+    }
+    if let Some(rhythm) = ready.noise.rhythm {
+        all.push(("rhythm_hz", rhythm.hz));
+        all.push(("rhythm_nats", rhythm.nats));
+        all.push(("rhythm_chance", rhythm.chance));
     }
     if let Some(step) = rungs.gain_step {
         all.push(("gain_step_t", step.t));

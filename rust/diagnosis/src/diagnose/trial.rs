@@ -3,12 +3,15 @@
 use thenar_contact::Control;
 
 use super::ladder::Scored;
-use super::mechanism::Mechanism;
+use super::mechanism::{Acts, Mechanism};
 use super::model::Model;
 use super::prepare::Prepared;
 use super::refit::refit;
 use super::screen::Screen;
 use crate::DiagnosisError;
+
+/// Parts of the least reading that stands out of the noise at which a floor under readings is sought: the least one may be noise.
+const FLOORS: [f64; 5] = [0.75, 0.87, 1.0, 1.15, 1.32];
 
 /// Tries hypotheses on one study.
 pub struct Trial<'a> {
@@ -50,10 +53,20 @@ impl Trial<'_> {
     pub fn single(&self, mechanism: &Mechanism) -> Scored {
         let one = std::slice::from_ref(mechanism);
         let mut best = self.score(one, &self.from);
-        for start in mechanism.starts() {
-            best = lower(best, self.score(one, &[&self.from[..], start].concat()));
+        for start in self.starts(mechanism) {
+            best = lower(best, self.score(one, &[&self.from[..], &start].concat()));
         }
         best
+    }
+
+    /// Where else a fit of a mechanism begins: a floor is told only by the readings beside it.
+    fn starts(&self, mechanism: &Mechanism) -> Vec<Vec<f64>> {
+        match mechanism.acts {
+            Acts::Blind(_) => FLOORS
+                .map(|part| vec![part * self.screen.seen_floor])
+                .to_vec(),
+            _ => mechanism.starts().iter().map(|s| s.to_vec()).collect(),
+        }
     }
 
     /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, where it has other
@@ -62,7 +75,7 @@ impl Trial<'_> {
         let from = |start: &[f64]| self.score(set, &[&better.refit.at[..], start].concat());
         let mut best = from(&[]);
         let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
-        if let Some(alone) = alone.filter(|_| !set[1].starts().is_empty()) {
+        if let Some(alone) = alone.filter(|_| !self.starts(&set[1]).is_empty()) {
             best = lower(best, from(&alone.refit.at[self.from.len()..]));
         }
         if let Some(nothing) = set[1]
@@ -106,7 +119,7 @@ fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::made::{Reading, ready, tool};
-    use super::super::mechanism::{Acts, singles};
+    use super::super::mechanism::{Acts, Stage, singles};
     use super::*;
     use crate::Phase;
     use crate::fit::blocks;
@@ -168,7 +181,7 @@ mod tests {
     };
     const CEILING: Mechanism = Mechanism {
         effect: Effect::Saturation,
-        acts: Acts::Saturates,
+        acts: Acts::Saturates(Stage::Last),
     };
 
     /// From any one start, a fit misses some of them.

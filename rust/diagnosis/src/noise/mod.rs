@@ -4,6 +4,7 @@ mod alike;
 mod frames;
 mod repeats;
 mod restricted;
+mod rhythm;
 mod scans;
 mod smoothing;
 mod together;
@@ -12,6 +13,7 @@ mod whitening;
 mod tests;
 
 pub use repeats::carry;
+pub use rhythm::Rhythm;
 pub use whitening::{Whitened, Whitening};
 
 use crate::observe::scatter::noise_of;
@@ -81,6 +83,8 @@ pub struct Noise {
     pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
+    /// The clearest rhythm in which the forces of repeats differ.
+    pub rhythm: Option<Rhythm>,
     /// What a reader should be told.
     pub notes: Vec<String>,
 }
@@ -126,6 +130,7 @@ pub fn noise(
                 .as_ref()
                 .map_or_else(Vec::new, |s| s.drawn_from.clone())
         }),
+        rhythm: forces.and_then(|s| s.rhythm),
         notes,
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::alike::{Told, aligned};
 use super::restricted;
+use super::rhythm::{Rhythm, rhythm};
 use super::together::Together;
 use super::{Channel, POOLED_DEGREES};
 use crate::observe::Measured;
@@ -57,6 +58,8 @@ pub struct Scatter {
     pub step: f64,
     /// Whitened deviations over it, outliers among them.
     pub drawn_from: Vec<f64>,
+    /// The clearest rhythm in them.
+    pub rhythm: Option<Rhythm>,
 }
 
 impl Scatter {
@@ -72,6 +75,7 @@ impl Scatter {
             zero_mm: None,
             step: 1.0,
             drawn_from: Vec::new(),
+            rhythm: None,
         }
     }
 
@@ -173,6 +177,7 @@ impl Repeats {
             zero_mm: (self.channel == Channel::Force).then_some(between.y),
             step,
             drawn_from,
+            rhythm: rhythm(&all, memory_s),
         })
     }
 }

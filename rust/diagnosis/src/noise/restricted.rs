@@ -44,7 +44,7 @@ pub fn told(all: &[Deviations]) -> Told {
 }
 
 /// Samples that are no outliers: not far off, and, once a memory is known, not far from what their neighbors say of them.
-fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
+pub(super) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
     let n = of.time.len();
     let off = |series: &Vec<f64>, k: usize| -> f64 {
         let Some(memory_s) = memory_s else {
