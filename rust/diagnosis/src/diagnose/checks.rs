@@ -262,6 +262,7 @@ fn two_sided(t: f64, degrees: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::Rhythm;
 
     /// Any table of Student's t: 2.776 at 4 degrees and 2.306 at 8 leave 5 %; 4.604 at 4 leaves 1 %.
     #[test]
@@ -269,5 +270,22 @@ mod tests {
         for (t, degrees, p) in [(2.776, 4.0, 0.05), (2.306, 8.0, 0.05), (4.604, 4.0, 0.01)] {
             assert!((two_sided(t, degrees) / p - 1.0).abs() < 2e-3, "{t}");
         }
+    }
+
+    #[test]
+    fn a_rhythm_is_told_before_what_is_only_unsteady() {
+        let of = |chance: f64, ratio: f64| {
+            let (mut made, _) = super::super::made::ready(Vec::new(), &[], 0.1);
+            made.noise.rhythm = Some(Rhythm {
+                hz: 1.2,
+                nats: 20.0,
+                chance,
+            });
+            restless(&made.noise, Some(Unsteady { ratio, least: 1.6 }))
+        };
+        let told = |chance, ratio| of(chance, ratio).unwrap();
+        assert!(told(1e-4, 3.0).contains("1.20 Hz (72 a minute)"));
+        assert!(told(0.1, 2.1).contains("more under load than without"));
+        assert!(of(0.1, 1.9).is_none());
     }
 }

@@ -240,3 +240,83 @@ impl Screen<'_> {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use thenar_contact::effects::Effect;
+
+    use super::super::made::{ready, tool};
+    use super::super::mechanism::{Mechanism, Stage};
+    use super::super::prepare::Prepared;
+    use super::*;
+
+    /// A press at 1 mm/s to 2 mm by a tool of that law; nothing was read.
+    fn pressed(force: impl Fn(f64) -> f64) -> Prepared {
+        let read = |k: u32| {
+            let time = f64::from(k) / 40.0;
+            (time, time, Phase::Load, 0.0)
+        };
+        let readings = (0..=80).map(read).collect();
+        ready(vec![tool(2.0, force, |_| 1.0)], &[(0, readings)], 0.1).0
+    }
+
+    /// Forces with a mechanism of that size, in tissue as it is.
+    fn forces(ready: &Prepared, mechanism: (Effect, Acts), size: f64) -> Vec<f64> {
+        let screen = ready.screen();
+        let (effect, acts) = mechanism;
+        let all = [Mechanism { effect, acts }];
+        let model = Model::new(&screen, &all);
+        let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
+        *at.last_mut().unwrap() = size;
+        screen.all_forces(&model, &at).concat()
+    }
+
+    /// F = k (s - c F), so F = k s / (1 + c k), however soft the stage is against the skin; and for a ball, whose force is put in again.
+    #[test]
+    fn a_stage_that_yields_moves_by_the_force_that_it_bears() {
+        let yields = (Effect::FixtureCompliance, Acts::Yields);
+        for part in [0.1, 0.5, 0.8] {
+            // Of the deepest depth, at the force without.
+            let linear = forces(&pressed(|d| 10.0 * d), yields.clone(), 0.1 * part);
+            for (k, force) in linear.iter().enumerate() {
+                let wanted = 10.0 * k as f64 / 40.0 / (1.0 + part);
+                assert!((force - wanted).abs() < 1e-4, "{part}: {force} {wanted}");
+            }
+            let ball = |d: f64| 10.0 * libm::pow(d, 1.5);
+            let compliance = part * 2.0 / ball(2.0);
+            let round = forces(&pressed(ball), yields.clone(), compliance);
+            for (k, force) in round.iter().enumerate() {
+                let wanted = ball(k as f64 / 40.0 - compliance * force);
+                assert!((force - wanted).abs() < 0.01, "{part}: {force} {wanted}");
+            }
+        }
+    }
+
+    /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.
+    #[test]
+    fn a_limit_stands_before_the_gain_or_after_it() {
+        let mut ready = pressed(|d| 10.0 * d);
+        ready.scales.forces = (20.0, 20.0);
+        let gain = 1.25f64;
+        ready.shared.push(Coordinate {
+            kind: Kind::Gain(0),
+            start: gain.ln(),
+            bounds: (-1.0, 1.0),
+            prior: Some(0.1),
+            step: 1e-4,
+        });
+        for (stage, limit) in [(Stage::First, 8.0 * gain), (Stage::Last, 8.0)] {
+            let ceiling = forces(
+                &ready,
+                (Effect::Saturation, Acts::Saturates(stage)),
+                f64::ln(8.0 / 20.0),
+            );
+            let most = ceiling.iter().fold(0.0, |a, b| f64::max(a, *b));
+            assert!((most / limit - 1.0).abs() < 1e-6, "{stage:?}: {most}");
+            let floor = forces(&ready, (Effect::Threshold, Acts::Blind(stage)), 8.0 / 20.0);
+            let seen = floor.iter().filter(|f| **f > 0.9 * limit);
+            let least = seen.fold(f64::INFINITY, |a, b| a.min(*b));
+            assert!((least / limit - 1.0).abs() < 0.06, "{stage:?}: {least}");
+        }
+    }
+}

@@ -154,9 +154,19 @@ mod tests {
         }
 
         fn on_trial<T>(&self, ask: impl Fn(&Trial<'_>) -> T) -> T {
+            self.on_trial_of(&|force| force, ask)
+        }
+
+        /// The same where the readings are made of the forces so.
+        fn on_trial_of<T>(&self, read: &dyn Fn(f64) -> f64, ask: impl Fn(&Trial<'_>) -> T) -> T {
             let punch = |k: &f64| tool(2.0, |depth| k * depth, |_| 1.0);
             let places = 0..self.stiffness.len();
-            let recordings: Vec<_> = places.map(|k| (k, self.readings(k))).collect();
+            let readings = |k: usize| -> Vec<Reading> {
+                let all = self.readings(k).into_iter();
+                all.map(|(time, depth, phase, force)| (time, depth, phase, read(force)))
+                    .collect()
+            };
+            let recordings: Vec<_> = places.map(|k| (k, readings(k))).collect();
             let tools = self.stiffness.iter().map(punch).collect();
             let (ready, measured) = ready(tools, &recordings, 0.05);
             let screen = ready.screen();
@@ -228,6 +238,27 @@ mod tests {
         };
         assert!((offset - study.offset_n).abs() < 0.02, "{offset}");
         assert!((ceiling + study.spike).abs() < 5e-3, "{ceiling}");
+    }
+
+    /// A floor under readings of two punches, small and just below the peak of the softer: from any one start a fit misses some of them.
+    #[test]
+    fn a_floor_is_found_small_and_near_the_smallest_peak() {
+        let study = Clipped {
+            ceiling_n: 1e3,
+            stiffness: &[10.0, 4.0],
+            ..LOW
+        };
+        for floor_n in [1.0, 3.0, 6.0] {
+            let blind = |f: f64| if f < floor_n { 0.0 } else { f };
+            let found = study.on_trial_of(&blind, |trial| {
+                let acts = Acts::Blind(Stage::Last);
+                let effect = Effect::Threshold;
+                trial.single(&Mechanism { effect, acts }).refit.at
+            });
+            let at = found.last().expect("a floor") * 8.0;
+            // Between the last reading that is not there and the first that is.
+            assert!(at > floor_n - 0.25 && at < floor_n + 0.05, "{at} {floor_n}");
+        }
     }
 
     /// What begins with nothing answers as what it is added to, and so ends no worse.

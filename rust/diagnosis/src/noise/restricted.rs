@@ -149,7 +149,7 @@ fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::random::Random;
     use nalgebra::{DMatrix, DVector};
@@ -166,7 +166,7 @@ mod tests {
     }
 
     /// Two repeats of noise of standard deviation 1 with that memory, with a gain and a touch of their own found and taken out.
-    fn deviations(memory_s: f64, random: &mut Random) -> Deviations {
+    pub fn deviations(memory_s: f64, random: &mut Random) -> Deviations {
         let time = times();
         let n = time.len();
         let press = |t: f64| (t / 0.44).min(1.0).min(((time[n - 7] - t) / 0.48).max(0.0));

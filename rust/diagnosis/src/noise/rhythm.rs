@@ -145,3 +145,60 @@ fn whitened(carried: &[f64], values: &[f64]) -> DVector<f64> {
     let before = |k: usize| if k > 0 { values[k - 1] } else { 0.0 };
     DVector::from_fn(values.len(), |k, _| fresh(values[k], before(k), carried[k]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::restricted::tests::deviations;
+    use super::*;
+    use crate::random::Random;
+
+    /// Any table of chi-square: 5.991 at 2 degrees, 18.307 at 10 and 31.410 at 20 leave 5 %.
+    #[test]
+    fn chances_agree_with_published_tables() {
+        for (chi_square, pairs) in [(5.991, 1), (18.307, 5), (31.410, 10)] {
+            let p = exceeded(0.5 * chi_square, pairs);
+            assert!((p / 0.05 - 1.0).abs() < 1e-3, "{pairs}: {p}");
+        }
+    }
+
+    /// Five protocols of two repeats each with noise of 1; a pulse of that size at full load, its phase by protocol.
+    fn study(pulse: f64, random: &mut Random) -> Vec<Deviations> {
+        let one = |phase: usize| {
+            let mut of = deviations(0.15, random);
+            for k in 0..of.time.len() {
+                let turn = std::f64::consts::TAU * 1.2 * of.time[k] + phase as f64;
+                let beat = pulse * of.along[k].x * libm::sin(turn);
+                of.rest[0][k] += beat;
+                of.rest[1][k] -= beat;
+            }
+            of
+        };
+        (0..5).map(one).collect()
+    }
+
+    #[test]
+    fn a_pulse_is_told_with_its_frequency() {
+        let mut random = Random::new(11);
+        for _ in 0..20 {
+            let found = rhythm(&study(1.0, &mut random), 0.15).unwrap();
+            assert!(
+                (found.hz - 1.2).abs() < 0.04 && found.chance < 1e-3,
+                "{found:?}"
+            );
+            assert!((found.per_minute() - 60.0 * found.hz).abs() < 1e-9);
+        }
+    }
+
+    /// The chance that is told is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.
+    #[test]
+    fn noise_has_no_rhythm() {
+        let mut random = Random::new(4);
+        let told = (0..100).filter(|_| {
+            let found = rhythm(&study(0.0, &mut random), 0.15).unwrap();
+            found.chance < 0.05
+        });
+        let often = told.count();
+        assert!(often <= 11, "{often}");
+        assert!(rhythm(&[], 0.15).is_none());
+    }
+}
