@@ -77,6 +77,7 @@ class Letter:
     heading: str
     sentence: str
     entries: tuple
+    depends: tuple
     phases: tuple
     rivals: tuple
     bars: tuple
@@ -95,6 +96,7 @@ def write(found):
         heading=HEADINGS[found["verdict"]],
         sentence=found.get("sentence") or "",
         entries=tuple(_entry(found, index) for index in range(len(found.get("findings", ())))),
+        depends=tuple(_depends(found.get("unlisted") or {})),
         phases=tuple(_phases(found)),
         rivals=tuple(_rivals(found)),
         bars=bars,
@@ -119,6 +121,7 @@ def lines(letter):
         yield from (f"   {text}" for text in (entry.meaning, entry.story) if text)
         yield from (f"   {row.label}: {row.text}" for row in entry.rows)
         yield from (f"   {'Seen' if holds else 'Not seen'}: {sign}" for sign, holds in entry.signs)
+    yield from (f"Goes with {bar.label.lower()}: {bar.text}" for bar in letter.depends)
     yield from (f"Evidence {bar.label}: {bar.text}" for bar in letter.phases)
     yield from letter.rivals
     yield from (f"{bar.label}: {bar.text}" for bar in letter.bars)
@@ -150,6 +153,17 @@ def _entry(found, index):
         signs=tuple((each["sentence"], bool(each["holds"])) for each in finding.get("consequences") or ()),
         has_place=bool(where.get("center_mm") or where.get("vertices_csv") or where.get("region")),
     )
+
+
+def _depends(unlisted):
+    """What something without a name goes with: the share that a correction by it removes, or the rhythm of it."""
+    for told in unlisted.get("depends_on") or ():
+        removed = told.get("removed")
+        if removed is not None:
+            yield Bar(wording.depended(told["on"]), wording.share(removed), min(max(removed, 0.0), 1.0))
+    rhythm = unlisted.get("rhythm")
+    if rhythm:
+        yield Bar("Rhythm", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f} a minute", 1.0)
 
 
 def _phases(found):

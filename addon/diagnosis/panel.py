@@ -100,6 +100,25 @@ class THENAR_PT_findings(_Part, bpy.types.Panel):
             _draw_entry(self.layout, context, entry)
 
 
+class THENAR_PT_depends(_Part, bpy.types.Panel):
+    """What something without a name goes with."""
+
+    bl_label = "What It Goes With"
+
+    @staticmethod
+    def said(told):
+        """A bar for each variable."""
+        return told.depends
+
+    def draw(self, context):
+        _draw_bars(self.layout, _letter(context).depends, 0.5)
+        text.faint(
+            self.layout,
+            context,
+            "Removed by an empirical correction, on protocols that it was not fitted to; it says what, not why",
+        )
+
+
 class THENAR_PT_phases(_Part, bpy.types.Panel):
     """In which phase of the recordings the evidence stands."""
 
@@ -273,6 +292,7 @@ def _draw_row(column, context, row):
 CLASSES = (
     THENAR_PT_diagnosis,
     THENAR_PT_findings,
+    THENAR_PT_depends,
     THENAR_PT_phases,
     THENAR_PT_gain,
     THENAR_PT_rivals,

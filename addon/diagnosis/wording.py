@@ -127,9 +127,14 @@ def _span(ends, unit):
     return f"at {number(ends[0]) if ends[0] == ends[1] else interval(*ends)} {unit}"
 
 
+def depended(word):
+    """What something depends on, as a reader says it."""
+    return DEPENDS.get(word, name(word))
+
+
 def depends(words):
     """`It depends on time and on speed.` Empty where that is not known."""
-    words = [DEPENDS.get(word, name(word)) for word in words or ()]
+    words = [depended(word) for word in words or ()]
     return f"It depends on {listed(words)}." if words else ""
 
 

@@ -11,3 +11,21 @@ def test_the_letter_tells_the_law_and_measure_that_the_model_switches_on():
     found = letters.FINDINGS["missing_physics"] | {"findings": [named], "model": model}
     (entry,) = letter.write(found).entries
     assert [(row.label, row.text) for row in entry.rows] == [("Law", "Power"), ("Measure", "Depth")]
+
+
+def test_the_letter_tells_what_something_without_a_name_goes_with():
+    depends = [{"on": "depth", "removed": 0.71}, {"on": "cycle", "removed": 0.3}]
+    nameless = {"depends_on": depends, "correction": {"kind": "empirical"}, "rhythm": None}
+    written = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": nameless})
+    assert [(bar.label, bar.text, bar.share) for bar in written.depends] == [
+        ("depth", "71 %", 0.71),
+        ("count of presses", "30 %", 0.3),
+    ]
+    assert "Goes with depth: 71 %" in letter.lines(written)
+    beats = {
+        "depends_on": [{"on": "force", "removed": None}],
+        "rhythm": {"hz": 1.18, "per_minute": 70.8, "chance": 1e-5},
+    }
+    (bar,) = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": beats}).depends
+    assert bar.text == "1.18 Hz, 71 a minute"
+    assert letter.write(letters.FINDINGS["missing_physics"]).depends == ()

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::course::{Course, Row};
 use super::screen::Screen;
 use crate::Phase;
-use crate::noise::Noise;
+use crate::noise::{Noise, Rhythm};
 use crate::observe::scatter::median;
 
 /// Fewest deviations with and without contact from which they are compared.
@@ -40,12 +40,10 @@ struct Deviations {
 
 /// Noise under load over that without, from which the skin itself is unsteady.
 const UNSTEADY: f64 = 2.0;
-/// How often noise alone may show a rhythm as clear as one that is told.
-const BY_CHANCE: f64 = 0.005;
 
 /// What in the repeats themselves no effect on the list does, in words; None where noise suffices.
 pub fn restless(noise: &Noise, unsteady: Option<Unsteady>) -> Option<String> {
-    if let Some(rhythm) = noise.rhythm.filter(|r| r.chance < BY_CHANCE) {
+    if let Some(rhythm) = noise.rhythm.filter(Rhythm::is_clear) {
         return Some(format!(
             "under load repeats of one protocol differ by a rhythm of {:.2} Hz ({:.0} a minute), in step with nothing that was done",
             rhythm.hz,
@@ -262,7 +260,6 @@ fn two_sided(t: f64, degrees: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::Rhythm;
 
     /// Any table of Student's t: 2.776 at 4 degrees and 2.306 at 8 leave 5 %; 4.604 at 4 leaves 1 %.
     #[test]

@@ -1,5 +1,6 @@
 //! What a diagnosis says: verdict, findings with numbers, place and time, rivals, gain, and what to record next.
 
+use super::unlisted::Unlisted;
 use crate::comparison::Comparison;
 
 /// The answer in one word.
@@ -248,6 +249,8 @@ pub struct Diagnosis {
     pub sentence: String,
     /// What is named.
     pub findings: Vec<Finding>,
+    /// What is known of something that has no name; None where nothing is missing or it has one.
+    pub unlisted: Option<Unlisted>,
     /// Sets of names kept at 90 %.
     pub names_90: Vec<Vec<&'static str>>,
     /// Pairs that cannot be told apart.

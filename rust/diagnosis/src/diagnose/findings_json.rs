@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::findings::{Diagnosis, Finding, Gain, Rival, Spread, Suggestion, Switched};
+use super::unlisted::{Correction, Unlisted};
 
 /// The diagnosis as JSON, schema 1.
 pub fn findings_json(found: &Diagnosis) -> String {
@@ -31,6 +32,7 @@ pub fn findings_json(found: &Diagnosis) -> String {
         "verdict": found.verdict.word(),
         "sentence": found.sentence,
         "findings": found.findings.iter().map(finding).collect::<Vec<_>>(),
+        "unlisted": found.unlisted.as_ref().map(unlisted),
         "names_90": found.names_90,
         "cannot_tell": found.cannot_tell,
         "fit": fit(found.gain.as_ref()),
@@ -104,6 +106,28 @@ fn finding(found: &Finding) -> Value {
         });
     }
     value
+}
+
+fn unlisted(found: &Unlisted) -> Value {
+    let depends =
+        |(on, removed): &(&'static str, f64)| json!({"on": on, "removed": rounded(*removed)});
+    let numbers = |of: &[f64]| of.iter().map(|v| rounded(*v)).collect::<Vec<_>>();
+    let correction = |of: &Correction| {
+        json!({
+            "kind": "empirical",
+            "by": of.by.0,
+            "unit": of.by.1,
+            "at": numbers(&of.at),
+            "factor_in": numbers(&of.change[0].iter().map(|c| 1.0 + c).collect::<Vec<_>>()),
+            "factor_out": numbers(&of.change[1].iter().map(|c| 1.0 + c).collect::<Vec<_>>()),
+            "removed": rounded(of.removed),
+        })
+    };
+    json!({
+        "depends_on": found.depends_on.iter().map(depends).collect::<Vec<_>>(),
+        "correction": found.correction.as_ref().map(correction),
+        "rhythm": found.rhythm.map(|r| json!({"hz": rounded(r.hz), "per_minute": rounded(r.per_minute()), "chance": rounded(r.chance)})),
+    })
 }
 
 fn spread(of: Spread) -> Value {

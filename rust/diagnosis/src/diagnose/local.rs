@@ -92,6 +92,7 @@ pub fn without_curves(study: &Study, comparison: Comparison) -> Diagnosis {
         verdict: Verdict::InsufficientData,
         sentence: format!("Too little was recorded to say what is missing: {reason}."),
         findings: Vec::new(),
+        unlisted: None,
         names_90: Vec::new(),
         cannot_tell: Vec::new(),
         gain: None,

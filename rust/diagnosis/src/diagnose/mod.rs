@@ -9,6 +9,7 @@ mod checks;
 mod choices;
 mod course;
 mod elastic;
+mod empirical;
 mod findings;
 mod findings_json;
 mod gain;
@@ -38,12 +39,14 @@ mod skins;
 mod spectrum;
 mod stiffness;
 mod trial;
+mod unlisted;
 
 pub use findings::{
     Curve, Diagnosis, Finding, Gain, Number, Rival, Spread, Suggestion, Switched, Verdict, When,
     Where,
 };
 pub use findings_json::findings_json;
+pub use unlisted::{Correction, Unlisted};
 
 use std::sync::{Mutex, PoisonError};
 
@@ -184,6 +187,7 @@ fn told(
         verdict: decision.verdict,
         sentence: String::new(),
         findings: shown::findings(study, (ready, rungs), &decision, &probabilities),
+        unlisted: None,
         names_90: posterior::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
         gain,
@@ -199,15 +203,21 @@ fn told(
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
-    let restless = checks::restless(&ready.noise, rungs.unsteady);
-    let beside = restless.filter(|_| found.verdict != Verdict::Unlisted);
-    found.notes.extend(beside);
+    let mut reason = decision.reason.clone();
+    match found.verdict {
+        Verdict::Unlisted => {
+            let described = unlisted::unlisted(ready, rungs);
+            reason = format!("{reason}; {}", described.told());
+            found.unlisted = Some(described);
+        }
+        _ => (found.notes).extend(checks::restless(&ready.noise, rungs.unsteady)),
+    }
     add_notes(study, &mut found, ready);
     found.sentence = sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
         (&found.cannot_tell, &found.record_next),
-        &decision.reason,
+        &reason,
     );
     found
 }

@@ -12,6 +12,8 @@ use super::restricted::within;
 /// Frequencies between which a rhythm is sought, Hz: a heart at rest or at work, a muscle that tenses for seconds. Samples of a press are
 /// too far apart for faster ones.
 const HZ: (f64, f64) = (0.3, 3.0);
+/// How often noise alone may show a rhythm as clear as one that is told.
+const BY_CHANCE: f64 = 0.005;
 /// Turns by which the longest recording tells two frequencies that are tried apart.
 const TURNS: f64 = 0.25;
 
@@ -27,6 +29,11 @@ pub struct Rhythm {
 }
 
 impl Rhythm {
+    /// True if noise alone would hardly show it.
+    pub fn is_clear(&self) -> bool {
+        self.chance < BY_CHANCE
+    }
+
     /// Times a minute.
     pub fn per_minute(&self) -> f64 {
         60.0 * self.hz

@@ -3,7 +3,7 @@
 use super::page::page;
 use super::svg::escaped;
 use super::traces::plot;
-use crate::diagnose::{Diagnosis, Gain, Number, Rival, Verdict};
+use crate::diagnose::{Correction, Diagnosis, Gain, Number, Rival, Unlisted, Verdict};
 use std::fmt::Write;
 
 /// Recordings that are drawn.
@@ -13,6 +13,9 @@ const MOST_CURVES: usize = 6;
 pub fn diagnosis_html(found: &Diagnosis) -> String {
     let mut html = "<section class='diagnosis'>\n".to_owned();
     html += &findings(found);
+    if let Some(unlisted) = &found.unlisted {
+        html += &nameless(unlisted);
+    }
     if let Some(gain) = &found.gain {
         html += &gained(gain);
     }
@@ -53,6 +56,74 @@ fn findings(found: &Diagnosis) -> String {
         html += &signs(&finding.consequences);
     }
     html
+}
+
+/// What is known of what has no name.
+fn nameless(of: &Unlisted) -> String {
+    let mut html = "<h3>What it depends on</h3>".to_owned();
+    if let Some(rhythm) = of.rhythm {
+        let _ = write!(
+            html,
+            "<p>Repeats differ by a rhythm of {:.2} Hz ({:.0} a minute) that grows with the force; noise alone shows one as clear in {} of studies \
+at most.</p>",
+            rhythm.hz,
+            rhythm.per_minute(),
+            share(rhythm.chance)
+        );
+    }
+    let told = of
+        .depends_on
+        .iter()
+        .filter(|(_, removed)| removed.is_finite());
+    let rows: String = told
+        .map(|(on, removed)| {
+            format!(
+                "<tr><td class='left'>{on}</td><td>{:.0} %</td></tr>",
+                100.0 * removed
+            )
+        })
+        .collect();
+    if rows.is_empty() {
+        return html + "<p>No correction can be given.</p>\n";
+    }
+    let _ = write!(
+        html,
+        "<table><tr><th class='left'>goes with</th><th>removed on protocols not used</th></tr>{rows}</table>"
+    );
+    html + &of.correction.as_ref().map_or(String::new(), corrected)
+}
+
+fn corrected(of: &Correction) -> String {
+    let percent = |change: &f64| format!("<td>{:+.1}</td>", 100.0 * change);
+    let cells = |side: &[f64]| side.iter().map(percent).collect::<String>();
+    let at: String = of
+        .at
+        .iter()
+        .map(|at| format!("<th>{}</th>", size(*at)))
+        .collect();
+    let [going_in, going_out] = [0, 1].map(|side| cells(&of.change[side]));
+    let out = match going_in == going_out {
+        true => String::new(),
+        false => format!("<tr><td class='left'>going out, %</td>{going_out}</tr>"),
+    };
+    let first = if out.is_empty() {
+        "force, %"
+    } else {
+        "going in, %"
+    };
+    format!(
+        "<table><tr><th class='left'>{}, {}</th>{at}</tr><tr><td class='left'>{first}</td>{going_in}</tr>{out}</table><p class='meta'>An \
+empirical correction of the force with parameters alone: what the recordings ask for, not why. It holds for nothing that was not recorded.</p>\n",
+        of.by.0, of.by.1
+    )
+}
+
+/// Small shares as one in so many.
+fn share(of: f64) -> String {
+    match of < 1e-3 {
+        true => "fewer than one in a thousand".to_owned(),
+        false => format!("{:.1} %", 100.0 * of),
+    }
 }
 
 fn number(of: &Number) -> String {

@@ -1,0 +1,317 @@
+//! What is missing and has no name: on what it depends, and a correction from the recordings alone, which is no physics.
+//!
+//! What repeats share of the misfit is drawn over one variable after the other, as a factor of the force that is smooth in it, and each is
+//! judged by what it removes on protocols that it was not fitted to.
+
+use super::checks::restless;
+use super::course::{Course, Row};
+use super::elastic::radius;
+use super::empirical::{Curve, Point, VARIABLES, removed};
+use super::ladder::Rungs;
+use super::prepare::Prepared;
+use crate::Phase;
+use crate::noise::Rhythm;
+
+/// What it may depend on, and units.
+const NAMES: [(&str, &str); VARIABLES] = [
+    ("depth", "mm"),
+    ("force", "N"),
+    ("radius", "mm"),
+    ("time", "s"),
+    ("cycle", ""),
+    ("rate", "mm/s"),
+];
+/// Part of a recording's largest force below which its misfit is no part of the force.
+const LOADED: f64 = 0.05;
+/// Part that a variable must remove on protocols it was not fitted to, for it to be told; and that up and down apart must add.
+const TOLD: f64 = 0.25;
+const APART: f64 = 0.05;
+
+/// Something that is on no list.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unlisted {
+    /// What it depends on, and what a correction by that removes on protocols it was not fitted to (0 to 1); the most first.
+    pub depends_on: Vec<(&'static str, f64)>,
+    /// By the first of these.
+    pub correction: Option<Correction>,
+    /// What beats, if repeats show that.
+    pub rhythm: Option<Rhythm>,
+}
+
+/// A factor of the force that recordings ask for: empirical, and good for nothing that was not recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correction {
+    /// Variable and unit.
+    pub by: (&'static str, &'static str),
+    /// Its values.
+    pub at: Vec<f64>,
+    /// Factors less 1 there: going in and held, and going out; alike where these need not be told apart.
+    pub change: [Vec<f64>; 2],
+    /// Part of what repeats share of the misfit that it removes on protocols it was not fitted to.
+    pub removed: f64,
+}
+
+impl Unlisted {
+    /// In words, after "something that is not in the list: ".
+    pub fn told(&self) -> String {
+        let Some(correction) = &self.correction else {
+            return match self.depends_on.is_empty() {
+                true => "what it depends on cannot be told: no correction holds on a protocol that it was not fitted to".to_owned(),
+                false => "no correction can be given, since it is another in every repeat".to_owned(),
+            };
+        };
+        let (name, unit) = correction.by;
+        let (least, most) = correction.extremes();
+        // What is small beside the other end is the curve's own roundness.
+        let counts = 0.1 * f64::max(-least.1, most.1);
+        let part = |(at, change): (f64, f64), word: &str| {
+            let told = format!("{:.0} % {word} at {at:.3} {unit}", 100.0 * change.abs());
+            (change.abs() > counts).then_some(told)
+        };
+        let ends = [part(least, "smaller"), part(most, "larger")];
+        format!(
+            "it goes with {}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
+             protocols that it was not fitted to",
+            words(name),
+            ends.into_iter().flatten().collect::<Vec<_>>().join(" and "),
+            100.0 * correction.removed
+        )
+    }
+}
+
+impl Correction {
+    /// Where it takes most off the force and where it adds most, and what part.
+    fn extremes(&self) -> ((f64, f64), (f64, f64)) {
+        let each = || {
+            let sides = self.change.iter();
+            sides.flat_map(|side| self.at.iter().copied().zip(side.iter().copied()))
+        };
+        let none = (0.0, 0.0);
+        (
+            each().fold(none, |a, b| if b.1 < a.1 { b } else { a }),
+            each().fold(none, |a, b| if b.1 > a.1 { b } else { a }),
+        )
+    }
+}
+
+fn words(variable: &str) -> &str {
+    match variable {
+        "radius" => "the size of the contact",
+        "time" => "time in contact",
+        "cycle" => "the count of presses",
+        "rate" => "speed",
+        _ => variable,
+    }
+}
+
+/// What is known of what has no name.
+pub fn unlisted(ready: &Prepared, rungs: &Rungs) -> Unlisted {
+    if restless(&ready.noise, rungs.unsteady).is_some() {
+        let rhythm = ready.noise.rhythm.filter(|r| r.is_clear());
+        let mut depends_on = vec![("force", f64::NAN)];
+        depends_on.extend(rhythm.map(|_| ("time", f64::NAN)));
+        return Unlisted {
+            depends_on,
+            correction: None,
+            rhythm,
+        };
+    }
+    of_points(&points(ready, rungs))
+}
+
+fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
+    let alike = |a: &Course, b: &Course| {
+        a.protocol == b.protocol && a.place == b.place && a.rows.len() == b.rows.len()
+    };
+    let mut protocols: Vec<Vec<&Course>> = Vec::new();
+    for course in &ready.courses {
+        match protocols.iter_mut().find(|p| alike(p[0], course)) {
+            Some(protocol) => protocol.push(course),
+            None => protocols.push(vec![course]),
+        }
+    }
+    let repeated = protocols.iter().enumerate().filter(|(_, p)| p.len() > 1);
+    let of = |(number, repeats): (usize, &Vec<&Course>)| -> Vec<Point> {
+        let rows = 0..repeats[0].rows.len();
+        rows.filter_map(|n| point((ready, rungs), (number, repeats), n))
+            .collect()
+    };
+    repeated.flat_map(of).collect()
+}
+
+/// Row `n` of a protocol; None where it is not in contact, or hardly loaded.
+fn point(
+    (ready, rungs): (&Prepared, &Rungs),
+    (protocol, repeats): (usize, &[&Course]),
+    n: usize,
+) -> Option<Point> {
+    let samples: Option<Vec<usize>> = repeats.iter().map(|c| c.rows[n].sample).collect();
+    let samples = samples?;
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        samples.iter().map(|k| of(*k)).sum::<f64>() / samples.len() as f64
+    };
+    let simulated = &rungs.base.refit.simulated;
+    let (base, off) = (
+        mean(&|k| simulated[k]),
+        mean(&|k| ready.values[k] - simulated[k]),
+    );
+    let one = repeats[0];
+    let row = &one.rows[n];
+    if base < LOADED * one.most() || row.depth_mm <= 0.0 {
+        return None;
+    }
+    let touch = one.rows.iter().find(|row| row.depth_mm > 0.0)?;
+    let fastest = one.rows.windows(2).map(speed).fold(0.0, f64::max);
+    let contact = radius(&ready.elastic.places[one.place], row.depth_mm);
+    let variance = mean(&|k| ready.sigma[k] * ready.sigma[k]).max(f64::MIN_POSITIVE);
+    Some(Point {
+        protocol,
+        x: [
+            row.depth_mm,
+            base,
+            contact,
+            row.time_s - touch.time_s,
+            f64::from(row.cycle),
+            fastest,
+        ],
+        is_leaving: row.phase == Phase::Unload,
+        base,
+        off,
+        weight: samples.len() as f64 / variance,
+    })
+}
+
+fn speed(rows: &[Row]) -> f64 {
+    (rows[1].depth_mm - rows[0].depth_mm) / (rows[1].time_s - rows[0].time_s).max(1e-9)
+}
+
+fn of_points(points: &[Point]) -> Unlisted {
+    let best = |variable: usize| {
+        let alone = removed(points, (variable, false))?;
+        let apart =
+            removed(points, (variable, true)).filter(|share| *share > alone.max(0.0) + APART);
+        Some((variable, apart.is_some(), apart.unwrap_or(alone)))
+    };
+    let mut all: Vec<_> = (0..VARIABLES).filter_map(best).collect();
+    all.retain(|(.., share)| *share > TOLD);
+    all.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let mut depends_on: Vec<_> = all.iter().map(|(v, _, s)| (NAMES[*v].0, *s)).collect();
+    let correction = all.first().map(|(variable, is_apart, removed)| {
+        if *is_apart {
+            depends_on.insert(1, ("direction", *removed));
+        }
+        let every: Vec<&Point> = points.iter().collect();
+        let curve = Curve::of(&every, (*variable, *is_apart));
+        Correction {
+            by: NAMES[*variable],
+            at: curve.knots,
+            change: curve.change,
+            removed: *removed,
+        }
+    });
+    Unlisted {
+        depends_on,
+        correction,
+        rhythm: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Four protocols of 60 rows to different depths by different tools; what is measured more is a part of the force, by depth and
+    /// direction; and noise of 1 % of the largest force.
+    fn study(part: impl Fn(f64, bool) -> f64) -> Vec<Point> {
+        let mut random = Random::new(3);
+        let mut all = Vec::new();
+        for protocol in 0..4 {
+            let stiffness = 1.0 + 0.7 * protocol as f64;
+            for n in 1..60 {
+                let is_leaving = n >= 30;
+                let depth = if is_leaving { 60 - n } else { n } as f64 / 30.0;
+                let base = stiffness * libm::pow(depth, 1.5);
+                let noise = 0.01 * stiffness;
+                let time = n as f64 * 0.1 * (1 + protocol) as f64;
+                all.push(Point {
+                    protocol,
+                    x: [depth, base, stiffness * depth.sqrt(), time, 0.0, 1.0],
+                    is_leaving,
+                    base,
+                    off: base * part(depth, is_leaving) + noise * random.normal(),
+                    weight: 1.0 / (noise * noise),
+                });
+            }
+        }
+        all
+    }
+
+    /// A pocket that gives way at half of the depth.
+    #[test]
+    fn what_goes_with_depth_is_said_to_and_is_corrected_elsewhere() {
+        let gives = |depth: f64, _: bool| -0.3 / (1.0 + libm::exp(-(depth - 0.5) / 0.05));
+        let found = of_points(&study(gives));
+        assert_eq!(found.depends_on[0].0, "depth", "{:?}", found.depends_on);
+        assert!(
+            found
+                .depends_on
+                .iter()
+                .all(|(name, _)| *name != "direction")
+        );
+        let correction = found.correction.as_ref().unwrap();
+        assert!(correction.removed > 0.9, "{}", correction.removed);
+        for (at, change) in correction.at.iter().zip(&correction.change[0]) {
+            let off = change - gives(*at, false);
+            assert!(off.abs() < 0.06, "{at}: {change}");
+        }
+        let told = found.told();
+        assert!(
+            told.starts_with("it goes with depth: the force is 3"),
+            "{told}"
+        );
+        assert!(
+            told.contains("% smaller at") && !told.contains("larger"),
+            "{told}"
+        );
+    }
+
+    #[test]
+    fn up_and_down_are_told_apart_where_they_differ() {
+        let found = of_points(&study(
+            |depth, out| if out { -0.2 * depth } else { 0.1 * depth },
+        ));
+        assert_eq!(found.depends_on[1].0, "direction", "{:?}", found.depends_on);
+        let [going_in, going_out] = &found.correction.as_ref().unwrap().change;
+        assert!(going_in.last() > Some(&0.05) && going_out.last() < Some(&-0.1));
+    }
+
+    /// Noise is no misfit, and what is another in every protocol holds on none.
+    #[test]
+    fn nothing_is_told_of_what_does_not_hold_elsewhere() {
+        let noise = of_points(&study(|_, _| 0.0));
+        assert!(noise.correction.is_none(), "{:?}", noise.depends_on);
+        let mut other = study(|_, _| 0.0);
+        for point in &mut other {
+            point.off += point.base * if point.protocol % 2 == 0 { 0.2 } else { -0.2 };
+        }
+        let other = of_points(&other);
+        assert!(
+            other
+                .depends_on
+                .iter()
+                .all(|(name, _)| !["depth", "time"].contains(name)),
+            "{:?}",
+            other.depends_on
+        );
+        let one: Vec<Point> = study(|d, _| d)
+            .into_iter()
+            .filter(|p| p.protocol == 0)
+            .collect();
+        assert!(
+            of_points(&one)
+                .told()
+                .starts_with("what it depends on cannot be told")
+        );
+    }
+}
