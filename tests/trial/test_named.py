@@ -1,11 +1,12 @@
-"""`thenar.diagnose` on finite elements of the calibration split: silence, names, instruments, clocks, too little."""
+"""`thenar.diagnose` on finite elements of the calibration split: silence, names, instruments, clocks, what has no name."""
 
 import json
 import tomllib
 
+import numpy as np
 import pytest
 import thenar
-from trial import cases
+from trial import cases, protocols
 
 # Cases of the calibration split by what they hold; their labels are opened by score.py alone.
 SILENT = ("case_462", "case_157", "case_189", "case_447")
@@ -16,6 +17,7 @@ NAMED = {
     "case_278": "stiff_skin",
 }
 SKINS = {"case_278": (0.7, 0.348), "case_147": (0.4, 0.424)}  # planted: thickness in mm, Young's modulus in MPa
+POCKETS, PULSES = ("case_317", "case_162"), ("case_056", "case_400")
 READ = {"case_015": "saturation", "case_020": "timing"}
 
 
@@ -68,6 +70,28 @@ def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_
     assert presses >= 2 and said["record_next"][0]["minutes"] > 5.0 * presses
     assert "% of cases" in said["sentence"]
     assert 0.0 < said["record_next"][0]["probability"] < 1.0 and asked["in_turn_with"] in {None, *used}
+
+
+@pytest.mark.parametrize("case", POCKETS)
+def test_a_pocket_that_gives_way_has_no_name_and_goes_with_depth(case, tmp_path):
+    """It gives way at 0.55 of the depth: there an empirical correction falls most."""
+    said = found(case, tmp_path)
+    assert said["verdict"] == "unlisted" and said["findings"] == []
+    correction = said["unlisted"]["correction"]
+    assert said["unlisted"]["depends_on"][0]["on"] == correction["by"] == "depth"
+    assert correction["kind"] == "empirical" and correction["removed"] > 0.5
+    falls = np.diff(correction["factor_in"])
+    steepest = falls.argmin()
+    at = 0.55 * protocols.depth(cases.index()[case]["pad"])
+    assert correction["at"][max(steepest - 1, 0)] < at < correction["at"][min(steepest + 2, len(falls))]
+
+
+@pytest.mark.parametrize("case", PULSES)
+def test_a_pulse_has_no_name_and_is_told_by_its_rhythm(case, tmp_path):
+    said = found(case, tmp_path)
+    assert said["verdict"] == "unlisted" and said["findings"] == [] and said["unlisted"]["correction"] is None
+    assert said["unlisted"]["rhythm"]["hz"] == pytest.approx(1.2, abs=0.08)
+    assert said["unlisted"]["rhythm"]["chance"] < 0.005 and "a minute" in said["sentence"]
 
 
 def test_one_recording_is_too_little(tmp_path):

@@ -68,7 +68,9 @@ impl Unlisted {
             let told = format!("{:.0} % {word} at {at:.3} {unit}", 100.0 * change.abs());
             (change.abs() > counts).then_some(told)
         };
-        let ends = [part(least, "smaller"), part(most, "larger")];
+        let mut ends = [(least, "smaller"), (most, "larger")];
+        ends.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        let ends = ends.map(|(end, word)| part(end, word));
         format!(
             "it goes with {}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
              protocols that it was not fitted to",
