@@ -1,4 +1,4 @@
-"""`thenar.diagnose` on finite elements of the calibration split: silence, names, instruments, clocks, what has no name."""
+"""`thenar.diagnose` on the calibration's finite elements: silence, names, instruments, clocks, what has no name."""
 
 import json
 import tomllib
