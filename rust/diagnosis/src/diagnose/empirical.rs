@@ -39,10 +39,11 @@ pub fn removed(points: &[Point], how: (usize, bool)) -> Option<f64> {
     for held in protocols {
         let (out, used): (Vec<&Point>, Vec<&Point>) =
             points.iter().partition(|p| p.protocol == held);
-        let curve = Curve::of(&used, how);
+        let curve = Factors::of(&used, how);
         for point in out {
             before += point.weight * point.off * point.off;
-            after += point.weight * (point.off - point.base * curve.at(point, how.0)).powi(2);
+            after += point.weight
+                * (point.off - point.base * curve.at(point.x[how.0], point.is_leaving)).powi(2);
         }
     }
     let beyond = before - points.len() as f64;
@@ -50,16 +51,16 @@ pub fn removed(points: &[Point], how: (usize, bool)) -> Option<f64> {
 }
 
 /// A factor less 1 over a variable.
-pub struct Curve {
+pub struct Factors {
     /// Values of the variable.
     pub knots: Vec<f64>,
     /// The factor less 1 there: going in and held, and going out.
     pub change: [Vec<f64>; 2],
 }
 
-impl Curve {
+impl Factors {
     /// By weighted least squares, with little weight on its bends; `how`: variable, and whether going out is apart.
-    pub fn of(points: &[&Point], (variable, is_apart): (usize, bool)) -> Curve {
+    pub fn of(points: &[&Point], (variable, is_apart): (usize, bool)) -> Factors {
         let mut values: Vec<f64> = points.iter().map(|p| p.x[variable]).collect();
         values.sort_by(f64::total_cmp);
         // A hold is one depth, however many samples it has.
@@ -74,12 +75,13 @@ impl Curve {
             fitted(&all, (&knots, variable))
         };
         let change = [side(false), side(true)];
-        Curve { knots, change }
+        Factors { knots, change }
     }
 
-    fn at(&self, point: &Point, variable: usize) -> f64 {
-        let hats = hats(&self.knots, point.x[variable]);
-        let side = &self.change[usize::from(point.is_leaving)];
+    /// The factor less 1 at a value of the variable.
+    pub fn at(&self, x: f64, is_leaving: bool) -> f64 {
+        let hats = hats(&self.knots, x);
+        let side = &self.change[usize::from(is_leaving)];
         hats.iter().map(|(k, share)| share * side[*k]).sum()
     }
 }

@@ -208,6 +208,9 @@ fn told(
         Verdict::Unlisted => {
             let described = unlisted::unlisted(ready, rungs);
             reason = format!("{reason}; {}", described.told());
+            if let Some(correction) = &described.correction {
+                unlisted::draw(ready, rungs, correction, &mut found.curves);
+            }
             found.unlisted = Some(described);
         }
         _ => (found.notes).extend(checks::restless(&ready.noise, rungs.unsteady)),

@@ -6,7 +6,8 @@
 use super::checks::restless;
 use super::course::{Course, Row};
 use super::elastic::radius;
-use super::empirical::{Curve, Point, VARIABLES, removed};
+use super::empirical::{Factors, Point, VARIABLES, removed};
+use super::findings::Curve;
 use super::ladder::Rungs;
 use super::prepare::Prepared;
 use crate::Phase;
@@ -158,29 +159,51 @@ fn point(
         mean(&|k| ready.values[k] - simulated[k]),
     );
     let one = repeats[0];
-    let row = &one.rows[n];
-    if base < LOADED * one.most() || row.depth_mm <= 0.0 {
+    if base < LOADED * one.most() {
         return None;
     }
-    let touch = one.rows.iter().find(|row| row.depth_mm > 0.0)?;
-    let fastest = one.rows.windows(2).map(speed).fold(0.0, f64::max);
-    let contact = radius(&ready.elastic.places[one.place], row.depth_mm);
     let variance = mean(&|k| ready.sigma[k] * ready.sigma[k]).max(f64::MIN_POSITIVE);
     Some(Point {
         protocol,
-        x: [
-            row.depth_mm,
-            base,
-            contact,
-            row.time_s - touch.time_s,
-            f64::from(row.cycle),
-            fastest,
-        ],
-        is_leaving: row.phase == Phase::Unload,
+        x: variables(ready, one, (n, base))?,
+        is_leaving: one.rows[n].phase == Phase::Unload,
         base,
         off,
         weight: samples.len() as f64 / variance,
     })
+}
+
+/// What a row of a recording may depend on, by [`NAMES`]; None out of contact.
+fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<[f64; VARIABLES]> {
+    let row = &one.rows[n];
+    let touch = one.rows.iter().find(|row| row.depth_mm > 0.0)?;
+    let fastest = one.rows.windows(2).map(speed).fold(0.0, f64::max);
+    let contact = radius(&ready.elastic.places[one.place], row.depth_mm);
+    let since = row.time_s - touch.time_s;
+    let cycle = f64::from(row.cycle);
+    (row.depth_mm > 0.0).then_some([row.depth_mm, base, contact, since, cycle, fastest])
+}
+
+/// Puts what a correction gives in the place of what was found into the curves of all recordings.
+pub fn draw(ready: &Prepared, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
+    let Some(variable) = NAMES.iter().position(|name| *name == correction.by) else {
+        return;
+    };
+    let factors = Factors {
+        knots: correction.at.clone(),
+        change: correction.change.clone(),
+    };
+    for (course, curve) in ready.courses.iter().zip(curves) {
+        let rows = course.rows.iter().enumerate();
+        let read = rows.filter_map(|(n, row)| Some((n, row, row.sample?)));
+        for ((n, row, sample), after) in read.zip(&mut curve.after_n) {
+            let base = rungs.base.refit.simulated[sample];
+            *after = variables(ready, course, (n, base)).map_or(base, |x| {
+                let is_leaving = row.phase == Phase::Unload;
+                base * (1.0 + factors.at(x[variable], is_leaving))
+            });
+        }
+    }
 }
 
 fn speed(rows: &[Row]) -> f64 {
@@ -203,7 +226,7 @@ fn of_points(points: &[Point]) -> Unlisted {
             depends_on.insert(1, ("direction", *removed));
         }
         let every: Vec<&Point> = points.iter().collect();
-        let curve = Curve::of(&every, (*variable, *is_apart));
+        let curve = Factors::of(&every, (*variable, *is_apart));
         Correction {
             by: NAMES[*variable],
             at: curve.knots,

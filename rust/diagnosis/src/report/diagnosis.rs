@@ -241,13 +241,18 @@ fn smallest(found: &Diagnosis) -> String {
 }
 
 fn curves(found: &Diagnosis) -> String {
-    if found.findings.is_empty() || found.curves.is_empty() {
+    let is_corrected = (found.unlisted.as_ref()).is_some_and(|u| u.correction.is_some());
+    if (found.findings.is_empty() && !is_corrected) || found.curves.is_empty() {
         return String::new();
     }
+    let what = match is_corrected {
+        true => "the empirical correction",
+        false => "what was found",
+    };
     let plots: String = found.curves.iter().take(MOST_CURVES).map(plot).collect();
     format!(
         "<h3>Before and after</h3><div class='pair'>{plots}</div><p class='meta'>Above, force over time: dots measured, dashes with parameters \
-alone, blue with what was found. Below, the same less what parameters alone give: dots what they leave, blue what was found adds.</p>\n"
+alone, blue with {what}. Below, the same less what parameters alone give: dots what they leave, blue what is added by {what}.</p>\n"
     )
 }
 
