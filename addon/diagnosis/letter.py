@@ -16,8 +16,8 @@ HEADINGS = {
 }
 
 
-_NOTHING = {"nothing_missing", "parameters"}
-"""Verdicts after which the list of what it might still be says nothing: whatever is small enough is on it."""
+_UNSAID = {"nothing_missing", "parameters", "unlisted"}
+"""Verdicts after which the list of what it might be says nothing: whatever is small enough is on it, or it is none of them."""
 _SETS = 4
 """Sets of names that are told."""
 
@@ -183,7 +183,7 @@ def _rivals(found):
     for effects in found.get("cannot_tell", ()):
         yield f"These recordings cannot tell {wording.apart(effects)}."
     sets = found.get("names_90") or []
-    if len(sets) > 1 and found["verdict"] not in _NOTHING:
+    if len(sets) > 1 and found["verdict"] not in _UNSAID:
         words = [wording.listed(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
         more = f"; and {len(words) - _SETS} more" if len(words) > _SETS else ""
         yield f"At 90 % it is one of: {'; '.join(words[:_SETS])}{more}."

@@ -22,6 +22,8 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
         ("count of presses", "30 %", 0.3),
     ]
     assert "Goes with depth: 71 %" in letter.lines(written)
+    either = {"unlisted": nameless, "names_90": [["relaxation"], ["drainage"]]}
+    assert letter.write(letters.FINDINGS["unlisted"] | either).rivals == ()
     beats = {
         "depends_on": [{"on": "force", "removed": None}],
         "rhythm": {"hz": 1.18, "per_minute": 70.8, "chance": 1e-5},

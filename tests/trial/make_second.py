@@ -11,6 +11,8 @@ known, gains and touches of every press not) before any diagnosis has seen it:
 - an instrument's error is to be named if the oracle tells it from the skin's effects (`chance` in the label); to be
   blamed on the skin it is never;
 - what is left over is `beyond`: no row asks for its name, and a wrong one counts as everywhere.
+
+Drawn twice: what the first draw (commit 54c3736) showed was mended on calibration cases, and these are other seeds.
 """
 
 from trial import ceiling, counts, make_cases
