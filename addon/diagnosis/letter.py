@@ -17,7 +17,7 @@ HEADINGS = {
 
 
 _UNSAID = {"nothing_missing", "parameters", "unlisted"}
-"""Verdicts after which the list of what it might be says nothing: whatever is small enough is on it, or it is none of them."""
+"""Verdicts after which the list of what it might be says nothing: what is small enough is on it, or it is none."""
 _SETS = 4
 """Sets of names that are told."""
 
