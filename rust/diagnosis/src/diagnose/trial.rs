@@ -240,7 +240,8 @@ mod tests {
         assert!((ceiling + study.spike).abs() < 5e-3, "{ceiling}");
     }
 
-    /// A floor under readings of two punches, small and just below the peak of the softer: from any one start a fit misses some of them.
+    /// A floor under readings of two punches, small and just below the peak of the softer. Some readings get through below it, and so the
+    /// least reading is no floor: a fit that begins there stays there.
     #[test]
     fn a_floor_is_found_small_and_near_the_smallest_peak() {
         let study = Clipped {
@@ -249,7 +250,8 @@ mod tests {
             ..LOW
         };
         for floor_n in [1.0, 3.0, 6.0] {
-            let blind = |f: f64| if f < floor_n { 0.0 } else { f };
+            let slips = |f: f64| floor_n > 1.0 && (f / floor_n - 0.8).abs() < 0.02;
+            let blind = |f: f64| if f < floor_n && !slips(f) { 0.0 } else { f };
             let found = study.on_trial_of(&blind, |trial| {
                 let acts = Acts::Blind(Stage::Last);
                 let effect = Effect::Threshold;
