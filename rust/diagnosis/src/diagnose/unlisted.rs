@@ -301,6 +301,22 @@ mod tests {
         );
     }
 
+    /// Half of the squares are noise, which no correction removes and none need remove.
+    #[test]
+    fn what_is_removed_is_a_part_of_what_noise_leaves() {
+        let points = study(|_, _| -0.016);
+        let (squares, count) = (
+            points.iter().map(|p| p.weight * p.off * p.off).sum::<f64>(),
+            points.len() as f64,
+        );
+        assert!(
+            squares < 2.5 * count && squares > 1.5 * count,
+            "{squares} {count}"
+        );
+        let share = removed(&points, (0, false)).unwrap();
+        assert!(share > 0.8 && share < 1.2, "{share}");
+    }
+
     #[test]
     fn up_and_down_are_told_apart_where_they_differ() {
         let found = of_points(&study(
