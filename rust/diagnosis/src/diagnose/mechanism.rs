@@ -153,17 +153,20 @@ impl Mechanism {
     }
 
     /// Where else a fit begins: that of a smooth spectrum or of a stiff skin may end in a hollow of its own, 1 to 6 nats above the
-    /// deepest, and a ceiling that no reading meets does not tell where it is.
-    pub fn starts(&self) -> &'static [&'static [f64]] {
-        match &self.acts {
+    /// deepest, a ceiling that no reading meets does not tell where it is, and a floor is told only by the readings beside it, of which
+    /// `least` is the least that stands out of the noise, over the smallest peak.
+    pub fn starts(&self, least: f64) -> Vec<Vec<f64>> {
+        let fixed: &[&[f64]] = match &self.acts {
             Acts::Fades {
                 spectrum: Spectrum::Smooth { .. },
                 ..
             } => &STARTS,
             Acts::Saturates(_) => &CEILINGS,
+            Acts::Blind(_) => return FLOORS.map(|part| vec![part * least]).to_vec(),
             Acts::Tabled(_) if self.effect == Effect::StiffSkin => &SKINS,
             _ => &[],
-        }
+        };
+        fixed.iter().map(|start| start.to_vec()).collect()
     }
 
     /// The number with which it does nothing, where it has but one and there is such a number; a ceiling so high that nothing meets it.
@@ -227,6 +230,8 @@ const STARTS: [&[f64]; 3] = [&[0.1, -1.5, 0.5], &[0.1, 1.0, 0.5], &[0.1, 1.0, 2.
 pub const HIGHEST: f64 = 0.7;
 /// Further starts of the logarithm of a ceiling over the largest force.
 const CEILINGS: [&[f64]; 3] = [&[-0.03], &[-0.3], &[-0.8]];
+/// Further starts of a floor, over the least reading that stands out of the noise, which may be noise itself.
+const FLOORS: [f64; 5] = [0.75, 0.87, 1.0, 1.15, 1.32];
 /// Further starts of a stiff skin's coordinate.
 const SKINS: [&[f64]; 2] = [&[2.0], &[3.5]];
 
@@ -327,13 +332,13 @@ mod tests {
         });
         for mechanism in &tried {
             let count = mechanism.count();
-            assert!(mechanism.starts().iter().all(|s| s.len() == count));
+            assert!(mechanism.starts(0.1).iter().all(|s| s.len() == count));
         }
         let skin = tried
             .iter()
             .find(|m| m.effect == Effect::StiffSkin)
             .unwrap();
-        let stretches: Vec<usize> = skin.starts().iter().map(|s| s[0] as usize).collect();
+        let stretches: Vec<usize> = skin.starts(0.1).iter().map(|s| s[0] as usize).collect();
         assert_eq!(stretches, [2, 3], "a fit by itself begins in the first");
     }
 

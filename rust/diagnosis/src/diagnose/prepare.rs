@@ -178,7 +178,7 @@ impl Prepared {
     }
 
     /// The least reading that stands out of the noise, over the smallest peak: of the middle recording of those whose noise is small enough.
-    fn seen_floor(&self) -> f64 {
+    pub fn least_seen(&self) -> f64 {
         let peak = self.scales.forces.0;
         let seen = self.courses.iter().filter_map(|course| {
             let samples = course.rows.iter().filter_map(|row| row.sample);
@@ -204,7 +204,6 @@ impl Prepared {
             most: (self.scales.forces.1, self.scales.deepest),
             least_peak: self.scales.forces.0,
             least_floor: FLOOR * self.noise_share(),
-            seen_floor: self.seen_floor(),
         }
     }
 }

@@ -36,8 +36,6 @@ pub struct Screen<'a> {
     pub least_peak: f64,
     /// Floor over it, below which readings cannot be told from noise.
     pub least_floor: f64,
-    /// The least reading over it that stands out of the noise, of the middle recording.
-    pub seen_floor: f64,
 }
 
 /// What a tool at its site answers for the numbers of a model.

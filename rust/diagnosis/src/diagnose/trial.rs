@@ -3,15 +3,12 @@
 use thenar_contact::Control;
 
 use super::ladder::Scored;
-use super::mechanism::{Acts, Mechanism};
+use super::mechanism::Mechanism;
 use super::model::Model;
 use super::prepare::Prepared;
 use super::refit::refit;
 use super::screen::Screen;
 use crate::DiagnosisError;
-
-/// Parts of the least reading that stands out of the noise at which a floor under readings is sought: the least one may be noise.
-const FLOORS: [f64; 5] = [0.75, 0.87, 1.0, 1.15, 1.32];
 
 /// Tries hypotheses on one study.
 pub struct Trial<'a> {
@@ -53,20 +50,10 @@ impl Trial<'_> {
     pub fn single(&self, mechanism: &Mechanism) -> Scored {
         let one = std::slice::from_ref(mechanism);
         let mut best = self.score(one, &self.from);
-        for start in self.starts(mechanism) {
+        for start in mechanism.starts(self.ready.least_seen()) {
             best = lower(best, self.score(one, &[&self.from[..], &start].concat()));
         }
         best
-    }
-
-    /// Where else a fit of a mechanism begins: a floor is told only by the readings beside it.
-    fn starts(&self, mechanism: &Mechanism) -> Vec<Vec<f64>> {
-        match mechanism.acts {
-            Acts::Blind(_) => FLOORS
-                .map(|part| vec![part * self.screen.seen_floor])
-                .to_vec(),
-            _ => mechanism.starts().iter().map(|s| s.to_vec()).collect(),
-        }
     }
 
     /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, where it has other
@@ -75,7 +62,8 @@ impl Trial<'_> {
         let from = |start: &[f64]| self.score(set, &[&better.refit.at[..], start].concat());
         let mut best = from(&[]);
         let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
-        if let Some(alone) = alone.filter(|_| !self.starts(&set[1]).is_empty()) {
+        let has_starts = !set[1].starts(self.ready.least_seen()).is_empty();
+        if let Some(alone) = alone.filter(|_| has_starts) {
             best = lower(best, from(&alone.refit.at[self.from.len()..]));
         }
         if let Some(nothing) = set[1]
@@ -261,6 +249,24 @@ mod tests {
             // Between the last reading that is not there and the first that is.
             assert!(at > floor_n - 0.25 && at < floor_n + 0.05, "{at} {floor_n}");
         }
+    }
+
+    /// What a recording too noisy for the smallest peak shows is not asked for.
+    #[test]
+    fn the_least_reading_is_that_of_quiet_recordings() {
+        let study = Clipped {
+            stiffness: &[10.0, 4.0],
+            ..LOW
+        };
+        let tools = [10.0, 4.0].map(|k: f64| tool(2.0, move |depth| k * depth, |_| 1.0));
+        let recordings = [0, 1].map(|k| (k, study.readings(k)));
+        let (mut made, _) = ready(tools.into(), &recordings, 0.05);
+        let both = made.least_seen();
+        let (first, count) = made.courses[0].samples;
+        made.sigma[first..first + count].fill(3.0);
+        // Of 10 N/mm and 4 N/mm every 0.025 mm: the third and the first reading that stand out of four times the noise.
+        assert!((both * 8.0 - 0.3).abs() < 0.06, "{both}");
+        assert!((made.least_seen() * 8.0 - 0.3).abs() < 1e-9);
     }
 
     /// What begins with nothing answers as what it is added to, and so ends no worse.

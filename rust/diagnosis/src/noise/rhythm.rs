@@ -196,6 +196,16 @@ mod tests {
         }
     }
 
+    /// The same part of the squares is twice as clear where there are twice as many degrees of freedom.
+    #[test]
+    fn more_repeats_tell_more() {
+        let of = &study(1.0, &mut Random::new(6))[0];
+        let mut freed = Freed::of(of, 0.15).unwrap();
+        let two = freed.gained(1.2);
+        freed.repeats = 2.0;
+        assert!(two > 1.0 && (freed.gained(1.2) / two - 2.0).abs() < 1e-12);
+    }
+
     /// The chance that is told is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.
     #[test]
     fn noise_has_no_rhythm() {
