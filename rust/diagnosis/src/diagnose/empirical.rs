@@ -2,12 +2,16 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::Phase;
+
 /// Variables of a point.
 pub const VARIABLES: usize = 6;
 /// Points of a correction's curve.
 const KNOTS: usize = 10;
 /// Part of its range within which values are one.
 const ALIKE: f64 = 0.01;
+/// Least misfit, over what noise leaves, of which a part can be told.
+const LEAST: f64 = 0.2;
 /// Weight of its bends, over that of the recordings.
 const SMOOTH: f64 = 1e-3;
 
@@ -17,8 +21,10 @@ pub struct Point {
     pub protocol: usize,
     /// Variables that a curve may go over.
     pub x: [f64; VARIABLES],
-    /// Whether the tool goes out.
-    pub is_leaving: bool,
+    /// The first of its recordings, by number in the study.
+    pub recording: usize,
+    /// Of the motion.
+    pub phase: Phase,
     /// Force with parameters alone, N; and what is measured more.
     pub base: f64,
     /// N.
@@ -43,14 +49,16 @@ pub fn removed(points: &[Point], how: (usize, bool)) -> Option<f64> {
         for point in out {
             before += point.weight * point.off * point.off;
             after += point.weight
-                * (point.off - point.base * curve.at(point.x[how.0], point.is_leaving)).powi(2);
+                * (point.off - point.base * curve.at(point.x[how.0], point.phase)).powi(2);
         }
     }
-    let beyond = before - points.len() as f64;
-    (beyond > 0.0).then(|| ((before - after) / beyond).min(1.0))
+    let noise = points.len() as f64;
+    let beyond = before - noise;
+    (beyond > LEAST * noise).then(|| ((before - after) / beyond).min(1.0))
 }
 
 /// A factor less 1 over a variable.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Factors {
     /// Values of the variable.
     pub knots: Vec<f64>,
@@ -70,7 +78,7 @@ impl Factors {
         let mut knots: Vec<f64> = (0..KNOTS).map(quantile).collect();
         knots.dedup();
         let side = |is_leaving: bool| {
-            let own = |p: &&&Point| !is_apart || p.is_leaving == is_leaving;
+            let own = |p: &&&Point| !is_apart || (p.phase == Phase::Unload) == is_leaving;
             let all: Vec<&Point> = points.iter().filter(own).copied().collect();
             fitted(&all, (&knots, variable))
         };
@@ -79,9 +87,9 @@ impl Factors {
     }
 
     /// The factor less 1 at a value of the variable.
-    pub fn at(&self, x: f64, is_leaving: bool) -> f64 {
+    pub fn at(&self, x: f64, phase: Phase) -> f64 {
         let hats = hats(&self.knots, x);
-        let side = &self.change[usize::from(is_leaving)];
+        let side = &self.change[usize::from(phase == Phase::Unload)];
         hats.iter().map(|(k, share)| share * side[*k]).sum()
     }
 }

@@ -112,19 +112,22 @@ fn unlisted(found: &Unlisted) -> Value {
     let depends =
         |(on, removed): &(&'static str, f64)| json!({"on": on, "removed": rounded(*removed)});
     let numbers = |of: &[f64]| of.iter().map(|v| rounded(*v)).collect::<Vec<_>>();
+    let factors = |of: &[f64]| of.iter().map(|c| rounded(1.0 + c)).collect::<Vec<_>>();
     let correction = |of: &Correction| {
         json!({
             "kind": "empirical",
-            "by": of.by.0,
-            "unit": of.by.1,
-            "at": numbers(&of.at),
-            "factor_in": numbers(&of.change[0].iter().map(|c| 1.0 + c).collect::<Vec<_>>()),
-            "factor_out": numbers(&of.change[1].iter().map(|c| 1.0 + c).collect::<Vec<_>>()),
+            "by": of.by().0,
+            "unit": of.by().1,
+            "at": numbers(&of.factors.knots),
+            "factor_in": factors(&of.factors.change[0]),
+            "factor_out": factors(&of.factors.change[1]),
             "removed": rounded(of.removed),
         })
     };
     json!({
         "depends_on": found.depends_on.iter().map(depends).collect::<Vec<_>>(),
+        "where": found.place.as_ref().map(|(site, _)| json!({"site": site})),
+        "when": found.place.as_ref().map(|(_, phase)| json!({"phase": phase})),
         "correction": found.correction.as_ref().map(correction),
         "rhythm": found.rhythm.map(|r| json!({"hz": rounded(r.hz), "per_minute": rounded(r.per_minute()), "chance": rounded(r.chance)})),
     })

@@ -46,7 +46,7 @@ pub use findings::{
     Where,
 };
 pub use findings_json::findings_json;
-pub use unlisted::{Correction, Unlisted};
+pub use unlisted::{Correction, Unlisted, words};
 
 use std::sync::{Mutex, PoisonError};
 
@@ -204,16 +204,15 @@ fn told(
         found.names_90 = Vec::new();
     }
     let mut reason = decision.reason.clone();
-    match found.verdict {
-        Verdict::Unlisted => {
-            let described = unlisted::unlisted(ready, rungs);
-            reason = format!("{reason}; {}", described.told());
-            if let Some(correction) = &described.correction {
-                unlisted::draw(ready, rungs, correction, &mut found.curves);
-            }
-            found.unlisted = Some(described);
+    let restless = checks::restless(&ready.noise, rungs.unsteady);
+    found.notes.extend(restless.filter(|told| *told != reason));
+    if found.verdict == Verdict::Unlisted {
+        let described = unlisted::unlisted(study, ready, rungs);
+        reason = format!("{reason}; {}", described.told());
+        if let Some(correction) = &described.correction {
+            unlisted::draw(ready, rungs, correction, &mut found.curves);
         }
-        _ => (found.notes).extend(checks::restless(&ready.noise, rungs.unsteady)),
+        found.unlisted = Some(described);
     }
     add_notes(study, &mut found, ready);
     found.sentence = sentence::sentence(

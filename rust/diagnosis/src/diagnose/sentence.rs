@@ -82,7 +82,7 @@ pub fn sentence(
 }
 
 /// A phase as a person would say it.
-fn when_in_words(phase: &str) -> &str {
+pub fn when_in_words(phase: &str) -> &str {
     match phase {
         "load" => "while pressing in",
         "hold" => "while holding",

@@ -99,6 +99,11 @@ fn ledger(ready: &Prepared, rungs: &Rungs, scored: &Scored) -> [f64; 4] {
     sums
 }
 
+/// A phase's name in findings.json.
+pub fn phase(of: Phase) -> &'static str {
+    PHASES[number(of)]
+}
+
 fn number(phase: Phase) -> usize {
     match phase {
         Phase::Load => 0,

@@ -10,14 +10,16 @@ use super::empirical::{Factors, Point, VARIABLES, removed};
 use super::findings::Curve;
 use super::ladder::Rungs;
 use super::prepare::Prepared;
-use crate::Phase;
+use super::sentence::when_in_words;
+use super::shown;
 use crate::noise::Rhythm;
+use thenar_recordings::Study;
 
 /// What it may depend on, and units.
 const NAMES: [(&str, &str); VARIABLES] = [
     ("depth", "mm"),
     ("force", "N"),
-    ("radius", "mm"),
+    ("contact_radius", "mm"),
     ("time", "s"),
     ("cycle", ""),
     ("rate", "mm/s"),
@@ -37,17 +39,16 @@ pub struct Unlisted {
     pub correction: Option<Correction>,
     /// What beats, if repeats show that.
     pub rhythm: Option<Rhythm>,
+    /// Where and in which phase most of it shows; None where repeats do not share it.
+    pub place: Option<(String, &'static str)>,
 }
 
 /// A factor of the force that recordings ask for: empirical, and good for nothing that was not recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Correction {
-    /// Variable and unit.
-    pub by: (&'static str, &'static str),
-    /// Its values.
-    pub at: Vec<f64>,
-    /// Factors less 1 there: going in and held, and going out; alike where these need not be told apart.
-    pub change: [Vec<f64>; 2],
+    variable: usize,
+    /// Over that variable.
+    pub factors: Factors,
     /// Part of what repeats share of the misfit that it removes on protocols it was not fitted to.
     pub removed: f64,
 }
@@ -61,7 +62,7 @@ impl Unlisted {
                 false => "no correction can be given, since it is another in every repeat".to_owned(),
             };
         };
-        let (name, unit) = correction.by;
+        let (name, unit) = correction.by();
         let (least, most) = correction.extremes();
         // What is small beside the other end is the curve's own roundness.
         let counts = 0.1 * f64::max(-least.1, most.1);
@@ -69,11 +70,15 @@ impl Unlisted {
             let told = format!("{:.0} % {word} at {at:.3} {unit}", 100.0 * change.abs());
             (change.abs() > counts).then_some(told)
         };
+        let when = self.place.as_ref();
+        let when = when.map_or(String::new(), |(_, phase)| {
+            format!(" and shows most {}", when_in_words(phase))
+        });
         let mut ends = [(least, "smaller"), (most, "larger")];
         ends.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         let ends = ends.map(|(end, word)| part(end, word));
         format!(
-            "it goes with {}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
+            "it goes with {}{when}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
              protocols that it was not fitted to",
             words(name),
             ends.into_iter().flatten().collect::<Vec<_>>().join(" and "),
@@ -83,11 +88,16 @@ impl Unlisted {
 }
 
 impl Correction {
+    /// Variable and unit.
+    pub fn by(&self) -> (&'static str, &'static str) {
+        NAMES[self.variable]
+    }
+
     /// Where it takes most off the force and where it adds most, and what part.
     fn extremes(&self) -> ((f64, f64), (f64, f64)) {
         let each = || {
-            let sides = self.change.iter();
-            sides.flat_map(|side| self.at.iter().copied().zip(side.iter().copied()))
+            let (at, sides) = (&self.factors.knots, self.factors.change.iter());
+            sides.flat_map(|side| at.iter().copied().zip(side.iter().copied()))
         };
         let none = (0.0, 0.0);
         (
@@ -97,9 +107,10 @@ impl Correction {
     }
 }
 
-fn words(variable: &str) -> &str {
+/// A variable as a person would say it.
+pub fn words(variable: &str) -> &str {
     match variable {
-        "radius" => "the size of the contact",
+        "contact_radius" => "the size of the contact",
         "time" => "time in contact",
         "cycle" => "the count of presses",
         "rate" => "speed",
@@ -108,18 +119,33 @@ fn words(variable: &str) -> &str {
 }
 
 /// What is known of what has no name.
-pub fn unlisted(ready: &Prepared, rungs: &Rungs) -> Unlisted {
-    if restless(&ready.noise, rungs.unsteady).is_some() {
-        let rhythm = ready.noise.rhythm.filter(|r| r.is_clear());
-        let mut depends_on = vec![("force", f64::NAN)];
-        depends_on.extend(rhythm.map(|_| ("time", f64::NAN)));
-        return Unlisted {
-            depends_on,
-            correction: None,
-            rhythm,
-        };
+pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
+    let points = points(ready, rungs);
+    let mut found = of_points(&points);
+    found.rhythm = ready.noise.rhythm.filter(Rhythm::is_clear);
+    if found.correction.is_none() && restless(&ready.noise, rungs.unsteady).is_some() {
+        // What grows under load and is not shared.
+        found.depends_on.push(("force", f64::NAN));
+        found
+            .depends_on
+            .extend(found.rhythm.map(|_| ("time", f64::NAN)));
+        return found;
     }
-    of_points(&points(ready, rungs))
+    let site = |point: &Point| &study.recordings[point.recording].site;
+    let sites: Vec<&String> = points.iter().map(site).collect();
+    let phases: Vec<&str> = points.iter().map(|p| shown::phase(p.phase)).collect();
+    let (site, phase) = (most(&points, &sites), most(&points, &phases));
+    found.place = site.map(|site| (*site).clone()).zip(phase.copied());
+    found
+}
+
+/// Under which of these keys most of the misfit beyond noise lies.
+fn most<'a, K: PartialEq>(points: &[Point], keys: &'a [K]) -> Option<&'a K> {
+    let beyond = |key: &K| -> f64 {
+        let own = points.iter().zip(keys).filter(|(_, k)| *k == key);
+        own.map(|(p, _)| p.weight * p.off * p.off - 1.0).sum()
+    };
+    keys.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
 }
 
 fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
@@ -165,8 +191,9 @@ fn point(
     let variance = mean(&|k| ready.sigma[k] * ready.sigma[k]).max(f64::MIN_POSITIVE);
     Some(Point {
         protocol,
+        recording: one.recording,
         x: variables(ready, one, (n, base))?,
-        is_leaving: one.rows[n].phase == Phase::Unload,
+        phase: one.rows[n].phase,
         base,
         off,
         weight: samples.len() as f64 / variance,
@@ -186,21 +213,13 @@ fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<
 
 /// Puts what a correction gives in the place of what was found into the curves of all recordings.
 pub fn draw(ready: &Prepared, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
-    let Some(variable) = NAMES.iter().position(|name| *name == correction.by) else {
-        return;
-    };
-    let factors = Factors {
-        knots: correction.at.clone(),
-        change: correction.change.clone(),
-    };
     for (course, curve) in ready.courses.iter().zip(curves) {
         let rows = course.rows.iter().enumerate();
         let read = rows.filter_map(|(n, row)| Some((n, row, row.sample?)));
         for ((n, row, sample), after) in read.zip(&mut curve.after_n) {
             let base = rungs.base.refit.simulated[sample];
             *after = variables(ready, course, (n, base)).map_or(base, |x| {
-                let is_leaving = row.phase == Phase::Unload;
-                base * (1.0 + factors.at(x[variable], is_leaving))
+                base * (1.0 + correction.factors.at(x[correction.variable], row.phase))
             });
         }
     }
@@ -226,11 +245,9 @@ fn of_points(points: &[Point]) -> Unlisted {
             depends_on.insert(1, ("direction", *removed));
         }
         let every: Vec<&Point> = points.iter().collect();
-        let curve = Factors::of(&every, (*variable, *is_apart));
         Correction {
-            by: NAMES[*variable],
-            at: curve.knots,
-            change: curve.change,
+            variable: *variable,
+            factors: Factors::of(&every, (*variable, *is_apart)),
             removed: *removed,
         }
     });
@@ -238,12 +255,14 @@ fn of_points(points: &[Point]) -> Unlisted {
         depends_on,
         correction,
         rhythm: None,
+        place: None,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Phase;
     use crate::random::Random;
 
     /// Four protocols of 60 rows to different depths by different tools; what is measured more is a part of the force, by depth and
@@ -259,10 +278,12 @@ mod tests {
                 let base = stiffness * libm::pow(depth, 1.5);
                 let noise = 0.01 * stiffness;
                 let time = n as f64 * 0.1 * (1 + protocol) as f64;
+                let phase = [Phase::Load, Phase::Unload][usize::from(is_leaving)];
                 all.push(Point {
                     protocol,
+                    recording: protocol,
                     x: [depth, base, stiffness * depth.sqrt(), time, 0.0, 1.0],
-                    is_leaving,
+                    phase,
                     base,
                     off: base * part(depth, is_leaving) + noise * random.normal(),
                     weight: 1.0 / (noise * noise),
@@ -286,7 +307,12 @@ mod tests {
         );
         let correction = found.correction.as_ref().unwrap();
         assert!(correction.removed > 0.9, "{}", correction.removed);
-        for (at, change) in correction.at.iter().zip(&correction.change[0]) {
+        for (at, change) in correction
+            .factors
+            .knots
+            .iter()
+            .zip(&correction.factors.change[0])
+        {
             let off = change - gives(*at, false);
             assert!(off.abs() < 0.06, "{at}: {change}");
         }
@@ -323,8 +349,16 @@ mod tests {
             |depth, out| if out { -0.2 * depth } else { 0.1 * depth },
         ));
         assert_eq!(found.depends_on[1].0, "direction", "{:?}", found.depends_on);
-        let [going_in, going_out] = &found.correction.as_ref().unwrap().change;
+        let [going_in, going_out] = &found.correction.as_ref().unwrap().factors.change;
         assert!(going_in.last() > Some(&0.05) && going_out.last() < Some(&-0.1));
+    }
+
+    #[test]
+    fn most_is_where_most_of_it_is() {
+        let points = study(|_, out| if out { -0.2 } else { 0.02 });
+        let phases: Vec<Phase> = points.iter().map(|p| p.phase).collect();
+        assert_eq!(most(&points, &phases), Some(&Phase::Unload));
+        assert_eq!(most::<Phase>(&[], &[]), None);
     }
 
     /// Noise is no misfit, and what is another in every protocol holds on none.

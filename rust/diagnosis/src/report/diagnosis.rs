@@ -3,7 +3,7 @@
 use super::page::page;
 use super::svg::escaped;
 use super::traces::plot;
-use crate::diagnose::{Correction, Diagnosis, Gain, Number, Rival, Unlisted, Verdict};
+use crate::diagnose::{Correction, Diagnosis, Gain, Number, Rival, Unlisted, Verdict, words};
 use std::fmt::Write;
 
 /// Recordings that are drawn.
@@ -64,8 +64,7 @@ fn nameless(of: &Unlisted) -> String {
     if let Some(rhythm) = of.rhythm {
         let _ = write!(
             html,
-            "<p>Repeats differ by a rhythm of {:.2} Hz ({:.0} a minute) that grows with the force; noise alone shows one as clear in {} of studies \
-at most.</p>",
+            "<p>Repeats differ by a rhythm of {:.2} Hz ({:.0} a minute) that grows with the force; noise alone would show one as clear in {}.</p>",
             rhythm.hz,
             rhythm.per_minute(),
             share(rhythm.chance)
@@ -78,7 +77,8 @@ at most.</p>",
     let rows: String = told
         .map(|(on, removed)| {
             format!(
-                "<tr><td class='left'>{on}</td><td>{:.0} %</td></tr>",
+                "<tr><td class='left'>{}</td><td>{:.0} %</td></tr>",
+                words(on),
                 100.0 * removed
             )
         })
@@ -97,11 +97,12 @@ fn corrected(of: &Correction) -> String {
     let percent = |change: &f64| format!("<td>{:+.1}</td>", 100.0 * change);
     let cells = |side: &[f64]| side.iter().map(percent).collect::<String>();
     let at: String = of
-        .at
+        .factors
+        .knots
         .iter()
         .map(|at| format!("<th>{}</th>", size(*at)))
         .collect();
-    let [going_in, going_out] = [0, 1].map(|side| cells(&of.change[side]));
+    let [going_in, going_out] = [0, 1].map(|side| cells(&of.factors.change[side]));
     let out = match going_in == going_out {
         true => String::new(),
         false => format!("<tr><td class='left'>going out, %</td>{going_out}</tr>"),
@@ -114,15 +115,16 @@ fn corrected(of: &Correction) -> String {
     format!(
         "<table><tr><th class='left'>{}, {}</th>{at}</tr><tr><td class='left'>{first}</td>{going_in}</tr>{out}</table><p class='meta'>An \
 empirical correction of the force with parameters alone: what the recordings ask for, not why. It holds for nothing that was not recorded.</p>\n",
-        of.by.0, of.by.1
+        words(of.by().0),
+        of.by().1
     )
 }
 
 /// Small shares as one in so many.
 fn share(of: f64) -> String {
     match of < 1e-3 {
-        true => "fewer than one in a thousand".to_owned(),
-        false => format!("{:.1} %", 100.0 * of),
+        true => "fewer than one study in a thousand".to_owned(),
+        false => format!("at most {:.1} % of studies", 100.0 * of),
     }
 }
 
