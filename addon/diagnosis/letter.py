@@ -78,6 +78,7 @@ class Letter:
     sentence: str
     entries: tuple
     depends: tuple
+    depends_note: str
     phases: tuple
     rivals: tuple
     bars: tuple
@@ -97,6 +98,7 @@ def write(found):
         sentence=found.get("sentence") or "",
         entries=tuple(_entry(found, index) for index in range(len(found.get("findings", ())))),
         depends=tuple(_depends(found.get("unlisted") or {})),
+        depends_note=_depends_note(found.get("unlisted") or {}),
         phases=tuple(_phases(found)),
         rivals=tuple(_rivals(found)),
         bars=bars,
@@ -164,6 +166,12 @@ def _depends(unlisted):
     rhythm = unlisted.get("rhythm")
     if rhythm:
         yield Bar("Rhythm", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f} a minute", 1.0)
+
+
+def _depends_note(unlisted):
+    if unlisted.get("correction"):
+        return "Removed by an empirical correction, on protocols that it was not fitted to; it says what, not why"
+    return "Told from what differs between repeats; it begins anew in each" if unlisted.get("rhythm") else ""
 
 
 def _phases(found):

@@ -111,12 +111,9 @@ class THENAR_PT_depends(_Part, bpy.types.Panel):
         return told.depends
 
     def draw(self, context):
-        _draw_bars(self.layout, _letter(context).depends, 0.5)
-        text.faint(
-            self.layout,
-            context,
-            "Removed by an empirical correction, on protocols that it was not fitted to; it says what, not why",
-        )
+        told = _letter(context)
+        _draw_bars(self.layout, told.depends, 0.5)
+        text.faint(self.layout, context, told.depends_note)
 
 
 class THENAR_PT_phases(_Part, bpy.types.Panel):

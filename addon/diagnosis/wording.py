@@ -23,6 +23,7 @@ DEPENDS = {
     "cycle": "count of presses",
     "direction": "direction of motion",
     "radius": "size of the tool",
+    "contact_radius": "size of the contact",
     "skin_position": "place on the skin",
     "sensor_position": "place on the sensor",
 }

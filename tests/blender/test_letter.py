@@ -14,12 +14,12 @@ def test_the_letter_tells_the_law_and_measure_that_the_model_switches_on():
 
 
 def test_the_letter_tells_what_something_without_a_name_goes_with():
-    depends = [{"on": "depth", "removed": 0.71}, {"on": "cycle", "removed": 0.3}]
+    depends = [{"on": "depth", "removed": 0.71}, {"on": "contact_radius", "removed": 0.3}]
     nameless = {"depends_on": depends, "correction": {"kind": "empirical"}, "rhythm": None}
     written = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": nameless})
     assert [(bar.label, bar.text, bar.share) for bar in written.depends] == [
         ("depth", "71 %", 0.71),
-        ("count of presses", "30 %", 0.3),
+        ("size of the contact", "30 %", 0.3),
     ]
     assert "Goes with depth: 71 %" in letter.lines(written)
     either = {"unlisted": nameless, "names_90": [["relaxation"], ["drainage"]]}
@@ -28,6 +28,7 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
         "depends_on": [{"on": "force", "removed": None}],
         "rhythm": {"hz": 1.18, "per_minute": 70.8, "chance": 1e-5},
     }
-    (bar,) = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": beats}).depends
-    assert bar.text == "1.18 Hz, 71 a minute"
+    beating = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": beats})
+    assert [bar.text for bar in beating.depends] == ["1.18 Hz, 71 a minute"]
+    assert "repeats" in beating.depends_note and "correction" in written.depends_note
     assert letter.write(letters.FINDINGS["missing_physics"]).depends == ()

@@ -29,8 +29,11 @@ KINDS = ("", "local_", "second_")  # of files
 @functools.cache
 def index():
     """The public indices: by case the split, the pad, what is published of it, and where its recordings are kept."""
-    each = [json.loads((HERE / f"{kind}cases.json").read_text())["cases"] for kind in KINDS]
-    return each[0] | each[1] | each[2]
+    found = {}
+    for kind in KINDS:
+        listed = json.loads((HERE / f"{kind}cases.json").read_text())["cases"]
+        found |= {name: about | {"kind": kind} for name, about in listed.items()}
+    return found
 
 
 @functools.cache
@@ -75,7 +78,7 @@ def curve(case, number):
     one = recordings(case)[number]
     time, _ = protocols.sampled(index()[case]["pad"], one["protocol"])
     rows = slice(one["first"], one["first"] + len(time))
-    table, kind = _numbers(), "second_" if index()[case]["split"] == "second" else ""
+    table, kind = _numbers(), index()[case]["kind"]
     return time, table[f"{kind}depth"][rows] * protocols.STEP_MM, table[f"{kind}force"][rows] * one["step_n"]
 
 

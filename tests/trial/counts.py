@@ -149,6 +149,7 @@ def table(sealed, answers):
             ("ambiguous", "ambiguous: the right set, not one name"), of("ambiguous"), is_undecided, (0.75, 0.9, False)
         ),
         _share(("poor", "too little data: said so"), of("poor"), is_modest, (0.75, None, False)),
+        _share(("beyond", "asked for nothing: a wrong name"), of("beyond"), _wrong, (None, None, True)),
     ]
     found += _followed(sealed, answers)
     listed = [pair for pair in of("single", "pair", "mixed", "decoy") if sets_of(pair[1])]

@@ -62,3 +62,13 @@ def test_slow_noise_is_held_against_what_it_is():
     least, middle, most = thresholds.noise(sealed, dict.fromkeys(sealed, told))
     assert (least, middle, most) == pytest.approx((0.605, 0.5 * (0.605 + 2.42), 2.42))
     assert thresholds.noise(sealed, {}) is None
+
+
+def test_rhythms_are_told_of_what_beats_and_the_least_chance_of_what_does_not():
+    def beats(hz, chance):
+        return {"evidence": {"rhythm_hz": hz, "rhythm_chance": chance}, "rivals": []}
+
+    sealed = {"a": {"stratum": "null"}, "b": {"stratum": "null"}, "c": {"stratum": "unlisted", "distortion": "pulse"}}
+    said = {"a": beats(0.5, 0.3), "b": beats(2.0, 0.04), "c": beats(1.19, 1e-6)}
+    lines = thresholds.lines(sealed, said)
+    assert "  nothing: 4.0e-02 at least, of 2" in lines and "  pulse: 1.19 Hz, 1.0e-06" in lines

@@ -21,6 +21,14 @@ def noise(sealed, said):
     return (min(found), float(np.median(found)), max(found)) if found else None
 
 
+def rhythms(sealed, said):
+    """(effect or none, Hz, chance) of the clearest rhythm in the repeats of nulls and of what is on no list."""
+    for name, label in sealed.items():
+        told = said.get(name, {}).get("evidence", {})
+        if label["stratum"] in ("null", "unlisted") and "rhythm_chance" in told:
+            yield label.get("distortion", "nothing"), told["rhythm_hz"], told["rhythm_chance"]
+
+
 def reached(sealed, said):
     """Largest evidence, nats, of every effect that was tried alone on cases without any."""
     found = {}
@@ -62,6 +70,11 @@ def lines(sealed, said):
     told += [f"  {effect}: {nats:.1f}" for effect, nats in _sorted(reached(sealed, said))]
     least, middle, most = noise(sealed, said) or (np.nan, np.nan, np.nan)
     told.append(f"slow noise that repeats tell, over what it is: median {middle:.2f}, {least:.2f} to {most:.2f}")
+    told.append("clearest rhythm in repeats, and how often noise alone shows one as clear:")
+    found = sorted(rhythms(sealed, said), key=lambda one: one[2])
+    nulls = [chance for what, _, chance in found if what == "nothing"]
+    told += [f"  nothing: {min(nulls):.1e} at least, of {len(nulls)}"] if nulls else []
+    told += [f"  {what}: {hz:.2f} Hz, {chance:.1e}" for what, hz, chance in found if what != "nothing"]
     told.append("largest lead of another name over the one that is there, nats:")
     told += [f"  {other} over {truth}: {nats:.1f}" for (truth, other), nats in _sorted(led_by(sealed, said))]
     told.append("most that a second name adds where one is there, nats and part of the first's:")
