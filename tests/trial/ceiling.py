@@ -91,13 +91,13 @@ def _apply(sigma, keep, basis, shrink, column):
 def separations(about, label, more=None):
     """(detect, name) of a case of one effect or of an instrument's error, with presses added."""
     own, but, case = _own(about, label, more)
-    return float(np.linalg.norm(own)), min(_left(case, own, label["amplitudes"][but is None] or 1.0, but).values())
+    return float(np.linalg.norm(own)), min(_left(case, own, but).values())
 
 
 def closest(about, label):
     """The other effect of the skin that leaves least of a case's own, its amplitude refitted."""
     own, but, case = _own(about, label)
-    left = _left(case, own, label["amplitudes"][0] or 1.0, but)
+    left = _left(case, own, but)
     return min(left, key=left.get)
 
 
@@ -109,15 +109,15 @@ def _own(about, label, more=None):
     return case.signature(label["effect"], label["variant"], label["amplitudes"][0]), label["effect"], case
 
 
-def _left(case, own, amplitude, but):
+def _left(case, own, but):
     """What every other effect of the skin leaves of `own`, its amplitude refitted; no more than there is."""
     found = {}
     for other in protocols.SINGLE:
         found[other] = float(np.linalg.norm(own))
         for variant in (0, 1):
-            if f"{case.pad}/{other}/{variant}/1.0/wide sphere" in truths.runs():
+            for amplitude in truths.forms(case.pad, other, variant):
                 rival = case.signature(other, variant, amplitude)
-                share = max(0.0, float(rival @ own) / float(rival @ rival))
+                share = max(0.0, float(rival @ own)) / max(float(rival @ rival), np.finfo(float).tiny)
                 found[other] = min(found[other], float(np.linalg.norm(own - share * rival)))
     found.pop(but, None)
     return found

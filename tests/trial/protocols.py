@@ -30,7 +30,9 @@ STEP_MM = 1e-4  # in which recorded depths are kept
 LEAST = 0.25  # of the depth, to which a cycle goes back
 
 STEPS = (12, 9, 16, 1)  # of the finite elements, as `counts` of `course`
-AMPLITUDES = (0.5, 1.0)  # at which effects are computed
+AMPLITUDES = (0.5, 1.0)  # at which effects are computed; in their second form at full amplitude alone
+FINER = (0.0625, 0.125, 0.25, 0.5, 1.0)  # the same, in both forms, on the pads of SECOND
+BETWEEN = ("heel_of_hand", 0.18)  # computed to see how well effects are drawn there
 GRIPS = (0.04, 0.06, 0.09, 0.13, 0.19, 0.27, 0.37, 0.5, 0.65, 0.82, 1.0)  # what lets go has no amplitudes between these
 COMPUTED = (  # pads on which single effects, pairs, and the second form of single effects are computed
     ("forefinger", "fingertip", "thumb", "palm", *SECOND),

@@ -94,6 +94,14 @@ def test_a_pulse_has_no_name_and_is_told_by_its_rhythm(case, tmp_path):
     assert said["unlisted"]["rhythm"]["chance"] < 0.005 and "a minute" in said["sentence"]
 
 
+def test_slight_evidence_that_predicts_nothing_is_no_name(tmp_path):
+    """A load cell that hums: softening would explain a little of it, and held-out recordings worse than nothing does."""
+    said = found("case_312", tmp_path)
+    assert said["findings"] == [] and said["verdict"] != "missing_physics"
+    alone = {one["effects"][0]: one["evidence"] for one in said["rivals"] if len(one["effects"]) == 1}
+    assert 5.0 < alone["cycle_softening"] < 8.0 and "worse than nothing does" in said["notes"][0]
+
+
 def test_one_recording_is_too_little(tmp_path):
     assert found("case_479", tmp_path)["verdict"] == "insufficient_data"
 

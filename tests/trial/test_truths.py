@@ -25,6 +25,32 @@ def test_a_stronger_grip_pulls_more():
     assert (np.diff(pulls) < 0.0).all()
 
 
+@pytest.mark.parametrize("effect", [one for one in protocols.SINGLE if one != "adhesion"])
+@pytest.mark.parametrize("variant", [0, 1])
+def test_an_effect_is_drawn_as_finite_elements_have_it_between_amplitudes(effect, variant):
+    """Within 0.3 % of the largest load and 8 % of what the effect adds (a pad of another thickness has another mesh)."""
+    pad, amplitude = protocols.BETWEEN
+    truth = truths.truth_of(pad, effect, variant)
+    assert amplitude not in protocols.FINER
+    for name, (time, _, rest, _) in truth.parts.items():
+        rows = truths.runs()[f"{pad}/{effect}/{variant}/{amplitude}/{name}"].astype(float)
+        added = truths.along(pad, name, rows, time) - rest
+        off = truth.added(name, amplitude) - added
+        assert np.abs(off).max() < 0.003 * rest.max()
+        assert np.linalg.norm(off) < 0.08 * np.linalg.norm(added)
+
+
+def test_a_little_drainage_is_no_small_part_of_much():
+    """Water leaves a stiffer skeleton sooner: drawn as a line from full strength, the wide sphere would lose a third."""
+    pad, name = "heel_of_hand", "wide sphere"
+    truth = truths.truth_of(pad, "drainage", 1)
+    depth = truth.parts[name][1]
+    held = np.flatnonzero(depth == depth.max())
+    little, much = (truth.added(name, amplitude)[held] for amplitude in (0.125, 1.0))
+    lost = [one[0] - one[-1] for one in (little, much)]
+    assert lost[0] > 3.0 * 0.125 * lost[1] > 0.0
+
+
 @pytest.mark.parametrize("pair", protocols.PAIRS)
 def test_a_pair_is_what_was_computed_at_full_and_each_alone_at_none(pair):
     pair_name, pad = "+".join(pair), "forefinger"

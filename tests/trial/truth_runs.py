@@ -1,13 +1,14 @@
 """Makes truth_runs.npz: forces of every protocol on every pad, with and without each effect, by finite elements.
 
-Knows nothing of Thenar. Run it by hand in `tests`: `pip install numba`, then `python -m trial.truth_runs` (half an hour
-on one core); what the table holds is not computed again, and what finds no equilibrium (a grip that lets go at once) is
+Knows nothing of Thenar. Run it by hand in `tests`: `pip install numba`, then `python -m trial.truth_runs` (an hour on
+one core); what the table holds is not computed again, and what finds no equilibrium (a grip that lets go at once) is
 left out. Keys are `pad/effect/variant/amplitude/protocol`, values the forces (N, for G = 0.01 MPa) at the times of
-`course(pad, protocol, STEPS)`. Other amplitudes than those computed are drawn on the parabola or line through them and
-the pad without the effect; of a grip there are no others, since where it lets go depends on its strength, and a
-parabola through pulls of which some have let go and some have not would push where nothing touches.
+`course(pad, protocol, STEPS)`. Other amplitudes are drawn between those computed and the pad without the effect
+(truths.py); of a grip there are no others, since where it lets go depends on its strength, and a parabola through pulls
+of which some have let go and some have not would push where nothing touches.
 """
 
+import itertools
 import os
 import sys
 import time
@@ -17,11 +18,14 @@ import numpy as np
 from trial.axisymmetric import Pad, Tissue, Tool, press
 from trial.protocols import (
     AMPLITUDES,
+    BETWEEN,
     COMPUTED,
+    FINER,
     GRIPS,
     PADS,
     PAIRS,
     PROTOCOLS,
+    SECOND,
     SINGLE,
     STEPS,
     TWO_FORMS,
@@ -94,6 +98,10 @@ def wanted():
             for pad in TWO_FORMS.get(effects[0], pads) if variant == 1 else pads:
                 key = f"{pad}/{'+'.join(effects)}/{variant}/{amplitude}"
                 yield key, pad, tuple((effect, variant, amplitude) for effect in effects)
+    finer = [*itertools.product(SECOND, FINER[::-1]), BETWEEN]
+    for (pad, amplitude), effect, variant in itertools.product(finer, SINGLE, (0, 1)):
+        if effect != "adhesion":
+            yield f"{pad}/{effect}/{variant}/{amplitude}", pad, ((effect, variant, amplitude),)
     for amplitude in GRIPS[::-1]:
         for variant, pads in ((0, COMPUTED[1]), (1, COMPUTED[2])):
             for pad in pads:

@@ -1,8 +1,10 @@
 """Forces of every truth of the trial, before scatter and noise, at any amplitude, from truth_runs.npz. N, mm, s.
 
-Between the amplitudes that were computed an effect is drawn on the parabola or line through them. Of a grip there are
-no others than those: where it lets go depends on its strength. Two effects add up, and what both do together beyond
-that, computed at full amplitude, goes as the product of theirs; with a grip, as far as it still pulls.
+Between the amplitudes that were computed an effect is drawn on the parabola or line through two or one, on the pads of
+the second trial on the monotone cubics through five. (A line is no drainage: the water of a stiffer skeleton leaves
+sooner, and most under the widest tool.) Of a grip there are no others than those: where it lets go depends on its
+strength. Two effects add up, and what both do together beyond that, computed at full amplitude, goes as the product of
+theirs; with a grip, as far as it still pulls.
 """
 
 import functools
@@ -21,25 +23,31 @@ class Truth:
     """The forces of one pad with one effect at any amplitude between 0 and 1."""
 
     def __init__(self, pad, effect="none", variant=0):
-        self.pad, self.grips, self.parts, self.loading = pad, (), {}, {}
+        self.pad, self.grips, self.parts, self.loading, self.curves = pad, (), {}, {}, {}
         if effect == "adhesion":
             known = [one for one in protocols.GRIPS if f"{pad}/{effect}/{variant}/{one}/{RICH[-1]}" in runs()]
             self.grips = tuple(known)
-        amplitudes = self.grips or protocols.AMPLITUDES
+        amplitudes = self.grips or computed(pad)
         for name in RICH:
             rest = runs()[f"{pad}/none/0/0/{name}"].astype(float)
             keys = {one: f"{pad}/{effect}/{variant}/{one}/{name}" for one in amplitudes}
             added = {one: runs()[key].astype(float) - rest for one, key in keys.items() if key in runs()}
             time, depth = protocols.sampled(pad, name)
-            if not self.grips:
+            is_fine = len(added) > len(protocols.AMPLITUDES) and not self.grips
+            if not self.grips and not is_fine:
                 added = _parabola(added, rest)
             more = {one: along(pad, name, force, time) for one, force in added.items()}
+            if is_fine:
+                forces = np.array([np.zeros_like(time), *more.values()])
+                self.curves[name] = PchipInterpolator([0.0, *more], forces, axis=0)
             self.parts[name] = (time, depth, along(pad, name, rest, time), more)
             self.loading[name] = _loading(pad, name, rest)
 
     def added(self, name, amplitude):
         """What the effect adds to a protocol's force, N for G = 0.01 MPa; of a grip the nearest that was computed."""
         more = self.parts[name][3]
+        if name in self.curves:
+            return self.curves[name](amplitude)
         if not self.grips:
             return amplitude * more[0] + amplitude**2 * more[1]
         nearest = min(self.grips, key=lambda one: abs(one - amplitude))
@@ -48,7 +56,7 @@ class Truth:
     def whole(self, name, amplitude):
         """A protocol's force with the effect, N for G = 0.01 MPa."""
         _, _, rest, more = self.parts[name]
-        if self.grips:
+        if self.grips or name in self.curves:
             return rest + self.added(name, amplitude)
         # Summed in this order, so that the same cases keep their bytes.
         return rest + amplitude * more[0] + amplitude**2 * more[1]
@@ -104,6 +112,17 @@ class Pair(Truth):
 def truth_of(pad, effect, variant):
     """One `Truth` for all cases that share it, of an effect or of two joined by a plus."""
     return Pair(pad, effect.split("+")) if "+" in effect else Truth(pad, effect, variant)
+
+
+def computed(pad):
+    """Amplitudes at which effects are computed on a pad, ascending."""
+    return protocols.FINER if pad in protocols.SECOND else protocols.AMPLITUDES
+
+
+def forms(pad, effect, variant):
+    """Amplitudes at which this effect was computed on this pad: what it looks like between weak and strong."""
+    known = [key for key in (*protocols.GRIPS, *computed(pad)) if f"{pad}/{effect}/{variant}/{key}/{RICH[-1]}" in runs()]
+    return tuple(sorted(set(known)))
 
 
 def _parabola(added, rest):

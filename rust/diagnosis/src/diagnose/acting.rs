@@ -18,6 +18,8 @@ const GROWS: (f64, f64) = (1.6, 1.4);
 const MOST_GROWS: (f64, f64) = (1.0, 2.0);
 /// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
 const NARROWS: f64 = 0.3;
+/// Width of a floor's edge over the floor, in recordings that are only planned.
+const EDGE: f64 = 0.01;
 /// Way over which skin lets go, over the largest depth.
 const RELEASE: f64 = 0.08;
 
@@ -191,10 +193,8 @@ impl Screen<'_> {
                 }
                 Acts::Blind(stage) => {
                     let floor = stage.reads(value * self.least_peak, gain);
-                    let width = 0.01 * self.least_peak;
-                    for force in forces.iter_mut() {
-                        let x = ((*force - floor) / width).clamp(-40.0, 40.0);
-                        *force *= 1.0 / (1.0 + libm::exp(-x));
+                    for (force, row) in forces.iter_mut().zip(&one.rows) {
+                        *force = beyond(floor, *force, row.force_n);
                     }
                 }
                 Acts::Late => {
@@ -205,6 +205,23 @@ impl Screen<'_> {
                 _ => {}
             }
         }
+    }
+}
+
+/// What is read of a force by an instrument that is blind below a floor, where something (or nothing) was read.
+///
+/// Of a force beside the floor nobody knows on which side it is, and to read nothing where all of it was meant would weigh as hundreds of
+/// other readings. So a reading is not held against more than the force that is lacking: what ought not to have been seen counts as that
+/// far from it, and of what ought to have been seen only what lies beyond the floor is missing (as Tobin 1958, Econometrica 26:24, has it
+/// of what is censored). Where nothing is recorded yet the floor is an edge of [`EDGE`].
+fn beyond(floor: f64, force: f64, reading: f64) -> f64 {
+    let over = force - floor;
+    match reading {
+        _ if reading.is_nan() => {
+            force / (1.0 + libm::exp((-over / (EDGE * floor)).clamp(-40.0, 40.0)))
+        }
+        _ if reading > 0.5 * floor => force - (-over).clamp(0.0, force.max(0.0)),
+        _ => over.max(0.0),
     }
 }
 

@@ -23,6 +23,8 @@ const DETECTED_ELSE: (f64, f64) = (5.5, 7.5);
 /// known as that of what the tissue remembers.
 const BESIDE: f64 = 5.5;
 const STATIC_BESIDE: f64 = 10.0;
+/// The same of two that both change the elastic answer alone, each of which takes up what the other's form leaves.
+const STATIC_BOTH: f64 = 14.0;
 /// Lead in evidence, nats, over every rival that bears another name; and over one that belongs to the instrument where the other
 /// belongs to the skin. The largest lead of a wrong name is 1.7, of a wrong clock 1.4 (printed likewise).
 const LEAD: (f64, f64) = (3.0, 4.4);
@@ -117,6 +119,18 @@ fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         nothing(ready, rungs),
         "no listed effect explains more than noise would",
     )
+}
+
+/// Nothing listed is there either if what would be named does not predict recordings that it was not fitted to.
+pub fn unnamed<'a>(ready: &Prepared, rungs: &'a Rungs, named: &Scored) -> Decision<'a> {
+    let name = words(named.mechanisms[0].effect.name());
+    let reason = format!(
+        "{name} would explain slightly more than noise would, and predicts recordings that it was not fitted to worse than nothing does"
+    );
+    Decision {
+        reason,
+        ..undetected(ready, rungs)
+    }
 }
 
 /// Two effects; None where one suffices.
@@ -270,6 +284,7 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
             _ if !is_static(second) => BESIDE,
             _ if CLOCKS.contains(&first.effect) && !second.is_instrument() => DETECTED_STATIC.0,
             _ if acts_apart(first) => BESIDE,
+            _ if is_static(first) && !first.is_instrument() => STATIC_BOTH,
             _ => STATIC_BESIDE,
         };
         f64::max(inexact(first, second) * alone(1 - k), beside)
@@ -290,7 +305,6 @@ fn inexact(mechanism: &Mechanism, second: &Mechanism) -> f64 {
         Effect::RateIndependentLoss if is_answer(second) => 0.02,
         Effect::Adhesion if is_answer(second) => 0.01,
         _ if is_memory(mechanism) && is_answer(second) => 0.006,
-        Effect::Threshold => 0.15,
         Effect::Adhesion => 0.09,
         Effect::Saturation => 0.1,
         Effect::StiffeningLaw | Effect::CycleSoftening => 0.13,

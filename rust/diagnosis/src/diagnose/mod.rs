@@ -5,6 +5,7 @@
 
 mod acting;
 mod balls;
+mod borne_out;
 mod checks;
 mod choices;
 mod course;
@@ -152,11 +153,11 @@ fn explained(
     (ready, rungs): (&Prepared, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
-    let decision = gates::decide(ready, rungs);
+    let (decision, gain) = borne_out::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&decision.cannot_tell[..], quiet);
     let next = next_record::suggestions(study, fitting, (ready, rungs), asked)?;
     let ladder = (ready, rungs, decision);
-    Ok(told(study, (comparison, fitting), (ladder, next), options))
+    Ok(told(study, (comparison, fitting), (ladder, next, gain)))
 }
 
 /// What the recordings could not show.
@@ -171,17 +172,16 @@ fn untested(courses: &[Course]) -> Option<String> {
     Some(missing.to_owned())
 }
 
+/// What was prepared, what the rungs found, and what they decide.
+type Climbed<'a> = (&'a Prepared, &'a Rungs, Decision<'a>);
+
 /// All that is said, from what was found.
 fn told(
     study: &Study,
     (comparison, fitting): (Comparison, &Fitting),
-    ((ready, rungs, decision), next): ((&Prepared, &Rungs, Decision<'_>), Vec<Suggestion>),
-    options: &DiagnoseOptions,
+    ((ready, rungs, decision), next, gain): (Climbed<'_>, Vec<Suggestion>, Option<Gain>),
 ) -> Diagnosis {
     let probabilities = posterior::probabilities(rungs);
-    let gain = decision
-        .named
-        .and_then(|named| gain::gain(ready, fitting.measured(), named, options.seed));
     let mut found = Diagnosis {
         comparison,
         verdict: decision.verdict,

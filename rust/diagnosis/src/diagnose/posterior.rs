@@ -145,6 +145,11 @@ mod tests {
             assert!(!needs_both((law, 100.0), Relaxation, 12.0), "13 % of 100");
             assert!(needs_both((law, 100.0), Relaxation, 14.0));
         }
+        assert!(
+            !needs_both((StiffeningLaw, 11.0), Bone, 12.0),
+            "both elastic"
+        );
+        assert!(needs_both((StiffeningLaw, 11.0), Bone, 15.0));
         let friction = |more| needs_both((RateIndependentLoss, 300.0), CycleSoftening, more);
         assert!(!friction(11.0) && friction(13.0), "4 % of 300");
         let beside = |more| needs_both((RateIndependentLoss, 700.0), Bone, more);

@@ -248,11 +248,16 @@ mod tests {
     use super::super::prepare::Prepared;
     use super::*;
 
-    /// A press at 1 mm/s to 2 mm by a tool of that law; nothing was read.
+    /// A press at 1 mm/s to 2 mm by a tool of that law; what was read is nothing.
     fn pressed(force: impl Fn(f64) -> f64) -> Prepared {
+        pressed_and_read(force, |_| 0.0)
+    }
+
+    /// The same with readings by depth.
+    fn pressed_and_read(force: impl Fn(f64) -> f64, reading: impl Fn(f64) -> f64) -> Prepared {
         let read = |k: u32| {
             let time = f64::from(k) / 40.0;
-            (time, time, Phase::Load, 0.0)
+            (time, time, Phase::Load, reading(time))
         };
         let readings = (0..=80).map(read).collect();
         ready(vec![tool(2.0, force, |_| 1.0)], &[(0, readings)], 0.1).0
@@ -293,7 +298,7 @@ mod tests {
     /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.
     #[test]
     fn a_limit_stands_before_the_gain_or_after_it() {
-        let mut ready = pressed(|d| 10.0 * d);
+        let mut ready = pressed_and_read(|d| 10.0 * d, |_| f64::NAN);
         ready.scales.forces = (20.0, 20.0);
         let gain = 1.25f64;
         ready.shared.push(Coordinate {
@@ -315,6 +320,27 @@ mod tests {
             let seen = floor.iter().filter(|f| **f > 0.9 * limit);
             let least = seen.fold(f64::INFINITY, |a, b| a.min(*b));
             assert!((least / limit - 1.0).abs() < 0.06, "{stage:?}: {least}");
+        }
+    }
+    /// A reading beside a floor is off by the force that is lacking, not by all of it: skin that is stiffer or softer than the model.
+    #[test]
+    fn a_floor_takes_from_a_reading_no_more_than_lies_beyond_it() {
+        for stiffer in [1.06, 0.94] {
+            let reading = |d: f64| match 10.0 * stiffer * d < 8.0 {
+                true => 0.0,
+                false => 10.0 * stiffer * d,
+            };
+            let mut ready = pressed_and_read(|d| 10.0 * d, reading);
+            ready.scales.forces = (20.0, 20.0);
+            let blind = (Effect::Threshold, Acts::Blind(Stage::Last));
+            let told = forces(&ready, blind, 8.0 / 20.0);
+            let off = told.iter().zip(&ready.courses[0].rows).map(|(f, row)| {
+                let same_stiffness = row.force_n / stiffer;
+                (f - same_stiffness).abs()
+            });
+            assert!(off.fold(0.0, f64::max) < 8.0 * 0.06 / 0.94, "{stiffer}");
+            // Well below it nothing is read, well above it all of it.
+            assert!(told[20].abs() < 1e-9 && (told[70] - 17.5).abs() < 1e-9);
         }
     }
 }

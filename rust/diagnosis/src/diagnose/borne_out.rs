@@ -1,0 +1,80 @@
+//! The gate of prediction: what is named on slight evidence must predict recordings that it was not fitted to.
+
+use super::findings::Gain;
+use super::gain::gain;
+use super::gates::{self, Decision};
+use super::ladder::Rungs;
+use super::mechanism::Mechanism;
+use super::prepare::Prepared;
+use crate::Measured;
+
+/// Evidence, nats, below which one effect of the skin must predict recordings that it was not fitted to better than nothing does. More
+/// stands by itself: it may come from a single protocol, which none of the others predicts. With less of it only one name fails, a wrong
+/// one with 7.5 nats (softening where the load cell hums; `cargo xtask prove -- --split calibration`).
+const SLIGHT: f64 = 8.0;
+
+/// What the rungs decide, and the gain of what is named.
+pub fn decide<'a>(
+    ready: &Prepared,
+    rungs: &'a Rungs,
+    measured: &[Measured],
+    seed: u64,
+) -> (Decision<'a>, Option<Gain>) {
+    let decision = gates::decide(ready, rungs);
+    let Some(named) = decision.named else {
+        return (decision, None);
+    };
+    let gain = gain(ready, measured, named, seed);
+    let told = (&named.mechanisms[..], named.evidence);
+    match gain
+        .as_ref()
+        .is_some_and(|g| is_refuted(told, (g.removed, g.placebo)))
+    {
+        true => (gates::unnamed(ready, rungs, named), None),
+        false => (decision, gain),
+    }
+}
+
+/// True of one effect of the skin that shows slightly, and with which recordings that were held out are predicted worse than without and
+/// no better than with its placebo; `removed`: share of the reducible error, with the placebo's.
+fn is_refuted(
+    (mechanisms, evidence): (&[Mechanism], f64),
+    (removed, placebo): (f64, Option<f64>),
+) -> bool {
+    let is_worse = removed <= 0.0 && placebo.is_some_and(|most| removed <= most);
+    let is_skin = matches!(mechanisms, [one] if !one.is_instrument());
+    is_skin && evidence < SLIGHT && is_worse
+}
+
+#[cfg(test)]
+mod tests {
+    use thenar_contact::effects::Effect;
+
+    use super::super::mechanism::Acts;
+    use super::*;
+
+    #[test]
+    fn slight_evidence_of_one_effect_of_the_skin_must_predict() {
+        let softening = Mechanism {
+            effect: Effect::CycleSoftening,
+            acts: Acts::Softens {
+                travel_mm: 1.0,
+                recovery_s: 60.0,
+            },
+        };
+        let offset = Mechanism {
+            effect: Effect::Offset,
+            acts: Acts::Offset,
+        };
+        let (worse, better) = ((-0.2, Some(0.1)), (0.2, Some(0.1)));
+        let one = std::slice::from_ref(&softening);
+        assert!(is_refuted((one, 7.0), worse));
+        assert!(!is_refuted((one, 7.0), better));
+        assert!(!is_refuted((one, 7.0), (0.05, Some(0.1))));
+        assert!(!is_refuted((one, 9.0), worse));
+        // Where nothing could be removed there is no placebo, and nothing to hold against it.
+        assert!(!is_refuted((one, 7.0), (-0.2, None)));
+        assert!(!is_refuted((std::slice::from_ref(&offset), 7.0), worse));
+        assert!(!is_refuted((&[softening, offset], 7.0), worse));
+    }
+}
