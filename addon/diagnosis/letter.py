@@ -165,7 +165,7 @@ def _depends(unlisted):
             yield Bar(wording.depended(told["on"]), wording.share(removed), min(max(removed, 0.0), 1.0))
     rhythm = unlisted.get("rhythm")
     if rhythm:
-        yield Bar("Rhythm", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f} a minute", 1.0)
+        yield Bar("Rhythm", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f}/min", 1.0)
 
 
 def _depends_note(unlisted):

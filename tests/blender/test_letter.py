@@ -29,6 +29,6 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
         "rhythm": {"hz": 1.18, "per_minute": 70.8, "chance": 1e-5},
     }
     beating = letter.write(letters.FINDINGS["unlisted"] | {"unlisted": beats})
-    assert [bar.text for bar in beating.depends] == ["1.18 Hz, 71 a minute"]
+    assert [bar.text for bar in beating.depends] == ["1.18 Hz, 71/min"]
     assert "repeats" in beating.depends_note and "correction" in written.depends_note
     assert letter.write(letters.FINDINGS["missing_physics"]).depends == ()

@@ -18,7 +18,8 @@ NAMED = {
 }
 SKINS = {"case_278": (0.7, 0.348), "case_147": (0.4, 0.424)}  # planted: thickness in mm, Young's modulus in MPa
 POCKETS, PULSES = ("case_317", "case_162"), ("case_056", "case_400")
-READ = {"case_015": "saturation", "case_020": "timing"}
+READ = {"case_015": "saturation", "case_020": "timing", "case_294": "threshold"}
+FLOORS = {"case_073": 0.0455, "case_419": 0.0229}  # planted, N
 
 
 def found(case, folder):
@@ -55,6 +56,13 @@ def test_a_stiff_skin_bends_as_the_one_that_was_planted(case, tmp_path):
 def test_an_instrument_is_not_blamed_on_the_skin(case, tmp_path):
     said = found(case, tmp_path)
     assert said["verdict"] == "instrument" and [one["effect"] for one in said["findings"]] == [READ[case]]
+
+
+@pytest.mark.parametrize("case", FLOORS)
+def test_a_floor_is_told_where_it_was_planted(case, tmp_path):
+    (finding,) = found(case, tmp_path)["findings"]
+    assert finding["effect"] == "threshold"
+    assert finding["parameters"]["floor_n"]["value"] == pytest.approx(FLOORS[case], rel=0.12)
 
 
 def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_for(tmp_path):
@@ -95,7 +103,7 @@ def test_a_pulse_has_no_name_and_is_told_by_its_rhythm(case, tmp_path):
 
 
 def test_slight_evidence_that_predicts_nothing_is_no_name(tmp_path):
-    """A load cell that hums: softening would explain a little of it, and held-out recordings worse than nothing does."""
+    """A load cell that hums: softening would explain a little, and held-out recordings worse than nothing does."""
     said = found("case_312", tmp_path)
     assert said["findings"] == [] and said["verdict"] != "missing_physics"
     alone = {one["effects"][0]: one["evidence"] for one in said["rivals"] if len(one["effects"]) == 1}

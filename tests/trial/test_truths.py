@@ -28,7 +28,7 @@ def test_a_stronger_grip_pulls_more():
 @pytest.mark.parametrize("effect", [one for one in protocols.SINGLE if one != "adhesion"])
 @pytest.mark.parametrize("variant", [0, 1])
 def test_an_effect_is_drawn_as_finite_elements_have_it_between_amplitudes(effect, variant):
-    """Within 0.3 % of the largest load and 8 % of what the effect adds (a pad of another thickness has another mesh)."""
+    """Within 0.3 % of the largest load and 8 % of what the effect adds (another thickness has another mesh)."""
     pad, amplitude = protocols.BETWEEN
     truth = truths.truth_of(pad, effect, variant)
     assert amplitude not in protocols.FINER
@@ -41,7 +41,7 @@ def test_an_effect_is_drawn_as_finite_elements_have_it_between_amplitudes(effect
 
 
 def test_a_little_drainage_is_no_small_part_of_much():
-    """Water leaves a stiffer skeleton sooner: drawn as a line from full strength, the wide sphere would lose a third."""
+    """Water leaves a stiffer skeleton sooner: on the line from full strength the wide sphere would lose a third."""
     pad, name = "heel_of_hand", "wide sphere"
     truth = truths.truth_of(pad, "drainage", 1)
     depth = truth.parts[name][1]

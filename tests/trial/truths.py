@@ -121,8 +121,8 @@ def computed(pad):
 
 def forms(pad, effect, variant):
     """Amplitudes at which this effect was computed on this pad: what it looks like between weak and strong."""
-    known = [key for key in (*protocols.GRIPS, *computed(pad)) if f"{pad}/{effect}/{variant}/{key}/{RICH[-1]}" in runs()]
-    return tuple(sorted(set(known)))
+    tried = sorted({*protocols.GRIPS, *computed(pad)})
+    return tuple(one for one in tried if f"{pad}/{effect}/{variant}/{one}/{RICH[-1]}" in runs())
 
 
 def _parabola(added, rest):

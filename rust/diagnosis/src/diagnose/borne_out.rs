@@ -9,8 +9,8 @@ use super::prepare::Prepared;
 use crate::Measured;
 
 /// Evidence, nats, below which one effect of the skin must predict recordings that it was not fitted to better than nothing does. More
-/// stands by itself: it may come from a single protocol, which none of the others predicts. With less of it only one name fails, a wrong
-/// one with 7.5 nats (softening where the load cell hums; `cargo xtask prove -- --split calibration`).
+/// stands by itself: it may come from a single protocol, which none of the others predicts. On calibration cases this takes away one name, a
+/// wrong one of 7.5 nats: softening where the load cell hums (`tests/trial/test_named.py`).
 const SLIGHT: f64 = 8.0;
 
 /// What the rungs decide, and the gain of what is named.

@@ -209,19 +209,24 @@ fn rivals(all: &[Rival]) -> String {
         let names = rival.effects.join(" + ").replace('_', " ");
         let _ = write!(
             html,
-            "<tr><td class='left'>{}</td><td>{:.1}</td><td>{:.0} %</td><td>{:.0} %</td>",
+            "<tr><td class='left'>{}</td><td>{}</td><td>{:.0} %</td><td>{:.0} %</td>",
             escaped(&names),
-            rival.evidence,
+            nats(rival.evidence),
             100.0 * rival.probability,
             100.0 * rival.left
         );
         for part in rival.ledger {
-            let _ = write!(html, "<td>{part:.1}</td>");
+            let _ = write!(html, "<td>{}</td>", nats(part));
         }
         html += "</tr>";
     }
     html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued. A pair one of which is not needed \
 counts as the other alone, and has no probability of its own.</p>\n"
+}
+
+/// Evidence with one decimal; what rounds to nothing has no sign.
+fn nats(evidence: f64) -> String {
+    format!("{:.1}", (10.0 * evidence).round() / 10.0 + 0.0)
 }
 
 fn smallest(found: &Diagnosis) -> String {
@@ -260,12 +265,20 @@ alone, blue with {what}. Below, the same less what parameters alone give: dots w
 
 #[cfg(test)]
 mod tests {
-    use super::size;
+    use super::{nats, size};
 
     #[test]
     fn a_size_of_any_unit_has_three_digits() {
         let told = [0.000_123_4, 0.0567, 0.2, 12.345, 4321.0].map(size);
         assert_eq!(told, ["0.000123", "0.0567", "0.200", "12.3", "4321"]);
         assert_eq!(size(0.0), "0");
+    }
+
+    #[test]
+    fn nats_that_round_to_nothing_have_no_sign() {
+        assert_eq!(
+            [-0.04, 0.04, -0.06, 12.34].map(nats),
+            ["0.0", "0.0", "-0.1", "12.3"]
+        );
     }
 }
