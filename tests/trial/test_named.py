@@ -80,6 +80,13 @@ def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_
     assert 0.0 < said["record_next"][0]["probability"] < 1.0 and asked["in_turn_with"] in {None, *used}
 
 
+def test_what_every_explanation_holds_is_told(tmp_path):
+    """A sensor that drifts beside what fades, by one clock or the other."""
+    said = found("case_181", tmp_path)
+    assert said["verdict"] == "cannot_tell" and said["cannot_tell"] == [["relaxation", "drainage"]]
+    assert "each of them together with drift of the sensor" in said["sentence"]
+
+
 @pytest.mark.parametrize("case", POCKETS)
 def test_a_pocket_that_gives_way_has_no_name_and_goes_with_depth(case, tmp_path):
     """It gives way at 0.55 of the depth: there an empirical correction falls most."""

@@ -3,9 +3,10 @@
 use super::findings::Gain;
 use super::gain::gain;
 use super::gates::{self, Decision};
-use super::ladder::Rungs;
+use super::ladder::{Rungs, Scored};
 use super::mechanism::Mechanism;
 use super::prepare::Prepared;
+use super::sentence::words;
 use crate::Measured;
 
 /// Evidence, nats, below which one effect of the skin must predict recordings that it was not fitted to better than nothing does. More
@@ -30,8 +31,20 @@ pub fn decide<'a>(
         .as_ref()
         .is_some_and(|g| is_refuted(told, (g.removed, g.placebo)))
     {
-        true => (gates::unnamed(ready, rungs, named), None),
+        true => (unnamed(ready, rungs, named), None),
         false => (decision, gain),
+    }
+}
+
+/// Nothing listed is there, since what would be named does not predict.
+fn unnamed<'a>(ready: &Prepared, rungs: &'a Rungs, named: &Scored) -> Decision<'a> {
+    let name = words(named.mechanisms[0].effect.name());
+    let reason = format!(
+        "{name} would explain slightly more than noise would, and predicts recordings that it was not fitted to worse than nothing does"
+    );
+    Decision {
+        reason,
+        ..gates::undetected(ready, rungs)
     }
 }
 

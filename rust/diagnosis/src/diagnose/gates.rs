@@ -54,6 +54,8 @@ pub struct Decision<'a> {
     pub named: Option<&'a Scored>,
     /// Pairs of names within reach of one another.
     pub cannot_tell: Vec<[&'static str; 2]>,
+    /// What every explanation holds that is within reach, if they are of two effects each.
+    pub beside: Vec<&'static str>,
     /// Why, for the notes.
     pub reason: String,
 }
@@ -83,6 +85,7 @@ fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
         verdict,
         named: None,
         cannot_tell: Vec::new(),
+        beside: Vec::new(),
         reason: reason.to_owned(),
     }
 }
@@ -107,7 +110,7 @@ fn suspected(rungs: &Rungs) -> String {
 }
 
 /// Nothing listed is there: nothing at all, or something unlisted.
-fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
+pub fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
     let left = rungs.base.coherent / rungs.samples as f64;
     if left > UNLISTED {
         return silent(
@@ -121,36 +124,32 @@ fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
     )
 }
 
-/// Nothing listed is there either if what would be named does not predict recordings that it was not fitted to.
-pub fn unnamed<'a>(ready: &Prepared, rungs: &'a Rungs, named: &Scored) -> Decision<'a> {
-    let name = words(named.mechanisms[0].effect.name());
-    let reason = format!(
-        "{name} would explain slightly more than noise would, and predicts recordings that it was not fitted to worse than nothing does"
-    );
-    Decision {
-        reason,
-        ..undetected(ready, rungs)
-    }
-}
-
 /// Two effects; None where one suffices.
 fn paired(rungs: &Rungs) -> Option<Decision<'_>> {
     let pair = rungs.pairs.iter().find(|pair| is_pair(pair, rungs))?;
     let names = pair.names();
     let within_reach = |r: &&Scored| within(pair, r) && is_pair(r, rungs);
-    let rivals: Vec<[&'static str; 2]> = rungs
+    let alike: Vec<Vec<&'static str>> = rungs
         .pairs
         .iter()
         .filter(within_reach)
-        .flat_map(|rival| differing(&names, &rival.names()))
+        .map(Scored::names)
+        .collect();
+    let rivals: Vec<[&'static str; 2]> = alike
+        .iter()
+        .flat_map(|rival| differing(&names, rival))
         .map(|(a, b)| [a, b])
         .collect();
-    Some(match rivals.is_empty() {
-        true => named(pair, "two effects together, each of which is needed"),
-        false => unsettled(
+    if rivals.is_empty() {
+        return Some(named(pair, "two effects together, each of which is needed"));
+    }
+    let is_in_all = |name: &&'static str| alike.iter().all(|rival| rival.contains(name));
+    Some(Decision {
+        beside: names.iter().copied().filter(is_in_all).collect(),
+        ..unsettled(
             rivals,
             "several pairs of effects explain the recordings alike",
-        ),
+        )
     })
 }
 
@@ -371,6 +370,7 @@ fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
         },
         named: Some(scored),
         cannot_tell: Vec::new(),
+        beside: Vec::new(),
         reason: reason.to_owned(),
     }
 }
@@ -387,6 +387,7 @@ fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a
         verdict: Verdict::CannotTell,
         named: None,
         cannot_tell: seen,
+        beside: Vec::new(),
         reason: reason.to_owned(),
     }
 }

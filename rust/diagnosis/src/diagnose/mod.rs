@@ -218,7 +218,7 @@ fn told(
     found.sentence = sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
-        (&found.cannot_tell, &found.record_next),
+        (&found.cannot_tell, &decision.beside, &found.record_next),
         &reason,
     );
     found

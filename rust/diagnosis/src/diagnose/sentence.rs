@@ -24,7 +24,7 @@ pub fn words(effect: &str) -> String {
 pub fn sentence(
     verdict: Verdict,
     (findings, gain): (&[Finding], Option<&Gain>),
-    (pairs, next): (&[[&'static str; 2]], &[Suggestion]),
+    (pairs, beside, next): (&[[&'static str; 2]], &[&'static str], &[Suggestion]),
     reason: &str,
 ) -> String {
     let names: Vec<String> = findings.iter().map(|f| words(f.effect)).collect();
@@ -50,8 +50,13 @@ pub fn sentence(
                 .iter()
                 .map(|[a, b]| format!("{} and {}", words(a), words(b)))
                 .collect();
+            let with: Vec<String> = beside.iter().map(|name| words(name)).collect();
+            let with = match with.is_empty() {
+                true => String::new(),
+                false => format!(", each of them together with {}", with.join(" and ")),
+            };
             format!(
-                "These recordings cannot tell {} apart.{}",
+                "These recordings cannot tell {} apart{with}.{}",
                 told.join(", nor "),
                 next.first().map_or(String::new(), advised)
             )
@@ -126,6 +131,23 @@ mod tests {
             probability,
             minutes: 30.0,
         })
+    }
+
+    #[test]
+    fn what_every_explanation_holds_is_told_beside_what_cannot_be_told_apart() {
+        let pairs = [["bone", "fixture_compliance"]];
+        let told = |beside: &[&'static str]| {
+            sentence(
+                Verdict::CannotTell,
+                (&[], None),
+                (&pairs, beside, &[]),
+                "unused",
+            )
+        };
+        let apart = "These recordings cannot tell another thickness of the tissue over bone and fixture compliance apart";
+        assert_eq!(told(&[]), format!("{apart}."));
+        let with = ", each of them together with a zero error of the sensor.";
+        assert_eq!(told(&["offset"]), format!("{apart}{with}"));
     }
 
     #[test]
