@@ -65,6 +65,21 @@ def test_a_floor_is_told_where_it_was_planted(case, tmp_path):
     assert finding["parameters"]["floor_n"]["value"] == pytest.approx(FLOORS[case], rel=0.12)
 
 
+@pytest.mark.parametrize("case", ["case_189", "case_462"])
+def test_a_floor_is_seen_from_the_size_that_is_told_and_not_far_below(case, tmp_path):
+    least = found(case, tmp_path)["smallest_seen"]["threshold"]["value"]
+    for size, is_seen in ((1.2, True), (0.3, False)):
+        study = tmp_path / str(size)
+        cases.write(case, study)
+        for path in study.glob("press_*.csv"):
+            head, *rows = path.read_text().splitlines()
+            cells = (row.rsplit(",", 1) for row in rows)
+            read = [f"{way},{force if abs(float(force)) >= size * least else 0.0}" for way, force in cells]
+            path.write_text("\n".join([head, *read]) + "\n")
+        said = json.loads(thenar.diagnose(thenar.Study.load(study)).to_json())
+        assert ([one["effect"] for one in said["findings"]] == ["threshold"]) == is_seen
+
+
 def test_one_sphere_does_not_tell_drainage_from_relaxation_and_another_is_asked_for(tmp_path):
     """Only the contact's size tells the clocks apart: the next recording is with a tool that was not used."""
     said = found("case_478", tmp_path)

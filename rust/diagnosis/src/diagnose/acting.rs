@@ -18,6 +18,8 @@ const GROWS: (f64, f64) = (1.6, 1.4);
 const MOST_GROWS: (f64, f64) = (1.0, 2.0);
 /// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
 const NARROWS: f64 = 0.3;
+/// What weighs a reading that is missing above a floor, over one that is there below it: some get through, and none is lost.
+const LOST: f64 = 3.0;
 /// Width of a floor's edge over the floor, in recordings that are only planned.
 const EDGE: f64 = 0.01;
 /// Way over which skin lets go, over the largest depth.
@@ -211,17 +213,18 @@ impl Screen<'_> {
 /// What is read of a force by an instrument that is blind below a floor, where something (or nothing) was read.
 ///
 /// Of a force beside the floor nobody knows on which side it is, and to read nothing where all of it was meant would weigh as hundreds of
-/// other readings. So a reading is not held against more than the force that is lacking: what ought not to have been seen counts as that
-/// far from it, and of what ought to have been seen only what lies beyond the floor is missing (as Tobin 1958, Econometrica 26:24, has it
-/// of what is censored). Where nothing is recorded yet the floor is an edge of [`EDGE`].
+/// other readings. So a reading is held against the force that is lacking (as Tobin 1958, Econometrica 26:24, has it of what is censored):
+/// what ought not to have been seen counts as that far from it, and of what ought to have been seen is missing [`LOST`] times what lies
+/// beyond the floor. Where nothing is recorded yet the floor is an edge of [`EDGE`].
 fn beyond(floor: f64, force: f64, reading: f64) -> f64 {
     let over = force - floor;
     match reading {
+        _ if floor <= 0.0 => force,
         _ if reading.is_nan() => {
             force / (1.0 + libm::exp((-over / (EDGE * floor)).clamp(-40.0, 40.0)))
         }
         _ if reading > 0.5 * floor => force - (-over).clamp(0.0, force.max(0.0)),
-        _ => over.max(0.0),
+        _ => (LOST * over).clamp(0.0, force.max(0.0)),
     }
 }
 
@@ -360,5 +363,27 @@ mod tests {
         for (height, root) in heights.iter().zip([1.0, 0.5]) {
             assert!((height + lets_go * most * root).abs() < 2e-3, "{heights:?}");
         }
+    }
+
+    #[test]
+    fn a_reading_is_held_against_the_force_that_it_lacks_of_a_floor() {
+        // Read above it, read 0.25 N below it, slipped through far below it; a pull.
+        for (force, wanted) in [(12.0, 12.0), (7.75, 7.5), (3.0, 0.0), (-1.0, -1.0)] {
+            assert!((beyond(8.0, force, 8.2) - wanted).abs() < 1e-12, "{force}");
+        }
+        // Not read, though 0.4 N beyond, or far more; noise is no reading.
+        for (force, wanted) in [(7.0, 0.0), (8.4, 1.2), (20.0, 20.0), (-1.0, 0.0)] {
+            for noise in [0.0, 3.9, -0.5] {
+                let told = beyond(8.0, force, noise);
+                assert!((told - wanted).abs() < 1e-12, "{force} {noise}");
+            }
+        }
+        // Planned: all of it or nothing, and a floor of nothing takes nothing.
+        assert!(beyond(8.0, 7.0, f64::NAN) < 0.01 && beyond(8.0, 9.0, f64::NAN) > 8.99);
+        assert!(
+            [f64::NAN, 0.0]
+                .iter()
+                .all(|read| beyond(0.0, 0.0, *read) == 0.0)
+        );
     }
 }

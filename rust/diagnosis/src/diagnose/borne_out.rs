@@ -85,6 +85,7 @@ mod tests {
         assert!(!is_refuted((one, 7.0), better));
         assert!(!is_refuted((one, 7.0), (0.05, Some(0.1))));
         assert!(!is_refuted((one, 9.0), worse));
+        assert!(!is_refuted((one, 7.0), (-0.1, Some(-0.2))));
         // Where nothing could be removed there is no placebo, and nothing to hold against it.
         assert!(!is_refuted((one, 7.0), (-0.2, None)));
         assert!(!is_refuted((std::slice::from_ref(&offset), 7.0), worse));

@@ -11,7 +11,7 @@ pub struct Row {
     pub time_s: f64,
     /// Depth as stated, mm.
     pub depth_mm: f64,
-    /// Force that was measured, N.
+    /// Force that was measured, N; NaN where it is only planned.
     pub force_n: f64,
     /// Number of the force sample among all samples of the study, stacked.
     pub sample: Option<usize>,

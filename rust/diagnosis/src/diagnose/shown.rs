@@ -12,6 +12,7 @@ use super::model::Model;
 use super::numbers::{Free, told};
 use super::prepare::Prepared;
 use super::refit::{covariance, huber, left_by_fit};
+use super::screen::Screen;
 use super::signs::looked_for;
 use super::spectrum::Spectrum;
 use crate::Phase;
@@ -225,7 +226,15 @@ pub fn smallest_seen(
                 ..
             } => errors * error_at_start(ready, rungs, mechanism),
             Acts::Tabled(_) if mechanism.effect == Effect::StiffSkin => {
-                size_that_leaves(ready, rungs, (mechanism, errors))
+                size_that_leaves(&ready.screen(), rungs, (mechanism, errors))
+            }
+            Acts::Blind(_) => {
+                let unread = unread(&ready.courses);
+                let screen = Screen {
+                    courses: &unread,
+                    ..ready.screen()
+                };
+                size_that_leaves(&screen, rungs, (mechanism, errors)).max(screen.least_floor)
             }
             _ => errors * Free::of(ready, scored, 0).first().1,
         };
@@ -249,14 +258,13 @@ fn error_at_start(ready: &Prepared, rungs: &Rungs, mechanism: &Mechanism) -> f64
 }
 
 /// The size from which a mechanism leaves so many standard deviations once the base is fitted to it; beyond its bounds if it does at none. Of a skin,
-/// which adds little at first: a standard error at no skin at all would say that it is never seen.
+/// which adds little at first: a standard error at no skin at all would say that it is never seen. Of a floor likewise.
 fn size_that_leaves(
-    ready: &Prepared,
+    screen: &Screen<'_>,
     rungs: &Rungs,
     (mechanism, errors): (&Mechanism, f64),
 ) -> f64 {
-    let screen = ready.screen();
-    let model = Model::new(&screen, std::slice::from_ref(mechanism));
+    let model = Model::new(screen, std::slice::from_ref(mechanism));
     let base = &rungs.base.refit.at;
     let most = model.coordinates[base.len()].bounds.1;
     let sizes: Vec<f64> = (0..=SIZES)
@@ -265,7 +273,7 @@ fn size_that_leaves(
     let of =
         |size: &f64| screen.stacked(&screen.all_forces(&model, &[base, &[*size][..]].concat()));
     let changed: Vec<Vec<f64>> = sizes.iter().map(of).collect();
-    let squares = left_by_fit(&screen, &Model::new(&screen, &[]), (base, &changed));
+    let squares = left_by_fit(screen, &Model::new(screen, &[]), (base, &changed));
     let left: Vec<f64> = squares.iter().map(|s| s.max(0.0).sqrt()).collect();
     let Some(k) = left.iter().position(|left| *left >= errors) else {
         return 2.0 * most;
@@ -273,6 +281,15 @@ fn size_that_leaves(
     let before = k.saturating_sub(1);
     let share = (errors - left[before]) / (left[k] - left[before]).max(f64::MIN_POSITIVE);
     sizes[before] + share.min(1.0) * (sizes[k] - sizes[before])
+}
+
+/// The same recordings before anything was read of them.
+fn unread(courses: &[Course]) -> Vec<Course> {
+    let mut all = courses.to_vec();
+    for row in all.iter_mut().flat_map(|course| &mut course.rows) {
+        row.force_n = f64::NAN;
+    }
+    all
 }
 
 /// Sizes at which a mechanism is tried.
