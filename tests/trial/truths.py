@@ -23,43 +23,25 @@ class Truth:
     """The forces of one pad with one effect at any amplitude between 0 and 1."""
 
     def __init__(self, pad, effect="none", variant=0):
-        self.pad, self.grips, self.parts, self.loading, self.curves = pad, (), {}, {}, {}
-        if effect == "adhesion":
-            known = [one for one in protocols.GRIPS if f"{pad}/{effect}/{variant}/{one}/{RICH[-1]}" in runs()]
-            self.grips = tuple(known)
-        amplitudes = self.grips or computed(pad)
+        self.pad, self.parts, self.loading = pad, {}, {}
+        known = forms(pad, effect, variant)
+        self.grips = known if effect == "adhesion" else ()
         for name in RICH:
             rest = runs()[f"{pad}/none/0/0/{name}"].astype(float)
-            keys = {one: f"{pad}/{effect}/{variant}/{one}/{name}" for one in amplitudes}
-            added = {one: runs()[key].astype(float) - rest for one, key in keys.items() if key in runs()}
             time, depth = protocols.sampled(pad, name)
-            is_fine = len(added) > len(protocols.AMPLITUDES) and not self.grips
-            if not self.grips and not is_fine:
-                added = _parabola(added, rest)
-            more = {one: along(pad, name, force, time) for one, force in added.items()}
-            if is_fine:
-                forces = np.array([np.zeros_like(time), *more.values()])
-                self.curves[name] = PchipInterpolator([0.0, *more], forces, axis=0)
+            added = {one: runs()[f"{pad}/{effect}/{variant}/{one}/{name}"].astype(float) - rest for one in known}
+            drawn = _nearest if self.grips else _smooth if len(known) > len(protocols.AMPLITUDES) else _parabola
+            more = drawn(added, lambda force, name=name, time=time: along(pad, name, force, time))
             self.parts[name] = (time, depth, along(pad, name, rest, time), more)
             self.loading[name] = _loading(pad, name, rest)
 
     def added(self, name, amplitude):
         """What the effect adds to a protocol's force, N for G = 0.01 MPa; of a grip the nearest that was computed."""
-        more = self.parts[name][3]
-        if name in self.curves:
-            return self.curves[name](amplitude)
-        if not self.grips:
-            return amplitude * more[0] + amplitude**2 * more[1]
-        nearest = min(self.grips, key=lambda one: abs(one - amplitude))
-        return more[nearest] if amplitude > 0.0 else 0.0 * more[nearest]
+        return self.parts[name][3](amplitude)
 
     def whole(self, name, amplitude):
         """A protocol's force with the effect, N for G = 0.01 MPa."""
-        _, _, rest, more = self.parts[name]
-        if self.grips or name in self.curves:
-            return rest + self.added(name, amplitude)
-        # Summed in this order, so that the same cases keep their bytes.
-        return rest + amplitude * more[0] + amplitude**2 * more[1]
+        return self.parts[name][2] + self.added(name, amplitude)
 
     def presses(self, amplitude, growth):
         """Every protocol twice, the second time after all the others; forces in N for moduli (G0, Glim)."""
@@ -93,10 +75,6 @@ class Pair(Truth):
             alone = sum(one.added(name, 1.0) for one in self.both)
             self.cross[name] = along(pad, name, whole, self.parts[name][0]) - alone
 
-    def whole(self, name, amplitude):
-        """A protocol's force with both, N for G = 0.01 MPa."""
-        return self.parts[name][2] + self.added(name, amplitude)
-
     def added(self, name, amplitude):
         """What both add at the amplitudes (first, second), N for G = 0.01 MPa."""
         each = [one.added(name, share) for one, share in zip(self.both, amplitude, strict=True)]
@@ -120,18 +98,31 @@ def computed(pad):
 
 
 def forms(pad, effect, variant):
-    """Amplitudes at which this effect was computed on this pad: what it looks like between weak and strong."""
-    tried = sorted({*protocols.GRIPS, *computed(pad)})
+    """Amplitudes at which this effect was computed on this pad, ascending: what it looks like from weak to strong."""
+    tried = protocols.GRIPS if effect == "adhesion" else computed(pad)
     return tuple(one for one in tried if f"{pad}/{effect}/{variant}/{one}/{RICH[-1]}" in runs())
 
 
-def _parabola(added, rest):
-    """Both parts of what goes as x (first) + x^2 (second), from what was computed at two amplitudes or one (a line)."""
+def _nearest(added, seen):
+    """Of a grip what was computed next to an amplitude; at 0 nothing. `seen`: a force as it is sampled."""
+    found = {one: seen(force) for one, force in added.items()}
+    return lambda amplitude: found[min(found, key=lambda one: abs(one - amplitude))] * (amplitude > 0.0)
+
+
+def _smooth(added, seen):
+    found = [seen(force) for force in added.values()]
+    return PchipInterpolator([0.0, *added], np.array([0.0 * found[0], *found]), axis=0)
+
+
+def _parabola(added, seen):
+    """What goes as x and x^2 between nothing and what was computed at two amplitudes, at one (a line) or at none."""
     half, most = protocols.AMPLITUDES
-    high = added.get(most, np.zeros_like(rest))
-    low = added.get(half, half * high)
-    bent = (high - low / half) / (1.0 - half)
-    return {0: high - bent, 1: bent}
+    if most not in added:
+        return lambda amplitude: 0.0
+    low = added.get(half, half * added[most])
+    bent = (added[most] - low / half) / (1.0 - half)
+    parts = seen(added[most] - bent), seen(bent)
+    return lambda amplitude: amplitude * parts[0] + amplitude**2 * parts[1]
 
 
 def _loading(pad, name, rest):
