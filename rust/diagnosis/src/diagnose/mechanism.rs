@@ -200,6 +200,19 @@ impl Mechanism {
     pub fn is_instrument(&self) -> bool {
         self.effect.entry().is_instrument()
     }
+
+    /// True where a recording's gain is a factor on all that is read of it.
+    pub fn is_read_in_proportion(&self) -> bool {
+        !self.is_instrument() || matches!(self.acts, Acts::GainStep { .. })
+    }
+
+    /// True where the tool's elastic answer at a depth is a factor on all that is read there.
+    pub fn is_in_proportion(&self) -> bool {
+        matches!(
+            self.acts,
+            Acts::Tabled(_) | Acts::Stiffens(..) | Acts::Softens { .. } | Acts::GainStep { .. }
+        )
+    }
 }
 
 /// What the scales of a study are, from which variants are chosen.

@@ -37,6 +37,7 @@ mod sentence;
 mod shown;
 mod signs;
 mod skins;
+mod slopes;
 mod spectrum;
 mod stiffness;
 mod trial;

@@ -12,6 +12,8 @@ pub const HUBER: f64 = 3.0;
 const MOST_STEPS: usize = 60;
 /// Gain of the deviance below which a fit has settled.
 const SETTLED: f64 = 0.02;
+/// Gain of the deviance that a step must promise to be tried.
+const PROMISED: f64 = 1e-3;
 
 /// A screened model at its optimum.
 #[derive(Debug, Clone)]
@@ -75,31 +77,30 @@ pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
         *x = x.clamp(c.bounds.0, c.bounds.1);
     }
     let mut now = here(screen, model, at);
-    let mut jacobian = slopes(screen, model, &now);
+    let (mut normal, mut downhill) = system(model, &now, &slopes(screen, model, &now));
     let (mut damping, mut small) = (1e-3, 0);
     for _ in 0..MOST_STEPS {
-        let (normal, downhill) = system(model, &now, &jacobian);
         let Some(next) = step(model, (&now.at, &normal, &downhill), damping) else {
             break;
         };
-        let next = here(screen, model, next);
-        let gain = now.deviance - next.deviance;
-        if gain > 0.0 {
-            now = next;
-            jacobian = slopes(screen, model, &now);
-            damping = f64::max(damping * 0.2, 1e-9);
-            small = if gain < SETTLED { small + 1 } else { 0 };
-            if small >= 2 {
-                break;
-            }
-        } else {
+        let is_worth_it = promised((&now.at, &next), &normal, &downhill) > PROMISED;
+        let next = is_worth_it.then(|| here(screen, model, next));
+        let Some(next) = next.filter(|next| next.deviance < now.deviance) else {
             damping *= 10.0;
-            if damping > 1e6 || gain > -1e-9 {
+            if damping > 1e6 {
                 break;
             }
+            continue;
+        };
+        let gain = now.deviance - next.deviance;
+        small = if gain < SETTLED { small + 1 } else { 0 };
+        now = next;
+        (normal, downhill) = system(model, &now, &slopes(screen, model, &now));
+        damping = f64::max(damping * 0.2, 1e-9);
+        if small >= 2 {
+            break;
         }
     }
-    let (normal, _) = system(model, &now, &jacobian);
     Refit {
         covariance: inverse(&normal),
         at: now.at,
@@ -186,6 +187,12 @@ fn system(model: &Model<'_>, now: &Here, whitened: &DMatrix<f64>) -> (DMatrix<f6
         }
     }
     (normal, downhill)
+}
+
+/// By how much the deviance falls over a step if it is as its slopes and the normal matrix say.
+fn promised((from, to): (&[f64], &[f64]), normal: &DMatrix<f64>, downhill: &DVector<f64>) -> f64 {
+    let step = DVector::from_iterator(from.len(), to.iter().zip(from).map(|(b, a)| b - a));
+    2.0 * downhill.dot(&step) - step.dot(&(normal * &step))
 }
 
 /// The damped step within the bounds: what meets one stays there, and the rest is solved again.

@@ -7,8 +7,7 @@ use super::course::{Course, Row};
 use super::elastic::Elastic;
 use super::mechanism::Acts;
 use super::memory::{Way, lost};
-use super::model::{Coordinate, Kind, Model, Setting};
-use super::stiffness::modes;
+use super::model::{Coordinate, Model, Setting};
 use crate::Phase;
 use crate::noise::Whitening;
 
@@ -50,7 +49,8 @@ impl Screen<'_> {
     /// Forces of one recording's rows, N.
     pub fn forces(&self, model: &Model<'_>, set: &Setting, course: usize) -> Vec<f64> {
         let rows = self.courses[course].rows.iter();
-        let known: Vec<f64> = rows.map(|r| r.force_n).collect();
+        // Nothing is known where nothing was read yet.
+        let known: Vec<f64> = rows.map(|r| f64::max(r.force_n, 0.0)).collect();
         let yields = model.mechanisms.iter().any(|m| m.acts == Acts::Yields);
         let mut forces = match yields {
             true => self.yielding(model, set, (course, known)),
@@ -122,7 +122,7 @@ impl Screen<'_> {
     }
 
     /// True depths of a recording's rows, mm.
-    fn depths(
+    pub(super) fn depths(
         &self,
         model: &Model<'_>,
         set: &Setting,
@@ -176,54 +176,6 @@ impl Screen<'_> {
             .collect()
     }
 
-    /// Derivative of one recording's forces by a coordinate, or None where it does not matter.
-    pub fn slopes(
-        &self,
-        (model, at): (&Model<'_>, &[f64]),
-        (number, course): (usize, usize),
-        forces: &[f64],
-    ) -> Option<Vec<f64>> {
-        let coordinate = &model.coordinates[number];
-        let one = &self.courses[course];
-        let matters = match coordinate.kind {
-            Kind::Zero(c) | Kind::Gain(c) => c == course,
-            Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
-            Kind::Of(of, _) => match &model.mechanisms[of].acts {
-                Acts::GainStep { from } => one.order >= *from,
-                _ => true,
-            },
-            Kind::First | Kind::Limit => true,
-        };
-        if !matters {
-            return None;
-        }
-        match coordinate.kind {
-            Kind::Gain(_) | Kind::Scale(_) => return Some(forces.to_vec()),
-            Kind::Form(_, mode) => {
-                let table = &self.elastic.places[one.place];
-                let depths = self.depths(model, &model.setting(self, at), (course, forces));
-                let slope = |(d, f): (&f64, &f64)| f * modes(table, *d)[mode];
-                return Some(depths.iter().zip(forces).map(slope).collect());
-            }
-            _ => {}
-        }
-        let (low, high) = coordinate.bounds;
-        let step = match high - at[number] > at[number] - low {
-            true => coordinate.step,
-            false => -coordinate.step,
-        };
-        let mut moved = at.to_vec();
-        moved[number] += step;
-        let moved = self.forces(model, &model.setting(self, &moved), course);
-        Some(
-            moved
-                .iter()
-                .zip(forces)
-                .map(|(b, a)| (b - a) / step)
-                .collect(),
-        )
-    }
-
     /// Phase of every screened sample, and the course it belongs to.
     pub fn phases(&self) -> Vec<(usize, usize, Phase)> {
         let mut all = Vec::new();
@@ -245,6 +197,7 @@ mod tests {
 
     use super::super::made::{ready, tool};
     use super::super::mechanism::{Mechanism, Stage};
+    use super::super::model::Kind;
     use super::super::prepare::Prepared;
     use super::*;
 
@@ -287,10 +240,13 @@ mod tests {
             }
             let ball = |d: f64| 10.0 * libm::pow(d, 1.5);
             let compliance = part * 2.0 / ball(2.0);
-            let round = forces(&pressed(ball), yields.clone(), compliance);
-            for (k, force) in round.iter().enumerate() {
-                let wanted = ball(k as f64 / 40.0 - compliance * force);
-                assert!((force - wanted).abs() < 0.01, "{part}: {force} {wanted}");
+            let planned = pressed_and_read(ball, |_| f64::NAN);
+            for ready in [pressed(ball), planned] {
+                let round = forces(&ready, yields.clone(), compliance);
+                for (k, force) in round.iter().enumerate() {
+                    let wanted = ball(k as f64 / 40.0 - compliance * force);
+                    assert!((force - wanted).abs() < 0.01, "{part}: {force} {wanted}");
+                }
             }
         }
     }
