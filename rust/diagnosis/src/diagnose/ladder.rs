@@ -1,6 +1,9 @@
 //! The ladder: parameters, instrument and tissue one by one, pairs, and what no listed name explains; it stops at the first
 //! rung that suffices.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
 use thenar_contact::effects::Effect;
 
 use super::checks::{GainStep, Unsteady, gain_step, pulls, unsteady};
@@ -145,29 +148,36 @@ impl Trial<'_> {
             effect: Effect::Gain,
             acts: Acts::GainStep { from: found.from },
         }));
-        let mut all = Vec::new();
-        for (k, mechanism) in tried.iter().enumerate() {
-            self.step(0.6 * k as f64 / tried.len() as f64)?;
-            all.push(self.single(mechanism));
-        }
-        Ok(all)
+        self.each(&tried, (0.0, 0.6), |mechanism| self.single(mechanism))
     }
 
     /// Pairs of single mechanisms, best first; none where no single one is worth it.
     fn pairs(&self, singles: &[Scored], scale: &Scale) -> Result<Vec<Scored>, DiagnosisError> {
-        let mut pairs = Vec::new();
         if singles.first().is_none_or(|b| b.evidence <= WORTH_A_PAIR) {
-            return Ok(pairs);
+            return Ok(Vec::new());
         }
-        let sets = sets_of_two(singles);
-        for (k, (better, set)) in sets.iter().enumerate() {
-            self.step(0.6 + 0.3 * k as f64 / sets.len() as f64)?;
-            pairs.push(self.pair((better, set), singles));
-        }
+        let fit = |(better, set): &(&Scored, _)| self.pair((better, set), singles);
+        let mut pairs = self.each(&sets_of_two(singles), (0.6, 0.9), fit)?;
         pairs.iter_mut().for_each(|s| scale.judge(s));
         pairs.retain(|s| shows_its_signs(self.ready, s));
         pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
         Ok(pairs)
+    }
+
+    /// Fits each on whatever threads there are, and tells how far it has come; what is found stands in their order.
+    fn each<T: Sync>(
+        &self,
+        tried: &[T],
+        (from, to): (f64, f64),
+        fit: impl Fn(&T) -> Scored + Sync,
+    ) -> Result<Vec<Scored>, DiagnosisError> {
+        let done = AtomicUsize::new(0);
+        let one = |one: &T| {
+            let share = done.fetch_add(1, Ordering::Relaxed) as f64 / tried.len() as f64;
+            self.step(from + (to - from) * share)?;
+            Ok(fit(one))
+        };
+        tried.par_iter().map(one).collect()
     }
 }
 

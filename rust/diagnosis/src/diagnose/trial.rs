@@ -46,33 +46,42 @@ impl Trial<'_> {
         }
     }
 
-    /// The best fit of one mechanism from all its starts.
+    /// The best fit of one mechanism from all its starts, each from the base's optimum and from the study's own numbers: what is missing may
+    /// have drawn the base into a hollow of its own, of which a stiff skin's fit does not come out.
     pub fn single(&self, mechanism: &Mechanism) -> Scored {
         let one = std::slice::from_ref(mechanism);
-        let mut best = self.score(one, &self.from);
-        for start in mechanism.starts(self.ready.least_seen()) {
-            best = lower(best, self.score(one, &[&self.from[..], &start].concat()));
-        }
-        best
+        let mut starts = mechanism.starts(self.ready.least_seen());
+        starts.push(Vec::new());
+        let own: Vec<f64> = self.screen.shared.iter().map(|c| c.start).collect();
+        let beside = |shared: &[f64], start: &[f64]| self.score(one, &[shared, start].concat());
+        let fits = starts
+            .iter()
+            .flat_map(|start| [&self.from, &own].map(|at| beside(at, start)));
+        fits.reduce(lower).expect("two starts at least")
     }
 
-    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, where it has other
-    /// starts also where it ended alone, and where that is worse than the better one by itself, where it does nothing.
+    /// The best fit of two mechanisms from the optimum of the better one; the second begins where it is told to, and where it ended alone.
+    /// Also from the optimum of the second, and where all that is worse than the better one by itself, where the second does nothing.
     pub fn pair(&self, (better, set): (&Scored, &[Mechanism; 2]), singles: &[Scored]) -> Scored {
-        let from = |start: &[f64]| self.score(set, &[&better.refit.at[..], start].concat());
-        let mut best = from(&[]);
-        let alone = singles.iter().find(|s| s.mechanisms[0] == set[1]);
-        let has_starts = !set[1].starts(self.ready.least_seen()).is_empty();
-        if let Some(alone) = alone.filter(|_| has_starts) {
-            best = lower(best, from(&alone.refit.at[self.from.len()..]));
+        let from = |parts: &[&[f64]]| self.score(set, &parts.concat());
+        let (shared, first) = better.refit.at.split_at(self.from.len());
+        let mut best = from(&[shared, first]);
+        if let Some(alone) = singles.iter().find(|s| s.mechanisms[0] == set[1]) {
+            let (other, second) = alone.refit.at.split_at(self.from.len());
+            for start in [
+                &[shared, first, second][..],
+                &[other, first, second],
+                &[other],
+            ] {
+                best = lower(best, from(start));
+            }
         }
-        if let Some(nothing) = set[1]
-            .nothing()
-            .filter(|_| best.refit.deviance > better.refit.deviance)
-        {
-            best = lower(best, from(&[nothing]));
+        match set[1].nothing() {
+            Some(nothing) if best.refit.deviance > better.refit.deviance => {
+                lower(best, from(&[shared, first, &[nothing]]))
+            }
+            _ => best,
         }
-        best
     }
 }
 
@@ -226,6 +235,26 @@ mod tests {
         };
         assert!((offset - study.offset_n).abs() < 0.02, "{offset}");
         assert!((ceiling + study.spike).abs() < 5e-3, "{ceiling}");
+    }
+
+    /// A base that was drawn to tissue that is none: nothing leads back from there.
+    #[test]
+    fn a_single_one_begins_with_the_studys_own_numbers_too() {
+        LOW.on_trial(|trial| {
+            let mut screen = trial.ready.screen();
+            screen.shared.iter_mut().for_each(|c| c.bounds.0 = -900.0);
+            let drawn = Trial {
+                screen: &screen,
+                from: vec![-900.0; trial.from.len()],
+                control: &Control::none(),
+                blocks: trial.blocks.clone(),
+                ready: trial.ready,
+            };
+            let stuck = drawn.score(std::slice::from_ref(&CEILING), &drawn.from);
+            assert_eq!(stuck.refit.at[..2], drawn.from[..]);
+            let found = drawn.single(&CEILING).refit.at;
+            assert!((found[2] + LOW.spike).abs() < 5e-3, "{found:?}");
+        });
     }
 
     /// A floor under readings of two punches, small and just below the peak of the softer. Some readings get through below it, and so the
