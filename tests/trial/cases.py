@@ -15,6 +15,7 @@ these. How to read severities and the sets of ambiguous cases is told in page.py
 
 import functools
 import json
+import os
 import zlib
 from pathlib import Path
 
@@ -24,14 +25,21 @@ from trial import protocols, studies
 
 HERE = Path(__file__).parent
 KINDS = ("", "local_", "second_")  # of files
+LARGER = "THENAR_TRIAL_LARGER"  # names the folder of the files `larger_...`, if there are any (make_larger.py)
+
+
+def folders():
+    """Where the files of every kind lie."""
+    found = dict.fromkeys(KINDS, HERE)
+    return found | {"larger_": Path(os.environ[LARGER])} if LARGER in os.environ else found
 
 
 @functools.cache
 def index():
     """The public indices: by case the split, the pad, what is published of it, and where its recordings are kept."""
     found = {}
-    for kind in KINDS:
-        listed = json.loads((HERE / f"{kind}cases.json").read_text())["cases"]
+    for kind, folder in folders().items():
+        listed = json.loads((folder / f"{kind}cases.json").read_text())["cases"]
         found |= {name: about | {"kind": kind} for name, about in listed.items()}
     return found
 
@@ -39,14 +47,14 @@ def index():
 @functools.cache
 def _numbers():
     found = {}
-    for kind in KINDS:
-        with np.load(HERE / f"{kind}cases.npz") as table:
+    for kind, folder in folders().items():
+        with np.load(folder / f"{kind}cases.npz") as table:
             found |= {name: table[name] for name in table.files}
     return found
 
 
 def names(split):
-    """Cases of `trial`, `calibration` or `second`."""
+    """Cases of `trial`, `calibration`, `second` or `larger`."""
     return [name for name, case in index().items() if case["split"] == split]
 
 

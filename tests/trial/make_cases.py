@@ -23,7 +23,8 @@ KAPPAS = (0.5, 1.0, 2.0, 4.0)
 USUAL = ("slow, small sphere", "fast, small sphere", "cycles, small sphere")
 MOST_STEPS = 32000  # forces are kept as shares of each recording's largest
 
-SEEDS = {"trial": 20, "calibration": 10, "second": 42}
+SEEDS = {"trial": 20, "calibration": 10, "second": 42, "larger": 77}
+ALSO = {"larger": "calibration"}  # drawn with that one's counts, on its pads
 # How many of each stratum, in the order of SEEDS.
 NULLS = {"normal": (40, 16, 60), "outliers": (20, 8, 40), "slow": (20, 8, 30), "wide": (20, 8, 30)}
 DECOYS, SINGLE, PAIR, UNLISTED = (7, 3, 8), (5, 2, 5), (4, 2, 4), (8, 3, 8)
@@ -137,6 +138,7 @@ def with_rival(plan, presses):
 
 def plans(split):
     """Every case of a split as a plan, in the order of the strata; the numbers are drawn from the plan's own seed."""
+    split = ALSO.get(split, split)
     which = list(SEEDS).index(split)
     for scatter, counts in NULLS.items():
         yield from ({"stratum": "null", "scatter": scatter, "names": []} for _ in range(counts[which]))
@@ -197,7 +199,7 @@ def _as_severe(plan, growth, seed):
 
 def _pads(plan, split):
     """Pads of the split for which the finite elements of a plan were computed."""
-    pads = [pad for pad, what in protocols.PADS.items() if what[0] == split]
+    pads = [pad for pad, what in protocols.PADS.items() if what[0] == ALSO.get(split, split)]
     key = "none/0/0" if plan.get("effect", "none") == "none" else f"{plan['effect']}/0/1.0"
     return [pad for pad in pads if f"{pad}/{key}/{RICH[-1]}" in runs()]
 
@@ -214,7 +216,7 @@ def main():
     write(found, "", (99, 5))
 
 
-def write(found, kind, seeds):
+def write(found, kind, seeds, folder=HERE):
     """Writes (split, plan, presses) shuffled, as the three files of a `kind`; `seeds`: of the order, of the salt."""
     shuffled = np.random.default_rng(seeds[0]).permutation(len(found))
     salt = hashlib.sha256(np.random.default_rng(seeds[1]).bytes(16)).hexdigest()[:16]
@@ -234,11 +236,11 @@ def write(found, kind, seeds):
         public[name] |= {"published": list(plan["published"]), "repeats": plan.get("repeats", REPEATS)}
         labels[name] = label
     kept = {f"{kind}force": np.concatenate(forces), f"{kind}depth": np.concatenate(depths)}
-    np.savez_compressed(HERE / f"{kind}cases.npz", **kept)
+    np.savez_compressed(folder / f"{kind}cases.npz", **kept)
     lines = {"cases": {"cases": public}, "labels": {"salt": salt, "labels": labels}}
     for what, table in lines.items():
         text = json.dumps(table).replace(f'"{kind or "case_"}', f'\n"{kind or "case_"}')
-        (HERE / f"{kind}{what}.json").write_text(text + "\n")
+        (folder / f"{kind}{what}.json").write_text(text + "\n")
 
 
 if __name__ == "__main__":

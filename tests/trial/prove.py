@@ -3,7 +3,7 @@
     cargo xtask prove [-- --split second --subset fixed --only thenar,bic --workers N --mutate labels]
 
 Splits: `trial` (as drawn, whatever its recordings hold), `second` (other pads, tools, speeds and seeds; asked for what
-its recordings hold: make_second.py), `calibration`.
+its recordings hold: make_second.py), `calibration`, `larger` (the calibration drawn thrice, anew: make_larger.py).
 
 Verdicts are kept in `target/prove/<case>`, those of the baselines in `target/prove/<baseline>/<case>`, and are not
 asked for twice (running.py), so a run that was cut goes on. Where the diagnosis cannot tell and asks for a recording
@@ -13,7 +13,7 @@ the table and writes `table.json` and `page.html`. Exits with 1 if a row of the 
 be.
 
 The thresholds of the diagnosis (rust/diagnosis/src/diagnose: gates.rs, checks.rs, prepare.rs) were set on
-`--split calibration` alone, and what they rest on is printed with it (thresholds.py).
+`--split calibration` and on larger draws of it, and what they rest on is printed with both (thresholds.py).
 """
 
 import argparse
@@ -23,7 +23,20 @@ import os
 import shutil
 from pathlib import Path
 
-from trial import cases, ceiling, counts, findings, following, mutations, page, running, score, subset, thresholds
+from trial import (
+    cases,
+    ceiling,
+    counts,
+    findings,
+    following,
+    make_larger,
+    mutations,
+    page,
+    running,
+    score,
+    subset,
+    thresholds,
+)
 from trial.baselines.peers import BASELINES
 
 ROOT = Path(__file__).parents[2]
@@ -91,7 +104,7 @@ def wrong_endings(who, out, names):
 def arguments():
     parser = argparse.ArgumentParser(prog="cargo xtask prove --", description=__doc__.splitlines()[0])
     everyone = [THENAR, *BASELINES]
-    parser.add_argument("--split", default="trial", choices=score.SPLITS)
+    parser.add_argument("--split", default="trial", choices=(*score.SPLITS, "larger"))
     parser.add_argument("--subset", default="all", choices=("all", "fixed"), help="fixed: what CI runs")
     parser.add_argument("--only", default=",".join(everyone), help=f"of {', '.join(everyone)}")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="cases side by side")
@@ -122,8 +135,11 @@ def takes_part(asked):
 def main():
     """Runs, scores, tells; the exit code says whether the diagnosis met what it must."""
     asked = arguments()
-    names = subset.fixed(asked.split) if asked.subset == "fixed" else cases.names(asked.split)
     asked.out.mkdir(parents=True, exist_ok=True)
+    if asked.split == "larger":
+        os.environ[cases.LARGER] = str(asked.out / "drawn")
+        make_larger.make(asked.out / "drawn")
+    names = subset.fixed(asked.split) if asked.subset == "fixed" else cases.names(asked.split)
     running.clear(asked.out)
     everyone = takes_part(asked)
     for who in everyone:
@@ -156,7 +172,7 @@ def _tell(asked, everyone, sealed, told, tables):
     print("wrong names:")
     for truth, false, is_beside, often in counts.wrong_names(sealed, told[first].said):
         print(f"  {false} {'beside' if is_beside else 'instead of'} {truth}: {often}")
-    if asked.split == "calibration":
+    if asked.split in ("calibration", "larger"):
         print("\n".join(thresholds.lines(sealed, told[first].said)))
     faults = {who.name: wrong_endings(who, asked.out, sealed) for who in everyone}
     for name, sentences in faults.items():

@@ -14,7 +14,7 @@ import math
 from pathlib import Path
 
 from trial import counts
-from trial.cases import KINDS
+from trial.cases import folders
 from trial.counts import Answers
 
 HERE = Path(__file__).parent
@@ -22,16 +22,20 @@ MARKS = {True: "met", False: "NOT MET", None: ""}
 SPLITS = ("trial", "calibration", "second")
 
 
-def labels(split, folder=HERE):
-    """Sealed labels by case. Raises ValueError for one that is not what the index's hash says."""
+def labels(split, folder=None):
+    """Sealed labels by case, of the files in `folder` or where they are.
+
+    Raises ValueError for one that is not what the index's hash says.
+    """
     found = {}
-    for kind in KINDS:
-        index = json.loads((folder / f"{kind}cases.json").read_text())["cases"]
-        sealed = json.loads((folder / f"{kind}labels.json").read_text())
+    for kind, place in folders().items():
+        place = folder or place
+        index = json.loads((place / f"{kind}cases.json").read_text())["cases"]
+        sealed = json.loads((place / f"{kind}labels.json").read_text())
         for name, label in sealed["labels"].items():
             digest = hashlib.sha256((sealed["salt"] + json.dumps(label, sort_keys=True)).encode()).hexdigest()
             if digest != index[name]["label"]:
-                path = folder / f"{kind}labels.json"
+                path = place / f"{kind}labels.json"
                 raise ValueError(f"{path}: the label of {name} is not the one sealed; restore the file")
             if index[name]["split"] == split:
                 found[name] = label

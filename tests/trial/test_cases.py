@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import thenar
 from proof import meshes, pressing
-from trial import cases, ceiling, counts, make_cases, protocols, score
+from trial import cases, ceiling, counts, make_cases, make_larger, protocols, score
 
 HERE = Path(__file__).parent
 RUNS = dict(np.load(HERE / "truth_runs.npz"))
@@ -169,6 +169,27 @@ def test_a_trial_is_as_large_as_it_must_be_and_hides_its_truths(split, lacking):
 def test_splits_share_no_pad():
     pads = [{("mat" in about(name), about(name)["pad"]) for name in cases.names(split)} for split in score.SPLITS]
     assert sum(map(len, pads)) == len(set.union(*pads)) > len(pads)
+
+
+def test_a_larger_draw_is_of_the_calibrations_pads_and_of_none_of_its_cases(tmp_path, monkeypatch):
+    make_larger.make(tmp_path, times=1)
+    monkeypatch.setenv(cases.LARGER, str(tmp_path))
+    cached = (cases.index, cases._numbers)
+    for one in cached:
+        one.cache_clear()
+    try:
+        sealed, kept = score.labels("larger"), score.labels("calibration")
+        kept = [label for name, label in kept.items() if "mat" not in about(name)]
+        assert len(sealed) == len(kept) > 0
+        moduli = [{tuple(label["g_mpa"]) for label in some} for some in (sealed.values(), kept)]
+        assert len(moduli[0]) == len(sealed) and not moduli[0] & moduli[1]
+        assert {about(name)["pad"] for name in sealed} == {"forefinger", "thenar"}
+        cases.write(next(iter(sealed)), tmp_path / "study")
+        assert thenar.Study.load(tmp_path / "study").recordings
+    finally:
+        monkeypatch.undo()
+        for one in cached:
+            one.cache_clear()
 
 
 def about(case):
