@@ -1,6 +1,9 @@
 """`thenar.diagnose` on the calibration's finite elements: silence, names, instruments, clocks, what has no name."""
 
 import json
+import os
+import subprocess
+import sys
 import tomllib
 
 import numpy as np
@@ -138,3 +141,14 @@ def test_one_recording_is_too_little(tmp_path):
 
 def _recordings(folder):
     return tomllib.loads((folder / "study.toml").read_text())["recordings"]
+
+
+def test_a_diagnosis_is_the_same_to_the_byte_with_any_number_of_threads(tmp_path):
+    cases.write("case_340", tmp_path)
+    code = "import sys, thenar; print(thenar.diagnose(thenar.Study.load(sys.argv[1])).to_json())"
+    told = []
+    for threads in ("1", "3"):
+        ask = [sys.executable, "-c", code, str(tmp_path)]
+        ended = subprocess.run(ask, capture_output=True, check=True, env={**os.environ, "RAYON_NUM_THREADS": threads})
+        told.append(ended.stdout)
+    assert told[0] == told[1] and json.loads(told[0])["rivals"]

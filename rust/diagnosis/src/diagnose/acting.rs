@@ -18,8 +18,6 @@ const GROWS: (f64, f64) = (1.6, 1.4);
 const MOST_GROWS: (f64, f64) = (1.0, 2.0);
 /// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
 const NARROWS: f64 = 0.3;
-/// What weighs a reading that is missing above a floor, over one that is there below it: some get through, and none is lost.
-const LOST: f64 = 3.0;
 /// Width of a floor's edge over the floor, in recordings that are only planned.
 const EDGE: f64 = 0.01;
 /// Way over which skin lets go, over the largest depth.
@@ -214,8 +212,8 @@ impl Screen<'_> {
 ///
 /// Of a force beside the floor nobody knows on which side it is, and to read nothing where all of it was meant would weigh as hundreds of
 /// other readings. So a reading is held against the force that is lacking (as Tobin 1958, Econometrica 26:24, has it of what is censored):
-/// what ought not to have been seen counts as that far from it, and of what ought to have been seen is missing [`LOST`] times what lies
-/// beyond the floor. Where nothing is recorded yet the floor is an edge of [`EDGE`].
+/// what ought not to have been seen counts as that far from it, and of what ought to have been seen only what lies beyond the floor is
+/// missing. Where nothing is recorded yet the floor is an edge of [`EDGE`].
 fn beyond(floor: f64, force: f64, reading: f64) -> f64 {
     let over = force - floor;
     match reading {
@@ -224,7 +222,7 @@ fn beyond(floor: f64, force: f64, reading: f64) -> f64 {
             force / (1.0 + libm::exp((-over / (EDGE * floor)).clamp(-40.0, 40.0)))
         }
         _ if reading > 0.5 * floor => force - (-over).clamp(0.0, force.max(0.0)),
-        _ => (LOST * over).clamp(0.0, force.max(0.0)),
+        _ => over.clamp(0.0, force.max(0.0)),
     }
 }
 
@@ -372,7 +370,7 @@ mod tests {
             assert!((beyond(8.0, force, 8.2) - wanted).abs() < 1e-12, "{force}");
         }
         // Not read, though 0.4 N beyond, or far more; noise is no reading.
-        for (force, wanted) in [(7.0, 0.0), (8.4, 1.2), (20.0, 20.0), (-1.0, 0.0)] {
+        for (force, wanted) in [(7.0, 0.0), (8.4, 0.4), (20.0, 12.0), (-1.0, 0.0)] {
             for noise in [0.0, 3.9, -0.5] {
                 let told = beyond(8.0, force, noise);
                 assert!((told - wanted).abs() < 1e-12, "{force} {noise}");

@@ -278,7 +278,8 @@ mod tests {
             assert!((least / limit - 1.0).abs() < 0.06, "{stage:?}: {least}");
         }
     }
-    /// A reading beside a floor is off by the force that is lacking or thrice that, not by all of it: skin that is stiffer or softer than the model.
+
+    /// A reading beside a floor is off by the force that is lacking, not by all of it: skin that is stiffer or softer than the model.
     #[test]
     fn a_floor_takes_from_a_reading_no_more_than_lies_beyond_it() {
         for stiffer in [1.06, 0.94] {
@@ -295,7 +296,7 @@ mod tests {
                 (f - same_stiffness).abs()
             });
             assert!(
-                off.fold(0.0, f64::max) < 3.0 * 8.0 * 0.06 / 0.94,
+                off.fold(0.0, f64::max) < 1.01 * 8.0 * 0.06 / 0.94,
                 "{stiffer}"
             );
             // Well below it nothing is read, well above it all of it.
