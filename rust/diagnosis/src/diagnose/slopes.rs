@@ -122,7 +122,8 @@ mod tests {
         off.fold(0.0, f64::max) / most
     }
 
-    /// Beside every mechanism, and for every number: what a fit steps by is what the forces do.
+    /// Beside every mechanism that needs neither a table of its own nor a measured shape, and for every shared number: what a fit
+    /// steps by is what the forces do.
     #[test]
     fn slopes_are_those_of_the_forces() {
         let ready = pressed();

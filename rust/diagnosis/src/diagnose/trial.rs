@@ -47,7 +47,7 @@ impl Trial<'_> {
     }
 
     /// The best fit of one mechanism from all its starts, each from the base's optimum and from the study's own numbers: what is missing may
-    /// have drawn the base into a hollow of its own, of which a stiff skin's fit does not come out.
+    /// have drawn the base into a hollow that the fit with it does not leave again (a stiff skin's did not).
     pub fn single(&self, mechanism: &Mechanism) -> Scored {
         let one = std::slice::from_ref(mechanism);
         let mut starts = mechanism.starts(self.ready.least_seen());
