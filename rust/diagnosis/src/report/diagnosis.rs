@@ -4,6 +4,7 @@ use super::page::page;
 use super::svg::escaped;
 use super::traces::plot;
 use crate::diagnose::{Correction, Diagnosis, Gain, Number, Rival, Unlisted, Verdict, words};
+use crate::words::capital;
 use std::fmt::Write;
 
 /// Recordings that are drawn.
@@ -47,7 +48,7 @@ fn findings(found: &Diagnosis) -> String {
         let _ = write!(
             html,
             "<h3>{} ({:.0} % sure)</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
-            escaped(&finding.effect.replace('_', " ")),
+            escaped(&capital(&finding.effect.replace('_', " "))),
             100.0 * finding.confidence
         );
         html.extend(finding.numbers.iter().map(number));
@@ -132,8 +133,15 @@ fn number(of: &Number) -> String {
     let (between, unit) = of.told();
     format!(
         "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
-        of.name, of.value
+        spoken(of.name, unit),
+        of.value
     )
+}
+
+/// A number's name without the unit that stands beside it: the work of `work_j_per_m2` in J/m2.
+fn spoken(name: &str, unit: &str) -> String {
+    let ending = format!("_{}", unit.to_lowercase().replace('/', "_per_"));
+    name.strip_suffix(&ending).unwrap_or(name).replace('_', " ")
 }
 
 fn choice((name, option): &(&'static str, &'static str)) -> String {
@@ -265,13 +273,25 @@ alone, blue with {what}. Below, the same less what parameters alone give: dots w
 
 #[cfg(test)]
 mod tests {
-    use super::{nats, size};
+    use super::{nats, size, spoken};
 
     #[test]
     fn a_size_of_any_unit_has_three_digits() {
         let told = [0.000_123_4, 0.0567, 0.2, 12.345, 4321.0].map(size);
         assert_eq!(told, ["0.000123", "0.0567", "0.200", "12.3", "4321"]);
         assert_eq!(size(0.0), "0");
+    }
+
+    #[test]
+    fn a_number_is_called_without_its_unit() {
+        let told = [
+            ("work_j_per_m2", "J/m2"),
+            ("offset_n", "N"),
+            ("loss", ""),
+            ("poisson_ratio", "1"),
+        ];
+        let names = told.map(|(name, unit)| spoken(name, unit));
+        assert_eq!(names, ["work", "offset", "loss", "poisson ratio"]);
     }
 
     #[test]

@@ -27,7 +27,7 @@ figure{margin:0}svg{max-width:100%;height:auto;display:block}\
 .group td{border-bottom:1.5px solid #b9c2c9;font-weight:600;padding-top:.8em}\
 .map{margin:1.1em 0}figcaption{color:#5c6770;font-size:.88em;margin-top:.1em}\
 ol,ul{margin:.3em 0;padding-left:1.25em}li{margin:.22em 0}\
-@media print{body{max-width:none;margin:0;padding:0;font-size:11px}figure,table,.lead{break-inside:avoid}h2,h3{break-after:avoid}a{color:inherit;text-decoration:none}@page{size:A4;margin:14mm}}";
+@media print{body{max-width:none;margin:0;padding:0;font-size:11px}figure,table,.lead,.pair>*,.small>*{break-inside:avoid}.pair,.small{display:block}.pair>*,.small>*{display:inline-block;width:48%;margin:0 1% 10px 0;vertical-align:top}h2,h3{break-after:avoid}a{color:inherit;text-decoration:none}@page{size:A4;margin:14mm}}";
 
 /// A self-contained page, UTF-8.
 pub fn comparison_html(comparison: &Comparison) -> String {
