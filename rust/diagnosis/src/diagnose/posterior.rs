@@ -103,7 +103,7 @@ mod tests {
     fn what_nulls_reach_is_no_detection() {
         let reached = [
             (Effect::Relaxation, 2.4),
-            (Effect::StiffSkin, 2.1),
+            (Effect::StiffSkin, 2.4),
             (Effect::Offset, 4.3),
         ];
         for (effect, most) in reached {
@@ -132,7 +132,8 @@ mod tests {
         assert!(needs_both((Relaxation, 1000.0), Bone, 6.5));
         assert!(!needs_both((Adhesion, 1000.0), Bone, 9.0), "1 % of 1000");
         assert!(needs_both((Adhesion, 1000.0), Bone, 11.0));
-        assert!(needs_both((Adhesion, 60.0), Bone, 6.0), "it acts apart");
+        let apart = |more| needs_both((Adhesion, 60.0), Bone, more);
+        assert!(!apart(7.2) && apart(8.5), "it acts apart");
         assert!(
             !needs_both((Saturation, 60.0), Bone, 8.0),
             "its form is not known"
@@ -150,6 +151,8 @@ mod tests {
             "both elastic"
         );
         assert!(needs_both((StiffeningLaw, 11.0), Bone, 15.0));
+        let softer = |more| needs_both((StiffeningLaw, 100.0), Bone, more);
+        assert!(!softer(24.0) && softer(26.0), "25 % of 100");
         let friction = |more| needs_both((RateIndependentLoss, 300.0), CycleSoftening, more);
         assert!(!friction(11.0) && friction(13.0), "4 % of 300");
         let beside = |more| needs_both((RateIndependentLoss, 700.0), Bone, more);
