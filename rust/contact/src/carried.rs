@@ -77,6 +77,8 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     if shown.load.len() != sites {
         shown.load = vec![Vec3::zeros(); sites];
         shown.field = vec![Vec3::zeros(); sites];
+        shown.load_change = vec![Vec3::zeros(); sites];
+        shown.field_change = vec![Vec3::zeros(); sites];
     }
     let largest = loads.iter().fold(0.0, |m, l| f64::max(m, l.load.norm()));
     let mut left = vec![Vec3::zeros(); sites];
@@ -88,6 +90,7 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
                 site: site as u32,
                 load: now - *before,
             });
+            shown.load_change[site] += now - *before;
             *before = *now;
         }
     }
@@ -100,11 +103,17 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
                 load: *load,
             })
             .collect();
-        shown.field = displacements(&skin.response, &all, &skin.sites);
+        let field = displacements(&skin.response, &all, &skin.sites);
+        for ((change, now), before) in shown.field_change.iter_mut().zip(&field).zip(&shown.field) {
+            *change += now - before;
+        }
+        shown.field = field;
     } else {
         let more = displacements(&skin.response, &changes, &skin.sites);
-        for (sum, more) in shown.field.iter_mut().zip(&more) {
+        let sums = shown.field.iter_mut().zip(&mut shown.field_change);
+        for ((sum, change), more) in sums.zip(&more) {
             *sum += more;
+            *change += more;
         }
     }
     let field = shown.field.clone();

@@ -11,11 +11,23 @@ use crate::press::Convergence;
 use crate::skin::Skin;
 use crate::zone::limits;
 
+/// What acts on the sites that are solved besides the coupling among them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Beyond {
+    /// Nothing: all that bears forces is solved, and all of it is coupled.
+    Nothing,
+    /// What does by the forces shown last.
+    Last,
+    /// What does by the forces that those are changing to.
+    Trend,
+}
+
 /// What is known so far, by place in the zone.
 pub(crate) struct State {
     pub zone: Vec<u32>,
     /// What sites hold from the last live solve; empty if all are solved.
     pub held: Vec<Option<Met>>,
+    pub beyond: Beyond,
     pub force: Vec<f64>,
     pub touch: Vec<Gap>,
     pub slack: Vec<f64>,
@@ -42,6 +54,7 @@ impl State {
         State {
             zone,
             held: Vec::new(),
+            beyond: Beyond::Nothing,
             force: Vec::new(),
             touch: Vec::new(),
             slack: Vec::new(),

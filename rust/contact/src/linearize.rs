@@ -3,7 +3,7 @@
 use thenar_surface::{Gap, Product, Vec3};
 
 use crate::carried::{field, keep_out, lifted_sites};
-use crate::contact_state::State;
+use crate::contact_state::{Beyond, State};
 use crate::live::{self, held, keep, strays};
 use crate::memory::Last;
 use crate::press::Convergence;
@@ -86,13 +86,22 @@ pub fn solve(
     for round in 1.. {
         let again = (round > 1).then_some(&strayed[..]);
         state.held = held(skin, setting, &state.zone, again);
-        skin.couple(&state.solved_sites(), control)?;
+        state.beyond = live::beyond(skin, setting, round);
+        match state.beyond {
+            Beyond::Nothing => skin.couple(&state.solved_sites(), control)?,
+            _ => live::couple(skin, &state.solved_sites(), control)?,
+        }
         skin.memory.zone.clone_from(&state.zone);
         state.open(skin, setting);
         state.passes(skin, setting, (tolerance, control))?;
+        if round == 1 {
+            skin.memory.shown.begin();
+        }
         let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
-        let found = (&state.found(), &state.held[..]);
-        let (stray, far) = strays(skin, found, &field, deepest);
+        let (stray, far) = match state.beyond {
+            Beyond::Nothing => (0.0, Vec::new()),
+            _ => strays(skin, (&state.found(), &state.held), &field, deepest),
+        };
         keep_out(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
         keep(skin, setting, &state.found(), (&state.slack, &state.sums));

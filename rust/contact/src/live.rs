@@ -5,23 +5,28 @@
 
 use thenar_surface::{Gap, Vec3};
 
-use crate::Model;
 use crate::carried::Found;
+use crate::contact_state::Beyond;
 use crate::direction::Sums;
 use crate::linearize::{Setting, vertex};
 use crate::skin::Skin;
 use crate::solve::{Accuracy, holds};
+use crate::{ContactError, Control, Model};
 
 /// Skin nearer than this to what moved is solved with it, mm: about a tissue and a half (tests pass from 6 to 15).
 const REACH: f64 = 10.0;
 /// The same about skin that is found to stray or to be lifted, mm: it is off by little (tests pass from 6 to 10).
 const REACH_AGAIN: f64 = 6.0;
+/// Sites whose patches are farther apart than this answer each other as they did last, mm: 3 thicknesses of a finger's tissue.
+/// The fewer, the more often a round more is needed; at 15 two frames of a drag of 300 end without their certificate.
+const NEAR: f64 = 22.0;
 /// Share of the zone above which all of it is solved.
 const MOST: f64 = 0.7;
 /// How many times as many sites as need be are solved with a coupling that is there already.
 const MORE: f64 = 1.25;
-/// How far held skin may stray, over the deepest penetration: a half per cent of what it bears.
-const STRAY: f64 = 5e-3;
+/// How far skin may stray, over the deepest penetration: somewhat less than the certificate's half per cent, so that what is held
+/// on to stays within that.
+const STRAY: f64 = 4.5e-3;
 /// Share of that from which it is solved with the next frame.
 const EARLY: f64 = 0.5;
 /// Largest distance between written contact and product that ends a live solve, mm, and over the deepest penetration.
@@ -73,8 +78,7 @@ pub fn held(
     strayed: Option<&[u32]>,
 ) -> Vec<Option<Met>> {
     let last = &skin.memory.held;
-    let is_live = setting.accuracy == Accuracy::Rough && skin.model == Model::Layer;
-    if skin.hierarchy.is_some() || !is_live || last.zone.is_empty() {
+    if !is_live(skin, setting) || last.zone.is_empty() {
         return Vec::new();
     }
     let met: Vec<Option<&Met>> = zone.iter().map(|&site| last.of(site)).collect();
@@ -85,7 +89,11 @@ pub fn held(
     };
     let changed = zone.iter().zip(&met).filter(|&pair| is_changed(pair));
     let mut changed: Vec<u32> = changed.map(|(&site, _)| site).collect();
-    changed.extend(strayed.unwrap_or(&last.strayed));
+    // What strayed a little is solved with what moved; where nothing did, the last certificate stands.
+    let is_still = changed.is_empty() && strayed.is_none();
+    if !is_still {
+        changed.extend(strayed.unwrap_or(&last.strayed));
+    }
     changed.sort_unstable();
     let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
     let mut is_open = near(skin, &changed, reach);
@@ -102,9 +110,40 @@ pub fn held(
     held
 }
 
+fn is_live(skin: &Skin, setting: &Setting<'_>) -> bool {
+    let is_rough = setting.accuracy == Accuracy::Rough;
+    is_rough && skin.model == Model::Layer && skin.hierarchy.is_none()
+}
+
+/// What acts on the sites that are solved in a `round` besides the coupling among them.
+pub fn beyond(skin: &Skin, setting: &Setting<'_>, round: usize) -> Beyond {
+    match is_live(skin, setting) {
+        false => Beyond::Nothing,
+        true if round == 1 && !skin.memory.held.zone.is_empty() => Beyond::Trend,
+        true => Beyond::Last,
+    }
+}
+
+/// Makes the near coupling between the sites of `open` (ascending), or keeps the last one if it is the same.
+///
+/// # Errors
+/// [`ContactError::TooLarge`](crate::ContactError) before memory is taken, or `Cancelled`.
+pub fn couple(skin: &mut Skin, open: &[u32], control: &Control) -> Result<(), ContactError> {
+    let is_shown = skin.memory.shown.load.len() == skin.sites.len();
+    let range = if is_shown { NEAR } else { f64::INFINITY };
+    if skin.memory.near.sites == open && skin.memory.near.range >= range {
+        return Ok(());
+    }
+    control.step("response", 0.0)?;
+    skin.make_rows(open, control)?;
+    let ground = (&skin.response, &skin.sites);
+    skin.memory.near.renew(open, ground, range);
+    Ok(())
+}
+
 /// Opens all that was coupled last, where that holds every open site of `zone` and little more: it need not be coupled anew.
 fn open_coupled(skin: &Skin, zone: &[u32], is_open: &mut [bool]) {
-    let coupled = &skin.memory.between;
+    let coupled = &skin.memory.near.sites;
     let open: Vec<u32> = zone
         .iter()
         .copied()
@@ -195,9 +234,10 @@ pub fn tolerance(deepest: f64) -> f64 {
     MISFIT.min(MISFIT_SHARE * deepest)
 }
 
-/// How far held skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far.
+/// How far skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far: held skin
+/// by what changed elsewhere, solved skin by what changed beyond its near coupling.
 ///
-/// `field`: displacement of every site by all forces. Sites that strayed less are solved with the next frame.
+/// `field`: displacement of every site by all forces. Held sites that strayed less are solved with the next frame.
 pub fn strays(
     skin: &mut Skin,
     (found, held): (&Found<'_>, &[Option<Met>]),
@@ -206,13 +246,12 @@ pub fn strays(
 ) -> (f64, Vec<u32>) {
     let most = STRAY * deepest;
     let (mut worst, mut far, mut some) = (0.0f64, Vec::new(), Vec::new());
-    for (k, _) in held.iter().enumerate().filter(|(_, met)| met.is_some()) {
-        let site = found.zone[k];
+    for (k, &site) in found.zone.iter().enumerate() {
         let off = (found.direction[k].dot(&field[site as usize]) - found.travel[k]).abs();
         worst = worst.max(off);
         if off > most {
             far.push(site);
-        } else if off > EARLY * most {
+        } else if off > EARLY * most && held.get(k).is_some_and(Option::is_some) {
             some.push(site);
         }
     }

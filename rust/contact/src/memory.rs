@@ -6,6 +6,7 @@ use crate::interface::shear_kernel::ShearTables;
 use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
 use crate::live::Held;
+use crate::response::near::Near;
 use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
 use thenar_surface::{Mesh, Readings, Vec3, renew_shape, vertex_areas, vertex_normals};
@@ -20,6 +21,8 @@ pub struct Memory {
     pub coupling: Rows<f32>,
     /// The compliance of those sites, kept for its storage.
     pub compliance: Rows<f32>,
+    /// What was solved last in a live press, and its near coupling.
+    pub near: Near,
     /// In a large skin, the coupling of those sites, and response weight times direction at each of them.
     pub coupled: Coupled,
     pub along: Vec<Vec3>,
@@ -110,6 +113,14 @@ impl Seen {
     }
 }
 
+impl Shown {
+    /// Begins the next press.
+    pub fn begin(&mut self) {
+        self.load_change.fill(Vec3::zeros());
+        self.field_change.fill(Vec3::zeros());
+    }
+}
+
 /// Where loads carried the skin: a change of some is added to it.
 #[derive(Debug, Clone, Default)]
 pub struct Shown {
@@ -117,4 +128,7 @@ pub struct Shown {
     pub load: Vec<Vec3>,
     /// `sum_j K_ij load_j` at every site.
     pub field: Vec<Vec3>,
+    /// How both changed in the last live press.
+    pub load_change: Vec<Vec3>,
+    pub field_change: Vec<Vec3>,
 }

@@ -2,9 +2,10 @@
 
 use thenar_surface::Vec3;
 
-use crate::contact_state::State;
+use crate::contact_state::{Beyond, State};
 use crate::linearize::Setting;
 use crate::response::assembly::compliance;
+use crate::response::near::NearAlong;
 use crate::skin::Skin;
 use crate::solve::{Accuracy, Along, Axes, Compliance, Part, solve_contact};
 use crate::{ContactError, Control, Model};
@@ -17,7 +18,9 @@ pub(crate) struct Turned {
     weight: Vec<f64>,
     likely: Vec<bool>,
     part: Part,
-    /// What the forces of held places do to each along its direction, over its weight; empty where none is held.
+    /// Entries of the near coupling along the directions, in a live press.
+    near: Vec<f32>,
+    /// What forces beyond the coupling do to each along its direction, over its weight; empty where there are none.
     push: Vec<f64>,
 }
 
@@ -33,41 +36,41 @@ impl State {
             let k = k as usize;
             self.touch[k].distance - self.cosine[k] * self.travel[k] < 0.0
         };
-        let push = match self.held.is_empty() {
-            true => Vec::new(),
-            false => self.push_of_held(skin, (&places, &direction)),
-        };
+        let axes = Axes::new(&direction);
+        let mut near = Vec::new();
+        if self.beyond != Beyond::Nothing {
+            skin.memory.near.turn(&axes, &mut near);
+        }
         Turned {
-            axes: Axes::new(&direction),
+            axes,
+            near,
             weight: Vec::new(),
             likely: places.iter().map(likely).collect(),
             part: Part::default(),
-            push,
+            push: self.push_from_beyond(skin, (&places, &direction)),
             places,
         }
     }
 
-    /// What the last live press shows at the solved places, less what these did to themselves and each other.
-    fn push_of_held(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
-        let shown = &skin.memory.shown;
-        let sites: Vec<usize> = places
-            .iter()
-            .map(|&k| self.zone[k as usize] as usize)
-            .collect();
-        let mut own = vec![0.0; places.len()];
-        let mut push: Vec<f64> = sites
-            .iter()
-            .zip(direction)
-            .map(|(&site, t)| t.dot(&shown.field[site]))
-            .collect();
-        for axis in 0..3 {
-            let load: Vec<f64> = sites.iter().map(|&site| shown.load[site][axis]).collect();
-            skin.memory.coupling.times(&load, &mut own);
-            for ((push, own), t) in push.iter_mut().zip(&own).zip(direction) {
-                *push -= t[axis] * own;
-            }
+    /// What the last live press shows at the solved places, less what these did to themselves and each other nearby.
+    fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
+        let (shown, near) = (&skin.memory.shown, &skin.memory.near);
+        if self.beyond == Beyond::Nothing || shown.load.len() != skin.sites.len() {
+            return Vec::new();
         }
-        push
+        let ahead = match self.beyond {
+            Beyond::Trend => 1.0,
+            _ => 0.0,
+        };
+        let load =
+            |&site: &u32| shown.load[site as usize] + shown.load_change[site as usize] * ahead;
+        let loads: Vec<Vec3> = near.sites.iter().map(load).collect();
+        let own = near.field(&loads);
+        let push = |((&k, t), own): ((&u32, &Vec3), &Vec3)| {
+            let site = self.zone[k as usize] as usize;
+            t.dot(&(shown.field[site] + shown.field_change[site] * ahead - own))
+        };
+        places.iter().zip(direction).zip(&own).map(push).collect()
     }
 
     /// Compliance along the directions, seen along the normals: as weights, or written out into the skin's memory.
@@ -85,7 +88,7 @@ impl State {
             memory.along = along
                 .map(|(w, k)| self.direction[*k as usize] * *w)
                 .collect();
-        } else if memory.coupling.is_large() {
+        } else if self.beyond == Beyond::Nothing && memory.coupling.is_large() {
             let directions: Vec<Vec3> = turned.places.iter().map(direction).collect();
             compliance(
                 &memory.coupling,
@@ -105,6 +108,10 @@ impl State {
         let memory = &skin.memory;
         if let Some(matrix) = skin.directed() {
             return self.solve_linear(&matrix, turned, how);
+        }
+        if self.beyond != Beyond::Nothing {
+            let near = NearAlong::new(&memory.near, &turned.near, &turned.weight);
+            return self.solve_linear(&near, turned, how);
         }
         if memory.coupling.is_large() {
             return self.solve_linear(&memory.compliance, turned, how);

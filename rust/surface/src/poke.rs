@@ -31,6 +31,9 @@ const STEEPEST: f64 = 1.1;
 /// Settled neighbors needed, so that no vertex is judged by one other alone.
 const WITNESSES: usize = 2;
 
+/// Up to so many items are answered one after the other: to wake other threads takes as long.
+const FEW: usize = 64;
+
 /// The points near one, once they were sought.
 type Near = Option<Vec<u32>>;
 
@@ -49,32 +52,26 @@ struct Candidate {
 
 /// Replaces the readings of points that have come through a wall.
 pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &mut [Option<Gap>]) {
-    let faces_away = |(i, gap): (usize, &Option<Gap>)| {
-        let away = gap.filter(|g| g.distance > 0.0 && g.distance <= limits.max_depth_mm)?;
-        (away.normal.dot(&skin.normals[i]) > FACING_AWAY).then_some(i as u32)
-    };
-    let away: Vec<u32> = gaps.iter().enumerate().filter_map(faces_away).collect();
+    let (seen, away) = seen_and_away(skin, limits, gaps);
     if away.is_empty() {
         return;
     }
-    let seen: Vec<u32> = (0..gaps.len() as u32)
-        .filter(|&i| gaps[i as usize].is_some())
-        .collect();
     let vicinity = Vicinity::new(skin.points, &seen, &away);
-    let mut is_settled: Vec<bool> = gaps.iter().map(Option::is_some).collect();
+    let mut is_settled = vec![false; gaps.len()];
+    seen.iter().for_each(|&i| is_settled[i as usize] = true);
     away.iter().for_each(|&i| is_settled[i as usize] = false);
     let mut neighbors = vec![None; away.len()];
     let mut is_unread = vec![true; away.len()];
     let mut candidates = Vec::new();
+    let mut has_grown = true;
     loop {
         // Points that were read deeper make others agree: what is near is sought where that is new.
-        let new = within_reason((&vicinity, &away), &neighbors, (product, gaps));
-        let found = new
-            .par_iter()
-            .map(|&k| self::neighbors(skin, &vicinity, away[k]));
-        let found: Vec<Vec<u32>> = found.collect();
-        for (k, found) in new.into_iter().zip(found) {
-            neighbors[k] = Some(found);
+        if has_grown {
+            let new = within_reason((&vicinity, &away), &neighbors, (product, gaps));
+            let found = each(&new, |&k| self::neighbors(skin, &vicinity, away[k]));
+            for (k, found) in new.into_iter().zip(found) {
+                neighbors[k] = Some(found);
+            }
         }
         let needed = needed(skin, (&away, &neighbors, &is_unread), (product, gaps));
         if needed.is_empty() {
@@ -91,7 +88,7 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
                 neighbors,
             }
         };
-        let read: Vec<Candidate> = needed.par_iter().map(read).collect();
+        let read = each(&needed, read);
         needed.iter().for_each(|&k| is_unread[k] = false);
         for candidate in read {
             if candidate.readings.iter().any(Option::is_some) {
@@ -100,10 +97,33 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
                 is_settled[candidate.at as usize] = true;
             }
         }
-        grow(skin, &candidates, &mut is_settled, gaps);
+        has_grown = grow(skin, &candidates, &mut is_settled, gaps);
     }
     candidates.sort_by_key(|c| c.at);
     enclose(product, skin, &candidates, (&is_settled, gaps));
+}
+
+/// Points that have a reading, and those of them that face away from what they were measured to.
+fn seen_and_away(skin: &Skin, limits: GapLimits, gaps: &[Option<Gap>]) -> (Vec<u32>, Vec<u32>) {
+    let (mut seen, mut away) = (Vec::new(), Vec::new());
+    for (i, gap) in gaps.iter().enumerate() {
+        let Some(gap) = gap else { continue };
+        seen.push(i as u32);
+        let is_outside = gap.distance > 0.0 && gap.distance <= limits.max_depth_mm;
+        if is_outside && gap.normal.dot(&skin.normals[i]) > FACING_AWAY {
+            away.push(i as u32);
+        }
+    }
+    (seen, away)
+}
+
+/// What `f` gives for each item, in order.
+fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
+    if items.len() <= FEW {
+        items.iter().map(f).collect()
+    } else {
+        items.par_iter().map(f).collect()
+    }
 }
 
 /// Which of the points that face away may be [`needed`], of those whose neighbors are not known: near the others no point is
@@ -166,11 +186,17 @@ fn neighbors(skin: &Skin, vicinity: &Vicinity, at: u32) -> Vec<u32> {
     near
 }
 
-/// Accepts candidates next to settled points, until no more can be.
-fn grow(skin: &Skin, candidates: &[Candidate], is_settled: &mut [bool], gaps: &mut [Option<Gap>]) {
+/// Accepts candidates next to settled points, until no more can be; returns whether there were any.
+fn grow(
+    skin: &Skin,
+    candidates: &[Candidate],
+    is_settled: &mut [bool],
+    gaps: &mut [Option<Gap>],
+) -> bool {
     let mut pending: Vec<usize> = (0..candidates.len())
         .filter(|&k| !is_settled[candidates[k].at as usize])
         .collect();
+    let all = pending.len();
     while !pending.is_empty() {
         let before = pending.len();
         pending.retain(|&k| {
@@ -202,6 +228,7 @@ fn grow(skin: &Skin, candidates: &[Candidate], is_settled: &mut [bool], gaps: &m
             break;
         }
     }
+    pending.len() < all
 }
 
 /// Accepts pieces of skin that lie wholly behind a sheet which winds around all of them.

@@ -1,4 +1,4 @@
-//! Which points lie near which, by a grid as wide as the points are apart.
+//! Which points lie near which, by a grid over all of them.
 
 use crate::mesh::Vec3;
 
@@ -8,56 +8,52 @@ const REACH: f64 = 2.5;
 /// Points whose nearest neighbor is measured to find the typical spacing.
 const SAMPLES: usize = 64;
 
+/// Most cells of the grid for each point in it. From 1 to 16 the time is about the same.
+const CELLS_PER_POINT: f64 = 4.0;
+
+/// Part of a cell by which rounding may put a point into the next one, with room to spare.
+const ROUNDING: f64 = 1e-6;
+
 /// Points sorted into the cells of a grid.
 pub(crate) struct Vicinity<'a> {
     points: &'a [Vec3],
     reach: f64,
-    /// Cells that hold points, sorted.
-    cells: Vec<[i64; 3]>,
-    /// Where the points of each begin among `members`, and where those of the last end.
-    starts: Vec<usize>,
+    grid: Grid,
+    /// The points, those of a cell together, and where they lie.
     members: Vec<u32>,
-    /// By cell, the runs of cells around it: first, and one past the last.
-    around: Vec<[(u32, u32); COLUMNS]>,
+    places: Vec<Vec3>,
 }
 
-/// Columns of cells that hold what may be near.
-const COLUMNS: usize = 9;
+/// Cells over the box of some points.
+struct Grid {
+    low: Vec3,
+    /// mm.
+    size: f64,
+    counts: [usize; 3],
+    /// Where the points of each cell begin, and where those of the last end.
+    starts: Vec<u32>,
+}
 
 impl<'a> Vicinity<'a> {
-    /// Sorts the points `members`; their spacing is measured at some of `places`, which is not empty.
+    /// Sorts the points `members`, which are finite; their spacing is measured at some of `places`, which is not empty.
     pub(crate) fn new(points: &'a [Vec3], members: &[u32], places: &[u32]) -> Vicinity<'a> {
-        let axes: [Vec<f64>; 3] =
-            [0, 1, 2].map(|k| members.iter().map(|&j| points[j as usize][k]).collect());
-        let apart = |i: u32| nearest(&axes, points[i as usize]);
+        let mut grid = Grid::over(members.iter().map(|&i| points[i as usize]));
+        let members = grid.sort(points, members);
+        let mut vicinity = Vicinity {
+            points,
+            reach: 0.0,
+            grid,
+            places: members.iter().map(|&i| points[i as usize]).collect(),
+            members,
+        };
         let mut spacings: Vec<f64> = places
             .iter()
             .step_by(places.len().div_ceil(SAMPLES))
-            .map(|&i| apart(i))
+            .map(|&i| vicinity.spacing_at(points[i as usize]))
             .collect();
         spacings.sort_unstable_by(f64::total_cmp);
-        let reach = REACH * spacings[spacings.len() / 2];
-        let mut sorted: Vec<([i64; 3], u32)> = members
-            .iter()
-            .map(|&i| (cell(points[i as usize], reach), i))
-            .collect();
-        sorted.sort_unstable();
-        let mut starts = vec![0];
-        let alike = sorted.chunk_by(|a, b| a.0 == b.0);
-        let cells: Vec<[i64; 3]> = alike
-            .map(|alike| {
-                starts.push(starts[starts.len() - 1] + alike.len());
-                alike[0].0
-            })
-            .collect();
-        Vicinity {
-            points,
-            reach,
-            around: columns_around(&cells),
-            cells,
-            starts,
-            members: sorted.into_iter().map(|(_, i)| i).collect(),
-        }
+        vicinity.reach = REACH * spacings[spacings.len() / 2];
+        vicinity
     }
 
     /// How near is near, mm.
@@ -69,83 +65,133 @@ impl<'a> Vicinity<'a> {
     pub(crate) fn around(&self, i: u32) -> Vec<u32> {
         let at = self.points[i as usize];
         let mut near = Vec::new();
-        for (first, end) in self.columns(i) {
-            let there = self.starts[first as usize]..self.starts[end as usize];
-            let is_near = |j: &u32| (self.points[*j as usize] - at).norm() <= self.reach;
-            near.extend(self.members[there].iter().copied().filter(is_near));
+        for (first, end) in self.grid.rows(at, self.grid.steps(self.reach)) {
+            let there = self.grid.starts[first] as usize..self.grid.starts[end] as usize;
+            let is_near = |place: &Vec3| (place - at).norm() <= self.reach;
+            let pairs = self.members[there.clone()].iter().zip(&self.places[there]);
+            near.extend(pairs.filter(|(_, place)| is_near(place)).map(|(&j, _)| j));
         }
         near
     }
 
     /// For each of some members, what no `value` of a point near it is below.
     pub(crate) fn least_near(&self, places: &[u32], value: impl Fn(u32) -> f64) -> Vec<f64> {
-        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
-        let own: Vec<f64> = self
-            .starts
-            .windows(2)
-            .map(|w| least(&mut self.members[w[0]..w[1]].iter().map(|&j| value(j))))
-            .collect();
+        let mut own = vec![f64::INFINITY; self.grid.starts.len() - 1];
+        for (&j, place) in self.members.iter().zip(&self.places) {
+            let least = &mut own[self.grid.home(place)];
+            *least = least.min(value(j));
+        }
+        let steps = self.grid.steps(self.reach);
         let near = |&i: &u32| {
-            let runs = self.columns(i).into_iter();
-            least(
-                &mut runs
-                    .flat_map(|(first, end)| own[first as usize..end as usize].iter().copied()),
-            )
+            let rows = self.grid.rows(self.points[i as usize], steps);
+            let cells = rows.flat_map(|(first, end)| &own[first..end]);
+            cells.fold(f64::INFINITY, |least, own| least.min(*own))
         };
         places.iter().map(near).collect()
     }
 
-    fn columns(&self, i: u32) -> [(u32, u32); COLUMNS] {
-        let home = cell(self.points[i as usize], self.reach);
-        let home = self.cells.binary_search(&home);
-        home.map_or([(0, 0); COLUMNS], |k| self.around[k])
-    }
-}
-
-/// The runs of `cells` (sorted) around each of them.
-fn columns_around(cells: &[[i64; 3]]) -> Vec<[(u32, u32); COLUMNS]> {
-    let mut around = vec![[(0, 0); COLUMNS]; cells.len()];
-    let steps = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy)));
-    for (column, (dx, dy)) in steps.enumerate() {
-        // What is around one cell lies behind what is around the cell before: one walk finds all.
-        let mut first = 0;
-        for (&[x, y, z], around) in cells.iter().zip(&mut around) {
-            let [low, high] = [z.saturating_sub(1), z.saturating_add(1)]
-                .map(|z| [x.saturating_add(dx), y.saturating_add(dy), z]);
-            while first < cells.len() && cells[first] < low {
-                first += 1;
+    /// Distance from `p` to the nearest member that lies elsewhere; infinite if none does.
+    fn spacing_at(&self, p: Vec3) -> f64 {
+        let widest = self.grid.counts.into_iter().fold(0, usize::max);
+        let mut steps = 1;
+        loop {
+            let mut least = f64::INFINITY;
+            for (first, end) in self.grid.rows(p, steps) {
+                let there = self.grid.starts[first] as usize..self.grid.starts[end] as usize;
+                for place in &self.places[there] {
+                    let squared = (place - p).norm_squared();
+                    if squared > 0.0 && squared < least {
+                        least = squared;
+                    }
+                }
             }
-            let there = cells[first..].iter().take_while(|cell| **cell <= high);
-            around[column] = (first as u32, (first + there.count()) as u32);
+            // Nothing in other cells is nearer than this.
+            let sure = (steps as f64 - ROUNDING) * self.grid.size;
+            if least <= sure * sure || steps >= widest {
+                return least.sqrt();
+            }
+            steps *= 2;
         }
     }
-    around
 }
 
-/// Distance from `p` to the nearest of some points that lies elsewhere; infinite if none does.
-fn nearest([x, y, z]: &[Vec<f64>; 3], p: Vec3) -> f64 {
-    // Eight chains: one would wait for each of its own comparisons.
-    let mut least = [f64::INFINITY; 8];
-    let mut compare = |lane: usize, [x, y, z]: [f64; 3]| {
-        let (x, y, z) = (x - p.x, y - p.y, z - p.z);
-        let squared = x * x + y * y + z * z;
-        let is_nearer = squared > 0.0 && squared < least[lane];
-        least[lane] = if is_nearer { squared } else { least[lane] };
-    };
-    let ((x8, x_rest), (y8, y_rest)) = (x.as_chunks::<8>(), y.as_chunks::<8>());
-    let (z8, z_rest) = z.as_chunks::<8>();
-    for ((x, y), z) in x8.iter().zip(y8).zip(z8) {
-        (0..8).for_each(|lane| compare(lane, [x[lane], y[lane], z[lane]]));
+impl Grid {
+    /// Cells over the box of some points, and few of them for each.
+    fn over(points: impl ExactSizeIterator<Item = Vec3>) -> Grid {
+        let most = CELLS_PER_POINT * points.len() as f64 + 1.0;
+        let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let (low, high) = points.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)));
+        let lengths = high - low;
+        let longest = lengths.max();
+        let mut size = (lengths.product() / most).cbrt().max(longest / most);
+        if !(size > 0.0 && size.is_finite()) {
+            // All at one place, or farther apart than numbers tell.
+            size = f64::INFINITY;
+        }
+        let counts = |size: f64| lengths.map(|length| (length / size).floor() + 1.0);
+        while counts(size).product() > most {
+            size *= 1.25;
+        }
+        let counts = counts(size);
+        Grid {
+            low,
+            size,
+            counts: [0, 1, 2].map(|k| counts[k] as usize),
+            starts: Vec::new(),
+        }
     }
-    for ((x, y), z) in x_rest.iter().zip(y_rest).zip(z_rest) {
-        compare(0, [*x, *y, *z]);
-    }
-    least.into_iter().fold(f64::INFINITY, f64::min).sqrt()
-}
 
-/// `as` saturates: without spacing (one point only) all share the cell 0 or the last.
-fn cell(p: Vec3, size: f64) -> [i64; 3] {
-    [p.x / size, p.y / size, p.z / size].map(|x| x.floor() as i64)
+    /// Fills the cells; returns the points cell by cell.
+    fn sort(&mut self, points: &[Vec3], members: &[u32]) -> Vec<u32> {
+        let home = |&i: &u32| self.home(&points[i as usize]) as u32;
+        let homes: Vec<u32> = members.iter().map(home).collect();
+        // Counted two places on, summed, and moved one place on as the cells are filled.
+        let mut starts = vec![0u32; self.counts.iter().product::<usize>() + 2];
+        homes.iter().for_each(|&h| starts[h as usize + 2] += 1);
+        for k in 2..starts.len() {
+            starts[k] += starts[k - 1];
+        }
+        let mut sorted = vec![0; members.len()];
+        for (&member, &home) in members.iter().zip(&homes) {
+            let next = &mut starts[home as usize + 1];
+            sorted[*next as usize] = member;
+            *next += 1;
+        }
+        starts.pop();
+        self.starts = starts;
+        sorted
+    }
+
+    fn cell(&self, p: &Vec3) -> [usize; 3] {
+        // `as` saturates, and makes 0 of what is no number.
+        [0, 1, 2].map(|k| (((p[k] - self.low[k]) / self.size) as usize).min(self.counts[k] - 1))
+    }
+
+    fn index(&self, [x, y, z]: [usize; 3]) -> usize {
+        (z * self.counts[1] + y) * self.counts[0] + x
+    }
+
+    fn home(&self, p: &Vec3) -> usize {
+        self.index(self.cell(p))
+    }
+
+    /// How many cells away what lies within `reach` may be.
+    fn steps(&self, reach: f64) -> usize {
+        (reach / self.size + ROUNDING).ceil() as usize
+    }
+
+    /// Rows of cells, first and one past the last, up to so many `steps` away from that of a point.
+    fn rows(&self, p: Vec3, steps: usize) -> impl Iterator<Item = (usize, usize)> {
+        let home = self.cell(&p);
+        let low = home.map(|at| at.saturating_sub(steps));
+        let high = [0, 1, 2].map(|k| home[k].saturating_add(steps).min(self.counts[k] - 1));
+        (low[2]..=high[2]).flat_map(move |z| {
+            (low[1]..=high[1]).map(move |y| {
+                let first = self.index([low[0], y, z]);
+                (first, first + high[0] - low[0] + 1)
+            })
+        })
+    }
 }
 
 #[cfg(test)]

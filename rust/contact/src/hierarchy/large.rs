@@ -29,18 +29,7 @@ impl Skin {
             (self.memory.coupled, self.memory.between) = (Coupled::default(), Vec::new());
             self.memory.coupled = Coupled::new(hierarchy, zone, self.ground(), control)?;
         } else {
-            let needed_gib = self.response.bytes(zone, &self.sites) / f64::from(1 << 30);
-            if needed_gib > MOST_GIB {
-                return Err(ContactError::TooLarge {
-                    vertices: zone.len(),
-                    needed_gib,
-                    limit_gib: MOST_GIB,
-                });
-            }
-            for part in zone.chunks(512) {
-                self.response.make_rows(part, &self.sites);
-                control.check()?;
-            }
+            self.make_rows(zone, control)?;
             // Until it is made, it is that of no sites: its storage is used again.
             self.memory.between.clear();
             coupling(
@@ -50,6 +39,30 @@ impl Skin {
             );
         }
         self.memory.between = zone.to_vec();
+        Ok(())
+    }
+
+    /// Makes the rows of the response of the sites of `zone` that are missing.
+    ///
+    /// # Errors
+    /// [`ContactError::TooLarge`] before memory is taken, or `Cancelled`.
+    pub(crate) fn make_rows(
+        &mut self,
+        zone: &[u32],
+        control: &Control,
+    ) -> Result<(), ContactError> {
+        let needed_gib = self.response.bytes(zone, &self.sites) / f64::from(1 << 30);
+        if needed_gib > MOST_GIB {
+            return Err(ContactError::TooLarge {
+                vertices: zone.len(),
+                needed_gib,
+                limit_gib: MOST_GIB,
+            });
+        }
+        for part in zone.chunks(512) {
+            self.response.make_rows(part, &self.sites);
+            control.check()?;
+        }
         Ok(())
     }
 

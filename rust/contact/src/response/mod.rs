@@ -5,6 +5,7 @@ pub mod bonded_layer;
 pub mod entries;
 pub mod grid;
 pub mod kernel;
+pub mod near;
 pub mod stiff_skin;
 pub mod rows;
 pub mod sheet;

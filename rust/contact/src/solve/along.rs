@@ -21,11 +21,13 @@ impl Axes {
         Axes([0, 1, 2].map(|axis| directions.iter().map(|t| t[axis]).collect()))
     }
 
-    fn at(&self, i: usize) -> [f64; 3] {
+    /// The direction of one unknown.
+    pub fn at(&self, i: usize) -> [f64; 3] {
         [0, 1, 2].map(|axis| self.0[axis][i])
     }
 
-    fn columns(&self, first: usize, len: usize) -> [&[f64]; 3] {
+    /// The directions of `len` unknowns from the `first` on, by axis.
+    pub fn columns(&self, first: usize, len: usize) -> [&[f64]; 3] {
         [0, 1, 2].map(|axis| &self.0[axis][first..first + len])
     }
 
@@ -125,7 +127,7 @@ impl Compliance for Along<'_> {
                     .collect();
                 let axes = self.axes.of(&rows);
                 let half = Half::stretched(self.coupling, &rows, |i, first, values, out| {
-                    entries(axes.at(i), axes.columns(first, values.len()), values, out);
+                    turn_entries(axes.at(i), axes.columns(first, values.len()), (values, out));
                 });
                 (rows, Rc::new(half))
             }
@@ -175,7 +177,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// `K_ij t_i.t_j` of one row: the same bits wherever it is made, and for both of a pair.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn entries(row: [f64; 3], columns: [&[f64]; 3], values: &[f32], out: &mut [f32]) {
+pub fn turn_entries(row: [f64; 3], columns: [&[f64]; 3], (values, out): (&[f32], &mut [f32])) {
     let [x, y, z] = columns;
     for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
         *out = (f64::from(*value) * dot(row, [*x, *y, *z])) as f32;

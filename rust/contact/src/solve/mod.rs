@@ -10,7 +10,7 @@ mod half;
 mod kept;
 mod projection;
 
-pub use along::{Along, Axes, Part};
+pub use along::{Along, Axes, Part, turn_entries};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
 pub use half::{Compliance, Symmetric};
