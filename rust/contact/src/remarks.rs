@@ -90,8 +90,11 @@ fn size(posed: &Mesh) -> Option<String> {
 fn bare(skin: &Skin, pressed: &Pressed) -> Option<String> {
     let mut deepest = (0.0, 0);
     for (&source, gap) in skin.welded.source.iter().zip(&pressed.detection.gaps) {
+        if skin.regions[source as usize] >= 0 {
+            continue;
+        }
         let depth = gap.as_ref().map_or(0.0, |g| -g.distance);
-        if skin.regions[source as usize] < 0 && depth > deepest.0 {
+        if depth > deepest.0 {
             deepest = (depth, source);
         }
     }
@@ -120,9 +123,10 @@ fn no_contact(posed: &Mesh, product: &Product) -> String {
 
 fn coarse(skin: &Skin, product: &Product, pressed: &Pressed) -> Option<String> {
     let mesh = product.mesh();
-    let longest = |triangle: u32| {
+    let longest_squared = |triangle: u32| {
         let [a, b, c] = mesh.triangles()[triangle as usize].map(|v| mesh.positions()[v as usize]);
-        (b - a).norm().max((c - b).norm()).max((a - c).norm())
+        let sides = [b - a, c - b, a - c].map(|side| side.norm_squared());
+        sides[0].max(sides[1]).max(sides[2])
     };
     let touched = pressed
         .solved
@@ -131,8 +135,9 @@ fn coarse(skin: &Skin, product: &Product, pressed: &Pressed) -> Option<String> {
         .zip(&pressed.solved.touch)
         .filter(|(f, _)| **f > 0.0);
     let longest = touched
-        .map(|(_, g)| longest(g.triangle))
-        .fold(0.0, f64::max);
+        .map(|(_, g)| longest_squared(g.triangle))
+        .fold(0.0, f64::max)
+        .sqrt();
     (longest > COARSE_RATIO * skin.spacing).then(|| {
         format!(
             "the product's triangles are up to {longest:.1} mm long where it is touched, the hand's {:.1} mm: its pressure \

@@ -22,48 +22,39 @@ pub fn summarize(
     (offset, direction): (f64, Vec3),
 ) -> Contact {
     let fields = Fields::new(skin, posed, pressed);
-    let touches: Vec<(f64, Gap)> = pressed
+    let touches: Vec<(f64, &Gap)> = pressed
         .solved
         .force
         .iter()
         .zip(&pressed.solved.touch)
         .filter(|(f, _)| **f > 0.0)
-        .map(|(f, g)| (*f, *g))
+        .map(|(f, g)| (*f, g))
         .collect();
     let (product_pressure, product_force) = product_pressure(product, &touches, skin.spacing);
     let normal_force: f64 = touches.iter().map(|t| t.0).sum();
     let shift = direction * offset;
     let total_force: Vec3 = touches.iter().map(|(f, g)| -g.normal * *f).sum();
     let (shear_force, shear_moment) = shear_load(pressed, shift);
-    let moment = |(f, g): &(f64, Gap)| (g.closest + shift).cross(&(-g.normal * *f));
+    let moment = |(f, g): &(f64, &Gap)| (g.closest + shift).cross(&(-g.normal * *f));
     let center: Vec3 = touches.iter().map(|(f, g)| (g.closest + shift) * *f).sum();
-    let contact_area: f64 = fields.contact_area.iter().sum();
+    let contact_area: f64 = fields.contact_area.iter().filter(|a| **a > 0.0).sum();
+    let peak_pressure = fields.pressure.iter().filter(|p| **p > 0.0);
+    let peak_pressure = peak_pressure.fold(0.0, |most, p| f64::max(most, *p));
+    let patch_peak = fields.patch_peak(skin, posed);
+    let regions = region_table(skin, pressed, &fields);
+    let shear = shear_fields(skin, pressed, &fields.area);
     let solved = &pressed.solved;
     let load_balance = if normal_force > 0.0 {
         (product_force - normal_force).abs() / normal_force
     } else {
         0.0
     };
-    let spread = |values: &[f64]| -> Vec<f64> {
-        skin.welded
-            .welded
-            .iter()
-            .map(|&w| values[w as usize])
-            .collect()
-    };
-    let spread_vectors = |values: &[Vec3]| -> Vec<Vec3> {
-        skin.welded
-            .welded
-            .iter()
-            .map(|&w| values[w as usize])
-            .collect()
-    };
     Contact {
-        displacement: spread_vectors(&fields.displacement),
-        nodal_force: fields.force_by_vertex(skin),
-        pressure: spread(&fields.pressure),
-        gap: spread(&fields.gap),
-        normal: spread_vectors(&fields.normal),
+        displacement: spread(skin, fields.displacement),
+        nodal_force: force_by_vertex(skin, fields.force),
+        pressure: spread(skin, fields.pressure),
+        gap: spread(skin, fields.gap),
+        normal: spread(skin, fields.normal),
         total_force: total_force + shear_force - pressed.clinging.force(),
         total_moment: touches.iter().map(moment).sum::<Vec3>()
             + shear_moment
@@ -74,22 +65,19 @@ pub fn summarize(
             Vec3::zeros()
         },
         contact_area,
-        peak_pressure: fields
-            .pressure
-            .iter()
-            .fold(0.0, |most, p| f64::max(most, *p)),
+        peak_pressure,
         mean_pressure: if contact_area > 0.0 {
             normal_force / contact_area
         } else {
             0.0
         },
-        patch_peak: fields.patch_peak(skin, posed),
-        regions: region_table(skin, pressed, &fields),
+        patch_peak,
+        regions,
         product_pressure,
         offset,
         direction,
         adhesion: pressed.clinging.by_vertex(skin),
-        shear: shear_fields(skin, pressed, &fields.area),
+        shear,
         residual: Residual {
             complementarity: solved.complementarity,
             penetration_mm: solved.penetration,
@@ -103,6 +91,27 @@ pub fn summarize(
         warnings: remarks(skin, posed, product, pressed),
         seconds: Vec::new(),
     }
+}
+
+/// Values by vertex of the mesh as given, from those by welded vertex.
+fn spread<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
+    if skin.welded.merged() == 0 {
+        return values;
+    }
+    let welded = skin.welded.welded.iter();
+    welded.map(|&w| values[w as usize]).collect()
+}
+
+/// Nodal forces of the mesh as given: merged vertices bear none, the one that stands for them bears all.
+fn force_by_vertex(skin: &Skin, force: Vec<f64>) -> Vec<f64> {
+    if skin.welded.merged() == 0 {
+        return force;
+    }
+    let mut by_vertex = vec![0.0; skin.vertices()];
+    for (&source, f) in skin.welded.source.iter().zip(&force) {
+        by_vertex[source as usize] = *f;
+    }
+    by_vertex
 }
 
 /// Sums of a press, without what only a full result needs.
@@ -178,18 +187,13 @@ impl Fields {
                     2.0 * pressed.modulus_at[site as usize] / (1.0 - material.poisson_ratio);
             }
         }
-        let deformed: Vec<Vec3> = posed
-            .positions()
-            .iter()
-            .zip(&displacement)
-            .map(|(x, u)| x + u)
-            .collect();
         if !pressed.clinging.pulls.is_empty() {
             // The law that places the edge between vertices is that of contact without attraction.
             slack.fill(f64::NAN);
         }
         let edge = EdgeData {
-            positions: &deformed,
+            posed: posed.positions(),
+            displacement: &displacement,
             pressure: &pressure,
             slack: &slack,
             contact_modulus: &modulus,
@@ -204,15 +208,6 @@ impl Fields {
             area,
             contact_area,
         }
-    }
-
-    /// Nodal forces of the mesh as given: merged vertices bear none, the one that stands for them bears all.
-    fn force_by_vertex(&self, skin: &Skin) -> Vec<f64> {
-        let mut force = vec![0.0; skin.vertices()];
-        for (&source, f) in skin.welded.source.iter().zip(&self.force) {
-            force[source as usize] = *f;
-        }
-        force
     }
 
     fn patch_peak(&self, skin: &Skin, posed: &Mesh) -> f64 {
@@ -253,9 +248,11 @@ fn region_table(skin: &Skin, pressed: &Pressed, fields: &Fields) -> Vec<RegionRe
             shear_modulus: pressed.shear_modulus[index],
         })
         .collect();
-    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let (region, vertex) = (skin.sites.region[site], vertex as usize);
-        if region >= 0 {
+    // Only skin that is pressed has an area of contact.
+    for &site in &pressed.solved.zone {
+        let region = skin.sites.region[site as usize];
+        let vertex = skin.sites.vertex[site as usize] as usize;
+        if region >= 0 && fields.force[vertex] > 0.0 {
             let row = &mut table[region as usize];
             row.force += fields.force[vertex];
             row.area += fields.contact_area[vertex];

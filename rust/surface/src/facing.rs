@@ -14,6 +14,12 @@ const TURNED_AWAY: f64 = 0.7;
 /// How far beyond the surface to look for another part, in parts of the product's extent: above rounding, below any wall.
 const BEYOND: f64 = 1e-6;
 
+/// How far beyond the cut-off faces are sought to tell how much room a point has, in parts of the cut-off.
+const ROOM: f64 = 0.5;
+
+/// What rounding may do to such a distance, with room to spare, in parts of it and of the product's extent.
+const ROUNDING: f64 = 1e-7;
+
 /// Answers one point after the other.
 pub(crate) struct Facing<'a> {
     product: &'a Product,
@@ -48,21 +54,56 @@ impl<'a> Facing<'a> {
         skin: Option<Vec3>,
         hint: Option<u32>,
     ) -> Option<Gap> {
-        let (tree, sign) = (&self.product.tree, &self.product.sign);
+        let query = self.query(point, hint);
+        let cut_off = square(self.limits.cut_off_mm);
+        let tree = &self.product.tree;
+        let hit = tree.nearest(&query, cut_off, self.pending, |_, _| 1.0);
+        self.gap_to(hit, &query, skin)
+    }
+
+    /// [`Facing::gap`], and how far the point may go before a face can be within the cut-off, mm; 0 where one is.
+    pub(crate) fn gap_and_room(
+        &mut self,
+        point: Vec3,
+        skin: Option<Vec3>,
+        hint: Option<u32>,
+    ) -> (Option<Gap>, f64) {
+        let (query, tree) = (self.query(point, hint), &self.product.tree);
+        let cut_off = self.limits.cut_off_mm;
+        let sought = cut_off * (1.0 + ROOM);
+        let hit = tree.nearest(&query, square(sought), self.pending, |_, _| 1.0);
+        let clear = hit.map_or(sought, |hit| hit.on.distance_squared.sqrt());
+        let room = clear - cut_off - ROUNDING * (clear + 1.0 / tree.shrink);
+        let hit = hit.filter(|hit| hit.on.distance_squared <= square(cut_off));
+        (self.gap_to(hit, &query, skin), room.max(0.0))
+    }
+
+    /// The gap of a point that is known to have no face within the cut-off.
+    pub(crate) fn gap_beyond(&mut self, point: Vec3, skin: Option<Vec3>) -> Option<Gap> {
+        self.far_inside(&self.product.tree.query(point), skin)
+    }
+
+    fn query(&self, point: Vec3, hint: Option<u32>) -> Query {
+        let tree = &self.product.tree;
         let mut query = tree.query(point);
         query.start = hint
             .and_then(|t| tree.slots.get(t as usize).copied())
             .filter(|slot| *slot != u32::MAX);
-        let cut_off = square(self.limits.cut_off_mm);
-        let Some(hit) = tree.nearest(&query, cut_off, self.pending, |_, _| 1.0) else {
-            return self.far_inside(&query, skin);
+        query
+    }
+
+    /// The gap of a point with its nearest face, if that is within the cut-off.
+    fn gap_to(&mut self, hit: Option<Hit>, query: &Query, skin: Option<Vec3>) -> Option<Gap> {
+        let (tree, sign) = (&self.product.tree, &self.product.sign);
+        let Some(hit) = hit else {
+            return self.far_inside(query, skin);
         };
         // With a skin normal, a sheet is seen from the side the skin is on; `poke` finds the skin that has come through it.
         let is_sheet = skin.is_some() && tree.faces[hit.slot as usize].is_sheet;
         if is_sheet || !sign.is_inside(tree, query.point, &hit) {
-            return Some(self.product.reading(&query, &hit, Side::Outside));
+            return Some(self.product.reading(query, &hit, Side::Outside));
         }
-        self.inside(&query, skin, hit)
+        self.inside(query, skin, hit)
     }
 
     /// A point with no face within the cut-off is outside, or so deep inside that the search goes on in full.
@@ -107,13 +148,15 @@ impl<'a> Facing<'a> {
         if away <= 0.0 {
             return Some(plain);
         }
-        let through = tree.nearest(query, f64::INFINITY, self.pending, |face, on| {
-            let weight = reluctance(face, &skin);
-            let open = product.overlaps().is_none_or(|winding| {
-                weight == f64::INFINITY || !is_buried(tree, winding, query, on)
-            });
-            weight * weight_if(open)
-        });
+        let may_lead_out = |face: &Face| reluctance(face, &skin) < f64::INFINITY;
+        let weigh = |face: &Face, on: &ClosestPoint| {
+            let open = product
+                .overlaps()
+                .is_none_or(|winding| !is_buried(tree, winding, query, on));
+            reluctance(face, &skin) * weight_if(open)
+        };
+        let choice = (may_lead_out, weigh);
+        let through = tree.nearest_of(query, f64::INFINITY, self.pending, choice);
         let is_shallow = |h: &Hit| h.on.distance_squared <= square(self.limits.max_depth_mm);
         match through {
             Some(through) if is_shallow(&through) || away >= TURNED_AWAY => {

@@ -30,12 +30,23 @@ impl Tree {
         pending: &mut Pending,
         weigh: impl Fn(&Face, &ClosestPoint) -> f64,
     ) -> Option<Hit> {
+        self.nearest_of(query, limit, pending, (|_| true, weigh))
+    }
+
+    /// [`Tree::nearest`] of the faces that are `wanted`.
+    pub(crate) fn nearest_of(
+        &self,
+        query: &Query,
+        limit: f64,
+        pending: &mut Pending,
+        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
+    ) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor was just asked whether it has the feature.
-            return unsafe { self.nearest_avx2(query, limit, pending, weigh) };
+            return unsafe { self.nearest_avx2(query, limit, pending, choice) };
         }
-        self.walk(query, limit, pending, weigh)
+        self.walk(query, limit, pending, choice)
     }
 
     /// The same instructions twice as wide; rounding, and so every bit of the answer, is the same.
@@ -46,9 +57,9 @@ impl Tree {
         query: &Query,
         limit: f64,
         pending: &mut Pending,
-        weigh: impl Fn(&Face, &ClosestPoint) -> f64,
+        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
     ) -> Option<Hit> {
-        self.walk(query, limit, pending, weigh)
+        self.walk(query, limit, pending, choice)
     }
 
     #[inline(always)]
@@ -57,7 +68,7 @@ impl Tree {
         query: &Query,
         limit: f64,
         pending: &mut Pending,
-        weigh: impl Fn(&Face, &ClosestPoint) -> f64,
+        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
     ) -> Option<Hit> {
         let mut best = Best {
             hit: None,
@@ -65,7 +76,7 @@ impl Tree {
             boxed: self.box_bound(limit),
         };
         if let Some(slot) = query.start {
-            self.try_face(slot, query, &mut best, &weigh);
+            self.try_face(slot, query, &mut best, &choice);
         }
         let stack = &mut pending.0;
         stack.clear();
@@ -80,7 +91,12 @@ impl Tree {
                     let leaf = &self.leaves[leaf];
                     let mut near = leaf.near(&query.boxed, best.boxed);
                     while near != 0 {
-                        self.try_face(leaf.first + near.trailing_zeros(), query, &mut best, &weigh);
+                        self.try_face(
+                            leaf.first + near.trailing_zeros(),
+                            query,
+                            &mut best,
+                            &choice,
+                        );
                         near &= near - 1;
                     }
                     continue;
@@ -104,9 +120,12 @@ impl Tree {
         slot: u32,
         query: &Query,
         best: &mut Best,
-        weigh: &impl Fn(&Face, &ClosestPoint) -> f64,
+        (wanted, weigh): &(impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
     ) {
         let face = &self.faces[slot as usize];
+        if !wanted(face) {
+            return;
+        }
         let on = closest_on(face.a, face.ab, face.ac, query.point);
         // Weights are at least 1, so most faces need none.
         if on.distance_squared > best.bound {

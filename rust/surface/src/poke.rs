@@ -17,6 +17,8 @@ use rayon::prelude::*;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::product::{Gap, GapLimits, Product, Side};
+use crate::tree::Face;
+use crate::triangle::ClosestPoint;
 use crate::vicinity::Vicinity;
 
 /// Cosine between skin normal and the product's outward direction from which a point outside may have come through. Tests pass from 0.1 to 0.5.
@@ -32,10 +34,7 @@ const STEEPEST: f64 = 1.1;
 const WITNESSES: usize = 2;
 
 /// Up to so many items are answered one after the other: to wake other threads takes as long.
-const FEW: usize = 64;
-
-/// The points near one, once they were sought.
-type Near = Option<Vec<u32>>;
+const FEW: usize = 256;
 
 /// Points of one query, with the skin's normals.
 pub(crate) struct Skin<'a> {
@@ -60,32 +59,19 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
     let mut is_settled = vec![false; gaps.len()];
     seen.iter().for_each(|&i| is_settled[i as usize] = true);
     away.iter().for_each(|&i| is_settled[i as usize] = false);
-    let mut neighbors = vec![None; away.len()];
     let mut is_unread = vec![true; away.len()];
     let mut candidates = Vec::new();
     let mut has_grown = true;
-    loop {
-        // Points that were read deeper make others agree: what is near is sought where that is new.
-        if has_grown {
-            let new = within_reason((&vicinity, &away), &neighbors, (product, gaps));
-            let found = each(&new, |&k| self::neighbors(skin, &vicinity, away[k]));
-            for (k, found) in new.into_iter().zip(found) {
-                neighbors[k] = Some(found);
-            }
-        }
-        let needed = needed(skin, (&away, &neighbors, &is_unread), (product, gaps));
-        if needed.is_empty() {
-            break;
-        }
-        let read = |k: &usize| {
-            let at = away[*k];
+    // Points that were read deeper make others agree.
+    while has_grown {
+        let needed = needed(skin, (&vicinity, &away, &is_unread), (product, gaps));
+        let read = |&k: &usize| {
+            let at = away[k];
             let reading = |gap| product.readings_through(skin, at as usize, gap, limits);
-            let readings = gaps[at as usize].as_ref().map_or([None; 2], reading);
-            let neighbors = neighbors[*k].clone().unwrap_or_default();
             Candidate {
                 at,
-                readings,
-                neighbors,
+                readings: gaps[at as usize].as_ref().map_or([None; 2], reading),
+                neighbors: neighbors(skin, &vicinity, at),
             }
         };
         let read = each(&needed, read);
@@ -126,50 +112,40 @@ fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec
     }
 }
 
-/// Which of the points that face away may be [`needed`], of those whose neighbors are not known: near the others no point is
-/// deep enough to agree with them.
-fn within_reason(
-    (vicinity, away): (&Vicinity, &[u32]),
-    neighbors: &[Near],
-    (product, gaps): (&Product, &[Option<Gap>]),
-) -> Vec<usize> {
-    let gap = |i: u32| gaps[i as usize].as_ref();
-    let distance = |i: u32| gap(i).map_or(f64::INFINITY, |g| g.distance);
-    let least = vicinity.least_near(away, distance);
-    let may_agree = |&k: &usize| {
-        let is_deep = distance(away[k]) + least[k] <= STEEPEST * vicinity.reach();
-        neighbors[k].is_none() && (is_deep || product.is_sheet_at(gap(away[k])))
-    };
-    (0..away.len()).filter(may_agree).collect()
-}
-
 /// Which of the points that face away to read next: those that some neighbors could agree with, as far as these are known.
 ///
 /// Through a wall a point is at least as deep as it is now away, so that most are never read.
 fn needed(
     skin: &Skin,
-    (away, neighbors, is_unread): (&[u32], &[Near], &[bool]),
+    (vicinity, away, is_unread): (&Vicinity, &[u32], &[bool]),
     (product, gaps): (&Product, &[Option<Gap>]),
 ) -> Vec<usize> {
-    let distance = |i: u32| {
-        gaps[i as usize]
-            .as_ref()
-            .map_or(f64::INFINITY, |g| g.distance)
+    let gap = |i: u32| gaps[i as usize].as_ref();
+    let distance = |i: u32| gap(i).map_or(f64::INFINITY, |g| g.distance);
+    let (distances, deepest) = (vicinity.values(distance), STEEPEST * vicinity.reach());
+    let least = vicinity.least_near(away, &distances);
+    let may_be = |&k: &usize| {
+        let is_deep = distance(away[k]) + least[k] <= deepest;
+        is_unread[k] && (is_deep || product.is_sheet_at(gap(away[k])))
     };
-    let agrees = |i: u32, j: u32| {
-        let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
-        distance(i) + distance(j) <= STEEPEST * apart
+    let may_be: Vec<usize> = (0..away.len()).filter(may_be).collect();
+    let agreeing = |&k: &usize| {
+        let (i, own) = (away[k], distance(away[k]));
+        let agrees = |&j: &u32| {
+            let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
+            own + distance(j) <= STEEPEST * apart && faces_alike(skin, i, j)
+        };
+        let mut near = vicinity.around_where(i, &distances, |other| own + other <= deepest);
+        near.retain(agrees);
+        near
     };
+    let found = each(&may_be, agreeing);
     let mut is_needed = vec![false; away.len()];
-    for (k, near) in neighbors.iter().enumerate().filter(|(k, _)| is_unread[*k]) {
-        let Some(near) = near else { continue };
-        let at = away[k];
-        let agreeing = || near.iter().filter(|&&j| agrees(at, j));
-        let is_sheet = product.is_sheet_at(gaps[at as usize].as_ref());
-        if is_sheet || agreeing().take(WITNESSES).count() == WITNESSES {
+    for (k, agreeing) in may_be.into_iter().zip(found) {
+        if agreeing.len() >= WITNESSES || product.is_sheet_at(gap(away[k])) {
             is_needed[k] = true;
-            for other in agreeing() {
-                if let Ok(other) = away.binary_search(other) {
+            for other in agreeing {
+                if let Ok(other) = away.binary_search(&other) {
                     is_needed[other] = is_unread[other];
                 }
             }
@@ -180,10 +156,14 @@ fn needed(
 
 /// The points near a point whose skin faces the same way.
 fn neighbors(skin: &Skin, vicinity: &Vicinity, at: u32) -> Vec<u32> {
-    let own = skin.normals[at as usize];
     let mut near = vicinity.around(at);
-    near.retain(|&j| j != at && skin.normals[j as usize].dot(&own) > 0.0);
+    near.retain(|&j| faces_alike(skin, at, j));
     near
+}
+
+/// Whether skin at two different points faces the same way, by and large.
+fn faces_alike(skin: &Skin, i: u32, j: u32) -> bool {
+    i != j && skin.normals[j as usize].dot(&skin.normals[i as usize]) > 0.0
 }
 
 /// Accepts candidates next to settled points, until no more can be; returns whether there were any.
@@ -297,16 +277,12 @@ impl Product {
         let comes_through = crossings.first().is_some_and(|(_, slot)| away(*slot) > 0.0);
         let wall = entry.filter(|_| comes_through).and_then(|&(reach, _)| {
             // The near side of the wall: faces that oppose the skin and have the point behind them.
-            let hit = self.tree.nearest(
-                &query,
-                reach * reach * (1.0 + 1e-9),
-                &mut pending,
-                |face, _| {
-                    let is_near_side = face.normal.dot(&normal) < 0.0
-                        && (query.point - face.a).dot(&face.normal) < 0.0;
-                    if is_near_side { 1.0 } else { f64::INFINITY }
-                },
-            );
+            let is_near_side = |face: &Face| {
+                face.normal.dot(&normal) < 0.0 && (query.point - face.a).dot(&face.normal) < 0.0
+            };
+            let limit = reach * reach * (1.0 + 1e-9);
+            let choice = (is_near_side, |_: &Face, _: &ClosestPoint| 1.0);
+            let hit = self.tree.nearest_of(&query, limit, &mut pending, choice);
             hit.map(|hit| self.reading(&query, &hit, Side::Inside))
         });
         let is_sheet = self.is_sheet_at(Some(gap));

@@ -22,6 +22,8 @@ pub struct Readings {
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
     gaps: Vec<Option<Gap>>,
+    /// How far each may go before a face can be within the cut-off, mm; 0 if not known, NaN if nothing was read.
+    rooms: Vec<f64>,
 }
 
 /// A number that no other product of this process has.
@@ -56,41 +58,54 @@ impl Product {
                 } else {
                     vec![None; points.len()]
                 },
+                rooms: vec![f64::NAN; points.len()],
             };
         }
-        let Readings {
-            points: before,
-            normals,
-            gaps,
-            ..
-        } = readings;
-        let parts = gaps
-            .par_chunks_mut(CHUNK)
-            .zip(
-                before
-                    .par_chunks_mut(CHUNK)
-                    .zip(normals.par_chunks_mut(CHUNK)),
-            )
-            .zip(points.par_chunks(CHUNK).zip(skin_normals.par_chunks(CHUNK)));
-        parts.for_each(|((gaps, (before, faced)), (points, normals))| {
-            let mut pending = Pending::default();
-            let mut facing = Facing::new(self, limits, &mut pending);
-            let mut last = None;
-            for k in 0..points.len() {
-                if before[k] != points[k] || faced[k] != normals[k] {
-                    let hint = gaps[k].map(|g| g.triangle).or(last);
-                    gaps[k] = facing.gap(points[k], Some(normals[k]), hint);
-                    (before[k], faced[k]) = (points[k], normals[k]);
-                    last = gaps[k].map(|g| g.triangle).or(last);
-                }
-            }
-        });
-        let mut settled = gaps.clone();
+        self.read_moved(readings, (points, skin_normals), limits);
+        let mut settled = readings.gaps.clone();
         let skin = Skin {
             points,
             normals: skin_normals,
         };
         settle(self, &skin, limits, &mut settled);
         settled
+    }
+
+    /// Measures anew what moved or turned.
+    fn read_moved(
+        &self,
+        readings: &mut Readings,
+        (points, skin_normals): (&[Vec3], &[Vec3]),
+        limits: GapLimits,
+    ) {
+        let parts = readings
+            .gaps
+            .par_chunks_mut(CHUNK)
+            .zip(readings.rooms.par_chunks_mut(CHUNK))
+            .zip(readings.points.par_chunks_mut(CHUNK))
+            .zip(readings.normals.par_chunks_mut(CHUNK))
+            .zip(points.par_chunks(CHUNK).zip(skin_normals.par_chunks(CHUNK)));
+        parts.for_each(|((((gaps, rooms), before), faced), (points, normals))| {
+            let mut pending = Pending::default();
+            let mut facing = Facing::new(self, limits, &mut pending);
+            let mut last = None;
+            for k in 0..points.len() {
+                let (point, normal) = (points[k], normals[k]);
+                if before[k] == point && faced[k] == normal {
+                    continue;
+                }
+                let room = rooms[k] - (point - before[k]).norm();
+                let hint = gaps[k].map(|g| g.triangle).or(last);
+                (gaps[k], rooms[k]) = if room > 0.0 {
+                    (facing.gap_beyond(point, Some(normal)), room)
+                } else if !rooms[k].is_nan() {
+                    facing.gap_and_room(point, Some(normal), hint)
+                } else {
+                    (facing.gap(point, Some(normal), hint), 0.0)
+                };
+                (before[k], faced[k]) = (point, normal);
+                last = gaps[k].map(|g| g.triangle).or(last);
+            }
+        });
     }
 }

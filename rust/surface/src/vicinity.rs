@@ -8,7 +8,7 @@ const REACH: f64 = 2.5;
 /// Points whose nearest neighbor is measured to find the typical spacing.
 const SAMPLES: usize = 64;
 
-/// Most cells of the grid for each point in it. From 1 to 16 the time is about the same.
+/// Most cells of the grid for each point in it: what is found does not depend on it.
 const CELLS_PER_POINT: f64 = 4.0;
 
 /// Part of a cell by which rounding may put a point into the next one, with room to spare.
@@ -19,8 +19,9 @@ pub(crate) struct Vicinity<'a> {
     points: &'a [Vec3],
     reach: f64,
     grid: Grid,
-    /// The points, those of a cell together, and where they lie.
+    /// The points, those of a cell together, which cells these are, and where they lie.
     members: Vec<u32>,
+    homes: Vec<u32>,
     places: Vec<Vec3>,
 }
 
@@ -38,13 +39,14 @@ impl<'a> Vicinity<'a> {
     /// Sorts the points `members`, which are finite; their spacing is measured at some of `places`, which is not empty.
     pub(crate) fn new(points: &'a [Vec3], members: &[u32], places: &[u32]) -> Vicinity<'a> {
         let mut grid = Grid::over(members.iter().map(|&i| points[i as usize]));
-        let members = grid.sort(points, members);
+        let (members, homes) = grid.sort(points, members);
         let mut vicinity = Vicinity {
             points,
             reach: 0.0,
             grid,
             places: members.iter().map(|&i| points[i as usize]).collect(),
             members,
+            homes,
         };
         let mut spacings: Vec<f64> = places
             .iter()
@@ -61,25 +63,48 @@ impl<'a> Vicinity<'a> {
         self.reach
     }
 
+    /// A value of every member, in the order in which they stand here.
+    pub(crate) fn values(&self, value: impl Fn(u32) -> f64) -> Vec<f64> {
+        self.members.iter().map(|&j| value(j)).collect()
+    }
+
     /// The points near one of the members, itself among them.
     pub(crate) fn around(&self, i: u32) -> Vec<u32> {
-        let at = self.points[i as usize];
         let mut near = Vec::new();
-        for (first, end) in self.grid.rows(at, self.grid.steps(self.reach)) {
-            let there = self.grid.starts[first] as usize..self.grid.starts[end] as usize;
-            let is_near = |place: &Vec3| (place - at).norm() <= self.reach;
-            let pairs = self.members[there.clone()].iter().zip(&self.places[there]);
-            near.extend(pairs.filter(|(_, place)| is_near(place)).map(|(&j, _)| j));
-        }
+        self.visit(i, |_| true, |k| near.push(self.members[k]));
         near
     }
 
-    /// For each of some members, what no `value` of a point near it is below.
-    pub(crate) fn least_near(&self, places: &[u32], value: impl Fn(u32) -> f64) -> Vec<f64> {
+    /// Those of [`Vicinity::around`] whose value is wanted.
+    pub(crate) fn around_where(
+        &self,
+        i: u32,
+        values: &[f64],
+        wanted: impl Fn(f64) -> bool,
+    ) -> Vec<u32> {
+        let mut near = Vec::new();
+        self.visit(i, |k| wanted(values[k]), |k| near.push(self.members[k]));
+        near
+    }
+
+    /// Visits the wanted ones of the members near one of them, by where they stand here.
+    fn visit(&self, i: u32, wanted: impl Fn(usize) -> bool, mut visit: impl FnMut(usize)) {
+        let at = self.points[i as usize];
+        for (first, end) in self.grid.rows(at, self.grid.steps(self.reach)) {
+            for k in self.grid.starts[first] as usize..self.grid.starts[end] as usize {
+                if wanted(k) && (self.places[k] - at).norm() <= self.reach {
+                    visit(k);
+                }
+            }
+        }
+    }
+
+    /// For each of some members, what none of the `values` of points near it is below.
+    pub(crate) fn least_near(&self, places: &[u32], values: &[f64]) -> Vec<f64> {
         let mut own = vec![f64::INFINITY; self.grid.starts.len() - 1];
-        for (&j, place) in self.members.iter().zip(&self.places) {
-            let least = &mut own[self.grid.home(place)];
-            *least = least.min(value(j));
+        for (&home, value) in self.homes.iter().zip(values) {
+            let least = &mut own[home as usize];
+            *least = least.min(*value);
         }
         let steps = self.grid.steps(self.reach);
         let near = |&i: &u32| {
@@ -141,8 +166,8 @@ impl Grid {
         }
     }
 
-    /// Fills the cells; returns the points cell by cell.
-    fn sort(&mut self, points: &[Vec3], members: &[u32]) -> Vec<u32> {
+    /// Fills the cells; returns the points cell by cell, and the cell of each.
+    fn sort(&mut self, points: &[Vec3], members: &[u32]) -> (Vec<u32>, Vec<u32>) {
         let home = |&i: &u32| self.home(&points[i as usize]) as u32;
         let homes: Vec<u32> = members.iter().map(home).collect();
         // Counted two places on, summed, and moved one place on as the cells are filled.
@@ -151,15 +176,16 @@ impl Grid {
         for k in 2..starts.len() {
             starts[k] += starts[k - 1];
         }
-        let mut sorted = vec![0; members.len()];
+        let (mut sorted, mut sorted_homes) = (vec![0; members.len()], vec![0; members.len()]);
         for (&member, &home) in members.iter().zip(&homes) {
             let next = &mut starts[home as usize + 1];
             sorted[*next as usize] = member;
+            sorted_homes[*next as usize] = home;
             *next += 1;
         }
         starts.pop();
         self.starts = starts;
-        sorted
+        (sorted, sorted_homes)
     }
 
     fn cell(&self, p: &Vec3) -> [usize; 3] {
@@ -212,7 +238,7 @@ mod tests {
         let places = &members[20..200];
         let vicinity = Vicinity::new(&points, &members, places);
         let value = |i: u32| f64::from(i * 7919 % 641) - 300.0;
-        let least = vicinity.least_near(places, value);
+        let least = vicinity.least_near(places, &vicinity.values(value));
         let mut sharp = 0;
         for (&i, bound) in places.iter().zip(least) {
             let apart = |j: &u32| (points[*j as usize] - points[i as usize]).norm();
@@ -221,6 +247,14 @@ mod tests {
             let mut found = vicinity.around(i);
             found.sort_unstable();
             assert_eq!(found, wanted);
+            let mut found = vicinity.around_where(i, &vicinity.values(value), |x| x <= -40.0);
+            found.sort_unstable();
+            let low: Vec<u32> = wanted
+                .iter()
+                .copied()
+                .filter(|&j| value(j) <= -40.0)
+                .collect();
+            assert_eq!(found, low);
             let own = wanted
                 .iter()
                 .map(|&j| value(j))

@@ -3,8 +3,8 @@
 
 mod shapes;
 
-use shapes::{cuboid, moved, sphere, v};
-use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
+use shapes::{Random, cuboid, moved, sphere, v};
+use thenar_surface::{Gap, GapLimits, Mesh, Product, Readings, Vec3, vertex_normals};
 
 const LIMITS: GapLimits = GapLimits {
     cut_off_mm: 8.0,
@@ -240,4 +240,62 @@ fn closed_finger_within_a_lidless_box_stays_out_of_its_floor() {
     for gap in press(&lidless(), &finger).iter().flatten() {
         assert!(gap.distance > 0.0, "{gap:?}");
     }
+}
+
+/// Postures of a tip that wanders about the origin, at times by leaps, and of which now one half moves and now the other.
+fn wandering(frames: usize, seed: u64) -> Vec<Mesh> {
+    let mut random = Random(seed);
+    let mut skin = moved(&tip(3.0), |p| p + v(0.0, 0.0, 1.0));
+    let frame = |k: usize| {
+        let by = random.within(if k % 8 == 7 { 12.0 } else { 0.8 });
+        let middle = skin.positions()[0].x;
+        let shrink = 0.02 * random.next();
+        skin = moved(&skin, |p| match k % 3 {
+            0 => p + by,
+            1 if p.x < middle => p + by * 0.3,
+            2 if p.x > middle => p - p * shrink,
+            _ => p,
+        });
+        skin.clone()
+    };
+    (0..frames).map(frame).collect()
+}
+
+#[test]
+fn readings_kept_from_posture_to_posture_are_those_of_all_skin_bit_for_bit() {
+    let standing = |cup: Product| Product::new(moved(cup.mesh(), |p| p - v(30., 0., 30.))).unwrap();
+    let products = [
+        plate(8.0),
+        plate(1.0),
+        standing(cup(true)),
+        standing(cup(false)),
+        lidless(),
+    ];
+    let mut through = 0;
+    for (seed, product) in (1..).zip(&products) {
+        for cut_off_mm in [1.5, 8.0, f64::INFINITY] {
+            let limits = GapLimits {
+                cut_off_mm,
+                ..LIMITS
+            };
+            let mut readings = Readings::default();
+            for (frame, skin) in wandering(32, seed).iter().enumerate() {
+                let normals = vertex_normals(skin);
+                let kept = product.gaps_after(&mut readings, (skin.positions(), &normals), limits);
+                let anew = product.gaps(skin.positions(), Some(&normals), limits);
+                assert_eq!(kept, anew, "product {seed}, frame {frame}, {cut_off_mm}");
+                let plain = |p: &Vec3| product.gap(*p, None, limits);
+                let pairs = kept.iter().zip(skin.positions().iter().map(plain));
+                let is_through = |pair: &(&Option<Gap>, Option<Gap>)| {
+                    let sign = |g: &Option<Gap>| g.map(|g| g.distance < 0.0);
+                    sign(pair.0) != sign(&pair.1)
+                };
+                through += pairs.filter(is_through).count();
+            }
+        }
+    }
+    assert!(
+        through > 100,
+        "{through} are through a wall: too few to tell"
+    );
 }

@@ -1,8 +1,6 @@
 //! The product's side of the contact: nodal forces of the skin spread over the product's vertices, none lost.
 
-use std::ops::Range;
-
-use thenar_surface::{Gap, Mesh, Product, Vec3};
+use thenar_surface::{Gap, Product, Vec3};
 
 /// Reach over which a nodal force is spread, in vertex spacings of the hand: the coarser mesh sets what a map can resolve,
 /// and two meshes that sample each other point by point would show stripes.
@@ -17,24 +15,24 @@ const WALL_SHARE: f64 = 0.6;
 /// hand's, mm.
 pub fn product_pressure(
     product: &Product,
-    touches: &[(f64, Gap)],
+    touches: &[(f64, &Gap)],
     spacing: f64,
 ) -> (Vec<f64>, f64) {
-    let mesh = product.mesh();
     let areas = product.vertex_areas();
     let mut force = vec![0.0; areas.len()];
     let reach = SPREAD * spacing;
-    let cells = Cells::new(mesh, touches, reach);
-    let mut shares = Vec::new();
+    let cells = Cells::new(product, touches, reach);
+    let mut shares = vec![(0, 0.0); cells.vertices.len()];
     for (nodal, gap) in touches {
-        find_shares(mesh, (gap, reach), (&cells, areas), &mut shares);
-        let sum: f64 = shares.iter().map(|s| s.1).sum();
+        let count = find_shares((gap, reach), &cells, &mut shares);
+        let sum: f64 = shares[..count].iter().map(|s| s.1).sum();
         if sum > 0.0 {
-            shares
-                .iter()
-                .for_each(|(vertex, share)| force[*vertex as usize] += nodal * share / sum);
+            let scale = nodal / sum;
+            for (vertex, share) in &shares[..count] {
+                force[*vertex as usize] += scale * share;
+            }
         } else {
-            let triangle = mesh.triangles()[gap.triangle as usize];
+            let triangle = product.mesh().triangles()[gap.triangle as usize];
             for (corner, share) in triangle.into_iter().zip(gap.barycentric) {
                 force[corner as usize] += nodal * share;
             }
@@ -49,22 +47,31 @@ pub fn product_pressure(
     (pressure, total)
 }
 
+/// A vertex of the product.
+#[derive(Clone, Copy)]
+struct Vertex {
+    index: u32,
+    /// mm2.
+    area: f64,
+    position: Vec3,
+}
+
 /// Product vertices about the touches, by the cells of a grid.
 struct Cells {
     low: Vec3,
-    /// At least the reach, mm.
-    size: f64,
+    /// Cells a mm.
+    per_mm: f64,
     counts: [usize; 3],
-    /// One past the last vertex of each cell.
-    ends: Vec<u32>,
-    vertices: Vec<u32>,
+    /// Where the vertices of each cell begin, and where those of the last end.
+    starts: Vec<u32>,
+    vertices: Vec<Vertex>,
 }
 
 /// Most cells for each vertex of the product.
-const CELLS_PER_VERTEX: f64 = 4.0;
+const CELLS_PER_VERTEX: f64 = 2.0;
 
 impl Cells {
-    fn new(mesh: &Mesh, touches: &[(f64, Gap)], reach: f64) -> Self {
+    fn new(product: &Product, touches: &[(f64, &Gap)], reach: f64) -> Self {
         let mut low = Vec3::repeat(f64::INFINITY);
         let mut high = Vec3::repeat(f64::NEG_INFINITY);
         for (_, gap) in touches {
@@ -72,10 +79,19 @@ impl Cells {
         }
         (low, high) = (low.add_scalar(-reach), high.add_scalar(reach));
         let is_near = |p: &Vec3| (0..3).all(|k| low[k] <= p[k] && p[k] <= high[k]);
-        let inside: Vec<u32> = (0..mesh.positions().len() as u32)
-            .filter(|&v| is_near(&mesh.positions()[v as usize]))
-            .collect();
-        let most = CELLS_PER_VERTEX * inside.len() as f64 + 1.0;
+        let all = product
+            .mesh()
+            .positions()
+            .iter()
+            .zip(product.vertex_areas());
+        let near = (0..).zip(all).filter(|(_, (p, _))| is_near(p));
+        let near = near.map(|(index, (position, area))| Vertex {
+            index,
+            area: *area,
+            position: *position,
+        });
+        let near: Vec<Vertex> = near.collect();
+        let most = CELLS_PER_VERTEX * near.len() as f64 + 1.0;
         let mut size = reach;
         let counts_of =
             |size: f64| (high - low).map(|length| (length / size).max(0.0).floor() + 1.0);
@@ -85,40 +101,39 @@ impl Cells {
         let counts = counts_of(size);
         let mut cells = Cells {
             low,
-            size,
-            counts: [counts.x as usize, counts.y as usize, counts.z as usize],
-            ends: Vec::new(),
-            vertices: vec![0; inside.len()],
+            per_mm: 1.0 / size,
+            counts: [0, 1, 2].map(|k| counts[k] as usize),
+            starts: Vec::new(),
+            vertices: near.clone(),
         };
-        cells.sort(mesh, &inside);
+        cells.sort(&near);
         cells
     }
 
     /// Sorts the vertices by cell, those of one cell in ascending order.
-    fn sort(&mut self, mesh: &Mesh, inside: &[u32]) {
-        let homes: Vec<u32> = inside
+    fn sort(&mut self, near: &[Vertex]) {
+        let home = |v: &Vertex| self.index(self.cell(&v.position)) as u32;
+        let homes: Vec<u32> = near.iter().map(home).collect();
+        // Counted two places on, summed, and moved one place on as the cells are filled.
+        let mut starts = vec![0u32; self.counts.iter().product::<usize>() + 2];
+        homes
             .iter()
-            .map(|&v| self.index(self.cell(&mesh.positions()[v as usize])) as u32)
-            .collect();
-        let mut starts = vec![0u32; self.counts.iter().product::<usize>() + 1];
-        for &home in &homes {
-            starts[home as usize + 1] += 1;
-        }
-        for k in 1..starts.len() {
+            .for_each(|&home| starts[home as usize + 2] += 1);
+        for k in 2..starts.len() {
             starts[k] += starts[k - 1];
         }
-        for (&vertex, &home) in inside.iter().zip(&homes) {
-            let slot = &mut starts[home as usize];
-            self.vertices[*slot as usize] = vertex;
+        for (vertex, &home) in near.iter().zip(&homes) {
+            let slot = &mut starts[home as usize + 1];
+            self.vertices[*slot as usize] = *vertex;
             *slot += 1;
         }
         starts.pop();
-        self.ends = starts;
+        self.starts = starts;
     }
 
     fn cell(&self, point: &Vec3) -> [usize; 3] {
         [0, 1, 2].map(|k| {
-            let at = ((point[k] - self.low[k]) / self.size) as usize;
+            let at = ((point[k] - self.low[k]) * self.per_mm) as usize;
             at.min(self.counts[k] - 1)
         })
     }
@@ -127,32 +142,31 @@ impl Cells {
         (cell[2] * self.counts[1] + cell[1]) * self.counts[0] + cell[0]
     }
 
-    /// The vertices of a row of cells.
-    fn row(&self, x: Range<usize>, [y, z]: [usize; 2]) -> &[u32] {
-        let first = self.index([x.start, y, z]);
-        let start = if first == 0 { 0 } else { self.ends[first - 1] };
-        let end = self.ends[self.index([x.end - 1, y, z])];
-        &self.vertices[start as usize..end as usize]
-    }
-}
-
-fn find_shares(
-    mesh: &Mesh,
-    (gap, reach): (&Gap, f64),
-    (cells, areas): (&Cells, &[f64]),
-    found: &mut Vec<(u32, f64)>,
-) {
-    found.clear();
-    let home = cells.cell(&gap.closest);
-    let [x, y, z] =
-        [0, 1, 2].map(|k| home[k].saturating_sub(1)..(home[k] + 2).min(cells.counts[k]));
-    for (y, z) in z.flat_map(|z| y.clone().map(move |y| (y, z))) {
-        for &vertex in cells.row(x.clone(), [y, z]) {
-            let offset = mesh.positions()[vertex as usize] - gap.closest;
-            let far = offset.norm_squared() / (reach * reach);
-            if far < 1.0 && offset.dot(&gap.normal).abs() < WALL_SHARE * reach {
-                found.push((vertex, areas[vertex as usize] * (1.0 - far) * (1.0 - far)));
+    /// Visits the vertices of all cells within `reach` (mm) of a point.
+    fn visit(&self, point: &Vec3, reach: f64, mut visit: impl FnMut(&Vertex)) {
+        let [first, last] = [-reach, reach].map(|by| self.cell(&point.add_scalar(by)));
+        for z in first[2]..=last[2] {
+            for y in first[1]..=last[1] {
+                let row = self.index([0, y, z]);
+                let (start, end) = (self.starts[row + first[0]], self.starts[row + last[0] + 1]);
+                self.vertices[start as usize..end as usize]
+                    .iter()
+                    .for_each(&mut visit);
             }
         }
     }
+}
+
+/// Finds the vertices over which a touch is spread, with their shares; returns how many. `found` has room for all of `cells`.
+fn find_shares((gap, reach): (&Gap, f64), cells: &Cells, found: &mut [(u32, f64)]) -> usize {
+    let (scale, wall) = (1.0 / (reach * reach), WALL_SHARE * reach);
+    let mut count = 0;
+    cells.visit(&gap.closest, reach, |vertex| {
+        let offset = vertex.position - gap.closest;
+        let near = 1.0 - offset.norm_squared() * scale;
+        // Written in any case and kept if it counts: a branch would be guessed wrong too often.
+        found[count] = (vertex.index, vertex.area * near * near);
+        count += usize::from((near > 0.0) & (offset.dot(&gap.normal).abs() < wall));
+    });
+    count
 }
