@@ -74,7 +74,7 @@ pub fn field(
 fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     let mut shown = std::mem::take(&mut skin.memory.shown);
     let sites = skin.sites.len();
-    if shown.load.len() != sites {
+    if !shown.is_of(sites) {
         shown.load = vec![Vec3::zeros(); sites];
         shown.field = vec![Vec3::zeros(); sites];
         shown.load_change = vec![Vec3::zeros(); sites];

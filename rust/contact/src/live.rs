@@ -1,7 +1,7 @@
 //! What of the last live contact still holds: skin that neither moved nor was strained from elsewhere keeps its forces.
 //!
-//! Certified each time: held skin is not carried off, by what changed elsewhere, farther than the written surface may miss
-//! the product; where it is, it is solved anew.
+//! Certified each time: held skin is not carried off by what changed elsewhere, nor solved skin by what changed beyond its near
+//! coupling, farther than the written surface may miss the product; where it is, it is solved anew.
 
 use thenar_surface::{Gap, Vec3};
 
@@ -129,8 +129,11 @@ pub fn beyond(skin: &Skin, setting: &Setting<'_>, round: usize) -> Beyond {
 /// # Errors
 /// [`ContactError::TooLarge`](crate::ContactError) before memory is taken, or `Cancelled`.
 pub fn couple(skin: &mut Skin, open: &[u32], control: &Control) -> Result<(), ContactError> {
-    let is_shown = skin.memory.shown.load.len() == skin.sites.len();
-    let range = if is_shown { NEAR } else { f64::INFINITY };
+    // Without a last live press nothing is known of what lies farther off: all of it is coupled.
+    let range = match skin.memory.shown.is_of(skin.sites.len()) {
+        true => NEAR,
+        false => f64::INFINITY,
+    };
     if skin.memory.near.sites == open && skin.memory.near.range >= range {
         return Ok(());
     }

@@ -114,6 +114,11 @@ impl Seen {
 }
 
 impl Shown {
+    /// Whether there is something for a skin of so many sites.
+    pub fn is_of(&self, sites: usize) -> bool {
+        self.load.len() == sites
+    }
+
     /// Begins the next press.
     pub fn begin(&mut self) {
         self.load_change.fill(Vec3::zeros());

@@ -55,7 +55,7 @@ impl State {
     /// What the last live press shows at the solved places, less what these did to themselves and each other nearby.
     fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
         let (shown, near) = (&skin.memory.shown, &skin.memory.near);
-        if self.beyond == Beyond::Nothing || shown.load.len() != skin.sites.len() {
+        if self.beyond == Beyond::Nothing || !shown.is_of(skin.sites.len()) {
             return Vec::new();
         }
         let ahead = match self.beyond {

@@ -233,3 +233,132 @@ impl Compliance for NearAlong<'_> {
         false
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::assembly::coupling;
+    use crate::skin::Skin;
+    use crate::solve::operator::Rows;
+    use crate::solve::{Along, Part};
+    use crate::{Control, Material, Model, SkinInput};
+    use thenar_surface::Mesh;
+
+    /// A bent sheet of 28 by 28 vertices with its rows made, and a zone of two thirds of its sites.
+    fn sheet() -> (Skin, Vec<u32>) {
+        let side = 28;
+        let place = |k: u32| {
+            let (x, y) = (1.3 * f64::from(k % side), 1.4 * f64::from(k / side));
+            Vec3::new(x, y, 0.01 * (x * x + y * x))
+        };
+        let corners = |k: u32| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]];
+        let cells = (0..side * (side - 1)).filter(|k| k % side != side - 1);
+        let mesh = Mesh::new(
+            (0..side * side).map(place).collect(),
+            cells.flat_map(corners).collect(),
+        );
+        let input = SkinInput {
+            mesh: mesh.unwrap(),
+            regions: Vec::new(),
+            materials: vec![Material::finger_layer()],
+            model: Model::Layer,
+        };
+        let control = Control::none();
+        let mut skin = Skin::prepare(input, &control).unwrap();
+        let zone = (0..skin.sites.len() as u32).filter(|site| site % 3 != 1);
+        let zone: Vec<u32> = zone.collect();
+        skin.make_rows(&zone, &control).unwrap();
+        (skin, zone)
+    }
+
+    fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
+        let mut near = Near::default();
+        near.renew(zone, (&skin.response, &skin.sites), range);
+        near
+    }
+
+    fn loads(count: usize) -> Vec<Vec3> {
+        let load = |k: usize| Vec3::new((k as f64).sin(), (0.7 * k as f64).cos(), 1.0);
+        (0..count).map(load).collect()
+    }
+
+    #[test]
+    fn without_a_range_products_are_those_of_the_whole_coupling() {
+        let (skin, zone) = sheet();
+        let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
+        let mut whole = Rows::new();
+        coupling((&skin.response, &skin.sites), &zone, &mut whole);
+        let field = near.field(&loads);
+        let mut wanted = vec![0.0; zone.len()];
+        for axis in 0..3 {
+            let load: Vec<f64> = loads.iter().map(|load| load[axis]).collect();
+            whole.times(&load, &mut wanted);
+            for (ours, wanted) in field.iter().zip(&wanted) {
+                assert!(
+                    (ours[axis] - wanted).abs() < 1e-9,
+                    "{} {wanted}",
+                    ours[axis]
+                );
+            }
+        }
+        let directions: Vec<Vec3> = loads.iter().map(Vec3::normalize).collect();
+        let weight: Vec<f64> = (0..zone.len())
+            .map(|k| 1.0 + 0.1 * (k % 7) as f64)
+            .collect();
+        let (axes, part, likely) = (
+            Axes::new(&directions),
+            Part::default(),
+            vec![true; zone.len()],
+        );
+        let mut entries = Vec::new();
+        near.turn(&axes, &mut entries);
+        let ours = NearAlong::new(&near, &entries, &weight);
+        let theirs = Along::new((&whole, &axes), (&weight, &likely), &part);
+        let x: Vec<f64> = (0..zone.len()).map(|k| (0.3 * k as f64).cos()).collect();
+        let mut product = vec![0.0; zone.len()];
+        ours.times(&x, &mut product);
+        theirs.times(&x, &mut wanted);
+        for (ours, wanted) in product.iter().zip(&wanted) {
+            assert!((ours - wanted).abs() < 1e-9, "{ours} {wanted}");
+        }
+        for (ours, wanted) in ours.diagonal().iter().zip(theirs.diagonal()) {
+            assert!((ours / wanted - 1.0).abs() < 1e-6, "{ours} {wanted}");
+        }
+    }
+
+    #[test]
+    fn a_range_leaves_out_what_lies_in_patches_beyond_it_and_nothing_else() {
+        let (skin, zone) = sheet();
+        let (range, loads) = (9.0, loads(zone.len()));
+        let field = near(&skin, &zone, range).field(&loads);
+        let (mut left_out, mut most) = (0, 0.0f64);
+        for (&i, ours) in zone.iter().zip(&field) {
+            let row = skin.response.row(i);
+            let home = skin.sites.patch[i as usize];
+            let mut wanted = Vec3::zeros();
+            for (&j, load) in zone.iter().zip(&loads) {
+                let patch = skin.sites.patch[j as usize];
+                let felt = skin
+                    .response
+                    .near(home)
+                    .iter()
+                    .find(|entry| entry.0 == patch);
+                let bound = skin.response.bound(home, patch);
+                match (felt, bound) {
+                    (Some(entry), Some(bound)) if bound < range => {
+                        let first = skin.sites.patch_range[patch as usize].0;
+                        wanted += load * f64::from(row[(entry.1 + j - first) as usize]);
+                    }
+                    _ => left_out += 1,
+                }
+            }
+            most = most.max((ours - wanted).norm());
+        }
+        assert!(most < 1e-9, "{most}");
+        let pairs = zone.len() * zone.len();
+        assert!(
+            left_out > pairs / 10 && left_out < 9 * pairs / 10,
+            "{left_out} of {pairs}"
+        );
+    }
+}
