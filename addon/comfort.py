@@ -65,8 +65,9 @@ def judge(context):
     needed = () if given.rule == OFF or mesh is None else (names.PRESSURE_KPA, names.FORCE_N, names.REGION)
     fields = [attributes.read(mesh, name) for name in needed]
     if not fields or not outcome.is_valid or any(field is None for field in fields):
-        outcome.comfort_source = ""
-        _write(outcome, Verdict((0.0,) * len(outcome.regions), (0.0,) * len(outcome.regions), ""))
+        if outcome.comfort_source:  # else nothing was judged since, and every row still says so
+            outcome.comfort_source = ""
+            _write(outcome, Verdict((0.0,) * len(outcome.regions), (0.0,) * len(outcome.regions), ""))
         if mesh is not None and mesh.is_editable:
             attributes.remove(mesh, [names.THRESHOLD_SHARE])
         return

@@ -16,6 +16,8 @@ from .steps import at_once
 
 SENTENCES_KEPT = 256
 """Notes whose wording is kept: from frame to frame most of them are the same."""
+_REGION = re.compile(r"region (\d+)\b")
+_NUMBERS = dict.fromkeys(map(ord, "0123456789."))
 
 
 @dataclass
@@ -199,10 +201,10 @@ def _named(text, objects, region_names):
     for role, name in zip(("hand", "product"), objects, strict=True):
         if f"he {role}" in text:
             text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
-    if "region " not in text:
+    if not _REGION.search(text):
         return text
     regions = dict(enumerate(region_names))
-    return re.sub(r"\bregion (\d+)\b", lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
+    return _REGION.sub(lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
 
 
 def joined(notes):
@@ -216,7 +218,10 @@ def joined(notes):
 
 @lru_cache(maxsize=SENTENCES_KEPT)
 def _kind(note):
-    return re.sub(r"'[^']*'|[\d.]+", "#", note)
+    """The sentence without the names in quotes and without numbers."""
+    parts = note.split("'")
+    said = parts[::2] if len(parts) % 2 else parts[::2] + parts[-1:]
+    return "#".join(said).translate(_NUMBERS)
 
 
 def finish(context, job, contact):
@@ -256,12 +261,11 @@ def solve(context):
 
 def fields_of(contact, job):
     """The native contact's arrays as the writer wants them."""
-    gap = np.asarray(contact.gap_mm)
     return write.Fields(
         displacement_mm=np.asarray(contact.displacement_mm),
         pressure_mpa=np.asarray(contact.pressure_mpa),
         force_n=np.asarray(contact.force_n),
-        depth_mm=np.where(np.isfinite(gap), np.maximum(-gap, 0.0), 0.0),
+        depth_mm=np.fmax(-np.asarray(contact.gap_mm), 0.0),
         regions=job.reading.hand.regions,
         product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
         offset_mm=offset_mm(contact, job),

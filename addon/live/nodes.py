@@ -52,11 +52,6 @@ def base_positions(hand, depsgraph):
     return np.ascontiguousarray(values[:count])
 
 
-def put_offsets(hand, offsets):
-    """Write the contact's offsets (n, 3), local, Blender units."""
-    attributes.write(hand.data, names.LIVE_OFFSET, "FLOAT_VECTOR", offsets)
-
-
 def _tree():
     tree = bpy.data.node_groups.new(names.LIVE_MODIFIER, "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")

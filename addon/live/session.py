@@ -129,18 +129,11 @@ def _press(job, session):
 
 def _write(context, session, job, contact):
     """Shape and colors of the skin, pressure of the product, and the scene's numbers."""
-    settings, skin = context.scene.thenar, job.reading.hand
+    settings = context.scene.thenar
     hand, parts = settings.hand, workflow.product_parts(settings)
     fields = workflow.fields_of(contact, job)
-    nodes.put_offsets(hand, units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale))
-    pressure = units.kpa(fields.pressure_mpa)
-    attributes.write(hand.data, names.DEPTH_MM, "FLOAT", fields.depth_mm)
-    attributes.write(hand.data, names.FORCE_N, "FLOAT", fields.force_n)
-    attributes.write(hand.data, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
-    if fields.shear is not None:
-        attributes.write(hand.data, names.SHEAR_KPA, "FLOAT", units.kpa(fields.shear[0]))
-        attributes.write(hand.data, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
-    _paint(session, hand, pressure, (settings, colors.SKIN))
+    _shape(hand, fields, job.reading.hand)
+    _paint(session, hand, units.kpa(fields.pressure_mpa), (settings, colors.SKIN))
     loads = units.kpa(fields.product_pressure_mpa)
     by_name = {part.name: part for part in parts}
     for record in job.reading.product.parts:
@@ -154,6 +147,19 @@ def _write(context, session, job, contact):
     context.view_layer.update()
 
 
+def _shape(hand, fields, skin):
+    """Offsets and fields of the skin; where nothing presses, only what the mesh does not hold yet."""
+    put = attributes.write if fields.force_n.any() else attributes.settle
+    moved_mm = fields.displacement_mm.astype(np.float32)
+    put(hand.data, names.LIVE_OFFSET, "FLOAT_VECTOR", units.vectors_to_local(moved_mm, skin.matrix, skin.scale))
+    put(hand.data, names.DEPTH_MM, "FLOAT", fields.depth_mm)
+    put(hand.data, names.FORCE_N, "FLOAT", fields.force_n)
+    put(hand.data, names.DISPLACEMENT_MM, "FLOAT_VECTOR", moved_mm)
+    if fields.shear is not None:
+        put(hand.data, names.SHEAR_KPA, "FLOAT", units.kpa(fields.shear[0]))
+        put(hand.data, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
+
+
 def _paint(session, obj, pressure, look):
     """Pressure and its colors, anew only where the pressure changed; nothing where nothing presses or pressed."""
     settings, bare = look
@@ -162,9 +168,9 @@ def _paint(session, obj, pressure, look):
     if before is None or before[2] != scale or len(before[0]) != len(pressure):
         tinted = colors.linear(pressure, settings, bare)
     else:
-        if not (before[0].any() or pressure.any()):
-            return
         rows, tinted = np.flatnonzero(before[0] != pressure), before[1]
+        if not (rows.size or pressure.any()):
+            return
         tinted[rows] = colors.linear(pressure[rows], settings, bare)
     session.painted[obj.name] = (pressure, tinted, scale)
     attributes.write(obj.data, names.PRESSURE_KPA, "FLOAT", pressure)
@@ -172,4 +178,4 @@ def _paint(session, obj, pressure, look):
     if maps.shown(settings).kind == maps.PRESSURE:
         obj.data.update()
     else:
-        colors.recolor(obj.data, settings, bare)
+        colors.lay_map(obj.data, settings, bare)

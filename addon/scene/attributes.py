@@ -14,9 +14,17 @@ def write(mesh, name, kind, values):
         attribute = None
     if attribute is None:
         mesh.attributes.new(name, kind, "POINT")
+        attribute = mesh.attributes[name]
     dtype = np.int32 if kind == "INT" else np.float32
-    flat = np.ascontiguousarray(values, dtype).ravel()
-    mesh.attributes[name].data.foreach_set(_FIELD[kind], flat)
+    attribute.data.foreach_set(_FIELD[kind], np.ascontiguousarray(values, dtype).ravel())
+
+
+def settle(mesh, name, kind, values):
+    """Write as `write` does, but only where the mesh holds something else: writing makes Blender evaluate it anew."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and attribute.data_type == kind and np.array_equal(read(mesh, name), values):
+        return
+    write(mesh, name, kind, values)
 
 
 def read(mesh, name):

@@ -1,5 +1,7 @@
 """Colour attributes from the maps, for Solid view and for export; the shader colours by itself."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from .. import colormap, maps, names
@@ -11,18 +13,38 @@ BARE = (0.84, 0.84, 0.82)
 """sRGB of a bare product."""
 
 
+_STEPS = 31 * 512
+"""Of the table of the pressure's colours: between its entries they are off by less than 1e-6 of 1."""
+
+
 def linear(pressure_kpa, look, bare):
     """Scene-linear RGBA (n, 4) float32 of pressures, kPa, over a bare surface colour (sRGB)."""
-    return mapped((pressure_kpa, pressure_kpa), maps.scale(maps.MAPS[maps.PRESSURE], look), bare)
+    scale = maps.scale(maps.MAPS[maps.PRESSURE], look)
+    table, slopes = _pressure_table(scale, bare)
+    place = colormap.within(scale.share(pressure_kpa)) * _STEPS
+    low = place.astype(np.intp)
+    return table.take(low, axis=0) + slopes.take(low, axis=0) * (place - low).astype(np.float32)[:, None]
+
+
+@lru_cache(maxsize=4)
+def _pressure_table(scale, bare):
+    """Colours at even steps from no pressure to the top of the range, and how they go on from each: RGBA, float32.
+
+    Live and bakes colour every frame, and looking up takes a third of computing.
+    """
+    pressure = np.linspace(0.0, scale.high, _STEPS + 1)
+    table = mapped((pressure, pressure), scale, bare)
+    return table, np.diff(table, axis=0, append=table[-1:])
 
 
 def mapped(values, scale, bare):
     """Scene-linear RGBA (n, 4) float32 by a `maps.Scale`; `values`: those of the map, and those that cover (n,)."""
     shown, covering = (np.asarray(part, dtype=np.float64) for part in values)
-    cover = colormap.cover(covering / scale.edge)[:, None]
-    tinted = colormap.to_linear(colormap.srgb(scale.palette, scale.share(shown)))
+    cover = colormap.cover(covering / scale.edge)
+    tinted = colormap.to_linear(colormap.channels(scale.palette, scale.share(shown)))
+    under = colormap.to_linear(bare)[:, None]
     out = np.ones((len(shown), 4), np.float32)
-    out[:, :3] = colormap.to_linear(np.array(bare)) * (1.0 - cover) + tinted * cover
+    out[:, :3] = (under + (tinted - under) * cover).T
     return out
 
 
@@ -31,6 +53,11 @@ def recolor(mesh, look, bare):
     pressure = attributes.read(mesh, names.PRESSURE_KPA)
     if pressure is not None:
         attributes.write(mesh, names.COLOR, "FLOAT_COLOR", linear(pressure, look, bare))
+    lay_map(mesh, look, bare)
+
+
+def lay_map(mesh, look, bare):
+    """Colour the mesh from the map that is shown, beside the colours of the pressure."""
     view = maps.shown(look)
     values = [attributes.read(mesh, name) for name in (view.attribute, maps.covering(view))]
     if view.kind == maps.PRESSURE or any(part is None for part in values):

@@ -161,3 +161,32 @@ def test_values_that_are_no_numbers_or_out_of_range_take_the_ends_of_a_map():
     strange = np.array([np.nan, -np.inf, -2.0, 3.0, np.inf])
     assert np.abs(colormap.srgb("VIRIDIS", strange) - ends).max() < 1e-12
     assert np.array_equal(colormap.cover(strange), [0.0, 0.0, 0.0, 1.0, 1.0])
+
+
+@pytest.mark.parametrize("palette", ["CIVIDIS", "VIRIDIS"])
+def test_colors_of_pressure_from_the_table_are_those_that_the_map_computes(palette):
+    from thenar_blender import maps
+    from thenar_blender.scene import colors as scene_colors
+
+    stage.scene()
+    look = bpy.context.scene.thenar
+    look.palette = palette
+    for look.range_kpa in (4.0, 150.0, 900.0):
+        scale = maps.scale(maps.MAPS[maps.PRESSURE], look)
+        kpa = np.random.default_rng(1).uniform(-0.1, 1.2, 20_000) * look.range_kpa
+        kpa[:3] = np.nan, 0.0, look.range_kpa
+        computed = scene_colors.mapped((kpa, kpa), scale, scene_colors.SKIN)
+        np.testing.assert_allclose(scene_colors.linear(kpa, look, scene_colors.SKIN), computed, rtol=0, atol=1e-6)
+
+
+def test_an_attribute_settles_only_where_it_holds_something_else():
+    from thenar_blender.scene import attributes
+
+    mesh = stage.scene()[0].data
+    values = np.arange(len(mesh.vertices), dtype=np.float32)
+    attributes.settle(mesh, "settling", "FLOAT", values)
+    assert np.array_equal(attributes.read(mesh, "settling"), values)
+    attributes.settle(mesh, "settling", "FLOAT", values + 1.0)
+    assert np.array_equal(attributes.read(mesh, "settling"), values + 1.0)
+    attributes.settle(mesh, "settling", "FLOAT_VECTOR", np.ones((len(values), 3)))
+    assert mesh.attributes["settling"].data_type == "FLOAT_VECTOR"
