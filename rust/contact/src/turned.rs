@@ -19,7 +19,7 @@ pub(crate) struct Turned {
     likely: Vec<bool>,
     part: Part,
     /// Entries of the near coupling along the directions, in a live press.
-    near: Vec<f32>,
+    near: Vec<i16>,
     /// What forces beyond the coupling do to each along its direction, over its weight; empty where there are none.
     push: Vec<f64>,
 }

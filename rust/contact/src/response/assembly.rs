@@ -10,7 +10,7 @@ use crate::sites::Sites;
 use crate::solve::operator::{Rows, Run};
 
 /// Values of a row that are copied at a time.
-const SHORT: usize = 16;
+pub const SHORT: usize = 16;
 
 /// `K` between the sites of `zone` (ascending): symmetric, 1/mm. Written to `matrix`, whose storage is used again.
 pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &mut Rows<f32>) {
@@ -38,7 +38,7 @@ pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &m
 }
 
 /// The `pieces` (first, number) of a row, one after the other, in `out`, which has room for them and [`SHORT`] more.
-fn take<'a>(row: &[f32], pieces: &[(u32, u32)], out: &'a mut [f32]) -> &'a [f32] {
+pub fn take<'a>(row: &[f32], pieces: &[(u32, u32)], out: &'a mut [f32]) -> &'a [f32] {
     let mut at = 0;
     for &(from, len) in pieces {
         let (from, len) = (from as usize, len as usize);
@@ -54,7 +54,7 @@ fn take<'a>(row: &[f32], pieces: &[(u32, u32)], out: &'a mut [f32]) -> &'a [f32]
 }
 
 /// Runs of columns in the rows of one patch, and where their values lie there: first and number.
-fn layout(near: &[(u32, u32)], members: &[Members]) -> (Vec<Run>, Vec<(u32, u32)>) {
+pub fn layout(near: &[(u32, u32)], members: &[Members]) -> (Vec<Run>, Vec<(u32, u32)>) {
     let (mut runs, mut pieces): (Vec<Run>, Vec<(u32, u32)>) = (Vec::new(), Vec::new());
     for &(patch, offset) in near {
         let members = &members[patch as usize];
@@ -79,23 +79,24 @@ fn layout(near: &[(u32, u32)], members: &[Members]) -> (Vec<Run>, Vec<(u32, u32)
 }
 
 /// Where a patch's own sites begin in its rows.
-fn own_offset(response: &Response, patch: u32) -> u32 {
+pub fn own_offset(response: &Response, patch: u32) -> u32 {
     let near = response.near(patch);
     let own = near.binary_search_by_key(&patch, |entry| entry.0);
     own.map_or(0, |k| near[k].1)
 }
 
 /// What a zone holds of a patch.
-struct Members {
+pub struct Members {
     /// Place of the first in the zone.
     from: u32,
-    len: u32,
+    pub len: u32,
     /// First, counted in the patch, and number of those that follow one another.
     pieces: Vec<(u32, u32)>,
 }
 
 impl Members {
-    fn new(zone: &[u32], (first, last): (u32, u32)) -> Self {
+    /// Of a `zone` (ascending), those from `first` to before `last`.
+    pub fn new(zone: &[u32], (first, last): (u32, u32)) -> Self {
         let from = zone.partition_point(|&z| z < first);
         let to = zone.partition_point(|&z| z < last);
         let following = zone[from..to].chunk_by(|a, b| a + 1 == *b);

@@ -1,19 +1,24 @@
 //! The response among sites near each other, as a live press solves with it: what lies farther off answers as it did last.
 //!
 //! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. The sites
-//! of one patch feel the same others, so that their rows are a dense block, and products run over it without gaps.
+//! of one patch feel the same others, so that their rows are a dense block, and products run over it without gaps. Entries are
+//! whole numbers of 16 bits: reading them is what a product takes, and a press that the eye alone judges needs no more.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
+use super::assembly::{Members, SHORT, layout, own_offset, take};
 use super::rows::Response;
 use crate::sites::Sites;
-use crate::solve::{Axes, Compliance, Kept, Symmetric, turn_entries};
+use crate::solve::operator::Run;
+use crate::solve::{Axes, Compliance, Kept, Symmetric, total};
 
 /// Rows are filled up with zeros to a multiple of this: products need no remainder.
-const LANES: usize = 16;
+const LANES: usize = 32;
 /// Entries from which products are worth several threads.
-const PARALLEL_ENTRIES: usize = 3_000_000;
+const PARALLEL_ENTRIES: usize = 6_000_000;
+/// The largest entry as a whole number.
+const MOST: f32 = 32_000.0;
 
 /// Rows of one patch.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +26,8 @@ struct Home {
     rows: u32,
     /// Entries of each, a multiple of [`LANES`].
     width: u32,
+    /// How many runs its columns are.
+    runs: u32,
 }
 
 /// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric.
@@ -31,11 +38,16 @@ pub struct Near {
     /// How far apart patches may lie, mm.
     pub range: f64,
     homes: Vec<Home>,
-    /// Place of the site of each column, home by home; any where the entries are zero.
-    columns: Vec<u32>,
-    /// Entries, row by row.
-    values: Vec<f32>,
+    /// Places of the sites of the columns, home by home; zeros follow.
+    runs: Vec<Run>,
+    /// Entries over `unit`, row by row; zero where a site meets itself.
+    values: Vec<i16>,
+    /// What one of an entry is worth, 1/mm.
+    unit: f32,
+    /// The entries where sites meet themselves, some times larger than any other.
     own: Vec<f64>,
+    /// Entries before they were rounded, kept for their storage.
+    exact: Vec<f32>,
 }
 
 impl Near {
@@ -45,105 +57,134 @@ impl Near {
         self.sites.clear();
         self.sites.extend_from_slice(zone);
         self.homes.clear();
-        self.columns.clear();
-        self.values.clear();
+        self.runs.clear();
+        self.exact.clear();
         self.own.clear();
         let patch = |site: &u32| sites.patch[*site as usize];
-        let starts = sites
+        let members: Vec<Members> = sites
             .patch_range
             .iter()
-            .map(|&(first, _)| zone.partition_point(|site| *site < first) as u32);
-        let mut starts: Vec<u32> = starts.collect();
-        starts.push(zone.len() as u32);
+            .map(|&range| Members::new(zone, range))
+            .collect();
         for home in zone.chunk_by(|a, b| patch(a) == patch(b)) {
-            self.push_home(home, (response, sites), &starts);
+            self.push_home(home, (response, sites), &members);
         }
+        self.unit = largest(&self.exact).max(f32::MIN_POSITIVE) / MOST;
+        self.values.resize(self.exact.len(), 0);
+        round_entries(&self.exact, self.unit.recip(), &mut self.values);
     }
 
-    /// Appends the rows of one patch's sites. `starts`: place of the first site of every patch.
-    fn push_home(&mut self, home: &[u32], (response, sites): (&Response, &Sites), starts: &[u32]) {
+    /// Appends the rows of one patch's sites. `members`: what of every patch is coupled.
+    fn push_home(
+        &mut self,
+        home: &[u32],
+        (response, sites): (&Response, &Sites),
+        members: &[Members],
+    ) {
         let patch = sites.patch[home[0] as usize];
-        let offsets = response.near(patch).iter().map(|entry| entry.1);
-        let range = self.range;
-        let felt = response
-            .bounds(patch)
-            .zip(offsets)
-            .filter(|((other, bound), _)| *bound < range || *other == patch);
-        let begun = self.columns.len();
-        // Where in a row of the response each column stands.
-        let mut taken: Vec<u32> = Vec::new();
-        let mut own = 0;
-        for ((other, _), offset) in felt {
-            let (first, _) = sites.patch_range[other as usize];
-            let places = starts[other as usize]..starts[other as usize + 1];
-            if other == patch {
-                own = offset + home[0] - first;
-            }
-            let members = &self.sites[places.start as usize..places.end as usize];
-            taken.extend(members.iter().map(|site| offset + site - first));
-            self.columns.extend(places);
-        }
-        let width = taken.len().next_multiple_of(LANES);
-        self.columns.resize(begun + width, starts[patch as usize]);
-        for &site in home {
-            let row = response.row(site);
-            let begin = self.values.len();
-            self.values.extend(taken.iter().map(|&k| row[k as usize]));
-            self.values.resize(begin + width, 0.0);
-            self.own
-                .push(f64::from(row[(own + site - home[0]) as usize]));
-        }
+        let felt = response.bounds(patch).zip(response.near(patch));
+        let felt = felt.filter(|((other, bound), _)| *bound < self.range || *other == patch);
+        let felt: Vec<(u32, u32)> = felt.map(|(_, entry)| *entry).collect();
+        let (runs, pieces) = layout(&felt, members);
+        let width: u32 = runs.iter().map(|run| run.len).sum();
+        let width = width.next_multiple_of(LANES as u32);
         self.homes.push(Home {
             rows: home.len() as u32,
-            width: width as u32,
+            width,
+            runs: runs.len() as u32,
         });
+        self.runs.extend(runs);
+        let (first, own) = (
+            sites.patch_range[patch as usize].0,
+            own_offset(response, patch),
+        );
+        let before = felt.iter().take_while(|entry| entry.0 < patch);
+        let before: u32 = before.map(|entry| members[entry.0 as usize].len).sum();
+        for (k, &site) in home.iter().enumerate() {
+            let row = response.row(site);
+            let begin = self.exact.len();
+            let end = begin + width as usize;
+            self.exact.resize(end + SHORT, 0.0);
+            let taken = take(row, &pieces, &mut self.exact[begin..]).len();
+            self.exact.truncate(end);
+            self.exact[begin + taken..].fill(0.0);
+            self.exact[begin + before as usize + k] = 0.0;
+            self.own.push(f64::from(row[(own + site - first) as usize]));
+        }
     }
 
     /// `sum_j K_ij load_j` at its sites; `loads` by site.
     pub fn field(&self, loads: &[Vec3]) -> Vec<Vec3> {
-        let mut out = vec![0.0; loads.len()];
+        let load = [0, 1, 2].map(|axis| loads.iter().map(|load| load[axis] as f32).collect());
+        let load: [Vec<f32>; 3] = load;
         let mut field = vec![Vec3::zeros(); loads.len()];
-        for axis in 0..3 {
-            let load: Vec<f64> = loads.iter().map(|load| load[axis]).collect();
-            self.multiply(&self.values, &load, &mut out);
-            for (sum, out) in field.iter_mut().zip(&out) {
-                sum[axis] = *out;
-            }
+        self.by_home(&self.values, &mut field, |entries, columns, field| {
+            field_block(entries, load.each_ref().map(|x| columns.of(x)), field);
+        });
+        let unit = f64::from(self.unit);
+        for ((sum, own), load) in field.iter_mut().zip(&self.own).zip(loads) {
+            *sum = *sum * unit + load * *own;
         }
         field
     }
 
     /// The entries times the cosines between the directions of their rows and columns, written to `out`.
-    pub fn turn(&self, axes: &Axes, out: &mut Vec<f32>) {
-        out.resize(self.values.len(), 0.0);
-        let (mut row, mut from, mut at) = (0, 0, 0);
-        for home in &self.homes {
-            let width = home.width as usize;
-            let there = axes.of(&self.columns[from..from + width]);
+    pub fn turn(&self, axes: &Axes, out: &mut Vec<i16>) {
+        out.resize(self.values.len(), 0);
+        let all: [Vec<f32>; 3] = axes.narrow();
+        let (mut row, mut at) = (0, 0);
+        for (home, columns) in self.homes() {
+            let there = all.each_ref().map(|axis| columns.of(axis));
             for _ in 0..home.rows {
-                let entries = (&self.values[at..at + width], &mut out[at..at + width]);
-                turn_entries(axes.at(row), there.columns(0, width), entries);
-                (at, row) = (at + width, row + 1);
+                let own = all.each_ref().map(|axis| axis[row]);
+                let entries = at..at + home.width as usize;
+                turn_row(
+                    own,
+                    &there,
+                    (&self.values[entries.clone()], &mut out[entries]),
+                );
+                (at, row) = (at + home.width as usize, row + 1);
             }
-            from += width;
         }
     }
 
     /// A matrix of this pattern, with `entries`, times `x`; the same bits for any number of threads.
-    fn multiply(&self, mut entries: &[f32], x: &[f64], mut out: &mut [f64]) {
-        let mut columns = &self.columns[..];
+    fn multiply(&self, entries: &[i16], x: &[f32], out: &mut [f64]) {
+        self.by_home(entries, out, |entries, columns, out| {
+            multiply_block(entries, &columns.of(x), out);
+        });
+        let unit = f64::from(self.unit);
+        for ((sum, own), x) in out.iter_mut().zip(&self.own).zip(x) {
+            *sum = *sum * unit + own * f64::from(*x);
+        }
+    }
+
+    /// Homes with their columns.
+    fn homes(&self) -> impl Iterator<Item = (&Home, Columns<'_>)> {
+        let mut runs = &self.runs[..];
+        self.homes.iter().map(move |home| {
+            let own;
+            (own, runs) = runs.split_at(home.runs as usize);
+            let width = home.width as usize;
+            (home, Columns { runs: own, width })
+        })
+    }
+
+    /// Calls `block` with the entries, columns and places in `out` of every home.
+    fn by_home<T: Send>(
+        &self,
+        mut entries: &[i16],
+        mut out: &mut [T],
+        block: impl Fn(&[i16], Columns<'_>, &mut [T]) + Sync,
+    ) {
         let mut blocks = Vec::with_capacity(self.homes.len());
-        for home in &self.homes {
-            let (there, own, written);
-            (there, columns) = columns.split_at(home.width as usize);
+        for (home, columns) in self.homes() {
+            let (own, written);
             (own, entries) = entries.split_at((home.rows * home.width) as usize);
             (written, out) = out.split_at_mut(home.rows as usize);
-            blocks.push((own, there, written));
+            blocks.push((own, columns, written));
         }
-        let block = |(own, there, written): (&[f32], &[u32], &mut [f64])| {
-            let x: Vec<f64> = there.iter().map(|&k| x[k as usize]).collect();
-            multiply_block(own, &x, written);
-        };
+        let block = |(own, columns, written)| block(own, columns, written);
         if self.values.len() < PARALLEL_ENTRIES {
             blocks.into_iter().for_each(block);
         } else {
@@ -152,36 +193,107 @@ impl Near {
     }
 }
 
+/// The columns of a home.
+#[derive(Clone, Copy)]
+struct Columns<'a> {
+    runs: &'a [Run],
+    width: usize,
+}
+
+impl Columns<'_> {
+    /// The values of `all` there, filled up with zeros.
+    fn of(&self, all: &[f32]) -> Vec<f32> {
+        let mut there = Vec::with_capacity(self.width);
+        for run in self.runs {
+            there.extend_from_slice(&all[run.start as usize..][..run.len as usize]);
+        }
+        there.resize(self.width, 0.0);
+        there
+    }
+}
+
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn largest(entries: &[f32]) -> f32 {
+    let mut most = [0.0; LANES];
+    for entries in entries.as_chunks::<LANES>().0 {
+        for lane in 0..LANES {
+            most[lane] = f32::max(most[lane], entries[lane].abs());
+        }
+    }
+    most.into_iter().fold(0.0, f32::max)
+}
+
+/// The whole number nearest to `value`, of less than 2^15: the last bits of its sum with 1.5 times 2^23.
+#[inline(always)]
+fn rounded(value: f32) -> i16 {
+    (value + 12_582_912.0).to_bits() as i16
+}
+
+/// Entries in units of which `per_unit` are one.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn round_entries(entries: &[f32], per_unit: f32, out: &mut [i16]) {
+    for (entry, out) in entries.iter().zip(out) {
+        *out = rounded(entry * per_unit);
+    }
+}
+
+/// Entries of a row along `row` times their cosines with the directions of their columns: the same for both of a pair.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn turn_row(row: [f32; 3], columns: &[Vec<f32>; 3], (values, out): (&[i16], &mut [i16])) {
+    let [x, y, z] = columns;
+    for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
+        *out = rounded(f32::from(*value) * (row[0] * x + row[1] * y + row[2] * z));
+    }
+}
+
 /// A dense block times `x`, as long as its rows: a multiple of [`LANES`].
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply_block(entries: &[f32], x: &[f64], out: &mut [f64]) {
+fn multiply_block(entries: &[i16], x: &[f32], out: &mut [f64]) {
     let (x, _) = x.as_chunks::<LANES>();
     for (row, out) in entries.chunks_exact(x.len() * LANES).zip(out) {
         let (row, _) = row.as_chunks::<LANES>();
         let mut sums = [0.0; LANES];
         for (entries, x) in row.iter().zip(x) {
             for lane in 0..LANES {
-                sums[lane] += f64::from(entries[lane]) * x[lane];
+                sums[lane] += f32::from(entries[lane]) * x[lane];
             }
         }
-        for half in [8, 4, 2, 1] {
-            (0..half).for_each(|lane| sums[lane] += sums[lane + half]);
+        *out = f64::from(total(&sums));
+    }
+}
+
+/// [`multiply_block`] of the three axes of a vector at once.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn field_block(entries: &[i16], [x, y, z]: [Vec<f32>; 3], out: &mut [Vec3]) {
+    let (x, _) = x.as_chunks::<LANES>();
+    let (y, _) = y.as_chunks::<LANES>();
+    let (z, _) = z.as_chunks::<LANES>();
+    for (row, out) in entries.chunks_exact(x.len() * LANES).zip(out) {
+        let (row, _) = row.as_chunks::<LANES>();
+        let (mut along_x, mut along_y, mut along_z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (((entries, x), y), z) in row.iter().zip(x).zip(y).zip(z) {
+            for lane in 0..LANES {
+                let entry = f32::from(entries[lane]);
+                along_x[lane] += entry * x[lane];
+                along_y[lane] += entry * y[lane];
+                along_z[lane] += entry * z[lane];
+            }
         }
-        *out = sums[0];
+        *out = Vec3::from([along_x, along_y, along_z].map(|sums| f64::from(total(&sums))));
     }
 }
 
 /// The near compliance along directions, `A_ij = w_i w_j K_ij t_i.t_j`, mm/N: entries with the cosines in them, weights outside.
 pub struct NearAlong<'a> {
     near: &'a Near,
-    entries: &'a [f32],
+    entries: &'a [i16],
     weight: &'a [f64],
     diagonal: Vec<f64>,
 }
 
 impl<'a> NearAlong<'a> {
     /// Of `near`, with the `entries` that [`Near::turn`] gave, and `weight` by unknown.
-    pub fn new(near: &'a Near, entries: &'a [f32], weight: &'a [f64]) -> Self {
+    pub fn new(near: &'a Near, entries: &'a [i16], weight: &'a [f64]) -> Self {
         let diagonal = weight.iter().zip(&near.own).map(|(w, own)| own * w * w);
         NearAlong {
             near,
@@ -198,7 +310,8 @@ impl Symmetric for NearAlong<'_> {
     }
 
     fn times(&self, x: &[f64], out: &mut [f64]) {
-        let weighted: Vec<f64> = x.iter().zip(self.weight).map(|(x, w)| x * w).collect();
+        let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
+        let weighted: Vec<f32> = x.iter().zip(self.weight).map(weighted).collect();
         self.near.multiply(self.entries, &weighted, out);
         for (out, w) in out.iter_mut().zip(self.weight) {
             *out *= w;
@@ -218,8 +331,9 @@ impl Compliance for NearAlong<'_> {
     /// Gershgorin's.
     fn norm_bound(&self) -> f64 {
         let mut sums = vec![0.0; self.weight.len()];
-        let entries: Vec<f32> = self.entries.iter().map(|entry| entry.abs()).collect();
-        self.near.multiply(&entries, self.weight, &mut sums);
+        let entries: Vec<i16> = self.entries.iter().map(|entry| entry.abs()).collect();
+        let weight: Vec<f32> = self.weight.iter().map(|w| *w as f32).collect();
+        self.near.multiply(&entries, &weight, &mut sums);
         let rows = sums.iter().zip(self.weight).map(|(sum, w)| sum * w);
         rows.fold(f64::MIN_POSITIVE, f64::max)
     }
@@ -277,6 +391,11 @@ mod tests {
         near
     }
 
+    /// How far a product with `x` may be off: three and a half times the deviation that rounding every entry makes.
+    fn most_off(near: &Near, x: &[f64]) -> f64 {
+        f64::from(near.unit) * x.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
     fn loads(count: usize) -> Vec<Vec3> {
         let load = |k: usize| Vec3::new((k as f64).sin(), (0.7 * k as f64).cos(), 1.0);
         (0..count).map(load).collect()
@@ -293,12 +412,10 @@ mod tests {
         for axis in 0..3 {
             let load: Vec<f64> = loads.iter().map(|load| load[axis]).collect();
             whole.times(&load, &mut wanted);
+            let most = most_off(&near, &load);
             for (ours, wanted) in field.iter().zip(&wanted) {
-                assert!(
-                    (ours[axis] - wanted).abs() < 1e-9,
-                    "{} {wanted}",
-                    ours[axis]
-                );
+                let off = (ours[axis] - wanted).abs();
+                assert!(off < most, "{} {wanted}", ours[axis]);
             }
         }
         let directions: Vec<Vec3> = loads.iter().map(Vec3::normalize).collect();
@@ -318,9 +435,13 @@ mod tests {
         let mut product = vec![0.0; zone.len()];
         ours.times(&x, &mut product);
         theirs.times(&x, &mut wanted);
+        // Entries are rounded once more when they are turned.
+        let most = 2.0 * 1.6 * 1.6 * most_off(&near, &x);
         for (ours, wanted) in product.iter().zip(&wanted) {
-            assert!((ours - wanted).abs() < 1e-9, "{ours} {wanted}");
+            assert!((ours - wanted).abs() < most, "{ours} {wanted}");
         }
+        let largest = wanted.iter().fold(0.0, |m, x| f64::max(m, x.abs()));
+        assert!(most < 5e-3 * largest, "{most} of {largest}");
         for (ours, wanted) in ours.diagonal().iter().zip(theirs.diagonal()) {
             assert!((ours / wanted - 1.0).abs() < 1e-6, "{ours} {wanted}");
         }
@@ -330,7 +451,8 @@ mod tests {
     fn a_range_leaves_out_what_lies_in_patches_beyond_it_and_nothing_else() {
         let (skin, zone) = sheet();
         let (range, loads) = (9.0, loads(zone.len()));
-        let field = near(&skin, &zone, range).field(&loads);
+        let near = near(&skin, &zone, range);
+        let field = near.field(&loads);
         let (mut left_out, mut most) = (0, 0.0f64);
         for (&i, ours) in zone.iter().zip(&field) {
             let row = skin.response.row(i);
@@ -354,7 +476,8 @@ mod tests {
             }
             most = most.max((ours - wanted).norm());
         }
-        assert!(most < 1e-9, "{most}");
+        let lengths: Vec<f64> = loads.iter().map(Vec3::norm).collect();
+        assert!(most < most_off(&near, &lengths), "{most}");
         let pairs = zone.len() * zone.len();
         assert!(
             left_out > pairs / 10 && left_out < 9 * pairs / 10,

@@ -9,6 +9,7 @@ use thenar_surface::Vec3;
 
 use super::half::{Compliance, Half, Symmetric};
 use super::kept::Kept;
+use super::lanes::total;
 use super::operator::Rows;
 
 /// Unit directions by axis.
@@ -29,6 +30,12 @@ impl Axes {
     /// The directions of `len` unknowns from the `first` on, by axis.
     pub fn columns(&self, first: usize, len: usize) -> [&[f64]; 3] {
         [0, 1, 2].map(|axis| &self.0[axis][first..first + len])
+    }
+
+    /// All of them in single precision, by axis.
+    pub fn narrow(&self) -> [Vec<f32>; 3] {
+        let narrow = |axis: &Vec<f64>| axis.iter().map(|t| *t as f32).collect();
+        self.0.each_ref().map(narrow)
     }
 
     /// Those of some `rows`.
@@ -177,7 +184,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// `K_ij t_i.t_j` of one row: the same bits wherever it is made, and for both of a pair.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub fn turn_entries(row: [f64; 3], columns: [&[f64]; 3], (values, out): (&[f32], &mut [f32])) {
+fn turn_entries(row: [f64; 3], columns: [&[f64]; 3], (values, out): (&[f32], &mut [f32])) {
     let [x, y, z] = columns;
     for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
         *out = (f64::from(*value) * dot(row, [*x, *y, *z])) as f32;
@@ -215,12 +222,7 @@ fn multiply((coupling, axes): (&Rows<f32>, &Axes), rows: &[u32], x: &[f64], out:
             }
             offset += len;
         }
-        for half in [16, 8, 4, 2, 1] {
-            for lane in 0..half {
-                sums[lane] += sums[lane + half];
-            }
-        }
-        *out = sums[0] + tail;
+        *out = total(&sums) + tail;
     }
 }
 

@@ -8,10 +8,12 @@ mod conjugate_gradient;
 mod dense;
 mod half;
 mod kept;
+mod lanes;
 mod projection;
 
-pub use along::{Along, Axes, Part, turn_entries};
+pub use along::{Along, Axes, Part};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
 pub use half::{Compliance, Symmetric};
 pub use kept::{Kept, holds};
+pub use lanes::total;
