@@ -4,7 +4,7 @@ use thenar_surface::{Gap, Vec3};
 
 use crate::hierarchy::Carried;
 use crate::linearize::{Setting, vertex};
-use crate::response::assembly::{Load, displacements};
+use crate::response::assembly::Load;
 use crate::skin::Skin;
 use crate::solve::Accuracy;
 use crate::zone::limits;
@@ -94,27 +94,13 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
             *before = *now;
         }
     }
-    if 10 * changes.len() > 9 * loads.len() {
-        let all = shown.load.iter().enumerate();
-        let all = all.filter(|(_, load)| **load != Vec3::zeros());
-        let all: Vec<Load> = all
-            .map(|(site, load)| Load {
-                site: site as u32,
-                load: *load,
-            })
-            .collect();
-        let field = displacements(&skin.response, &all, &skin.sites);
-        for ((change, now), before) in shown.field_change.iter_mut().zip(&field).zip(&shown.field) {
-            *change += now - before;
-        }
-        shown.field = field;
-    } else {
-        let more = displacements(&skin.response, &changes, &skin.sites);
-        let sums = shown.field.iter_mut().zip(&mut shown.field_change);
-        for ((sum, change), more) in sums.zip(&more) {
-            *sum += more;
-            *change += more;
-        }
+    let (ground, rows) = ((&skin.response, &skin.sites), &mut skin.memory.rounded);
+    rows.make(changes.iter().map(|change| change.site), ground);
+    let more = rows.displacements(ground, &changes);
+    let sums = shown.field.iter_mut().zip(&mut shown.field_change);
+    for ((sum, change), more) in sums.zip(&more) {
+        *sum += more;
+        *change += more;
     }
     let field = shown.field.clone();
     skin.memory.shown = shown;

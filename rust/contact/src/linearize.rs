@@ -84,6 +84,7 @@ pub fn solve(
     };
     let mut strayed = Vec::new();
     for round in 1.. {
+        skin.memory.near.turn_to(round);
         let again = (round > 1).then_some(&strayed[..]);
         state.held = held(skin, setting, &state.zone, again);
         state.beyond = live::beyond(skin, setting, round);

@@ -10,7 +10,7 @@ use crate::contact_state::Beyond;
 use crate::direction::Sums;
 use crate::linearize::{Setting, vertex};
 use crate::skin::Skin;
-use crate::solve::{Accuracy, holds};
+use crate::solve::Accuracy;
 use crate::{ContactError, Control, Model};
 
 /// Skin nearer than this to what moved is solved with it, mm: about a tissue and a half (tests pass from 6 to 15).
@@ -134,29 +134,29 @@ pub fn couple(skin: &mut Skin, open: &[u32], control: &Control) -> Result<(), Co
         true => NEAR,
         false => f64::INFINITY,
     };
-    if skin.memory.near.sites == open && skin.memory.near.range >= range {
+    let near = skin.memory.near.now();
+    if near.sites == open && near.range >= range {
         return Ok(());
     }
     control.step("response", 0.0)?;
     skin.make_rows(open, control)?;
     let ground = (&skin.response, &skin.sites);
-    skin.memory.near.renew(open, ground, range);
+    let memory = &mut skin.memory;
+    memory.rounded.make(open.iter().copied(), ground);
+    let near = memory.near.now_mut();
+    near.renew(open, &memory.rounded, ground, range);
     Ok(())
 }
 
-/// Opens all that was coupled last, where that holds every open site of `zone` and little more: it need not be coupled anew.
+/// Opens what was coupled last too, where that is little more: the coupling then serves again, or will in the next frames.
 fn open_coupled(skin: &Skin, zone: &[u32], is_open: &mut [bool]) {
-    let coupled = &skin.memory.near.sites;
-    let open: Vec<u32> = zone
-        .iter()
-        .copied()
-        .filter(|&site| is_open[site as usize])
-        .collect();
-    let is_little_more = coupled.len() as f64 <= MORE * open.len() as f64;
-    if is_little_more && holds(coupled, &open) && holds(zone, coupled) {
-        coupled
-            .iter()
-            .for_each(|&site| is_open[site as usize] = true);
+    let coupled = &skin.memory.near.now().sites;
+    let is_in_zone = |site: &&u32| zone.binary_search(site).is_ok();
+    let open = zone.iter().filter(|&&site| is_open[site as usize]).count();
+    let more = coupled.iter().filter(|&&site| !is_open[site as usize]);
+    let more: Vec<u32> = more.filter(is_in_zone).copied().collect();
+    if more.len() as f64 <= (MORE - 1.0) * open as f64 {
+        more.iter().for_each(|&site| is_open[site as usize] = true);
     }
 }
 

@@ -6,7 +6,8 @@ use crate::interface::shear_kernel::ShearTables;
 use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
 use crate::live::Held;
-use crate::response::near::Near;
+use crate::response::near::Nears;
+use crate::response::rounded::Rounded;
 use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
 use thenar_surface::{Mesh, Readings, Vec3, renew_shape, vertex_areas, vertex_normals};
@@ -21,8 +22,10 @@ pub struct Memory {
     pub coupling: Rows<f32>,
     /// The compliance of those sites, kept for its storage.
     pub compliance: Rows<f32>,
+    /// The rows of live presses.
+    pub rounded: Rounded,
     /// What was solved last in a live press, and its near coupling.
-    pub near: Near,
+    pub near: Nears,
     /// In a large skin, the coupling of those sites, and response weight times direction at each of them.
     pub coupled: Coupled,
     pub along: Vec<Vec3>,

@@ -39,7 +39,7 @@ impl State {
         let axes = Axes::new(&direction);
         let mut near = Vec::new();
         if self.beyond != Beyond::Nothing {
-            skin.memory.near.turn(&axes, &mut near);
+            skin.memory.near.now().turn(&axes, &mut near);
         }
         Turned {
             axes,
@@ -54,7 +54,7 @@ impl State {
 
     /// What the last live press shows at the solved places, less what these did to themselves and each other nearby.
     fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
-        let (shown, near) = (&skin.memory.shown, &skin.memory.near);
+        let (shown, near) = (&skin.memory.shown, skin.memory.near.now());
         if self.beyond == Beyond::Nothing || !shown.is_of(skin.sites.len()) {
             return Vec::new();
         }
@@ -110,7 +110,7 @@ impl State {
             return self.solve_linear(&matrix, turned, how);
         }
         if self.beyond != Beyond::Nothing {
-            let near = NearAlong::new(&memory.near, &turned.near, &turned.weight);
+            let near = NearAlong::new(memory.near.now(), &turned.near, &turned.weight);
             return self.solve_linear(&near, turned, how);
         }
         if memory.coupling.is_large() {

@@ -17,6 +17,8 @@ use crate::winding::Winding;
 
 /// Points answered by one task.
 const CHUNK: usize = 256;
+/// Points that one thread measures in less than a millisecond: waking others is not worth it.
+pub(crate) const FEW: usize = 2_048;
 
 /// Distances below this part of the product's extent have no direction of their own; the surface's is used.
 const TOUCHING: f64 = 1e-9;
@@ -170,24 +172,27 @@ impl Product {
         hints: &[u32],
     ) -> Vec<Option<Gap>> {
         let mut gaps = vec![None; points.len()];
-        gaps.par_chunks_mut(CHUNK)
-            .enumerate()
-            .for_each(|(chunk, out)| {
-                let mut pending = Pending::default();
-                let mut facing = Facing::new(self, limits, &mut pending);
-                let mut last = None;
-                for (k, gap) in out.iter_mut().enumerate() {
-                    let i = chunk * CHUNK + k;
-                    let hint = hints.get(i).copied().filter(|t| *t != u32::MAX).or(last);
-                    *gap = facing.gap(
-                        points[i],
-                        skin_normals.and_then(|n| n.get(i).copied()),
-                        hint,
-                    );
-                    // Neighbors in the list tend to be neighbors in space.
-                    last = gap.map(|g| g.triangle).or(last);
-                }
-            });
+        let measure = |(chunk, out): (usize, &mut [Option<Gap>])| {
+            let mut pending = Pending::default();
+            let mut facing = Facing::new(self, limits, &mut pending);
+            let mut last = None;
+            for (k, gap) in out.iter_mut().enumerate() {
+                let i = chunk * CHUNK + k;
+                let hint = hints.get(i).copied().filter(|t| *t != u32::MAX).or(last);
+                *gap = facing.gap(
+                    points[i],
+                    skin_normals.and_then(|n| n.get(i).copied()),
+                    hint,
+                );
+                // Neighbors in the list tend to be neighbors in space.
+                last = gap.map(|g| g.triangle).or(last);
+            }
+        };
+        if points.len() < FEW {
+            gaps.chunks_mut(CHUNK).enumerate().for_each(measure);
+        } else {
+            gaps.par_chunks_mut(CHUNK).enumerate().for_each(measure);
+        }
         if let Some(normals) = skin_normals.filter(|n| n.len() == points.len()) {
             settle(self, &Skin { points, normals }, limits, &mut gaps);
         }

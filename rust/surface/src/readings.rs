@@ -8,7 +8,7 @@ use crate::facing::Facing;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::poke::{Skin, settle};
-use crate::product::{Gap, GapLimits, Product};
+use crate::product::{FEW, Gap, GapLimits, Product};
 
 /// Points answered by one task.
 const CHUNK: usize = 256;
@@ -78,14 +78,25 @@ impl Product {
         (points, skin_normals): (&[Vec3], &[Vec3]),
         limits: GapLimits,
     ) {
+        let before = readings.points.iter().zip(&readings.normals);
+        let now = points.iter().zip(skin_normals);
+        let moved = before.zip(now).filter(|(before, now)| before != now);
+        let are_few = moved.take(FEW).count() < FEW;
         let parts = readings
             .gaps
-            .par_chunks_mut(CHUNK)
-            .zip(readings.rooms.par_chunks_mut(CHUNK))
-            .zip(readings.points.par_chunks_mut(CHUNK))
-            .zip(readings.normals.par_chunks_mut(CHUNK))
-            .zip(points.par_chunks(CHUNK).zip(skin_normals.par_chunks(CHUNK)));
-        parts.for_each(|((((gaps, rooms), before), faced), (points, normals))| {
+            .chunks_mut(CHUNK)
+            .zip(readings.rooms.chunks_mut(CHUNK))
+            .zip(readings.points.chunks_mut(CHUNK))
+            .zip(readings.normals.chunks_mut(CHUNK))
+            .zip(points.chunks(CHUNK).zip(skin_normals.chunks(CHUNK)));
+        type Part<'a> = (
+            (
+                ((&'a mut [Option<Gap>], &'a mut [f64]), &'a mut [Vec3]),
+                &'a mut [Vec3],
+            ),
+            (&'a [Vec3], &'a [Vec3]),
+        );
+        let read = |((((gaps, rooms), before), faced), (points, normals)): Part<'_>| {
             let mut pending = Pending::default();
             let mut facing = Facing::new(self, limits, &mut pending);
             let mut last = None;
@@ -106,6 +117,11 @@ impl Product {
                 (before[k], faced[k]) = (point, normal);
                 last = gaps[k].map(|g| g.triangle).or(last);
             }
-        });
+        };
+        if are_few {
+            parts.for_each(read);
+        } else {
+            parts.collect::<Vec<_>>().into_par_iter().for_each(read);
+        }
     }
 }

@@ -38,7 +38,7 @@ pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &m
 }
 
 /// The `pieces` (first, number) of a row, one after the other, in `out`, which has room for them and [`SHORT`] more.
-pub fn take<'a>(row: &[f32], pieces: &[(u32, u32)], out: &'a mut [f32]) -> &'a [f32] {
+pub fn take<'a, T: Copy>(row: &[T], pieces: &[(u32, u32)], out: &'a mut [T]) -> &'a [T] {
     let mut at = 0;
     for &(from, len) in pieces {
         let (from, len) = (from as usize, len as usize);

@@ -6,6 +6,7 @@ pub mod entries;
 pub mod grid;
 pub mod kernel;
 pub mod near;
+pub mod rounded;
 pub mod stiff_skin;
 pub mod rows;
 pub mod sheet;

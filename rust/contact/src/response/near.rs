@@ -2,12 +2,13 @@
 //!
 //! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. The sites
 //! of one patch feel the same others, so that their rows are a dense block, and products run over it without gaps. Entries are
-//! whole numbers of 16 bits: reading them is what a product takes, and a press that the eye alone judges needs no more.
+//! those of the rounded rows: reading them is what a product takes, and a press that the eye alone judges needs no more.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
-use super::assembly::{Members, SHORT, layout, own_offset, take};
+use super::assembly::{Members, SHORT, layout, take};
+use super::rounded::{Rounded, rounded};
 use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::operator::Run;
@@ -17,8 +18,6 @@ use crate::solve::{Axes, Compliance, Kept, Symmetric, total};
 const LANES: usize = 32;
 /// Entries from which products are worth several threads.
 const PARALLEL_ENTRIES: usize = 6_000_000;
-/// The largest entry as a whole number.
-const MOST: f32 = 32_000.0;
 
 /// Rows of one patch.
 #[derive(Debug, Clone, Copy)]
@@ -40,25 +39,53 @@ pub struct Near {
     homes: Vec<Home>,
     /// Places of the sites of the columns, home by home; zeros follow.
     runs: Vec<Run>,
-    /// Entries over `unit`, row by row; zero where a site meets itself.
+    /// Entries, row by row; zero where a site meets itself.
     values: Vec<i16>,
-    /// What one of an entry is worth, 1/mm.
-    unit: f32,
-    /// The entries where sites meet themselves, some times larger than any other.
+    /// What one of an entry is worth, by row, and the entry where the site meets itself, 1/mm.
+    units: Vec<f64>,
     own: Vec<f64>,
-    /// Entries before they were rounded, kept for their storage.
-    exact: Vec<f32>,
+}
+
+/// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
+#[derive(Debug, Clone, Default)]
+pub struct Nears {
+    of_rounds: [Near; 2],
+    now: usize,
+}
+
+impl Nears {
+    /// Takes the one of a `round`, from 1.
+    pub fn turn_to(&mut self, round: usize) {
+        self.now = usize::from(round > 1);
+    }
+
+    /// The one of this round.
+    pub fn now(&self) -> &Near {
+        &self.of_rounds[self.now]
+    }
+
+    /// The same, to be made anew.
+    pub fn now_mut(&mut self) -> &mut Near {
+        &mut self.of_rounds[self.now]
+    }
 }
 
 impl Near {
-    /// Makes it anew for `zone` (ascending), whose rows of the response are made, from patches nearer than `range` (mm).
-    pub fn renew(&mut self, zone: &[u32], (response, sites): (&Response, &Sites), range: f64) {
+    /// Makes it anew for `zone` (ascending), whose `rows` are made, from patches nearer than `range` (mm).
+    pub fn renew(
+        &mut self,
+        zone: &[u32],
+        rows: &Rounded,
+        (response, sites): (&Response, &Sites),
+        range: f64,
+    ) {
         self.range = range;
         self.sites.clear();
         self.sites.extend_from_slice(zone);
         self.homes.clear();
         self.runs.clear();
-        self.exact.clear();
+        self.values.clear();
+        self.units.clear();
         self.own.clear();
         let patch = |site: &u32| sites.patch[*site as usize];
         let members: Vec<Members> = sites
@@ -67,17 +94,15 @@ impl Near {
             .map(|&range| Members::new(zone, range))
             .collect();
         for home in zone.chunk_by(|a, b| patch(a) == patch(b)) {
-            self.push_home(home, (response, sites), &members);
+            self.push_home(home, rows, (response, sites), &members);
         }
-        self.unit = largest(&self.exact).max(f32::MIN_POSITIVE) / MOST;
-        self.values.resize(self.exact.len(), 0);
-        round_entries(&self.exact, self.unit.recip(), &mut self.values);
     }
 
     /// Appends the rows of one patch's sites. `members`: what of every patch is coupled.
     fn push_home(
         &mut self,
         home: &[u32],
+        rows: &Rounded,
         (response, sites): (&Response, &Sites),
         members: &[Members],
     ) {
@@ -94,22 +119,16 @@ impl Near {
             runs: runs.len() as u32,
         });
         self.runs.extend(runs);
-        let (first, own) = (
-            sites.patch_range[patch as usize].0,
-            own_offset(response, patch),
-        );
-        let before = felt.iter().take_while(|entry| entry.0 < patch);
-        let before: u32 = before.map(|entry| members[entry.0 as usize].len).sum();
-        for (k, &site) in home.iter().enumerate() {
-            let row = response.row(site);
-            let begin = self.exact.len();
+        for &site in home {
+            let row = rows.row(site);
+            let begin = self.values.len();
             let end = begin + width as usize;
-            self.exact.resize(end + SHORT, 0.0);
-            let taken = take(row, &pieces, &mut self.exact[begin..]).len();
-            self.exact.truncate(end);
-            self.exact[begin + taken..].fill(0.0);
-            self.exact[begin + before as usize + k] = 0.0;
-            self.own.push(f64::from(row[(own + site - first) as usize]));
+            self.values.resize(end + SHORT, 0);
+            let taken = take(&row.entries, &pieces, &mut self.values[begin..]).len();
+            self.values.truncate(end);
+            self.values[begin + taken..].fill(0);
+            self.units.push(f64::from(row.unit));
+            self.own.push(f64::from(row.own));
         }
     }
 
@@ -121,9 +140,9 @@ impl Near {
         self.by_home(&self.values, &mut field, |entries, columns, field| {
             field_block(entries, load.each_ref().map(|x| columns.of(x)), field);
         });
-        let unit = f64::from(self.unit);
-        for ((sum, own), load) in field.iter_mut().zip(&self.own).zip(loads) {
-            *sum = *sum * unit + load * *own;
+        let rows = self.units.iter().zip(&self.own);
+        for ((sum, (unit, own)), load) in field.iter_mut().zip(rows).zip(loads) {
+            *sum = *sum * *unit + load * *own;
         }
         field
     }
@@ -153,8 +172,8 @@ impl Near {
         self.by_home(entries, out, |entries, columns, out| {
             multiply_block(entries, &columns.of(x), out);
         });
-        let unit = f64::from(self.unit);
-        for ((sum, own), x) in out.iter_mut().zip(&self.own).zip(x) {
+        let rows = self.units.iter().zip(&self.own);
+        for ((sum, (unit, own)), x) in out.iter_mut().zip(rows).zip(x) {
             *sum = *sum * unit + own * f64::from(*x);
         }
     }
@@ -209,31 +228,6 @@ impl Columns<'_> {
         }
         there.resize(self.width, 0.0);
         there
-    }
-}
-
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn largest(entries: &[f32]) -> f32 {
-    let mut most = [0.0; LANES];
-    for entries in entries.as_chunks::<LANES>().0 {
-        for lane in 0..LANES {
-            most[lane] = f32::max(most[lane], entries[lane].abs());
-        }
-    }
-    most.into_iter().fold(0.0, f32::max)
-}
-
-/// The whole number nearest to `value`, of less than 2^15: the last bits of its sum with 1.5 times 2^23.
-#[inline(always)]
-fn rounded(value: f32) -> i16 {
-    (value + 12_582_912.0).to_bits() as i16
-}
-
-/// Entries in units of which `per_unit` are one.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn round_entries(entries: &[f32], per_unit: f32, out: &mut [i16]) {
-    for (entry, out) in entries.iter().zip(out) {
-        *out = rounded(entry * per_unit);
     }
 }
 
@@ -382,18 +376,26 @@ mod tests {
         let zone = (0..skin.sites.len() as u32).filter(|site| site % 3 != 1);
         let zone: Vec<u32> = zone.collect();
         skin.make_rows(&zone, &control).unwrap();
+        let ground = (&skin.response, &skin.sites);
+        skin.memory.rounded.make(zone.iter().copied(), ground);
         (skin, zone)
     }
 
     fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
         let mut near = Near::default();
-        near.renew(zone, (&skin.response, &skin.sites), range);
+        near.renew(
+            zone,
+            &skin.memory.rounded,
+            (&skin.response, &skin.sites),
+            range,
+        );
         near
     }
 
     /// How far a product with `x` may be off: three and a half times the deviation that rounding every entry makes.
     fn most_off(near: &Near, x: &[f64]) -> f64 {
-        f64::from(near.unit) * x.iter().map(|x| x * x).sum::<f64>().sqrt()
+        let unit = near.units.iter().fold(0.0, |m, u| f64::max(m, *u));
+        unit * x.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
     fn loads(count: usize) -> Vec<Vec3> {

@@ -149,6 +149,9 @@ impl Response {
             .copied()
             .filter(|&j| self.rows[j as usize].is_none())
             .collect();
+        if missing.is_empty() {
+            return;
+        }
         let made: Vec<Box<[f32]>> = missing
             .par_iter()
             .with_min_len(8)

@@ -15,5 +15,5 @@ pub use along::{Along, Axes, Part};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
 pub use half::{Compliance, Symmetric};
-pub use kept::{Kept, holds};
+pub use kept::Kept;
 pub use lanes::total;

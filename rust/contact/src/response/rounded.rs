@@ -1,0 +1,211 @@
+//! Rows of the response as whole numbers of 16 bits, for live presses: what they take is reading rows, and these are half as long.
+//!
+//! An entry is off by 1/64000 of the largest of its row; where a site answers itself, it is kept apart as it is.
+
+use thenar_surface::Vec3;
+
+use super::assembly::{Load, own_offset};
+use super::rows::Response;
+use crate::sites::Sites;
+
+/// The largest entry of a row as a whole number.
+const MOST: f32 = 32_000.0;
+/// Rows that are summed at once.
+const AT_ONCE: usize = 4;
+
+/// A row, laid out as [`Response::near`] says.
+#[derive(Debug, Clone, Default)]
+pub struct Row {
+    /// Entries over `unit`; zero where the site meets itself.
+    pub entries: Box<[i16]>,
+    /// What one of an entry is worth, 1/mm.
+    pub unit: f32,
+    /// The entry where the site meets itself, 1/mm: some times larger than any other.
+    pub own: f32,
+}
+
+/// Rows that were needed so far.
+#[derive(Debug, Clone, Default)]
+pub struct Rounded {
+    rows: Vec<Option<Row>>,
+    /// What stands for a row that was not made.
+    none: Row,
+}
+
+impl Rounded {
+    /// Makes the rows of `wanted` that are missing, of those of the response, which are made.
+    pub fn make(
+        &mut self,
+        wanted: impl Iterator<Item = u32>,
+        (response, sites): (&Response, &Sites),
+    ) {
+        self.rows.resize(sites.len(), None);
+        for site in wanted {
+            let row = &mut self.rows[site as usize];
+            if row.is_none() {
+                let patch = sites.patch[site as usize];
+                let own = own_offset(response, patch) + site - sites.patch_range[patch as usize].0;
+                *row = Some(Row::new(response.row(site), own as usize));
+            }
+        }
+    }
+
+    /// The row of a site.
+    pub fn row(&self, site: u32) -> &Row {
+        let row = self.rows.get(site as usize).and_then(Option::as_ref);
+        row.unwrap_or(&self.none)
+    }
+
+    /// What [`displacements`](super::assembly::displacements) are by these rows.
+    pub fn displacements(
+        &self,
+        (response, sites): (&Response, &Sites),
+        loads: &[Load],
+    ) -> Vec<Vec3> {
+        let mut field = vec![Vec3::zeros(); sites.len()];
+        let patch = |load: &Load| sites.patch[load.site as usize];
+        // Summed along whole rows, so that loops are long, and then put where the sites of the row are.
+        let mut sums: [Vec<f32>; 3] = Default::default();
+        for loads in loads.chunk_by(|a, b| patch(a) == patch(b)) {
+            self.sum_rows(loads, &mut sums);
+            for &(other, offset) in response.near(patch(&loads[0])) {
+                let (first, last) = sites.patch_range[other as usize];
+                let there = &mut field[first as usize..last as usize];
+                let along = offset as usize..offset as usize + there.len();
+                let [x, y, z] = sums.each_ref().map(|axis| &axis[along.clone()]);
+                for (((field, x), y), z) in there.iter_mut().zip(x).zip(y).zip(z) {
+                    *field += Vec3::new(f64::from(*x), f64::from(*y), f64::from(*z));
+                }
+            }
+        }
+        for load in loads {
+            field[load.site as usize] += load.load * f64::from(self.row(load.site).own);
+        }
+        field
+    }
+
+    /// Writes the sum of rows of one patch, each times its load, to `sums`, by axis.
+    fn sum_rows(&self, loads: &[Load], sums: &mut [Vec<f32>; 3]) {
+        let length = self.row(loads[0].site).entries.len();
+        for axis in &mut *sums {
+            axis.clear();
+            axis.resize(length, 0.0);
+        }
+        for some in loads.chunks(AT_ONCE) {
+            // Where there are fewer, the first stands in with no load.
+            let of = |k: usize| some.get(k).unwrap_or(&some[0]);
+            let rows = std::array::from_fn(|k| self.row(of(k).site));
+            let weight = |axis: usize, k: usize| {
+                let load = some.get(k).map_or(0.0, |load| load.load[axis]);
+                load as f32 * rows[k].unit
+            };
+            let weights = [0, 1, 2].map(|axis| std::array::from_fn(|k| weight(axis, k)));
+            let [x, y, z] = sums;
+            add_rows(rows.map(|row| &*row.entries), weights, [x, y, z]);
+        }
+    }
+}
+
+/// Adds rows, each times its weights, to the sums of three axes.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+fn add_rows(rows: [&[i16]; AT_ONCE], weights: [[f32; AT_ONCE]; 3], [x, y, z]: [&mut [f32]; 3]) {
+    let length = x.len();
+    let rows = rows.map(|row| &row[..length]);
+    let (y, z) = (&mut y[..length], &mut z[..length]);
+    for i in 0..length {
+        // Sums of their own: the compiler cannot know that what is written to one axis does not change another.
+        let mut sums = [x[i], y[i], z[i]];
+        for k in 0..AT_ONCE {
+            let entry = f32::from(rows[k][i]);
+            for axis in 0..3 {
+                sums[axis] += entry * weights[axis][k];
+            }
+        }
+        [x[i], y[i], z[i]] = sums;
+    }
+}
+
+impl Row {
+    /// A row with the site itself at the place `own`.
+    fn new(row: &[f32], own: usize) -> Self {
+        let others = row.iter().enumerate().filter(|(k, _)| *k != own);
+        let most = others.fold(0.0, |most, (_, entry)| f32::max(most, entry.abs()));
+        let unit = most.max(1e-30) / MOST;
+        let mut entries: Box<[i16]> = row.iter().map(|entry| rounded(entry / unit)).collect();
+        entries[own] = 0;
+        Row {
+            entries,
+            unit,
+            own: row[own],
+        }
+    }
+}
+
+/// The whole number nearest to `value`, of less than 2^15: the last bits of its sum with 1.5 times 2^23.
+#[inline(always)]
+pub fn rounded(value: f32) -> i16 {
+    (value + 12_582_912.0).to_bits() as i16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::assembly::displacements;
+    use crate::skin::Skin;
+    use crate::{Control, Material, Model, SkinInput};
+    use thenar_surface::Mesh;
+
+    #[test]
+    fn numbers_are_rounded_to_the_nearest() {
+        for k in -320..=320 {
+            let value = k as f32 * 99.83;
+            assert_eq!(i32::from(rounded(value)), value.round_ties_even() as i32, "{value}");
+        }
+    }
+
+    #[test]
+    fn fields_are_those_of_the_rows_but_for_the_rounding_of_entries() {
+        let side = 30;
+        let place = |k: u32| Vec3::new(1.3 * f64::from(k % side), 1.4 * f64::from(k / side), 0.0);
+        let corners = |k: u32| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]];
+        let cells = (0..side * (side - 1)).filter(|k| k % side != side - 1);
+        let mesh = Mesh::new(
+            (0..side * side).map(place).collect(),
+            cells.flat_map(corners).collect(),
+        );
+        let input = SkinInput {
+            mesh: mesh.unwrap(),
+            regions: Vec::new(),
+            materials: vec![Material::finger_layer()],
+            model: Model::Layer,
+        };
+        let control = Control::none();
+        let mut skin = Skin::prepare(input, &control).unwrap();
+        let pressed: Vec<u32> = (0..skin.sites.len() as u32).filter(|s| s % 7 < 3).collect();
+        skin.make_rows(&pressed, &control).unwrap();
+        let ground = (&skin.response, &skin.sites);
+        let mut rows = Rounded::default();
+        rows.make(pressed.iter().copied(), ground);
+        let load = |&site: &u32| {
+            let site_f64 = f64::from(site);
+            Load {
+                site,
+                load: Vec3::new(site_f64.sin(), (0.3 * site_f64).cos(), 1.0),
+            }
+        };
+        let loads: Vec<Load> = pressed.iter().map(load).collect();
+        let ours = rows.displacements(ground, &loads);
+        let wanted = displacements(&skin.response, &loads, &skin.sites);
+        // Three and a half times the deviation that rounding every entry makes.
+        let errors = loads.iter().map(|load| {
+            let unit = f64::from(rows.row(load.site).unit);
+            (unit * load.load.norm()).powi(2)
+        });
+        let most_off = errors.sum::<f64>().sqrt();
+        let most = wanted.iter().map(Vec3::norm).fold(0.0, f64::max);
+        assert!(most_off < 1e-3 * most, "{most_off} of {most}");
+        let off = ours.iter().zip(&wanted).map(|(a, b)| (a - b).norm());
+        let off = off.fold(0.0, f64::max);
+        assert!(off > 0.0 && off < most_off, "{off} of {most_off}");
+    }
+}
