@@ -52,6 +52,43 @@ def test_every_public_attribute_has_its_shape(contact):
     assert "N on" in repr(contact)
 
 
+def test_what_is_asked_for_is_made_once_and_stays_as_pressed(skin, contact):
+    """Arrays and records are made when they are asked for, be it late and in any order, whatever was done since."""
+    names = [name for name in dir(thenar.Contact) if not name.startswith("_")]
+    early = {name: getattr(contact, name) for name in names}
+    late = skin.press(*BALL)
+    skin.press(BALL[0] + (0, 0, 0.3), BALL[1])
+    late.force_n[:] = -1.0
+    assert np.array_equal(late.in_contact, contact.in_contact), "what was written to one array is in no other"
+    for name in sorted(set(names) - {"force_n", "seconds"}, reverse=True):
+        made = getattr(late, name)
+        assert isinstance(made, float) or getattr(late, name) is made, name
+        if isinstance(made, np.ndarray):
+            assert made.flags.writeable and made.dtype == early[name].dtype, name
+            assert np.array_equal(made, early[name], equal_nan=made.dtype == float), name
+        else:
+            assert made == early[name], name
+    assert np.all(late.force_n == -1.0), "an array that was written to stays as it is"
+    with pytest.raises(AttributeError):
+        late.force_n = contact.force_n
+
+
+def test_threads_that_ask_at_once_get_the_same_array(skin):
+    made = skin.press(*BALL)
+    found, barrier = [], threading.Barrier(8)
+
+    def ask():
+        barrier.wait()
+        found.append(made.displacement_mm)
+
+    threads = [threading.Thread(target=ask) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8 and all(array is found[0] for array in found)
+
+
 def test_numbers_agree_with_each_other(contact):
     touched = contact.in_contact
     assert touched.any() and not touched.all()

@@ -13,6 +13,7 @@ mod requests;
 mod skin;
 mod walk;
 mod contact;
+mod contact_records;
 mod instrument;
 mod hand;
 mod ball;

@@ -7,6 +7,7 @@ use crate::instrument::loads_table;
 use crate::record::record;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
 use thenar_contact::{Demand, Keep, Protocol, Row};
 use thenar_surface::Vec3;
 
@@ -56,7 +57,7 @@ impl Course {
     pub fn new(
         py: Python<'_>,
         course: thenar_contact::Course,
-        (names, (keep, vertices)): (&[String], (Keep, usize)),
+        (names, (keep, vertices)): (Arc<Vec<String>>, (Keep, usize)),
     ) -> PyResult<Course> {
         let steps = &course.steps;
         let of = |value: &dyn Fn(&thenar_contact::Step) -> f64| {
@@ -107,7 +108,7 @@ impl Course {
             cycles: cycles.into_any().unbind(),
             has_converged: column(py, steps.iter().map(|step| step.has_converged).collect()),
             direction: triple(py, course.direction),
-            last: Py::new(py, Contact::new(py, course.last, names)?)?,
+            last: Py::new(py, Contact::new(course.last, names))?,
         })
     }
 }

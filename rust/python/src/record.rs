@@ -1,4 +1,4 @@
-//! A record: a dict whose entries are attributes too.
+//! A record: a dict whose entries are attributes too; and what is made when it is first asked for.
 
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -35,6 +35,27 @@ fn class(py: Python<'_>) -> PyResult<&Bound<'_, PyType>> {
 /// Adds the class `Record` to the module.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("Record", class(module.py())?)
+}
+
+/// An array or a record of a result, made when it is first asked for; the same object ever after.
+pub struct Once(PyOnceLock<Py<PyAny>>);
+
+impl Default for Once {
+    fn default() -> Once {
+        Once(PyOnceLock::new())
+    }
+}
+
+impl Once {
+    /// What `make` returns, called once.
+    pub fn get(
+        &self,
+        py: Python<'_>,
+        make: impl FnOnce() -> PyResult<Py<PyAny>>,
+    ) -> PyResult<Py<PyAny>> {
+        let made = self.0.get_or_try_init(py, make)?;
+        Ok(made.clone_ref(py))
+    }
 }
 
 /// A record with these entries.

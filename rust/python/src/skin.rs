@@ -158,7 +158,7 @@ impl Skin {
         };
         let inner = Arc::clone(&self.inner);
         let contact = run(py, &hooks, move |control| inner.press(request, control))?;
-        Contact::new(py, contact, &self.region_names)
+        Ok(Contact::new(contact, Arc::clone(&self.region_names)))
     }
 
     /// Follows a protocol from rest; the tissue remembers from row to row what its effects let it.
@@ -203,7 +203,7 @@ impl Skin {
         let kept = (request.keep, self.vertex_count);
         let inner = Arc::clone(&self.inner);
         let course = run(py, &hooks, move |control| inner.follow(request, control))?;
-        Course::new(py, course, (&self.region_names, kept))
+        Course::new(py, course, (Arc::clone(&self.region_names), kept))
     }
 
     /// Begins a protocol that is followed row by row: the posture may change from row to row, and the product may move.

@@ -86,7 +86,7 @@ impl Walk {
         let contact = run(py, &hooks, move |control| {
             follow((&inner, &product, &state), &asked, control)
         })?;
-        Contact::new(py, contact, &self.region_names)
+        Ok(Contact::new(contact, Arc::clone(&self.region_names)))
     }
 
     /// Rows taken.
