@@ -327,11 +327,13 @@ pub fn table<T: Element>(py: Python<'_>, values: Vec<T>, columns: usize) -> PyRe
 
 /// A numpy array (n, 3) of doubles.
 pub fn rows(py: Python<'_>, values: &[Vec3]) -> PyResult<Py<PyAny>> {
-    let mut numbers = Vec::with_capacity(3 * values.len());
-    values
-        .iter()
-        .for_each(|value| numbers.extend_from_slice(value.as_slice()));
-    table(py, numbers, 3)
+    owned_rows(py, values.to_vec())
+}
+
+/// The same of vectors that are given away: they are not copied.
+pub fn owned_rows(py: Python<'_>, values: Vec<Vec3>) -> PyResult<Py<PyAny>> {
+    let numbers: Vec<[f64; 3]> = values.into_iter().map(Into::into).collect();
+    table(py, numbers.into_flattened(), 3)
 }
 
 /// A numpy array (3,) of doubles.

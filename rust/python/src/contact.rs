@@ -1,61 +1,90 @@
 //! `thenar.Contact`: the result of a press as numpy arrays and records.
 
-use crate::arrays::{Argument, column, rows, triple, zeros};
+use crate::arrays::{Argument, column, owned_rows, triple, zeros};
 use crate::contact_records as records;
 use crate::record::Once;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
+use std::mem::take;
 use std::sync::Arc;
+use thenar_contact::{Convergence, RegionResult, Residual, Shear};
 use thenar_surface::Vec3;
 
 /// The result of a press. Arrays over vertices are in the order of the skin's vertices.
+///
+/// Most of it is made for Python when it is asked for: Live reads a few arrays of each of its presses.
 #[pyclass(frozen, module = "thenar")]
 pub struct Contact {
-    result: thenar_contact::Contact,
+    vertices: usize,
     region_names: Arc<Vec<String>>,
-    made: Made,
-}
-
-/// Arrays and records that were asked for: making all of them takes as long as a tenth of a live press.
-#[derive(Default)]
-struct Made {
-    displacement_mm: Once,
-    pressure_mpa: Once,
-    force_n: Once,
-    gap_mm: Once,
-    in_contact: Once,
-    product_normal: Once,
-    total_force_n: Once,
-    total_moment_nmm: Once,
-    center_of_pressure_mm: Once,
-    regions: Once,
-    product_pressure_mpa: Once,
-    direction: Once,
-    adhesion_force_n: Once,
-    tangential_force_n: Once,
-    tangential_traction_mpa: Once,
-    slip_mm: Once,
-    slip_margin: Once,
-    is_sticking: Once,
-    friction: Once,
-    residual: Once,
-    convergence: Once,
-    warnings: Once,
-    seconds: Once,
+    displacement_mm: Once<Vec<Vec3>>,
+    pressure_mpa: Once<Vec<f64>>,
+    force_n: Once<Vec<f64>>,
+    gap_mm: Once<Vec<f64>>,
+    in_contact: Once<Vec<bool>>,
+    product_normal: Once<Vec<Vec3>>,
+    total_force_n: Once<Vec3>,
+    total_moment_nmm: Once<Vec3>,
+    center_of_pressure_mm: Once<Vec3>,
+    contact_area_mm2: f64,
+    peak_pressure_mpa: f64,
+    mean_pressure_mpa: f64,
+    patch_peak_mpa: f64,
+    regions: Once<Vec<RegionResult>>,
+    product_pressure_mpa: Once<Vec<f64>>,
+    offset_mm: f64,
+    direction: Once<Vec3>,
+    adhesion_force_n: Once<Vec<f64>>,
+    tangential_force_n: Once<Option<Vec<Vec3>>>,
+    tangential_traction_mpa: Once<Option<Vec<f64>>>,
+    slip_mm: Once<Option<Vec<Vec3>>>,
+    slip_margin: Once<Option<Vec<f64>>>,
+    is_sticking: Once<Option<Vec<bool>>>,
+    friction: Once<Option<Shear>>,
+    residual: Once<Residual>,
+    convergence: Once<Convergence>,
+    warnings: Once<Vec<String>>,
+    seconds: Once<Vec<(&'static str, f64)>>,
 }
 
 impl Contact {
-    /// `region_names` is empty or has one name per region.
+    /// Takes the result over; `region_names` is empty or has one name per region.
     pub fn new(result: thenar_contact::Contact, region_names: Arc<Vec<String>>) -> Contact {
+        let mut shear = result.shear;
         Contact {
-            result,
+            in_contact: Once::new(is_loaded(&result.nodal_force)),
+            vertices: result.gap.len(),
+            displacement_mm: Once::new(result.displacement),
+            pressure_mpa: Once::new(result.pressure),
+            force_n: Once::new(result.nodal_force),
+            gap_mm: Once::new(result.gap),
+            product_normal: Once::new(result.normal),
+            total_force_n: Once::new(result.total_force),
+            total_moment_nmm: Once::new(result.total_moment),
+            center_of_pressure_mm: Once::new(result.center_of_pressure),
+            contact_area_mm2: result.contact_area,
+            peak_pressure_mpa: result.peak_pressure,
+            mean_pressure_mpa: result.mean_pressure,
+            patch_peak_mpa: result.patch_peak,
+            regions: Once::new(result.regions),
+            product_pressure_mpa: Once::new(result.product_pressure),
+            offset_mm: result.offset,
+            direction: Once::new(result.direction),
+            adhesion_force_n: Once::new(result.adhesion),
+            tangential_force_n: Once::new(shear.as_mut().map(|shear| take(&mut shear.force))),
+            tangential_traction_mpa: Once::new(
+                shear.as_mut().map(|shear| take(&mut shear.traction)),
+            ),
+            slip_mm: Once::new(shear.as_mut().map(|shear| take(&mut shear.slip))),
+            slip_margin: Once::new(shear.as_mut().map(|shear| take(&mut shear.margin))),
+            is_sticking: Once::new(shear.as_mut().map(|shear| take(&mut shear.is_sticking))),
+            residual: Once::new(result.residual),
+            convergence: Once::new(result.convergence),
+            warnings: Once::new(result.warnings),
+            seconds: Once::new(result.seconds),
+            friction: Once::new(shear),
             region_names,
-            made: Made::default(),
         }
-    }
-
-    fn count(&self) -> usize {
-        self.result.gap.len()
     }
 }
 
@@ -80,7 +109,7 @@ impl Contact {
             force: numbers("force_n", self.force_n(py)?)?,
             pressure: numbers("pressure_mpa", self.pressure_mpa(py)?)?,
             direction: Argument::mesh("direction", self.direction(py)?.bind(py)).vector()?,
-            offset: self.result.offset,
+            offset: self.offset_mm,
             displacement,
         })
     }
@@ -91,180 +120,156 @@ impl Contact {
     /// (n, 3), mm, to be added to the posed positions.
     #[getter]
     fn displacement_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .displacement_mm
-            .get(py, || rows(py, &self.result.displacement))
+        self.displacement_mm
+            .get(py, |values| owned_rows(py, values))
     }
 
     /// (n,), MPa.
     #[getter]
     fn pressure_mpa(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .pressure_mpa
-            .get(py, || Ok(column(py, self.result.pressure.clone())))
+        self.pressure_mpa.get(py, |values| Ok(column(py, values)))
     }
 
     /// (n,), N, normal force per vertex.
     #[getter]
     fn force_n(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .force_n
-            .get(py, || Ok(column(py, self.result.nodal_force.clone())))
+        self.force_n.get(py, |values| Ok(column(py, values)))
     }
 
     /// (n,), mm, signed distance before deformation, inf beyond reach.
     #[getter]
     fn gap_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .gap_mm
-            .get(py, || Ok(column(py, self.result.gap.clone())))
+        self.gap_mm.get(py, |values| Ok(column(py, values)))
     }
 
     /// (n,), bool.
     #[getter]
     fn in_contact(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .in_contact
-            .get(py, || Ok(column(py, is_loaded(&self.result.nodal_force))))
+        self.in_contact.get(py, |values| Ok(column(py, values)))
     }
 
     /// (n, 3), the product's outward normal where the vertex touches, else zero.
     #[getter]
     fn product_normal(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .product_normal
-            .get(py, || rows(py, &self.result.normal))
+        self.product_normal.get(py, |values| owned_rows(py, values))
     }
 
     /// (3,), N, on the product.
     #[getter]
     fn total_force_n(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .total_force_n
-            .get(py, || Ok(triple(py, self.result.total_force)))
+        self.total_force_n.get(py, |value| Ok(triple(py, value)))
     }
 
     /// (3,), N mm, of that force about the origin.
     #[getter]
     fn total_moment_nmm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .total_moment_nmm
-            .get(py, || Ok(triple(py, self.result.total_moment)))
+        self.total_moment_nmm.get(py, |value| Ok(triple(py, value)))
     }
 
     /// (3,), mm.
     #[getter]
     fn center_of_pressure_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .center_of_pressure_mm
-            .get(py, || Ok(triple(py, self.result.center_of_pressure)))
+        self.center_of_pressure_mm
+            .get(py, |value| Ok(triple(py, value)))
     }
 
     #[getter]
     fn contact_area_mm2(&self) -> f64 {
-        self.result.contact_area
+        self.contact_area_mm2
     }
 
     #[getter]
     fn peak_pressure_mpa(&self) -> f64 {
-        self.result.peak_pressure
+        self.peak_pressure_mpa
     }
 
     #[getter]
     fn mean_pressure_mpa(&self) -> f64 {
-        self.result.mean_pressure
+        self.mean_pressure_mpa
     }
 
     /// Largest mean pressure over 24 mm2, a mat's sensel.
     #[getter]
     fn patch_peak_mpa(&self) -> f64 {
-        self.result.patch_peak
+        self.patch_peak_mpa
     }
 
     /// A record per region: index, name, force_n, area_mm2, peak_mpa, mean_mpa, dmax_mm, g_mpa.
     #[getter]
     fn regions(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made.regions.get(py, || {
-            records::regions(py, &self.result.regions, &self.region_names)
-        })
+        self.regions
+            .get(py, |rows| records::regions(py, &rows, &self.region_names))
     }
 
     /// (k,), MPa, one per product vertex, force conserving.
     #[getter]
     fn product_pressure_mpa(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .product_pressure_mpa
-            .get(py, || Ok(column(py, self.result.product_pressure.clone())))
+        self.product_pressure_mpa
+            .get(py, |values| Ok(column(py, values)))
     }
 
     /// Travel of the product along `direction`, mm.
     #[getter]
     fn offset_mm(&self) -> f64 {
-        self.result.offset
+        self.offset_mm
     }
 
     /// (3,), direction of travel, or of the mean normal force without force control.
     #[getter]
     fn direction(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .direction
-            .get(py, || Ok(triple(py, self.result.direction)))
+        self.direction.get(py, |value| Ok(triple(py, value)))
     }
 
     /// (n,), N, attraction towards the product, >= 0; zero without adhesion. Force and pressure are those of contact alone.
     #[getter]
     fn adhesion_force_n(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .adhesion_force_n
-            .get(py, || Ok(column(py, self.result.adhesion.clone())))
+        self.adhesion_force_n
+            .get(py, |values| Ok(column(py, values)))
     }
 
     /// (n, 3), N, shear force on the skin; zero without friction and drag.
     #[getter]
     fn tangential_force_n(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .tangential_force_n
-            .get(py, || match &self.result.shear {
-                None => Ok(zeros::<f64, _>(py, [self.count(), 3])),
-                Some(shear) => rows(py, &shear.force),
-            })
+        self.tangential_force_n.get(py, |force| match force {
+            Some(force) => owned_rows(py, force),
+            None => Ok(zeros::<f64, _>(py, [self.vertices, 3])),
+        })
     }
 
     /// (n,), MPa, its length over the vertex area.
     #[getter]
     fn tangential_traction_mpa(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .tangential_traction_mpa
-            .get(py, || match &self.result.shear {
-                None => Ok(zeros::<f64, _>(py, [self.count()])),
-                Some(shear) => Ok(column(py, shear.traction.clone())),
+        self.tangential_traction_mpa
+            .get(py, |traction| match traction {
+                Some(traction) => Ok(column(py, traction)),
+                None => Ok(zeros::<f64, _>(py, [self.vertices])),
             })
     }
 
     /// (n, 3), mm, slip of the skin over the product.
     #[getter]
     fn slip_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made.slip_mm.get(py, || match &self.result.shear {
-            None => Ok(zeros::<f64, _>(py, [self.count(), 3])),
-            Some(shear) => rows(py, &shear.slip),
+        self.slip_mm.get(py, |slip| match slip {
+            Some(slip) => owned_rows(py, slip),
+            None => Ok(zeros::<f64, _>(py, [self.vertices, 3])),
         })
     }
 
     /// (n,), 1 - shear force / (coefficient x normal force); nan where no friction acts.
     #[getter]
     fn slip_margin(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made.slip_margin.get(py, || match &self.result.shear {
-            None => Ok(column(py, vec![f64::NAN; self.count()])),
-            Some(shear) => Ok(column(py, shear.margin.clone())),
+        self.slip_margin.get(py, |margin| match margin {
+            Some(margin) => Ok(column(py, margin)),
+            None => Ok(column(py, vec![f64::NAN; self.vertices])),
         })
     }
 
     /// (n,), bool, in contact and not slipping.
     #[getter]
     fn is_sticking(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made.is_sticking.get(py, || match &self.result.shear {
-            None => Ok(zeros::<bool, _>(py, [self.count()])),
-            Some(shear) => Ok(column(py, shear.is_sticking.clone())),
+        self.is_sticking.get(py, |is_sticking| match is_sticking {
+            Some(is_sticking) => Ok(column(py, is_sticking)),
+            None => Ok(zeros::<bool, _>(py, [self.vertices])),
         })
     }
 
@@ -272,41 +277,35 @@ impl Contact {
     /// stored_nmm, residual.
     #[getter]
     fn friction(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .friction
-            .get(py, || records::friction(py, self.result.shear.as_ref()))
+        self.friction
+            .get(py, |shear| records::friction(py, shear.as_ref()))
     }
 
     /// A record: complementarity, penetration_mm, load_balance, far_field.
     #[getter]
     fn residual(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .residual
-            .get(py, || records::residual(py, &self.result.residual))
+        self.residual
+            .get(py, |residual| records::residual(py, &residual))
     }
 
     /// A record: has_converged, passes, pivots, cg_steps.
     #[getter]
     fn convergence(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .convergence
-            .get(py, || records::convergence(py, &self.result.convergence))
+        self.convergence
+            .get(py, |how| records::convergence(py, &how))
     }
 
     /// Sentences for the user.
     #[getter]
     fn warnings(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made.warnings.get(py, || {
-            Ok(PyList::new(py, &self.result.warnings)?.into_any().unbind())
-        })
+        self.warnings
+            .get(py, |texts| Ok(PyList::new(py, texts)?.into_any().unbind()))
     }
 
     /// A record of wall time by stage, s.
     #[getter]
     fn seconds(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.made
-            .seconds
-            .get(py, || records::seconds(py, &self.result))
+        self.seconds.get(py, |stages| records::seconds(py, &stages))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -314,8 +313,8 @@ impl Contact {
         let newton = force.iter().map(|part| part * part).sum::<f64>().sqrt();
         Ok(format!(
             "<thenar.Contact: {newton:.3} N on {:.1} mm2, peak {:.1} kPa>",
-            self.result.contact_area,
-            1e3 * self.result.peak_pressure
+            self.contact_area_mm2,
+            1e3 * self.peak_pressure_mpa
         ))
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::arrays::triple;
 use crate::record::record;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use thenar_contact::{Contact, Convergence, RegionResult, Residual, Shear};
+use thenar_contact::{Convergence, RegionResult, Residual, Shear};
 
 /// A list of records; `names` is empty or has one name per region.
 pub fn regions(py: Python<'_>, results: &[RegionResult], names: &[String]) -> PyResult<Py<PyAny>> {
@@ -19,37 +20,37 @@ pub fn friction(py: Python<'_>, shear: Option<&Shear>) -> PyResult<Py<PyAny>> {
         return Ok(py.None());
     };
     let entries = PyDict::new(py);
-    entries.set_item("total_force_n", triple(py, shear.total))?;
-    entries.set_item("slide_mm", triple(py, shear.travel))?;
-    entries.set_item("twist_rad", triple(py, shear.turn))?;
-    entries.set_item("dissipated_nmm", shear.dissipated)?;
-    entries.set_item("stored_nmm", shear.stored)?;
-    entries.set_item("residual", shear.residual)?;
+    entries.set_item(intern!(py, "total_force_n"), triple(py, shear.total))?;
+    entries.set_item(intern!(py, "slide_mm"), triple(py, shear.travel))?;
+    entries.set_item(intern!(py, "twist_rad"), triple(py, shear.turn))?;
+    entries.set_item(intern!(py, "dissipated_nmm"), shear.dissipated)?;
+    entries.set_item(intern!(py, "stored_nmm"), shear.stored)?;
+    entries.set_item(intern!(py, "residual"), shear.residual)?;
     record(entries)
 }
 
 pub fn residual(py: Python<'_>, residual: &Residual) -> PyResult<Py<PyAny>> {
     let entries = PyDict::new(py);
-    entries.set_item("complementarity", residual.complementarity)?;
-    entries.set_item("penetration_mm", residual.penetration_mm)?;
-    entries.set_item("load_balance", residual.load_balance)?;
-    entries.set_item("far_field", residual.far_field)?;
+    entries.set_item(intern!(py, "complementarity"), residual.complementarity)?;
+    entries.set_item(intern!(py, "penetration_mm"), residual.penetration_mm)?;
+    entries.set_item(intern!(py, "load_balance"), residual.load_balance)?;
+    entries.set_item(intern!(py, "far_field"), residual.far_field)?;
     record(entries)
 }
 
 pub fn convergence(py: Python<'_>, convergence: &Convergence) -> PyResult<Py<PyAny>> {
     let entries = PyDict::new(py);
-    entries.set_item("has_converged", convergence.has_converged)?;
-    entries.set_item("passes", convergence.passes)?;
-    entries.set_item("pivots", convergence.pivots)?;
-    entries.set_item("cg_steps", convergence.cg_steps)?;
+    entries.set_item(intern!(py, "has_converged"), convergence.has_converged)?;
+    entries.set_item(intern!(py, "passes"), convergence.passes)?;
+    entries.set_item(intern!(py, "pivots"), convergence.pivots)?;
+    entries.set_item(intern!(py, "cg_steps"), convergence.cg_steps)?;
     record(entries)
 }
 
 /// Wall time by stage, in their order.
-pub fn seconds(py: Python<'_>, contact: &Contact) -> PyResult<Py<PyAny>> {
+pub fn seconds(py: Python<'_>, stages: &[(&'static str, f64)]) -> PyResult<Py<PyAny>> {
     let entries = PyDict::new(py);
-    for (stage, time) in &contact.seconds {
+    for (stage, time) in stages {
         entries.set_item(stage, time)?;
     }
     record(entries)
@@ -57,13 +58,13 @@ pub fn seconds(py: Python<'_>, contact: &Contact) -> PyResult<Py<PyAny>> {
 
 fn region_of(py: Python<'_>, region: &RegionResult, names: &[String]) -> PyResult<Py<PyAny>> {
     let entries = PyDict::new(py);
-    entries.set_item("index", region.index)?;
-    entries.set_item("name", names.get(region.index))?;
-    entries.set_item("force_n", region.force)?;
-    entries.set_item("area_mm2", region.area)?;
-    entries.set_item("peak_mpa", region.peak)?;
-    entries.set_item("mean_mpa", region.mean)?;
-    entries.set_item("dmax_mm", region.max_penetration)?;
-    entries.set_item("g_mpa", region.shear_modulus)?;
+    entries.set_item(intern!(py, "index"), region.index)?;
+    entries.set_item(intern!(py, "name"), names.get(region.index))?;
+    entries.set_item(intern!(py, "force_n"), region.force)?;
+    entries.set_item(intern!(py, "area_mm2"), region.area)?;
+    entries.set_item(intern!(py, "peak_mpa"), region.peak)?;
+    entries.set_item(intern!(py, "mean_mpa"), region.mean)?;
+    entries.set_item(intern!(py, "dmax_mm"), region.max_penetration)?;
+    entries.set_item(intern!(py, "g_mpa"), region.shear_modulus)?;
     record(entries)
 }

@@ -1,8 +1,10 @@
 //! A record: a dict whose entries are attributes too; and what is made when it is first asked for.
 
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyType};
+use std::sync::{Mutex, PoisonError};
 
 /// A subclass of a builtin needs Python 3.12 in the stable ABI, so the class is made by Python itself.
 const SOURCE: &std::ffi::CStr = c"
@@ -37,23 +39,32 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("Record", class(module.py())?)
 }
 
-/// An array or a record of a result, made when it is first asked for; the same object ever after.
-pub struct Once(PyOnceLock<Py<PyAny>>);
-
-impl Default for Once {
-    fn default() -> Once {
-        Once(PyOnceLock::new())
-    }
+/// An array or a record of a result, made of its source when it is first asked for; the same object ever after.
+pub struct Once<S> {
+    source: Mutex<Option<S>>,
+    made: PyOnceLock<Py<PyAny>>,
 }
 
-impl Once {
-    /// What `make` returns, called once.
+impl<S> Once<S> {
+    pub fn new(source: S) -> Once<S> {
+        Once {
+            source: Mutex::new(Some(source)),
+            made: PyOnceLock::new(),
+        }
+    }
+
+    /// What `make` returned, which is called once.
     pub fn get(
         &self,
         py: Python<'_>,
-        make: impl FnOnce() -> PyResult<Py<PyAny>>,
+        make: impl FnOnce(S) -> PyResult<Py<PyAny>>,
     ) -> PyResult<Py<PyAny>> {
-        let made = self.0.get_or_try_init(py, make)?;
+        let made = self.made.get_or_try_init(py, || {
+            let mut source = self.source.lock().unwrap_or_else(PoisonError::into_inner);
+            // Gone only where making failed before, which takes a lack of memory.
+            let source = source.take().ok_or_else(|| PyMemoryError::new_err(()))?;
+            make(source)
+        })?;
         Ok(made.clone_ref(py))
     }
 }
