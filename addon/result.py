@@ -30,9 +30,9 @@ def fill(result, job, contact, written, notes):
     result.patch_peak_kpa = contact.patch_peak_mpa * KPA_PER_MPA
     result.mean_kpa = contact.mean_pressure_mpa * KPA_PER_MPA
     result.depth_mm = abs(float(np.fmin.reduce(np.asarray(contact.gap_mm), initial=0.0)))
-    result.penetration_mm = contact.residual.penetration_mm
-    result.complementarity = contact.residual.complementarity
-    result.load_balance = contact.residual.load_balance
+    left = contact.residual
+    result.penetration_mm, result.complementarity = left["penetration_mm"], left["complementarity"]
+    result.load_balance = left["load_balance"]
     result.write_error_mm = written.error_mm
     result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
     result.direction = _finite(np.asarray(contact.direction).tolist())
@@ -118,6 +118,7 @@ def _sized(rows, count):
 
 
 def _add_regions(result, job, contact):
+    """Row by row: `foreach_set` is no faster for so few, and makes Blender evaluate the scene anew."""
     records, fingers = contact.regions, {}
     for index, (row, record) in enumerate(zip(_sized(result.regions, len(records)), records, strict=True)):
         name, peak, mean = job.region_names[index], record["peak_mpa"] * KPA_PER_MPA, record["mean_mpa"] * KPA_PER_MPA

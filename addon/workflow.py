@@ -1,23 +1,17 @@
 """The order of a press: read, call the library, write back. Knows nothing of buttons and layout."""
 
-import re
 import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
 
-from . import cache, comfort, effect_settings, effects, names, native, status
+from . import cache, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
 from .steps import at_once
-
-SENTENCES_KEPT = 256
-"""Notes whose wording is kept: from frame to frame most of them are the same."""
-_REGION = re.compile(r"region (\d+)\b")
-_NUMBERS = dict.fromkeys(map(ord, "0123456789."))
 
 
 @dataclass
@@ -154,7 +148,7 @@ def telling(job, cancel=None):
     except native.error_types() as error:
         if cancel is None or not cancel.is_set():
             cache.drop(_skin_key(job))
-        raise type(error)(named(str(error), job)) from None
+        raise type(error)(sentences.named(str(error), job)) from None
 
 
 def prepared(job, cancel=None, progress=None):
@@ -191,39 +185,6 @@ def _press(job, skin, cancel, progress):
     return contact
 
 
-def named(text, job):
-    """A sentence of the native module with the objects' names: it knows them as "the hand" and "the product" only."""
-    return _named(text, (job.hand_name, ", ".join(job.part_names)), job.region_names)
-
-
-@lru_cache(maxsize=SENTENCES_KEPT)
-def _named(text, objects, region_names):
-    for role, name in zip(("hand", "product"), objects, strict=True):
-        if f"he {role}" in text:
-            text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
-    if not _REGION.search(text):
-        return text
-    regions = dict(enumerate(region_names))
-    return _REGION.sub(lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
-
-
-def joined(notes):
-    """Notes that differ by names and numbers only become one, which counts the others."""
-    alike = {}
-    for note in notes:
-        alike.setdefault(_kind(note), []).append(note)
-    for first, *others in alike.values():
-        yield first + (f" ({len(others)} more such)" if others else "")
-
-
-@lru_cache(maxsize=SENTENCES_KEPT)
-def _kind(note):
-    """The sentence without the names in quotes and without numbers."""
-    parts = note.split("'")
-    said = parts[::2] if len(parts) % 2 else parts[::2] + parts[-1:]
-    return "#".join(said).translate(_NUMBERS)
-
-
 def finish(context, job, contact):
     """Write the contact back and keep its numbers in the scene. Returns the scene's result.
 
@@ -239,7 +200,7 @@ def finish(context, job, contact):
     fields = fields_of(contact, job)
     written = write.write_contact(context, hand, parts, job.reading, fields)
     job.seconds["write"] = time.perf_counter() - started
-    notes = [*joined([named(text, job) for text in contact.warnings]), *_left_out(job)]
+    notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
     result.state_hash = state_hash(context)
     comfort.judge(context)

@@ -66,7 +66,7 @@ def check_writable(hand):
 def check_visible(context, obj, role):
     """Refuse what the view layer does not evaluate: Blender would hand back its rest shape without a word."""
     layer = context.view_layer
-    if obj.name not in layer.objects or layer.objects[obj.name] != obj:
+    if layer.objects.get(obj.name) != obj:
         raise Refusal(
             f"the {role} '{obj.name}' is not in the view layer '{layer.name}'; "
             "link it to the scene or tick its collection in the Outliner"
@@ -79,7 +79,7 @@ def check_visible(context, obj, role):
 
 def check_finite(positions, name, what):
     """Refuse NaN and infinity, which Blender accepts silently; it may hold infinity as its largest number."""
-    if not positions.size or (positions.max() < _FARTHEST and positions.min() > -_FARTHEST):
+    if np.vdot(positions, positions) < 0.9 * _FARTHEST**2:  # then none is farther, and Live asks every frame
         return
     bad = np.flatnonzero(~(np.abs(positions) < _FARTHEST).all(axis=1))
     if bad.size:
@@ -145,6 +145,6 @@ def _is_evaluated(layer_collection, obj):
     collection = layer_collection.collection
     if layer_collection.exclude or collection.hide_viewport:
         return False
-    if obj.name in collection.objects and collection.objects[obj.name] == obj:
+    if collection.objects.get(obj.name) == obj:
         return True
     return any(_is_evaluated(child, obj) for child in layer_collection.children)

@@ -19,11 +19,19 @@ _STEPS = 31 * 512
 
 def linear(pressure_kpa, look, bare):
     """Scene-linear RGBA (n, 4) float32 of pressures, kPa, over a bare surface colour (sRGB)."""
-    scale = maps.scale(maps.MAPS[maps.PRESSURE], look)
+    return by_scale(pressure_kpa, maps.scale(maps.MAPS[maps.PRESSURE], look), bare)
+
+
+def by_scale(pressure_kpa, scale, bare):
+    """The same by the pressure's `maps.Scale`."""
     table, slopes = _pressure_table(scale, bare)
     place = colormap.within(scale.share(pressure_kpa)) * _STEPS
     low = place.astype(np.intp)
-    return table.take(low, axis=0) + slopes.take(low, axis=0) * (place - low).astype(np.float32)[:, None]
+    beyond = (place - low.astype(place.dtype)).astype(np.float32, copy=False)
+    tinted = slopes.take(low, axis=0)
+    tinted *= beyond.repeat(4).reshape(-1, 4)  # numpy multiplies rows of four by a column at half the speed
+    tinted += table.take(low, axis=0)
+    return tinted
 
 
 @lru_cache(maxsize=4)

@@ -1,5 +1,7 @@
 """The one place of unit conversions between Blender's world and the library's mm, N, MPa."""
 
+from functools import lru_cache
+
 import numpy as np
 
 MM_PER_M = 1000.0
@@ -35,7 +37,7 @@ def to_local(positions_mm, matrix, scale):
 
 def vectors_to_local(vectors_mm, matrix, scale):
     """World vectors (n, 3), mm, to the object's local space, Blender units."""
-    return _turned(vectors_mm, np.linalg.inv(matrix[:3, :3] * scale))
+    return _turned(vectors_mm, _inverse((matrix[:3, :3] * scale).tobytes()))
 
 
 def is_mirrored(matrix):
@@ -66,6 +68,12 @@ def kpa(pressure_mpa):
 def cm2(area_mm2):
     """mm² to cm²."""
     return area_mm2 / MM2_PER_CM2
+
+
+@lru_cache(maxsize=8)
+def _inverse(linear):
+    """Of a matrix (3, 3) float64, given as its bytes: Live asks every frame, and most often the hand's own stays."""
+    return np.linalg.inv(np.frombuffer(linear).reshape(3, 3))
 
 
 def _turned(vectors, linear):

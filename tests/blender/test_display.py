@@ -56,9 +56,9 @@ def test_live_colors_anew_only_where_something_presses_or_pressed(monkeypatch):
 
     objects = stage.scene()
     bpy.context.scene.thenar.live = True
-    colored, linear = [], scene_colors.linear
+    colored, by_scale = [], scene_colors.by_scale
     monkeypatch.setattr(
-        scene_colors, "linear", lambda pressure, *look: colored.append(len(pressure)) or linear(pressure, *look)
+        scene_colors, "by_scale", lambda pressure, *look: colored.append(len(pressure)) or by_scale(pressure, *look)
     )
 
     def lifted(move):

@@ -102,21 +102,21 @@ def test_presets_set_published_numbers():
 
 
 def test_notes_that_differ_by_region_are_told_once():
-    from thenar_blender import workflow
+    from thenar_blender import sentences
 
     notes = ["region 'a' is 1.5 mm deep", "region 'b' is 2.5 mm deep", "the hand is open"]
-    assert list(workflow.joined(notes)) == ["region 'a' is 1.5 mm deep (1 more such)", "the hand is open"]
+    assert list(sentences.joined(notes)) == ["region 'a' is 1.5 mm deep (1 more such)", "the hand is open"]
 
 
 def test_notes_name_what_their_own_job_names():
     from types import SimpleNamespace
 
-    from thenar_blender import workflow
+    from thenar_blender import sentences
 
     text = "the hand: region 1 lies on the product"
     for hand, part, region in (("Left", "Cup", "palm"), ("Right", "Cup", "palm"), ("Right", "Cup", "thumb")):
         job = SimpleNamespace(hand_name=hand, part_names=(part,), region_names=("index", region))
-        assert workflow.named(text, job) == f"the hand '{hand}': region '{region}' lies on the product '{part}'"
+        assert sentences.named(text, job) == f"the hand '{hand}': region '{region}' lies on the product '{part}'"
 
 
 def test_notes_of_a_solve_name_one_region_and_count_the_others():

@@ -13,7 +13,7 @@ import stage
 import thenar_blender
 from thenar_blender import headless, names, native, status, workflow
 from thenar_blender.live import session, watch
-from thenar_blender.scene import checks, colors, state
+from thenar_blender.scene import checks, state
 
 MM = stage.MM
 ALONE = "LIVE_ALONE"
@@ -341,22 +341,6 @@ def test_skin_that_is_let_go_is_bare_again(scene):
     assert force() == 0.0
     colors = stage.attribute(hand, names.COLOR)
     assert np.abs(painted - painted[-1]).max() > 0.1 and np.abs(colors - colors[0]).max() < 1e-6
-
-
-def test_colors_that_follow_are_those_of_the_pressure_as_a_whole(scene):
-    """Only what changed is colored anew: a slide, a tilt, a jump away and a jump back leave no old color."""
-    hand, product = stage.scene()
-    settings = bpy.context.scene.thenar
-    switch(True)
-    for move in (0.3, -0.2, 0.0, -9.0, 9.5):
-        product.location.z += move * MM
-        product.location.x += 0.4 * MM
-        product.rotation_euler.y += 0.02
-        assert follow()
-        for obj, bare in ((hand, colors.SKIN), (product, colors.BARE)):
-            whole = colors.linear(stage.attribute(obj, names.PRESSURE_KPA), settings, bare)
-            assert np.abs(stage.attribute(obj, names.COLOR) - whole).max() < 1e-5
-    assert force() > 0.0
 
 
 @pytest.mark.parametrize("mover", ["product", "hand"])
