@@ -102,6 +102,10 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
         *sum += more;
         *change += more;
     }
+    if loads.is_empty() {
+        // Sums of single precision leave a trace; skin that nothing presses has none.
+        shown.field.fill(Vec3::zeros());
+    }
     let field = shown.field.clone();
     skin.memory.shown = shown;
     field
