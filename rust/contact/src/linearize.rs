@@ -76,7 +76,7 @@ pub fn solve(
     setting: &Setting<'_>,
     control: &Control,
 ) -> Result<Solved, ContactError> {
-    let mut state = State::new(zone);
+    let mut state = State::new(live::with_foreseen(skin, setting, zone));
     let deepest = setting.detection.deepest();
     let tolerance = match setting.accuracy {
         Accuracy::Full => OUTER_TOLERANCE.min(OUTER_SHARE * deepest),
@@ -101,7 +101,7 @@ pub fn solve(
         let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
         let (stray, far) = match state.beyond {
             Beyond::Nothing => (0.0, Vec::new()),
-            _ => strays(skin, (&state.found(), &state.held), &field, deepest),
+            _ => strays(&state.found(), &field, deepest),
         };
         keep_out(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);

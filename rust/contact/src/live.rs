@@ -27,8 +27,10 @@ const MORE: f64 = 1.25;
 /// How far skin may stray, over the deepest penetration: somewhat less than the certificate's half per cent, so that what is held
 /// on to stays within that.
 const STRAY: f64 = 4.5e-3;
-/// Share of that from which it is solved with the next frame.
-const EARLY: f64 = 0.5;
+/// Share of that from which skin that is foreseen to stray is solved.
+const EARLY: f64 = 0.9;
+/// Skin that is foreseen to come nearer to the product joins the zone, mm.
+const CLEARANCE: f64 = 0.01;
 /// Largest distance between written contact and product that ends a live solve, mm, and over the deepest penetration.
 const MISFIT: f64 = 0.02;
 const MISFIT_SHARE: f64 = 2.5e-3;
@@ -56,8 +58,6 @@ pub struct Held {
     /// Its zone (ascending), and what each site met.
     zone: Vec<u32>,
     met: Vec<Met>,
-    /// Sites that strayed a little.
-    strayed: Vec<u32>,
 }
 
 impl Held {
@@ -89,10 +89,11 @@ pub fn held(
     };
     let changed = zone.iter().zip(&met).filter(|&pair| is_changed(pair));
     let mut changed: Vec<u32> = changed.map(|(&site, _)| site).collect();
-    // What strayed a little is solved with what moved; where nothing did, the last certificate stands.
-    let is_still = changed.is_empty() && strayed.is_none();
-    if !is_still {
-        changed.extend(strayed.unwrap_or(&last.strayed));
+    // What will stray is solved with what moved; where nothing did, the last certificate stands.
+    match strayed {
+        Some(strayed) => changed.extend(strayed),
+        None if changed.is_empty() => {}
+        None => changed.extend(will_stray(skin, setting, zone, &met)),
     }
     changed.sort_unstable();
     let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
@@ -108,6 +109,49 @@ pub fn held(
         return Vec::new();
     }
     held
+}
+
+/// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
+fn ahead(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
+    let (shown, site) = (&skin.memory.shown, site as usize);
+    if !shown.is_of(skin.sites.len()) {
+        return Vec3::zeros();
+    }
+    let share = setting.weight[site] * skin.sites.follow[site];
+    (shown.field[site] + shown.field_change[site]) * share
+}
+
+/// Sites of `zone` that would stray if they were held while what changed last goes on.
+fn will_stray(skin: &Skin, setting: &Setting<'_>, zone: &[u32], met: &[Option<&Met>]) -> Vec<u32> {
+    let most = EARLY * STRAY * setting.detection.deepest();
+    let strays = |(site, met): &(&u32, &Option<&Met>)| {
+        let off = |met: &&Met| met.direction.dot(&ahead(skin, setting, **site)) - met.travel;
+        met.as_ref().is_some_and(|met| off(met).abs() > most)
+    };
+    let straying = zone.iter().zip(met).filter(strays);
+    straying.map(|(&site, _)| site).collect()
+}
+
+/// A `zone` (ascending) with skin beyond it that is carried into the product if what changed last goes on, and its neighbors.
+pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
+    if !is_live(skin, setting) || zone.is_empty() {
+        return zone;
+    }
+    let is_carried_in = |site: &u32| {
+        let gap = &setting.detection.gaps[vertex(skin, *site)];
+        let is_near = |gap: &Gap| {
+            let u = ahead(skin, setting, *site);
+            gap.distance < u.norm() && gap.distance + gap.normal.dot(&u) < CLEARANCE
+        };
+        skin.sites.is_skin(*site as usize)
+            && gap.as_ref().is_some_and(is_near)
+            && zone.binary_search(site).is_err()
+    };
+    let carried_in = (0..skin.sites.len() as u32).filter(is_carried_in);
+    let more = ringed(skin, setting, &zone, carried_in.collect());
+    zone.extend(more);
+    zone.sort_unstable();
+    zone
 }
 
 fn is_live(skin: &Skin, setting: &Setting<'_>) -> bool {
@@ -228,7 +272,6 @@ pub fn keep(
     skin.memory.held = Held {
         zone: found.zone.to_vec(),
         met,
-        strayed: skin.memory.held.strayed.clone(),
     };
 }
 
@@ -240,24 +283,16 @@ pub fn tolerance(deepest: f64) -> f64 {
 /// How far skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far: held skin
 /// by what changed elsewhere, solved skin by what changed beyond its near coupling.
 ///
-/// `field`: displacement of every site by all forces. Held sites that strayed less are solved with the next frame.
-pub fn strays(
-    skin: &mut Skin,
-    (found, held): (&Found<'_>, &[Option<Met>]),
-    field: &[Vec3],
-    deepest: f64,
-) -> (f64, Vec<u32>) {
+/// `field`: displacement of every site by all forces.
+pub fn strays(found: &Found<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>) {
     let most = STRAY * deepest;
-    let (mut worst, mut far, mut some) = (0.0f64, Vec::new(), Vec::new());
+    let (mut worst, mut far) = (0.0f64, Vec::new());
     for (k, &site) in found.zone.iter().enumerate() {
         let off = (found.direction[k].dot(&field[site as usize]) - found.travel[k]).abs();
         worst = worst.max(off);
         if off > most {
             far.push(site);
-        } else if off > EARLY * most && held.get(k).is_some_and(Option::is_some) {
-            some.push(site);
         }
     }
-    skin.memory.held.strayed = some;
     (worst / deepest.max(f64::MIN_POSITIVE), far)
 }

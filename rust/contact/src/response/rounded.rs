@@ -159,7 +159,11 @@ mod tests {
     fn numbers_are_rounded_to_the_nearest() {
         for k in -320..=320 {
             let value = k as f32 * 99.83;
-            assert_eq!(i32::from(rounded(value)), value.round_ties_even() as i32, "{value}");
+            assert_eq!(
+                i32::from(rounded(value)),
+                value.round_ties_even() as i32,
+                "{value}"
+            );
         }
     }
 
