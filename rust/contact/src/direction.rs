@@ -20,7 +20,7 @@ pub type Sums = [f64; 4];
 
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///
-/// `known`: sums of sites that keep theirs; empty where none does.
+/// `known`: sums of sites that keep theirs, and with them their directions; empty where none does.
 pub fn yielding_directions(
     zone: &[u32],
     (normal, gap): (&[Vec3], &[f64]),
@@ -32,63 +32,60 @@ pub fn yielding_directions(
     for (k, &site) in zone.iter().enumerate() {
         place[site as usize] = k as u32;
     }
-    let neighbors = |&site: &u32| -> Vec<u32> {
-        let neighbors = adjacency.neighbors(sites.vertex[site as usize] as usize);
-        let there = neighbors.iter().map(|&v| sites.of_vertex[v as usize]);
-        let there = there.filter_map(|site| place.get(site as usize).copied());
-        there.filter(|k| *k != u32::MAX).collect()
-    };
-    let local: Vec<Vec<u32>> = zone.iter().map(neighbors).collect();
     let deepest = gap.iter().fold(0.0, |most, g| f64::max(most, -g));
-    let weight: Vec<f64> = zone
-        .iter()
-        .zip(gap)
-        .map(|(&site, g)| sites.area[site as usize] * ((-g).max(0.0) + 1e-6 * deepest))
-        .collect();
     // Sums of weight and of weighted normals spread alike; their ratio is a weighted average.
-    let sums: Vec<[f64; 4]> = normal
-        .iter()
-        .zip(&weight)
-        .map(|(n, w)| [w * n.x, w * n.y, w * n.z, *w])
-        .collect();
-    let averages = spread_beside(&sums, (&local, known), spacing);
-    let directions = averages
-        .iter()
-        .zip(normal)
-        .map(|(s, n)| tame(Vec3::new(s[0], s[1], s[2]), *n))
-        .collect();
-    (directions, averages)
+    let sums = |k: usize| {
+        let weight = sites.area[zone[k] as usize] * ((-gap[k]).max(0.0) + 1e-6 * deepest);
+        let n = normal[k];
+        [weight * n.x, weight * n.y, weight * n.z, weight]
+    };
+    let beside = |k: usize| {
+        let vertex = sites.vertex[zone[k] as usize] as usize;
+        let there = adjacency.neighbors(vertex).iter();
+        let there = there.filter_map(|&v| place.get(sites.of_vertex[v as usize] as usize));
+        there.copied().filter(|j| *j != u32::MAX)
+    };
+    let averages = spread_beside((zone.len(), sums), (beside, known), spacing);
+    let directions = averages.iter().zip(normal).enumerate().map(|(k, (s, n))| {
+        let is_known = known.get(k).is_some_and(Option::is_some);
+        if is_known {
+            *n
+        } else {
+            tame(Vec3::new(s[0], s[1], s[2]), *n)
+        }
+    });
+    (directions.collect(), averages)
 }
 
-/// [`spread`] where some values are `known`: what lies beside them takes from them, and they stay.
-fn spread_beside(
-    b: &[Sums],
-    (neighbors, known): (&[Vec<u32>], &[Option<Sums>]),
+/// [`spread`] of `count` values, where some are `known`: what lies beside them takes from them, and they stay.
+fn spread_beside<I: Iterator<Item = u32>>(
+    (count, value): (usize, impl Fn(usize) -> Sums),
+    (beside, known): (impl Fn(usize) -> I, &[Option<Sums>]),
     spacing: f64,
 ) -> Vec<Sums> {
-    let degrees: Vec<usize> = neighbors.iter().map(Vec::len).collect();
-    if known.iter().all(Option::is_none) {
-        return spread(b, (neighbors, &degrees), spacing);
-    }
+    let known = |k: usize| known.get(k).copied().flatten();
     let c = strength(spacing);
-    let open: Vec<usize> = (0..b.len()).filter(|&k| known[k].is_none()).collect();
-    let mut place = vec![u32::MAX; b.len()];
+    let open: Vec<usize> = (0..count).filter(|&k| known(k).is_none()).collect();
+    let mut place = vec![u32::MAX; count];
     for (i, &k) in open.iter().enumerate() {
         place[k] = i as u32;
     }
-    let (mut near, mut right) = (Vec::new(), Vec::new());
+    let mut graph = Graph::new(c, open.len());
+    let mut right = Vec::with_capacity(open.len());
     for &k in &open {
-        let mut sum = b[k];
-        let beside = neighbors[k].iter().filter_map(|&j| known[j as usize]);
-        beside.for_each(|x| (0..4).for_each(|axis| sum[axis] += c * x[axis]));
+        let (mut sum, mut degree) = (value(k), 0);
+        for j in beside(k) {
+            degree += 1;
+            match known(j as usize) {
+                Some(x) => (0..4).for_each(|axis| sum[axis] += c * x[axis]),
+                None => graph.neighbors.push(place[j as usize]),
+            }
+        }
+        graph.end(degree);
         right.push(sum);
-        let unknown = neighbors[k].iter().map(|&j| place[j as usize]);
-        near.push(unknown.filter(|i| *i != u32::MAX).collect::<Vec<u32>>());
     }
-    let degrees: Vec<usize> = open.iter().map(|&k| degrees[k]).collect();
-    let found = spread(&right, (&near, &degrees), spacing);
-    let mut all: Vec<Sums> = known.iter().map(|x| x.unwrap_or_default()).collect();
-    for (k, x) in open.into_iter().zip(found) {
+    let mut all: Vec<Sums> = (0..count).map(|k| known(k).unwrap_or_default()).collect();
+    for (k, x) in open.into_iter().zip(spread(&right, &graph)) {
         all[k] = x;
     }
     all
@@ -102,15 +99,12 @@ fn strength(spacing: f64) -> f64 {
 
 /// Solves `(1 + c L) x = b` with the graph's Laplacian L: every value spreads over about [`AVERAGE_LENGTH`].
 ///
-/// Chebyshev's iteration, whose steps do not depend on `b`. Neighbors that are not listed but counted in `degrees` have theirs
-/// in `b`.
-fn spread(b: &[Sums], (neighbors, degrees): (&[Vec<u32>], &[usize]), spacing: f64) -> Vec<Sums> {
-    let c = strength(spacing);
-    let degree = degrees.iter().copied().max().unwrap_or(0) as f64;
-    let (low, high) = (1.0, 1.0 + 2.0 * c * degree);
+/// Chebyshev's iteration, whose steps do not depend on `b`.
+fn spread(b: &[Sums], graph: &Graph) -> Vec<Sums> {
+    let degree = graph.most_neighbors as f64;
+    let (low, high) = (1.0, 1.0 + 2.0 * graph.strength * degree);
     let (middle, half) = (0.5 * (high + low), 0.5 * (high - low).max(1e-12));
     let steps = (0.5 * (high / low).sqrt() * (2.0 / AVERAGE_ACCURACY).ln()).ceil() as usize;
-    let graph = Graph::new(neighbors, degrees, c);
     let mut x = vec![Sums::default(); b.len()];
     let mut step = vec![Sums::default(); b.len()];
     let mut rho = half / middle;
@@ -125,7 +119,7 @@ fn spread(b: &[Sums], (neighbors, degrees): (&[Vec<u32>], &[usize]), spacing: f6
         } else {
             (next * rho, 2.0 * next / half)
         };
-        advance(&graph, b, (keep, gain), (&mut x, &mut step));
+        advance(graph, b, (keep, gain), (&mut x, &mut step));
         rho = next;
     }
     x
@@ -138,22 +132,26 @@ struct Graph {
     /// One past the last neighbor of each.
     ends: Vec<u32>,
     neighbors: Vec<u32>,
+    most_neighbors: usize,
 }
 
 impl Graph {
-    fn new(neighbors: &[Vec<u32>], degrees: &[usize], strength: f64) -> Self {
-        let mut end = 0;
-        let ends = neighbors.iter().map(|list| {
-            end += list.len() as u32;
-            end
-        });
-        let own = |degree: &usize| 1.0 + strength * *degree as f64;
+    /// An empty one, with room for so many values.
+    fn new(strength: f64, values: usize) -> Self {
         Graph {
             strength,
-            diagonal: degrees.iter().map(own).collect(),
-            ends: ends.collect(),
-            neighbors: neighbors.concat(),
+            diagonal: Vec::with_capacity(values),
+            ends: Vec::with_capacity(values),
+            neighbors: Vec::with_capacity(6 * values),
+            most_neighbors: 0,
         }
+    }
+
+    /// Ends the list of the next value's neighbors, of which there are `degree`; those that are not listed are in `b`.
+    fn end(&mut self, degree: usize) {
+        self.diagonal.push(1.0 + self.strength * degree as f64);
+        self.ends.push(self.neighbors.len() as u32);
+        self.most_neighbors = self.most_neighbors.max(degree);
     }
 }
 
@@ -170,17 +168,22 @@ fn advance(
     for ((((&to, own), b), here), step) in all.zip(&mut *step) {
         let mut around = [0.0; 4];
         for &j in &graph.neighbors[from as usize..to as usize] {
-            let there = &x[j as usize];
-            (0..4).for_each(|axis| around[axis] += there[axis]);
+            let there = x[j as usize];
+            for axis in 0..4 {
+                around[axis] += there[axis];
+            }
         }
+        let mut next = *step;
         for axis in 0..4 {
             let residual = b[axis] - own * here[axis] + graph.strength * around[axis];
-            step[axis] = keep * step[axis] + gain * residual;
+            next[axis] = keep * next[axis] + gain * residual;
         }
+        *step = next;
         from = to;
     }
+    let (x, step) = (x.as_flattened_mut(), step.as_flattened());
     for (x, step) in x.iter_mut().zip(step) {
-        (0..4).for_each(|axis| x[axis] += step[axis]);
+        *x += step;
     }
 }
 
@@ -206,16 +209,15 @@ mod tests {
     fn beside_values_that_stay_the_others_are_those_of_the_whole() {
         let n = 80_u32;
         let beside = |i: u32| [i.checked_sub(1), Some(i + 1).filter(|j| *j < n)];
-        let neighbors: Vec<Vec<u32>> = (0..n)
-            .map(|i| beside(i).into_iter().flatten().collect())
-            .collect();
+        let neighbors = |k: usize| beside(k as u32).into_iter().flatten();
         let b: Vec<Sums> = (0..n)
             .map(|i| [0.3, 0.7, 1.1, 1.9].map(|pace| 1.0 + (pace * f64::from(i)).sin()))
             .collect();
-        let whole = spread_beside(&b, (&neighbors, &[]), 1.5);
+        let value = |k: usize| b[k];
+        let whole = spread_beside((b.len(), value), (neighbors, &[]), 1.5);
         let known = |i: u32| (20..50).contains(&i).then_some(whole[i as usize]);
         let known: Vec<Option<Sums>> = (0..n).map(known).collect();
-        let again = spread_beside(&b, (&neighbors, &known), 1.5);
+        let again = spread_beside((b.len(), value), (neighbors, &known), 1.5);
         let all = || whole.iter().zip(&again).zip(&known);
         assert!(all().all(|((a, b), known)| known.is_none() || a == b));
         let off = all().flat_map(|((a, b), _)| (0..4).map(move |axis| (a[axis] - b[axis]).abs()));
