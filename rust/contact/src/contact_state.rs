@@ -6,10 +6,13 @@ use crate::Model;
 use crate::carried::Found;
 use crate::direction::{LEAST_COSINE, Sums, yielding_directions};
 use crate::linearize::{Setting, vertex};
-use crate::live::Met;
+use crate::live::{self, Met};
 use crate::press::Convergence;
 use crate::skin::Skin;
 use crate::zone::limits;
+
+/// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most.
+const LITTLE_WAY: f64 = 1e-2;
 
 /// What acts on the sites that are solved besides the coupling among them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,6 +41,8 @@ pub(crate) struct State {
     pub cosine: Vec<f64>,
     /// Travel of each zone site along its direction, mm.
     pub travel: Vec<f64>,
+    /// The travel at which each was measured against the product, mm; NaN where it was not.
+    placed: Vec<f64>,
     pub misfit: f64,
     pub complementarity: f64,
     pub convergence: Convergence,
@@ -62,6 +67,7 @@ impl State {
             sums: Vec::new(),
             cosine: Vec::new(),
             travel: Vec::new(),
+            placed: Vec::new(),
             misfit: 0.0,
             complementarity: 0.0,
             convergence,
@@ -86,7 +92,11 @@ impl State {
             // Little has moved: the product is met where the skin lay last.
             self.travel = self.zone.iter().map(|&s| travel[s as usize]).collect();
         }
+        if self.beyond == Beyond::Trend {
+            self.carry_travel_on(skin, setting);
+        }
         self.take_held();
+        self.placed = vec![f64::NAN; self.zone.len()];
         if !travel.is_empty() && skin.model == Model::Layer {
             self.place(skin, setting);
         }
@@ -101,8 +111,34 @@ impl State {
                 .map(|&s| setting.start.map_or(0.0, |start| start.force[s as usize]))
                 .collect()
         };
-        let force = std::mem::take(&mut self.force);
+        let mut force = std::mem::take(&mut self.force);
+        if self.beyond == Beyond::Trend {
+            self.carry_forces_on(skin, setting, &mut force);
+        }
         self.force = self.held_or(|met| met.force, force);
+    }
+
+    /// Changes travels as the last live press did: a drag goes on more often than not.
+    fn carry_travel_on(&mut self, skin: &Skin, setting: &Setting<'_>) {
+        for (k, &site) in self.zone.iter().enumerate() {
+            let change = live::goes_on(skin, setting, site);
+            self.travel[k] += change.dot(&self.direction[k]);
+        }
+    }
+
+    /// The same of forces.
+    fn carry_forces_on(&self, skin: &Skin, setting: &Setting<'_>, force: &mut [f64]) {
+        let shown = &skin.memory.shown;
+        if !shown.is_of(skin.sites.len()) {
+            return;
+        }
+        for (k, (force, &site)) in force.iter_mut().zip(&self.zone).enumerate() {
+            if *force > 0.0 {
+                let change = shown.load_change[site as usize].dot(&self.direction[k]);
+                let per_newton = setting.weight[site as usize] * self.cosine[k];
+                *force = (*force + change / per_newton).max(0.0);
+            }
+        }
     }
 
     /// `values` by place in the zone, with those of held sites in their places.
@@ -167,25 +203,44 @@ impl State {
         self.cosine = self.held_or(|met| met.cosine, cosines);
     }
 
-    /// Measures the displaced zone against the product.
+    /// Measures the displaced zone against the product; in a live press, what hardly travelled since it was measured is only
+    /// carried on.
     pub(crate) fn place(&mut self, skin: &Skin, setting: &Setting<'_>) {
         let positions = &setting.detection.positions;
-        let solved = self.solved();
+        let mut places = self.solved();
+        if self.beyond != Beyond::Nothing {
+            places.retain(|&k| !self.is_carried_on(k));
+        }
         let written =
             |&k: &usize| positions[vertex(skin, self.zone[k])] + self.direction[k] * self.travel[k];
-        let written: Vec<Vec3> = solved.iter().map(written).collect();
+        let written: Vec<Vec3> = places.iter().map(written).collect();
         // The side first touched stays the side: skin in a fold may face another wall once it has moved.
-        let normals: Vec<Vec3> = solved.iter().map(|&k| -self.touch[k].normal).collect();
-        let hints: Vec<u32> = solved.iter().map(|&k| self.touch[k].triangle).collect();
+        let normals: Vec<Vec3> = places.iter().map(|&k| -self.touch[k].normal).collect();
+        let hints: Vec<u32> = places.iter().map(|&k| self.touch[k].triangle).collect();
         let fresh = setting
             .product
             .gaps_near(&written, Some(&normals), limits(), &hints);
-        for (k, gap) in solved.into_iter().zip(fresh) {
+        for (k, gap) in places.into_iter().zip(fresh) {
             if let Some(gap) = gap {
                 self.touch[k] = gap;
+                self.placed[k] = self.travel[k];
             }
         }
         self.misfit = self.measure();
+    }
+
+    /// Whether a place travelled so little since it was measured that its distance follows; it then does.
+    fn is_carried_on(&mut self, k: usize) -> bool {
+        let way = self.travel[k] - self.placed[k];
+        let is_little = way.abs() < LITTLE_WAY;
+        if is_little {
+            let touch = &mut self.touch[k];
+            let by = touch.normal.dot(&self.direction[k]) * way;
+            touch.distance += by;
+            touch.closest += self.direction[k] * way - touch.normal * by;
+            self.placed[k] = self.travel[k];
+        }
+        is_little
     }
 
     /// Largest penetration of the zone, or opening under a force, mm.

@@ -113,12 +113,23 @@ pub fn held(
 
 /// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
 fn ahead(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
-    let (shown, site) = (&skin.memory.shown, site as usize);
+    let shown = &skin.memory.shown;
     if !shown.is_of(skin.sites.len()) {
         return Vec3::zeros();
     }
-    let share = setting.weight[site] * skin.sites.follow[site];
-    (shown.field[site] + shown.field_change[site]) * share
+    let site = site as usize;
+    (shown.field[site] + shown.field_change[site])
+        * (setting.weight[site] * skin.sites.follow[site])
+}
+
+/// How the displacement of a site changes if it does as it did last, mm; zero if not known.
+pub fn goes_on(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
+    let shown = &skin.memory.shown;
+    if !shown.is_of(skin.sites.len()) {
+        return Vec3::zeros();
+    }
+    let site = site as usize;
+    shown.field_change[site] * (setting.weight[site] * skin.sites.follow[site])
 }
 
 /// Sites of `zone` that would stray if they were held while what changed last goes on.
