@@ -8,12 +8,17 @@ import subprocess
 import sys
 import tempfile
 import threading
-from contextlib import suppress
+import time
+from contextlib import contextmanager, suppress
 
 TIMES_TRIED = 2
 """A case whose process dies is given to a fresh one once; then it counts as what killed it."""
 MOST_CASES = 200
 """A process is replaced after so many cases: what Blender keeps of files that were open does not pile up."""
+
+PROCESSORS = "THENAR_PROCESSORS"
+"""Variable of a worker process. As "one" it is to start with one processor, which Blender then counts for its threads;
+what the process finds in its place are the numbers of the processors, with commas, that it may take from then on."""
 
 
 class ChildDied(Exception):
@@ -24,7 +29,7 @@ class Child:
     """A worker process. `solve(task)` gives the answer to one task, in turn; `close()` ends it."""
 
     def __init__(self, command, environment):
-        self._command, self._environment = command, environment
+        self.start = self._command, self._environment = command, environment
         self._process = None
         self._solved = 0
 
@@ -58,14 +63,15 @@ class Child:
 
     def _start(self):
         self._complaints = tempfile.TemporaryFile()  # noqa: SIM115  (closed with the process)
-        self._process = subprocess.Popen(
-            self._command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._complaints,
-            text=True,
-            env={**os.environ, **self._environment},
-        )
+        with _narrowed({**os.environ, **self._environment}) as environment:
+            self._process = subprocess.Popen(
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=self._complaints,
+                text=True,
+                env=environment,
+            )
         self._answers, self._solved = queue.Queue(), 0
         threading.Thread(target=_hear, args=(self._process.stdout, self._answers), daemon=True).start()
 
@@ -86,7 +92,11 @@ def solve(children, start, task, limit_s):
     """
     told = ""
     for _ in range(TIMES_TRIED):
-        child = children.setdefault(threading.get_ident(), Child(*start))
+        child = children.get(threading.get_ident())
+        if child is None or child.start != start:  # of another batch
+            if child is not None:
+                child.close()
+            child = children[threading.get_ident()] = Child(*start)
         try:
             return child.solve(task, limit_s)
         except ChildDied as died:
@@ -96,13 +106,41 @@ def solve(children, start, task, limit_s):
 
 
 def solve_on_node(tasks, environment, limit_s):
-    """The answers to `tasks` on a worker of a Dask cluster, by `solve` and a process that stays with the worker."""
+    """Seconds and the answers to `tasks` on a worker of a Dask cluster, by a process that stays with the worker."""
     from distributed import get_worker
 
     command = shlex.split(os.environ.get("THENAR_WORKER", "")) or [sys.executable, "-m", "thenar_blender", "worker"]
     # This function comes anew with every task; the first one's stays, so that its errors are known to it.
     answer, children = get_worker().__dict__.setdefault("thenar_children", (solve, {}))
-    return [answer(children, (command, environment), task, limit_s) for task in tasks]
+    began = time.monotonic()
+    answers = [answer(children, (command, environment), task, limit_s) for task in tasks]
+    return time.monotonic() - began, answers
+
+
+@contextmanager
+def _narrowed(environment):
+    """Variables for a process that is started here, where this thread keeps one processor if they say so (on Linux)."""
+    one = environment.pop(PROCESSORS, "") == "one" and sys.platform == "linux"
+    if not one:
+        yield environment
+        return
+    allowed = sorted(os.sched_getaffinity(0))
+    with open("/proc/thread-self/stat") as told:
+        now_on = int(told.read().rpartition(")")[2].split()[36])
+    os.sched_setaffinity(0, {now_on})
+    try:
+        yield {**environment, PROCESSORS: ",".join(map(str, allowed))}
+    finally:
+        os.sched_setaffinity(0, allowed)
+
+
+def widen():
+    """Let every thread of this process, a worker, take the processors that `PROCESSORS` tells."""
+    allowed = [int(number) for number in os.environ.pop(PROCESSORS, "").split(",") if number]
+    if allowed:
+        for thread in os.listdir("/proc/self/task"):
+            with suppress(OSError):  # one that has just ended
+                os.sched_setaffinity(int(thread), allowed)
 
 
 def _hear(stream, answers):

@@ -10,15 +10,21 @@ from concurrent.futures import CancelledError
 
 from ..scene.checks import Refusal
 from . import child
-from .here import ONE_THREAD, SPAN_S
+from .here import SPAN_S, threads
 
 PATIENCE_S = 300.0
 """How long a scheduler may stay away before the batch gives up; a later run goes on from there."""
-MOST_AT_ONCE = 8
-"""Cases sent to a worker at once: what Dask takes for a task is then little beside a case of some hundredths of a
-second, and little is lost with a worker."""
-GROUPS_EACH = 8
-"""Such lists that each thread of a worker gets at least, so that all end together."""
+GROUP_S, LEAST_S = 1.0, 0.1
+"""Seconds of solving that are sent at once as a group, and the least at the end of a batch: what Dask takes for a task
+is then little beside it, little is lost with a worker, and all end together."""
+MOST_AT_ONCE = 100
+"""Cases in a group."""
+AHEAD = 2
+"""Groups under way for each thread of a worker: one that is solved, one that waits there."""
+SHARE = 4
+"""A thread never takes more at once than one such part of what would be left for it."""
+COUNTED_EVERY_S = 5.0
+"""How often the threads of the cluster are counted, s: workers come and go."""
 CALM_S = 2.0
 """Between attempts to connect, s."""
 
@@ -38,12 +44,13 @@ def answers(tasks, address):
         ) from None
     cloudpickle.register_pickle_by_value(child)
     left = {task["case"]["name"]: task for task in tasks}
+    environment = threads(tasks)
     seen = time.monotonic()
     while left:
         try:
             with distributed.Client(address, timeout=10, set_as_default=False, name="thenar batch") as client:
                 seen = time.monotonic()
-                for name, answer in _session(client, left):
+                for name, answer in _session(client, left, environment):
                     del left[name]
                     seen = time.monotonic()
                     yield name, answer
@@ -57,41 +64,68 @@ def answers(tasks, address):
             time.sleep(CALM_S)
 
 
-def _session(client, left):
+def _session(client, left, environment):
     """Answers until all are there or the connection breaks; a case that kills its workers is an error of its own."""
     import distributed
 
-    groups = _grouped(list(left.values()), sum(client.nthreads().values()))
-    futures = {_submitted(client, group): group for group in groups}
-    coming = distributed.as_completed(list(futures), loop=client.loop)
+    sender = _Sender(client, list(left.values()), environment)
+    coming = distributed.as_completed(sender.more(), loop=client.loop)
     for future in coming:
-        group = futures.pop(future)
+        group = sender.futures.pop(future)
         if future.status == "finished":
             try:
-                answered = future.result()
+                span_s, answered = future.result()
             except CancelledError:  # the connection broke while the answer was on its way
                 return
+            sender.case_s = span_s / len(group)
+            coming.update(sender.more())  # before the answers are written: nobody waits for that
             yield from zip((task["case"]["name"] for task in group), answered, strict=True)
-        elif future.status == "error" and len(group) > 1:
-            for task in group:  # which of them it was shows alone
-                alone = _submitted(client, [task])
-                futures[alone] = [task]
-                coming.add(alone)
-        elif future.status == "error" and "KilledWorker" in type(future.exception()).__name__:
+            continue
+        if future.status != "error":
+            return
+        if len(group) > 1:
+            coming.update([sender.send([task]) for task in group])  # which of them it was shows alone
+            continue
+        coming.update(sender.more())
+        if "KilledWorker" in type(future.exception()).__name__:
             yield group[0]["case"]["name"], {"error": "every worker that took this case died"}
-        elif future.status == "error":
+        else:
             why = " ".join(f"the worker failed: {future.exception()!r}".split())
             yield group[0]["case"]["name"], {"error": why}
-        else:
-            return
 
 
-def _grouped(tasks, threads):
-    """Lists of tasks that are sent at once: few where each worker has few."""
-    size = max(1, min(MOST_AT_ONCE, len(tasks) // (GROUPS_EACH * max(threads, 1))))
-    return [tasks[first : first + size] for first in range(0, len(tasks), size)]
+class _Sender:
+    """Sends `tasks` in order. `futures` are the groups under way, `case_s` the seconds a case of the last answered."""
+
+    def __init__(self, client, tasks, environment):
+        self._client, self._tasks, self._environment = client, tasks, environment
+        self._sent, self._threads, self._counted = 0, 1, float("-inf")
+        self.futures, self.case_s = {}, None
+
+    def more(self):
+        """Send groups until every thread has its `AHEAD`. Returns their futures."""
+        if time.monotonic() - self._counted > COUNTED_EVERY_S:
+            self._threads = max(1, sum(self._client.nthreads().values()))
+            self._counted = time.monotonic()
+        new = []
+        while self._sent < len(self._tasks) and len(self.futures) < AHEAD * self._threads:
+            size = _size(len(self._tasks) - self._sent, self._threads, self.case_s)
+            new.append(self.send(self._tasks[self._sent : self._sent + size]))
+            self._sent += size
+        return new
+
+    def send(self, group):
+        """Send these tasks as one. Returns the future of (seconds, answers)."""
+        digest = hashlib.blake2b(" ".join(task["hash"] for task in group).encode(), digest_size=16).hexdigest()
+        more = {"key": f"thenar-{digest}", "pure": True}
+        future = self._client.submit(child.solve_on_node, group, self._environment, SPAN_S, **more)
+        self.futures[future] = group
+        return future
 
 
-def _submitted(client, group):
-    digest = hashlib.blake2b(" ".join(task["hash"] for task in group).encode(), digest_size=16).hexdigest()
-    return client.submit(child.solve_on_node, group, ONE_THREAD, SPAN_S, key=f"thenar-{digest}", pure=True)
+def _size(left, threads, case_s):
+    """How many of `left` cases to send at once to one of `threads`. A case takes `case_s` seconds; `None`: not known."""
+    if case_s is None:
+        return 1
+    most, least = (max(1, min(MOST_AT_ONCE, int(span_s / max(case_s, 1e-6)))) for span_s in (GROUP_S, LEAST_S))
+    return min(left, max(least, min(most, left // (SHARE * threads))))

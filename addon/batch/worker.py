@@ -13,6 +13,7 @@ from .. import headless, native, workflow
 from .. import result as results
 from ..hand import build, fitting, grasp, pads, posing
 from ..scene.checks import Refusal
+from .child import widen
 from .jobs import check
 
 _FORM = 'give each on a line of its own, as {"case": {"blend": "FILE.blend"}, "stem": "FOLDER/NAME"}'
@@ -20,6 +21,7 @@ _FORM = 'give each on a line of its own, as {"case": {"blend": "FILE.blend"}, "s
 
 def serve():
     """Answer tasks until the input ends, one line each. What Blender prints goes to the standard error output."""
+    widen()
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     for number, line in enumerate(sys.stdin.buffer, 1):

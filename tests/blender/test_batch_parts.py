@@ -1,11 +1,12 @@
 """Parts of a batch alone: what a case's digest depends on, what counts as done, fresh processes, groups, stiffness."""
 
 import json
+import os
 import sys
 
 import pytest
 import stage
-from thenar_blender.batch import child, cluster, conductor, jobs, worker
+from thenar_blender.batch import child, cluster, conductor, here, jobs, worker
 
 
 @pytest.fixture
@@ -44,6 +45,48 @@ def test_a_process_is_replaced_after_so_many_cases(monkeypatch):
     assert numbers[0] == numbers[1] != numbers[2] == numbers[3] != numbers[4]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="processors are set on Linux")
+def test_a_process_starts_on_one_processor_where_it_is_to():
+    allowed = os.sched_getaffinity(0)
+    told = f"[len(os.sched_getaffinity(0)), os.environ.get({child.PROCESSORS!r})]"
+    command = [sys.executable, "-c", f"import os, json\nwhile input(): print(json.dumps({told}), flush=True)"]
+    for wish, count, told in (
+        ({child.PROCESSORS: "one"}, 1, ",".join(map(str, sorted(allowed)))),
+        ({}, len(allowed), None),
+    ):
+        process = child.Child(command, wish)
+        assert process.solve({}, 30.0) == [count, told]
+        process.close()
+    assert os.sched_getaffinity(0) == allowed
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="processors are set on Linux")
+def test_a_worker_takes_all_processors_again(monkeypatch):
+    allowed = os.sched_getaffinity(0)
+    monkeypatch.setenv(child.PROCESSORS, ",".join(map(str, allowed)))
+    os.sched_setaffinity(0, {min(allowed)})
+    child.widen()
+    assert os.sched_getaffinity(0) == allowed
+    assert child.PROCESSORS not in os.environ
+
+
+def test_a_process_of_other_variables_is_replaced():
+    tell = "import os, sys, json\nfor line in sys.stdin: print(json.dumps(os.environ['COLOUR']), flush=True)"
+    command, children = [sys.executable, "-c", tell], {}
+    try:
+        told = [child.solve(children, (command, {"COLOUR": name}), {}, 30.0) for name in ("red", "red", "blue")]
+    finally:
+        for process in children.values():
+            process.close()
+    assert told == ["red", "red", "blue"]
+
+
+def test_pictures_take_the_threads_of_blender():
+    plain, pictured = {"case": {"name": "a"}}, {"case": {"name": "b", "render": True}}
+    assert here.threads([plain]) == {**here.ONE_THREAD, child.PROCESSORS: "one"}
+    assert here.threads([plain, pictured]) == here.ONE_THREAD
+
+
 def test_stiffness_is_a_factor_on_both_moduli():
     hand, _ = stage.scene()
     material = hand.thenar.default_material
@@ -52,12 +95,18 @@ def test_stiffness_is_a_factor_on_both_moduli():
     assert (material.g0_kpa, material.g_lim_kpa) == pytest.approx([1.5 * value for value in before])
 
 
+def test_groups_are_of_a_second_and_small_at_the_end():
+    assert cluster._size(1000, 2, None) == 1, "nothing is known of the first"
+    assert cluster._size(1000, 2, 0.025) == 40
+    assert cluster._size(1000, 2, 1e-9) == cluster.MOST_AT_ONCE
+    assert cluster._size(1000, 2, 30.0) == 1
+    assert cluster._size(80, 2, 0.025) == 10
+    assert cluster._size(6, 2, 0.025) == 4
+    assert cluster._size(3, 2, 0.025) == 3
+
+
 def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
     distributed = pytest.importorskip("distributed")
-    assert {len(group) for group in cluster._grouped(list(range(1000)), 2)} == {cluster.MOST_AT_ONCE}
-    assert {len(group) for group in cluster._grouped(list(range(40)), 1)} == {5}
-    assert len(cluster._grouped(list(range(96)), 4)) == 4 * cluster.GROUPS_EACH
-    assert {len(group) for group in cluster._grouped(list(range(7)), 1)} == {1}
     asked = []
 
     def answer(children, start, task, limit_s):
@@ -70,7 +119,7 @@ def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
     here = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with distributed.LocalCluster(**here) as workers, distributed.Client(workers) as client:
         next(iter(workers.workers.values())).__dict__["thenar_children"] = (answer, {})
-        told = dict(cluster._session(client, left))
+        told = dict(cluster._session(client, left, {}))
     assert told.pop("case 13")["error"].startswith("the worker failed: ValueError('spilled coffee')")
     assert told == {name: {"summary": name} for name in left if name != "case 13"}
     assert asked.count("case 0") == 1, "groups without it are solved once"
