@@ -124,7 +124,7 @@ class _Sender:
 
 
 def _size(left, threads, case_s):
-    """How many of `left` cases to send at once to one of `threads`. A case takes `case_s` seconds; `None`: not known."""
+    """How many of `left` cases to send to one of `threads` at once. A case takes `case_s` seconds; None: unknown."""
     if case_s is None:
         return 1
     most, least = (max(1, min(MOST_AT_ONCE, int(span_s / max(case_s, 1e-6)))) for span_s in (GROUP_S, LEAST_S))

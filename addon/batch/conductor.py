@@ -12,6 +12,8 @@ from .jobs import case_hash, read_jobs, stem
 
 SAVED_EVERY_S = 10.0
 """How often the table is written while cases come in, s; the cases themselves are written at once."""
+SAVING_SHARE = 0.01
+"""Most of the time that this may take: a table of many cases is written less often."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ def _answer(cases, left, where, by):
     if not tasks:
         return
     coming = _by(tasks, by)
-    saved = time.monotonic()
+    next_save = time.monotonic() + SAVED_EVERY_S
     for name, answer in coming:
         case = by_name[name]
         if "summary" in answer:
@@ -75,9 +77,11 @@ def _answer(cases, left, where, by):
             export.replace_file(_json(case, out), lambda path, text=text: path.write_text(text, encoding="utf-8"))
         table[name] = rows.row(case, hashes[name], answer)
         print(f"{name}: {table[name]['status']} {table[name]['message']}".rstrip(), flush=True)
-        if time.monotonic() - saved > SAVED_EVERY_S:
+        began = time.monotonic()
+        if began > next_save:
             _save(out, cases, table, by)
-            saved = time.monotonic()
+            span_s = time.monotonic() - began
+            next_save = began + max(SAVED_EVERY_S, span_s / SAVING_SHARE)
 
 
 def _kept(case, out, wanted):

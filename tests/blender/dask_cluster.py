@@ -17,6 +17,10 @@ def environment():
     return {**os.environ, "PYTHONPATH": paths}
 
 
+AS_ADVISED = {"DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False"}
+"""Variables of scheduler and workers, as README.md tells to start them."""
+
+
 class Cluster:
     """A Dask scheduler and two workers, each a process of its own."""
 
@@ -44,7 +48,8 @@ class Cluster:
 
     def _dask(self, *arguments):
         command = [sys.executable, "-m", "distributed.cli.dask_" + arguments[0], *arguments[1:]]
-        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment())
+        own = {**environment(), **AS_ADVISED}
+        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=own)
 
     def _await_port(self, host, port):
         until = time.monotonic() + 60.0
