@@ -18,7 +18,7 @@ MOST_CASES = 200
 
 PROCESSORS = "THENAR_PROCESSORS"
 """Variable of a worker process. As "one" it is to start with one processor, which Blender then counts for its threads;
-what the process finds in its place are the numbers of the processors, with commas, that it may take from then on."""
+what the process finds in its place are the numbers of the processors, with commas, for `processors.Own`."""
 
 
 class ChildDied(Exception):
@@ -132,15 +132,6 @@ def _narrowed(environment):
         yield {**environment, PROCESSORS: ",".join(map(str, allowed))}
     finally:
         os.sched_setaffinity(0, allowed)
-
-
-def widen():
-    """Let every thread of this process, a worker, take the processors that `PROCESSORS` tells."""
-    allowed = [int(number) for number in os.environ.pop(PROCESSORS, "").split(",") if number]
-    if allowed:
-        for thread in os.listdir("/proc/self/task"):
-            with suppress(OSError):  # one that has just ended
-                os.sched_setaffinity(int(thread), allowed)
 
 
 def _hear(stream, answers):

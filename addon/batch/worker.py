@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+import time
 import traceback
 from argparse import Namespace
 from pathlib import Path
@@ -13,20 +14,22 @@ from .. import headless, native, workflow
 from .. import result as results
 from ..hand import build, fitting, grasp, pads, posing
 from ..scene.checks import Refusal
-from .child import widen
 from .jobs import check
+from .processors import Own
 
 _FORM = 'give each on a line of its own, as {"case": {"blend": "FILE.blend"}, "stem": "FOLDER/NAME"}'
 
 
 def serve():
     """Answer tasks until the input ends, one line each. What Blender prints goes to the standard error output."""
-    widen()
+    own = Own()
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     for number, line in enumerate(sys.stdin.buffer, 1):
+        began, used = time.monotonic(), time.process_time()
         answers.write(json.dumps(_answer(line, number)) + "\n")
         answers.flush()
+        own.took(time.monotonic() - began, time.process_time() - used)
 
 
 def _answer(line, number):

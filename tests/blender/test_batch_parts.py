@@ -6,7 +6,7 @@ import sys
 
 import pytest
 import stage
-from thenar_blender.batch import child, cluster, conductor, here, jobs, worker
+from thenar_blender.batch import child, cluster, conductor, here, jobs, processors, worker
 
 
 @pytest.fixture
@@ -61,12 +61,25 @@ def test_a_process_starts_on_one_processor_where_it_is_to():
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processors are set on Linux")
-def test_a_worker_takes_all_processors_again(monkeypatch):
-    allowed = os.sched_getaffinity(0)
-    monkeypatch.setenv(child.PROCESSORS, ",".join(map(str, allowed)))
-    os.sched_setaffinity(0, {min(allowed)})
-    child.widen()
-    assert os.sched_getaffinity(0) == allowed
+def test_workers_keep_a_processor_each_and_leave_one_that_is_shared(monkeypatch):
+    allowed, owners, kept = os.sched_getaffinity(0), [], []
+    try:
+        for _ in range(len(allowed) + 1):
+            monkeypatch.setenv(child.PROCESSORS, ",".join(map(str, allowed)))
+            owners.append(processors.Own())
+            kept.append(os.sched_getaffinity(0))
+        owners[0].took(10.0, 9.0)
+        owners[0].took(1.9, 0.1)
+        processors._allow({min(allowed)})
+        assert os.sched_getaffinity(0) == {min(allowed)}, "not yet judged"
+        owners[0].took(1.0, 0.1)
+        assert os.sched_getaffinity(0) == allowed
+    finally:
+        for owner in owners:
+            owner.leave()
+    assert set.union(*kept[:-1]) == allowed
+    assert all(len(each) == 1 for each in kept[:-1])
+    assert kept[-1] == allowed, "none was left for the last"
     assert child.PROCESSORS not in os.environ
 
 
