@@ -72,7 +72,8 @@ pub enum MeshError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     positions: Vec<Vec3>,
-    triangles: Vec<[u32; 3]>,
+    /// Shared by all postures.
+    triangles: Arc<[[u32; 3]]>,
     /// Triangles that repeat an earlier one or name a vertex twice; shared by all postures.
     is_repeat: Arc<[bool]>,
 }
@@ -102,7 +103,7 @@ impl Mesh {
         let is_repeat = repeats(vertices, &triangles);
         Ok(Mesh {
             positions,
-            triangles,
+            triangles: triangles.into(),
             is_repeat,
         })
     }
@@ -133,7 +134,7 @@ impl Mesh {
         check_positions(&positions)?;
         Ok(Mesh {
             positions,
-            triangles: self.triangles.clone(),
+            triangles: Arc::clone(&self.triangles),
             is_repeat: Arc::clone(&self.is_repeat),
         })
     }
@@ -174,7 +175,7 @@ impl Mesh {
         );
         let is_repeat = repeats(self.positions.len(), &triangles);
         Mesh {
-            triangles,
+            triangles: triangles.into(),
             is_repeat,
             ..self
         }

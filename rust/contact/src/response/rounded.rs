@@ -62,22 +62,30 @@ impl Rounded {
         (response, sites): (&Response, &Sites),
         loads: &[Load],
     ) -> Vec<Vec3> {
-        let mut field = vec![Vec3::zeros(); sites.len()];
+        let mut field = [(); 3].map(|()| vec![0.0f32; sites.len()]);
         let patch = |load: &Load| sites.patch[load.site as usize];
+        let range = |patch: u32| sites.patch_range[patch as usize];
         // Summed along whole rows, so that loops are long, and then put where the sites of the row are.
         let mut sums: [Vec<f32>; 3] = Default::default();
         for loads in loads.chunk_by(|a, b| patch(a) == patch(b)) {
             self.sum_rows(loads, &mut sums);
-            for &(other, offset) in response.near(patch(&loads[0])) {
-                let (first, last) = sites.patch_range[other as usize];
-                let there = &mut field[first as usize..last as usize];
-                let along = offset as usize..offset as usize + there.len();
-                let [x, y, z] = sums.each_ref().map(|axis| &axis[along.clone()]);
-                for (((field, x), y), z) in there.iter_mut().zip(x).zip(y).zip(z) {
-                    *field += Vec3::new(f64::from(*x), f64::from(*y), f64::from(*z));
+            let near = response.near(patch(&loads[0]));
+            // Patches that follow one another are one piece.
+            for piece in near.chunk_by(|a, b| range(a.0).1 == range(b.0).0) {
+                let (first, last) = (piece[0], piece[piece.len() - 1]);
+                let there = range(first.0).0 as usize..range(last.0).1 as usize;
+                let along = first.1 as usize..first.1 as usize + there.len();
+                for (field, sums) in field.iter_mut().zip(&sums) {
+                    let pairs = field[there.clone()].iter_mut().zip(&sums[along.clone()]);
+                    pairs.for_each(|(field, sum)| *field += sum);
                 }
             }
         }
+        let [x, y, z] = field;
+        let all = x.into_iter().zip(y).zip(z);
+        let mut field: Vec<Vec3> = all
+            .map(|((x, y), z)| Vec3::new(f64::from(x), f64::from(y), f64::from(z)))
+            .collect();
         for load in loads {
             field[load.site as usize] += load.load * f64::from(self.row(load.site).own);
         }
