@@ -5,7 +5,7 @@ use thenar_surface::Vec3;
 use crate::contact_state::{Beyond, State};
 use crate::linearize::Setting;
 use crate::response::assembly::compliance;
-use crate::response::near::NearAlong;
+use crate::response::near_along::NearAlong;
 use crate::skin::Skin;
 use crate::solve::{Accuracy, Along, Axes, Compliance, Part, solve_contact};
 use crate::{ContactError, Control, Model};

@@ -6,8 +6,12 @@ pub mod entries;
 pub mod grid;
 pub mod kernel;
 pub mod near;
+pub mod near_along;
 pub mod rounded;
 pub mod stiff_skin;
 pub mod rows;
 pub mod sheet;
 pub mod skin_metric;
+
+#[cfg(test)]
+mod test_sheet;

@@ -12,7 +12,7 @@ use super::rounded::{Rounded, rounded};
 use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::operator::Run;
-use crate::solve::{Axes, Compliance, Kept, Symmetric, total};
+use crate::solve::{Axes, total};
 
 /// Rows are filled up with zeros to a multiple of this: products need no remainder.
 const LANES: usize = 32;
@@ -42,8 +42,8 @@ pub struct Near {
     /// Entries, row by row; zero where a site meets itself.
     values: Vec<i16>,
     /// What one of an entry is worth, by row, and the entry where the site meets itself, 1/mm.
-    units: Vec<f64>,
-    own: Vec<f64>,
+    pub(super) units: Vec<f64>,
+    pub(super) own: Vec<f64>,
 }
 
 /// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
@@ -168,7 +168,7 @@ impl Near {
     }
 
     /// A matrix of this pattern, with `entries`, times `x`; the same bits for any number of threads.
-    fn multiply(&self, entries: &[i16], x: &[f32], out: &mut [f64]) {
+    pub(super) fn multiply(&self, entries: &[i16], x: &[f32], out: &mut [f64]) {
         self.by_home(entries, out, |entries, columns, out| {
             multiply_block(entries, &columns.of(x), out);
         });
@@ -277,134 +277,15 @@ fn field_block(entries: &[i16], [x, y, z]: [Vec<f32>; 3], out: &mut [Vec3]) {
     }
 }
 
-/// The near compliance along directions, `A_ij = w_i w_j K_ij t_i.t_j`, mm/N: entries with the cosines in them, weights outside.
-pub struct NearAlong<'a> {
-    near: &'a Near,
-    entries: &'a [i16],
-    weight: &'a [f64],
-    diagonal: Vec<f64>,
-}
-
-impl<'a> NearAlong<'a> {
-    /// Of `near`, with the `entries` that [`Near::turn`] gave, and `weight` by unknown.
-    pub fn new(near: &'a Near, entries: &'a [i16], weight: &'a [f64]) -> Self {
-        let diagonal = weight.iter().zip(&near.own).map(|(w, own)| own * w * w);
-        NearAlong {
-            near,
-            entries,
-            weight,
-            diagonal: diagonal.collect(),
-        }
-    }
-}
-
-impl Symmetric for NearAlong<'_> {
-    fn diagonal(&self) -> &[f64] {
-        &self.diagonal
-    }
-
-    fn times(&self, x: &[f64], out: &mut [f64]) {
-        let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
-        let weighted: Vec<f32> = x.iter().zip(self.weight).map(weighted).collect();
-        self.near.multiply(self.entries, &weighted, out);
-        for (out, w) in out.iter_mut().zip(self.weight) {
-            *out *= w;
-        }
-    }
-}
-
-impl Compliance for NearAlong<'_> {
-    fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
-        let mut all = vec![0.0; x.len()];
-        self.times(x, &mut all);
-        for (&i, out) in rows.iter().zip(out) {
-            *out = all[i as usize];
-        }
-    }
-
-    /// Gershgorin's.
-    fn norm_bound(&self) -> f64 {
-        let mut sums = vec![0.0; self.weight.len()];
-        let entries: Vec<i16> = self.entries.iter().map(|entry| entry.abs()).collect();
-        let weight: Vec<f32> = self.weight.iter().map(|w| *w as f32).collect();
-        self.near.multiply(&entries, &weight, &mut sums);
-        let rows = sums.iter().zip(self.weight).map(|(sum, w)| sum * w);
-        rows.fold(f64::MIN_POSITIVE, f64::max)
-    }
-
-    fn kept(&self, _set: &[u32], _is_rough: bool) -> Kept<'_> {
-        let all = (0..self.weight.len() as u32).collect();
-        Kept::of(all, Box::new(self))
-    }
-
-    fn is_narrow(&self, _is_rough: bool) -> bool {
-        false
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::response::assembly::coupling;
-    use crate::skin::Skin;
+    use crate::response::test_sheet::{loads, most_off, near, sheet};
     use crate::solve::operator::Rows;
-    use crate::solve::{Along, Part};
-    use crate::{Control, Material, Model, SkinInput};
-    use thenar_surface::Mesh;
-
-    /// A bent sheet of 28 by 28 vertices with its rows made, and a zone of two thirds of its sites.
-    fn sheet() -> (Skin, Vec<u32>) {
-        let side = 28;
-        let place = |k: u32| {
-            let (x, y) = (1.3 * f64::from(k % side), 1.4 * f64::from(k / side));
-            Vec3::new(x, y, 0.01 * (x * x + y * x))
-        };
-        let corners = |k: u32| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]];
-        let cells = (0..side * (side - 1)).filter(|k| k % side != side - 1);
-        let mesh = Mesh::new(
-            (0..side * side).map(place).collect(),
-            cells.flat_map(corners).collect(),
-        );
-        let input = SkinInput {
-            mesh: mesh.unwrap(),
-            regions: Vec::new(),
-            materials: vec![Material::finger_layer()],
-            model: Model::Layer,
-        };
-        let control = Control::none();
-        let mut skin = Skin::prepare(input, &control).unwrap();
-        let zone = (0..skin.sites.len() as u32).filter(|site| site % 3 != 1);
-        let zone: Vec<u32> = zone.collect();
-        skin.make_rows(&zone, &control).unwrap();
-        let ground = (&skin.response, &skin.sites);
-        skin.memory.rounded.make(zone.iter().copied(), ground);
-        (skin, zone)
-    }
-
-    fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
-        let mut near = Near::default();
-        near.renew(
-            zone,
-            &skin.memory.rounded,
-            (&skin.response, &skin.sites),
-            range,
-        );
-        near
-    }
-
-    /// How far a product with `x` may be off: three and a half times the deviation that rounding every entry makes.
-    fn most_off(near: &Near, x: &[f64]) -> f64 {
-        let unit = near.units.iter().fold(0.0, |m, u| f64::max(m, *u));
-        unit * x.iter().map(|x| x * x).sum::<f64>().sqrt()
-    }
-
-    fn loads(count: usize) -> Vec<Vec3> {
-        let load = |k: usize| Vec3::new((k as f64).sin(), (0.7 * k as f64).cos(), 1.0);
-        (0..count).map(load).collect()
-    }
 
     #[test]
-    fn without_a_range_products_are_those_of_the_whole_coupling() {
+    fn without_a_range_fields_are_those_of_the_whole_coupling() {
         let (skin, zone) = sheet();
         let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
         let mut whole = Rows::new();
@@ -419,33 +300,6 @@ mod tests {
                 let off = (ours[axis] - wanted).abs();
                 assert!(off < most, "{} {wanted}", ours[axis]);
             }
-        }
-        let directions: Vec<Vec3> = loads.iter().map(Vec3::normalize).collect();
-        let weight: Vec<f64> = (0..zone.len())
-            .map(|k| 1.0 + 0.1 * (k % 7) as f64)
-            .collect();
-        let (axes, part, likely) = (
-            Axes::new(&directions),
-            Part::default(),
-            vec![true; zone.len()],
-        );
-        let mut entries = Vec::new();
-        near.turn(&axes, &mut entries);
-        let ours = NearAlong::new(&near, &entries, &weight);
-        let theirs = Along::new((&whole, &axes), (&weight, &likely), &part);
-        let x: Vec<f64> = (0..zone.len()).map(|k| (0.3 * k as f64).cos()).collect();
-        let mut product = vec![0.0; zone.len()];
-        ours.times(&x, &mut product);
-        theirs.times(&x, &mut wanted);
-        // Entries are rounded once more when they are turned.
-        let most = 2.0 * 1.6 * 1.6 * most_off(&near, &x);
-        for (ours, wanted) in product.iter().zip(&wanted) {
-            assert!((ours - wanted).abs() < most, "{ours} {wanted}");
-        }
-        let largest = wanted.iter().fold(0.0, |m, x| f64::max(m, x.abs()));
-        assert!(most < 5e-3 * largest, "{most} of {largest}");
-        for (ours, wanted) in ours.diagonal().iter().zip(theirs.diagonal()) {
-            assert!((ours / wanted - 1.0).abs() < 1e-6, "{ours} {wanted}");
         }
     }
 

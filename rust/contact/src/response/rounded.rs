@@ -159,9 +159,7 @@ pub fn rounded(value: f32) -> i16 {
 mod tests {
     use super::*;
     use crate::response::assembly::displacements;
-    use crate::skin::Skin;
-    use crate::{Control, Material, Model, SkinInput};
-    use thenar_surface::Mesh;
+    use crate::response::test_sheet::sheet;
 
     #[test]
     fn numbers_are_rounded_to_the_nearest() {
@@ -177,24 +175,7 @@ mod tests {
 
     #[test]
     fn fields_are_those_of_the_rows_but_for_the_rounding_of_entries() {
-        let side = 30;
-        let place = |k: u32| Vec3::new(1.3 * f64::from(k % side), 1.4 * f64::from(k / side), 0.0);
-        let corners = |k: u32| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]];
-        let cells = (0..side * (side - 1)).filter(|k| k % side != side - 1);
-        let mesh = Mesh::new(
-            (0..side * side).map(place).collect(),
-            cells.flat_map(corners).collect(),
-        );
-        let input = SkinInput {
-            mesh: mesh.unwrap(),
-            regions: Vec::new(),
-            materials: vec![Material::finger_layer()],
-            model: Model::Layer,
-        };
-        let control = Control::none();
-        let mut skin = Skin::prepare(input, &control).unwrap();
-        let pressed: Vec<u32> = (0..skin.sites.len() as u32).filter(|s| s % 7 < 3).collect();
-        skin.make_rows(&pressed, &control).unwrap();
+        let (skin, pressed) = sheet();
         let ground = (&skin.response, &skin.sites);
         let mut rows = Rounded::default();
         rows.make(pressed.iter().copied(), ground);

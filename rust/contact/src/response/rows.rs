@@ -144,11 +144,8 @@ impl Response {
 
     /// Makes the rows of `wanted` that are missing.
     pub fn make_rows(&mut self, wanted: &[u32], sites: &Sites) {
-        let missing: Vec<u32> = wanted
-            .iter()
-            .copied()
-            .filter(|&j| self.rows[j as usize].is_none())
-            .collect();
+        let is_missing = |j: &u32| self.rows[*j as usize].is_none();
+        let missing: Vec<u32> = wanted.iter().copied().filter(is_missing).collect();
         if missing.is_empty() {
             return;
         }
