@@ -158,8 +158,8 @@ pub fn lifted_sites(
 ) -> (f64, Vec<u32>) {
     let mut near = Vec::new();
     for (site, u) in field.iter().enumerate() {
-        let gap = &setting.detection.gaps[vertex(skin, site as u32)];
-        let can_reach = gap.as_ref().is_some_and(|g| g.distance < u.norm());
+        let distance = setting.detection.distances[vertex(skin, site as u32)];
+        let can_reach = distance < 0.0 || distance * distance < u.norm_squared();
         if can_reach && skin.sites.is_skin(site) && zone.binary_search(&(site as u32)).is_err() {
             near.push(site as u32);
         }

@@ -149,13 +149,14 @@ pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> 
         return zone;
     }
     let is_carried_in = |site: &u32| {
-        let gap = &setting.detection.gaps[vertex(skin, *site)];
-        let is_near = |gap: &Gap| {
-            let u = ahead(skin, setting, *site);
-            gap.distance < u.norm() && gap.distance + gap.normal.dot(&u) < CLEARANCE
-        };
-        skin.sites.is_skin(*site as usize)
-            && gap.as_ref().is_some_and(is_near)
+        let (u, vertex) = (ahead(skin, setting, *site), vertex(skin, *site));
+        let distance = setting.detection.distances[vertex];
+        let comes_near = |gap: &Gap| distance + gap.normal.dot(&u) < CLEARANCE;
+        (distance < 0.0 || distance * distance < u.norm_squared())
+            && setting.detection.gaps[vertex]
+                .as_ref()
+                .is_some_and(comes_near)
+            && skin.sites.is_skin(*site as usize)
             && zone.binary_search(site).is_err()
     };
     let carried_in = (0..skin.sites.len() as u32).filter(is_carried_in);

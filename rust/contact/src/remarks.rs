@@ -89,12 +89,10 @@ fn size(posed: &Mesh) -> Option<String> {
 /// Nails and the back of the hand do not yield: say so if they are in the product.
 fn bare(skin: &Skin, pressed: &Pressed) -> Option<String> {
     let mut deepest = (0.0, 0);
-    for (&source, gap) in skin.welded.source.iter().zip(&pressed.detection.gaps) {
-        if skin.regions[source as usize] >= 0 {
-            continue;
-        }
-        let depth = gap.as_ref().map_or(0.0, |g| -g.distance);
-        if depth > deepest.0 {
+    let distances = &pressed.detection.distances;
+    for (&source, distance) in skin.welded.source.iter().zip(distances) {
+        let depth = -distance;
+        if depth > deepest.0 && skin.regions[source as usize] < 0 {
             deepest = (depth, source);
         }
     }

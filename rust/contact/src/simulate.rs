@@ -324,7 +324,8 @@ impl Skin {
         let zone = candidates(self, detection);
         let last = &self.memory.zone;
         let is_warm = !self.memory.trail.last.force.is_empty();
-        let is_known = |&s: &u32| detection.gaps[self.sites.vertex[s as usize] as usize].is_some();
+        let distance = |s: u32| detection.distances[self.sites.vertex[s as usize] as usize];
+        let is_known = |&s: &u32| distance(s) < f64::INFINITY;
         let serves = is_warm
             && last.len() <= zone.len() + zone.len() / 4
             && zone.iter().all(|site| last.binary_search(site).is_ok())

@@ -165,12 +165,7 @@ impl Fields {
             .zip(&skin.rest_area)
             .map(|(now, rest)| now.max(LEAST_AREA_SHARE * rest))
             .collect();
-        let gap: Vec<f64> = pressed
-            .detection
-            .gaps
-            .iter()
-            .map(|g| g.as_ref().map_or(f64::INFINITY, |g| g.distance))
-            .collect();
+        let gap = pressed.detection.distances.clone();
         let (mut force, mut pressure, mut normal) =
             (vec![0.0; n], vec![0.0; n], vec![Vec3::zeros(); n]);
         let mut slack = gap.clone();

@@ -32,6 +32,8 @@ pub struct Detection {
     pub areas: Vec<f64>,
     /// Signed distance and closest point, by welded vertex.
     pub gaps: Vec<Option<Gap>>,
+    /// The distances alone, infinite beyond the reach of the query: most that ask need no more, and read a tenth.
+    pub distances: Vec<f64>,
     /// Largest penetration, by region, mm.
     pub max_penetration: Vec<f64>,
 }
@@ -40,9 +42,9 @@ impl Detection {
     /// Takes over the penetrations of a moved posture where they are larger.
     pub fn deepen(&mut self, skin: &Skin) {
         for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-            if let (true, Some(gap)) = (skin.sites.is_skin(site), &self.gaps[vertex as usize]) {
+            if skin.sites.is_skin(site) {
                 let most = &mut self.max_penetration[skin.sites.region[site] as usize];
-                *most = most.max(-gap.distance);
+                *most = most.max(-self.distances[vertex as usize]);
             }
         }
     }
@@ -78,38 +80,45 @@ pub fn detect(
     let Shape { normals, areas } = seen.shape(posed);
     let facing = (&positions[..], &normals[..]);
     let mut gaps = product.gaps_after(&mut seen.readings, facing, limits());
+    let mut distances = distances_of(&gaps);
     // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
-    for (gap, position) in gaps.iter_mut().zip(&positions) {
-        if gap.as_ref().is_some_and(|g| -g.distance > MOST_DEPTH) {
-            *gap = product.gap(*position, None, limits());
+    for (vertex, distance) in distances.iter_mut().enumerate() {
+        if -*distance > MOST_DEPTH {
+            gaps[vertex] = product.gap(positions[vertex], None, limits());
+            *distance = gaps[vertex].map_or(f64::INFINITY, |gap| gap.distance);
         }
     }
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let (region, Some(gap)) = (skin.sites.region[site], &gaps[vertex as usize]) else {
-            continue;
-        };
+        let (region, depth) = (skin.sites.region[site], -distances[vertex as usize]);
         if region < 0 {
             continue;
         }
-        if -gap.distance > MOST_DEPTH {
+        if depth > MOST_DEPTH {
             let vertex = skin.welded.source[vertex as usize] as usize;
             return Err(ContactError::Swallowed {
                 vertex,
-                depth_mm: -gap.distance,
+                depth_mm: depth,
                 limit_mm: MOST_DEPTH,
             });
         }
         let most = &mut max_penetration[region as usize];
-        *most = most.max(-gap.distance);
+        *most = most.max(depth);
     }
     Ok(Detection {
         positions,
         normals,
         areas,
         gaps,
+        distances,
         max_penetration,
     })
+}
+
+/// The distances of gaps; infinite where there is none.
+pub fn distances_of(gaps: &[Option<Gap>]) -> Vec<f64> {
+    let distance = |gap: &Option<Gap>| gap.as_ref().map_or(f64::INFINITY, |gap| gap.distance);
+    gaps.iter().map(distance).collect()
 }
 
 /// Sites that may touch: skin that penetrates or may be lifted into the product, ascending.
@@ -121,7 +130,8 @@ pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
 /// more, for what was lifted into it is likely to be again.
 pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
     let lasting = within(skin, detection, WARM_MARGIN);
-    let is_known = |s: &&u32| detection.gaps[skin.sites.vertex[**s as usize] as usize].is_some();
+    let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
+    let is_known = |s: &&u32| distance(**s) < f64::INFINITY;
     let mut both = lasting.clone();
     both.extend(last.iter().filter(is_known));
     both.sort_unstable();
@@ -140,8 +150,8 @@ fn within(skin: &Skin, detection: &Detection, more: f64) -> Vec<u32> {
     };
     let may_touch = |site: &u32| {
         let site = *site as usize;
-        let gap = &detection.gaps[skin.sites.vertex[site] as usize];
-        skin.sites.is_skin(site) && gap.as_ref().is_some_and(|g| g.distance < margin)
+        let distance = detection.distances[skin.sites.vertex[site] as usize];
+        distance < margin && skin.sites.is_skin(site)
     };
     if detection.deepest() <= 0.0 {
         return Vec::new();
@@ -158,8 +168,10 @@ pub fn pressed_thickness(skin: &Skin, detection: &Detection) -> Vec<f64> {
     }
     let mut deepest = vec![0.0; thickness.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let (region, gap) = (skin.sites.region[site], &detection.gaps[vertex as usize]);
-        let depth = gap.as_ref().map_or(0.0, |g| -g.distance);
+        let (region, depth) = (
+            skin.sites.region[site],
+            -detection.distances[vertex as usize],
+        );
         if region >= 0 && depth > deepest[region as usize] {
             deepest[region as usize] = depth;
             thickness[region as usize] = skin.tissue.thickness(site, region as usize);

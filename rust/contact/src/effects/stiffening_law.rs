@@ -137,8 +137,8 @@ fn growth(law: &ActiveEffect, x: f64) -> f64 {
 fn strains(skin: &Skin, detection: &Detection) -> Vec<f64> {
     let mut volume = vec![0.0; skin.tissue.materials.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let (region, gap) = (skin.sites.region[site], &detection.gaps[vertex as usize]);
-        let depth = gap.as_ref().map_or(0.0, |g| (-g.distance).max(0.0));
+        let region = skin.sites.region[site];
+        let depth = (-detection.distances[vertex as usize]).max(0.0);
         if region >= 0 {
             volume[region as usize] += depth * skin.sites.area[site];
         }

@@ -6,7 +6,7 @@ use super::state::Recall;
 use crate::linearize::Solved;
 use crate::response::assembly::Load;
 use crate::skin::Skin;
-use crate::zone::{Detection, limits};
+use crate::zone::{Detection, distances_of, limits};
 use crate::{ContactError, Control};
 
 /// Skin nearer to the product than this, after it was moved, is measured anew, mm; farther skin keeps a first-order gap.
@@ -77,6 +77,7 @@ pub fn moved(
         positions,
         normals: truth.normals.clone(),
         areas: truth.areas.clone(),
+        distances: distances_of(&gaps),
         gaps,
         max_penetration: truth.max_penetration.clone(),
     };
