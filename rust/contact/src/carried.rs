@@ -84,13 +84,14 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     let mut left = vec![Vec3::zeros(); sites];
     loads.iter().for_each(|l| left[l.site as usize] = l.load);
     let mut changes = Vec::new();
+    let least = WAITING * largest;
     for (site, (now, before)) in left.iter().zip(&mut shown.load).enumerate() {
-        if (now - *before).norm() > WAITING * largest || (largest == 0.0 && now != before) {
-            changes.push(Load {
-                site: site as u32,
-                load: now - *before,
-            });
-            shown.load_change[site] += now - *before;
+        let load = now - *before;
+        if load.norm_squared() > least * least {
+            let change = &mut shown.load_change[site];
+            *change += load;
+            let site = site as u32;
+            changes.push(Load { site, load });
             *before = *now;
         }
     }

@@ -149,8 +149,12 @@ pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> 
         return zone;
     }
     let is_carried_in = |site: &u32| {
-        let (u, vertex) = (ahead(skin, setting, *site), vertex(skin, *site));
+        let vertex = vertex(skin, *site);
         let distance = setting.detection.distances[vertex];
+        if distance.is_infinite() {
+            return false;
+        }
+        let u = ahead(skin, setting, *site);
         let comes_near = |gap: &Gap| distance + gap.normal.dot(&u) < CLEARANCE;
         (distance < 0.0 || distance * distance < u.norm_squared())
             && setting.detection.gaps[vertex]

@@ -137,9 +137,8 @@ impl Near {
         let load = [0, 1, 2].map(|axis| loads.iter().map(|load| load[axis] as f32).collect());
         let load: [Vec<f32>; 3] = load;
         let mut field = vec![Vec3::zeros(); loads.len()];
-        self.by_home(&self.values, &mut field, |entries, columns, field| {
-            field_block(entries, load.each_ref().map(|x| columns.of(x)), field);
-        });
+        let load = load.each_ref().map(|axis| &axis[..]);
+        self.by_home(&self.values, load, &mut field, field_block);
         let rows = self.units.iter().zip(&self.own);
         for ((sum, (unit, own)), load) in field.iter_mut().zip(rows).zip(loads) {
             *sum = *sum * *unit + load * *own;
@@ -151,9 +150,9 @@ impl Near {
     pub fn turn(&self, axes: &Axes, out: &mut Vec<i16>) {
         out.resize(self.values.len(), 0);
         let all: [Vec<f32>; 3] = axes.narrow();
-        let (mut row, mut at) = (0, 0);
+        let (mut row, mut at, mut there) = (0, 0, [(); 3].map(|()| Vec::new()));
         for (home, columns) in self.homes() {
-            let there = all.each_ref().map(|axis| columns.of(axis));
+            columns.gather(all.each_ref().map(|axis| &axis[..]), &mut there);
             for _ in 0..home.rows {
                 let own = all.each_ref().map(|axis| axis[row]);
                 let entries = at..at + home.width as usize;
@@ -169,8 +168,8 @@ impl Near {
 
     /// A matrix of this pattern, with `entries`, times `x`; the same bits for any number of threads.
     pub(super) fn multiply(&self, entries: &[i16], x: &[f32], out: &mut [f64]) {
-        self.by_home(entries, out, |entries, columns, out| {
-            multiply_block(entries, &columns.of(x), out);
+        self.by_home(entries, [x], out, |entries, [x], out| {
+            multiply_block(entries, x, out);
         });
         let rows = self.units.iter().zip(&self.own);
         for ((sum, (unit, own)), x) in out.iter_mut().zip(rows).zip(x) {
@@ -189,12 +188,13 @@ impl Near {
         })
     }
 
-    /// Calls `block` with the entries, columns and places in `out` of every home.
-    fn by_home<T: Send>(
+    /// Calls `block` with the entries of every home, the values of `x` at its columns and its places in `out`.
+    fn by_home<T: Send, const N: usize>(
         &self,
         mut entries: &[i16],
+        x: [&[f32]; N],
         mut out: &mut [T],
-        block: impl Fn(&[i16], Columns<'_>, &mut [T]) + Sync,
+        block: impl Fn(&[i16], [&[f32]; N], &mut [T]) + Sync,
     ) {
         let mut blocks = Vec::with_capacity(self.homes.len());
         for (home, columns) in self.homes() {
@@ -203,11 +203,16 @@ impl Near {
             (written, out) = out.split_at_mut(home.rows as usize);
             blocks.push((own, columns, written));
         }
-        let block = |(own, columns, written)| block(own, columns, written);
+        let block = |there: &mut [Vec<f32>; N], (own, columns, written): (_, Columns<'_>, _)| {
+            columns.gather(x, there);
+            block(own, there.each_ref().map(|x| &x[..]), written);
+        };
+        let none = || [(); N].map(|()| Vec::new());
         if self.values.len() < PARALLEL_ENTRIES {
-            blocks.into_iter().for_each(block);
+            let mut there = none();
+            blocks.into_iter().for_each(|home| block(&mut there, home));
         } else {
-            blocks.into_par_iter().for_each(block);
+            blocks.into_par_iter().for_each_init(none, block);
         }
     }
 }
@@ -220,14 +225,15 @@ struct Columns<'a> {
 }
 
 impl Columns<'_> {
-    /// The values of `all` there, filled up with zeros.
-    fn of(&self, all: &[f32]) -> Vec<f32> {
-        let mut there = Vec::with_capacity(self.width);
-        for run in self.runs {
-            there.extend_from_slice(&all[run.start as usize..][..run.len as usize]);
+    /// Writes the values of `all` there to `there`, filled up with zeros.
+    fn gather<const N: usize>(&self, all: [&[f32]; N], there: &mut [Vec<f32>; N]) {
+        for (all, there) in all.into_iter().zip(there) {
+            there.clear();
+            for run in self.runs {
+                there.extend_from_slice(&all[run.start as usize..][..run.len as usize]);
+            }
+            there.resize(self.width, 0.0);
         }
-        there.resize(self.width, 0.0);
-        there
     }
 }
 
@@ -258,7 +264,7 @@ fn multiply_block(entries: &[i16], x: &[f32], out: &mut [f64]) {
 
 /// [`multiply_block`] of the three axes of a vector at once.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn field_block(entries: &[i16], [x, y, z]: [Vec<f32>; 3], out: &mut [Vec3]) {
+fn field_block(entries: &[i16], [x, y, z]: [&[f32]; 3], out: &mut [Vec3]) {
     let (x, _) = x.as_chunks::<LANES>();
     let (y, _) = y.as_chunks::<LANES>();
     let (z, _) = z.as_chunks::<LANES>();
