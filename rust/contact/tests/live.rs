@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use scenes::{lattice, material, paraboloid, press_posed};
 use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start};
-use thenar_surface::{Mesh, Product, Vec3};
+use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
 /// Largest difference of a nodal force from a full press, over the largest force.
 const FORCE: f64 = 0.02;
@@ -16,6 +16,8 @@ const TOTAL: f64 = 0.005;
 /// Largest difference of where skin in contact lies, along the product's normal, mm. Across it the written skin of a vertex
 /// that just leaves or joins the contact leaps all the same.
 const PLACE: f64 = 0.03;
+/// Largest distance between the written surface and the product where they press, and largest penetration elsewhere, mm.
+const FIT: f64 = 0.02;
 
 fn skin(mesh: &Mesh) -> Skin {
     let input = SkinInput {
@@ -70,6 +72,26 @@ fn assert_same(live: &Contact, full: &Contact, frame: usize) {
     assert!(off < PLACE, "{frame}: {off} mm");
 }
 
+/// The written surface, measured against the product anew.
+fn assert_fits(live: &Contact, product: &Product, posed: &[Vec3], frame: usize) {
+    let limits = GapLimits {
+        cut_off_mm: 2.0,
+        max_depth_mm: 2.0,
+    };
+    let written = posed.iter().zip(&live.displacement).zip(&live.nodal_force);
+    for ((place, moved), force) in written {
+        let Some(gap) = product.gap(place + moved, None, limits) else {
+            continue;
+        };
+        let off = if *force > 0.0 {
+            gap.distance.abs()
+        } else {
+            -gap.distance
+        };
+        assert!(off <= FIT, "{frame}: {off} mm under {force} N");
+    }
+}
+
 #[test]
 fn a_drag_of_part_of_the_skin_stays_with_full_presses_and_costs_fewer_steps() {
     let mesh = lattice(22.0, 1.2, 0.3);
@@ -82,6 +104,7 @@ fn a_drag_of_part_of_the_skin_stays_with_full_presses_and_costs_fewer_steps() {
         let followed = follow(&mut warm, &product, &posed, Start::Warm);
         let full = press_posed(&mut skin(&mesh), &product, &posed);
         assert_same(&shown, &full, frame);
+        assert_fits(&shown, &product, &posed, frame);
         if frame > 0 {
             live_steps += shown.convergence.cg_steps;
             warm_steps += followed.convergence.cg_steps;
@@ -105,6 +128,7 @@ fn nothing_drifts_where_all_moves_the_product_changes_or_nothing_moves() {
         let shown = follow(&mut live, product, &posed, Start::Live);
         let full = press_posed(&mut skin(&mesh), product, &posed);
         assert_same(&shown, &full, frame);
+        assert_fits(&shown, product, &posed, frame);
     }
 }
 
