@@ -11,7 +11,8 @@ use crate::press::Convergence;
 use crate::skin::Skin;
 use crate::zone::limits;
 
-/// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most.
+/// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most (tests
+/// pass up to 0.1).
 const LITTLE_WAY: f64 = 1e-2;
 
 /// What acts on the sites that are solved besides the coupling among them.

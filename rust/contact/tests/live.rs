@@ -113,6 +113,22 @@ fn a_drag_of_part_of_the_skin_stays_with_full_presses_and_costs_fewer_steps() {
     assert!(2 * live_steps < warm_steps, "{live_steps} {warm_steps}");
 }
 
+/// Skin slides over edges of 25 degrees: its distance there does not grow evenly with its way.
+#[test]
+fn the_written_surface_fits_a_product_with_edges() {
+    let mesh = lattice(16.0, 1.2, 0.3);
+    let product = paraboloid(12.0, 5.0, 30.0);
+    let mut live = skin(&mesh);
+    for frame in 0..20 {
+        let along = Vec3::new(0.5, 0.3, 0.0) * (0.4 * f64::from(frame)).sin() * 4.0;
+        let posed = bumped(&mesh, 0.6 * (0.3 * f64::from(frame)).sin());
+        let posed: Vec<Vec3> = posed.iter().map(|p| p + along).collect();
+        let shown = follow(&mut live, &product, &posed, Start::Live);
+        assert!(shown.convergence.has_converged, "{frame}");
+        assert_fits(&shown, &product, &posed, frame as usize);
+    }
+}
+
 #[test]
 fn nothing_drifts_where_all_moves_the_product_changes_or_nothing_moves() {
     let mesh = lattice(16.0, 1.3, 0.3);
