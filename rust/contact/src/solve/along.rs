@@ -9,7 +9,6 @@ use thenar_surface::Vec3;
 
 use super::half::{Compliance, Half, Symmetric};
 use super::kept::Kept;
-use super::lanes::total;
 use super::operator::Rows;
 
 /// Unit directions by axis.
@@ -222,7 +221,12 @@ fn multiply((coupling, axes): (&Rows<f32>, &Axes), rows: &[u32], x: &[f64], out:
             }
             offset += len;
         }
-        *out = total(&sums) + tail;
+        for half in [16, 8, 4, 2, 1] {
+            for lane in 0..half {
+                sums[lane] += sums[lane + half];
+            }
+        }
+        *out = sums[0] + tail;
     }
 }
 

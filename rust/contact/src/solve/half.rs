@@ -1,7 +1,6 @@
 //! The lower half of a symmetric matrix: half the memory to read in a product, which is what a product's time goes to.
 
 use super::kept::Kept;
-use super::lanes::total;
 use super::operator::{Entry, Rows, Run};
 
 /// A symmetric matrix as a linear map.
@@ -250,8 +249,13 @@ fn multiply<T: Entry>(matrix: &Half<T>, x: &[f64], out: &mut [f64]) {
             }
             offset += len;
         }
+        for half in [16, 8, 4, 2, 1] {
+            for lane in 0..half {
+                sums[lane] += sums[lane + half];
+            }
+        }
         // Rows below add to this entry later: all above it have been.
-        out[i] = total(&sums) + tail + matrix.diagonal[i] * own;
+        out[i] = sums[0] + tail + matrix.diagonal[i] * own;
         from = to as usize;
     }
 }

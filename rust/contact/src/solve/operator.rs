@@ -2,8 +2,6 @@
 
 use rayon::prelude::*;
 
-use super::lanes::total;
-
 /// Rows shorter than this in all are multiplied on one thread: waking others costs more.
 const PARALLEL_ENTRIES: usize = 3_000_000;
 
@@ -251,36 +249,37 @@ fn multiply<T: Entry>(matrix: &Rows<T>, rows: &[u32], x: &[f64], out: &mut [f64]
     for (&i, out) in rows.iter().zip(out) {
         let (runs, values) = matrix.row(i as usize);
         // Four chains of eight: one chain would wait for each of its own additions.
-        let (mut sums, mut rest, mut offset) = ([0.0; 32], 0.0, 0);
+        let mut sums = [0.0; 32];
+        let mut tail = 0.0;
+        let mut offset = 0;
         for run in runs {
             let (start, len) = (run.start as usize, run.len as usize);
-            let (a, a_rest) = values[offset..offset + len].as_chunks::<32>();
-            let (b, b_rest) = x[start..start + len].as_chunks::<32>();
-            for (a, b) in a.iter().zip(b) {
+            let (a32, a_rest) = values[offset..offset + len].as_chunks::<32>();
+            let (b32, b_rest) = x[start..start + len].as_chunks::<32>();
+            for (a, b) in a32.iter().zip(b32) {
                 for lane in 0..32 {
                     sums[lane] += a[lane].wide() * b[lane];
                 }
             }
-            rest += short_product(a_rest, b_rest);
+            let (a8, a_rest) = a_rest.as_chunks::<8>();
+            let (b8, b_rest) = b_rest.as_chunks::<8>();
+            for (a, b) in a8.iter().zip(b8) {
+                for lane in 0..8 {
+                    sums[lane] += a[lane].wide() * b[lane];
+                }
+            }
+            for (a, b) in a_rest.iter().zip(b_rest) {
+                tail += a.wide() * b;
+            }
             offset += len;
         }
-        *out = total(&sums) + rest;
-    }
-}
-
-/// The product of fewer than 32 entries and unknowns; apart, so that the loop around it stays one of whole registers.
-#[inline(never)]
-fn short_product<T: Entry>(a: &[T], b: &[f64]) -> f64 {
-    let (a, a_rest) = a.as_chunks::<8>();
-    let (b, b_rest) = b.as_chunks::<8>();
-    let mut sums = [0.0; 8];
-    for (a, b) in a.iter().zip(b) {
-        for lane in 0..8 {
-            sums[lane] += a[lane].wide() * b[lane];
+        for half in [16, 8, 4, 2, 1] {
+            for lane in 0..half {
+                sums[lane] += sums[lane + half];
+            }
         }
+        *out = sums[0] + tail;
     }
-    let rest = a_rest.iter().zip(b_rest).map(|(a, b)| a.wide() * b);
-    sums.into_iter().sum::<f64>() + rest.sum::<f64>()
 }
 
 #[cfg(test)]
