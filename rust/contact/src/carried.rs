@@ -150,6 +150,11 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
     }
 }
 
+/// Whether a displacement `u` is longer than skin is away from the product, mm.
+pub fn can_reach(u: &Vec3, distance: f64) -> bool {
+    distance < 0.0 || distance * distance < u.norm_squared()
+}
+
 /// Skin outside the zone that the displacement carries into the product, and how deep, mm.
 pub fn lifted_sites(
     skin: &Skin,
@@ -160,8 +165,10 @@ pub fn lifted_sites(
     let mut near = Vec::new();
     for (site, u) in field.iter().enumerate() {
         let distance = setting.detection.distances[vertex(skin, site as u32)];
-        let can_reach = distance < 0.0 || distance * distance < u.norm_squared();
-        if can_reach && skin.sites.is_skin(site) && zone.binary_search(&(site as u32)).is_err() {
+        if can_reach(u, distance)
+            && skin.sites.is_skin(site)
+            && zone.binary_search(&(site as u32)).is_err()
+        {
             near.push(site as u32);
         }
     }

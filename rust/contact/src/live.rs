@@ -5,10 +5,11 @@
 
 use thenar_surface::{Gap, Vec3};
 
-use crate::carried::Found;
+use crate::carried::{Found, can_reach};
 use crate::contact_state::Beyond;
 use crate::direction::Sums;
 use crate::linearize::{Setting, vertex};
+use crate::memory::Shown;
 use crate::skin::Skin;
 use crate::solve::Accuracy;
 use crate::{ContactError, Control, Model};
@@ -113,23 +114,28 @@ pub fn held(
 
 /// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
 fn ahead(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
-    let shown = &skin.memory.shown;
-    if !shown.is_of(skin.sites.len()) {
-        return Vec3::zeros();
-    }
-    let site = site as usize;
-    (shown.field[site] + shown.field_change[site])
-        * (setting.weight[site] * skin.sites.follow[site])
+    moved(skin, setting, site, |shown, site| {
+        shown.field[site] + shown.field_change[site]
+    })
 }
 
 /// How the displacement of a site changes if it does as it did last, mm; zero if not known.
 pub fn goes_on(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
-    let shown = &skin.memory.shown;
+    moved(skin, setting, site, |shown, site| shown.field_change[site])
+}
+
+/// What a `field` of the last live press is at a site, mm.
+fn moved(
+    skin: &Skin,
+    setting: &Setting<'_>,
+    site: u32,
+    field: impl Fn(&Shown, usize) -> Vec3,
+) -> Vec3 {
+    let (shown, site) = (&skin.memory.shown, site as usize);
     if !shown.is_of(skin.sites.len()) {
         return Vec3::zeros();
     }
-    let site = site as usize;
-    shown.field_change[site] * (setting.weight[site] * skin.sites.follow[site])
+    field(shown, site) * (setting.weight[site] * skin.sites.follow[site])
 }
 
 /// Sites of `zone` that would stray if they were held while what changed last goes on.
@@ -156,7 +162,7 @@ pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> 
         }
         let u = ahead(skin, setting, *site);
         let comes_near = |gap: &Gap| distance + gap.normal.dot(&u) < CLEARANCE;
-        (distance < 0.0 || distance * distance < u.norm_squared())
+        can_reach(&u, distance)
             && setting.detection.gaps[vertex]
                 .as_ref()
                 .is_some_and(comes_near)

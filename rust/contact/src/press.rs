@@ -90,7 +90,7 @@ pub enum Start {
     Warm,
     /// As warm, and only as exact as what moves before the eye needs to be: skin away from what moved keeps its forces until
     /// it is off by 0.5 % of the deepest penetration, the certificate; the written surface fits the product within 0.02 mm. The
-    /// response between two sites is rounded to 1/64000 of the largest.
+    /// response of a site to others is rounded to 1/64000 of the largest.
     Live,
 }
 

@@ -172,7 +172,8 @@ impl Product {
         hints: &[u32],
     ) -> Vec<Option<Gap>> {
         let mut gaps = vec![None; points.len()];
-        let measure = |(chunk, out): (usize, &mut [Option<Gap>])| {
+        let parts = gaps.chunks_mut(CHUNK).enumerate();
+        deal(parts, points.len() < FEW, |(chunk, out)| {
             let mut pending = Pending::default();
             let mut facing = Facing::new(self, limits, &mut pending);
             let mut last = None;
@@ -187,12 +188,7 @@ impl Product {
                 // Neighbors in the list tend to be neighbors in space.
                 last = gap.map(|g| g.triangle).or(last);
             }
-        };
-        if points.len() < FEW {
-            gaps.chunks_mut(CHUNK).enumerate().for_each(measure);
-        } else {
-            gaps.par_chunks_mut(CHUNK).enumerate().for_each(measure);
-        }
+        });
         if let Some(normals) = skin_normals.filter(|n| n.len() == points.len()) {
             settle(self, &Skin { points, normals }, limits, &mut gaps);
         }
@@ -263,6 +259,19 @@ impl Product {
             triangle: face.id,
             barycentric,
         }
+    }
+}
+
+/// Calls `work` with every part: in turn where there is little to do, else on several threads.
+pub(crate) fn deal<T: Send>(
+    parts: impl Iterator<Item = T>,
+    is_little: bool,
+    work: impl Fn(T) + Sync + Send,
+) {
+    if is_little {
+        parts.for_each(work);
+    } else {
+        parts.collect::<Vec<T>>().into_par_iter().for_each(work);
     }
 }
 

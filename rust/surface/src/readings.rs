@@ -2,13 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use rayon::prelude::*;
-
 use crate::facing::Facing;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::poke::{Skin, settle};
-use crate::product::{FEW, Gap, GapLimits, Product};
+use crate::product::{FEW, Gap, GapLimits, Product, deal};
 
 /// Points answered by one task.
 const CHUNK: usize = 256;
@@ -89,39 +87,31 @@ impl Product {
             .zip(readings.points.chunks_mut(CHUNK))
             .zip(readings.normals.chunks_mut(CHUNK))
             .zip(points.chunks(CHUNK).zip(skin_normals.chunks(CHUNK)));
-        type Part<'a> = (
-            (
-                ((&'a mut [Option<Gap>], &'a mut [f64]), &'a mut [Vec3]),
-                &'a mut [Vec3],
-            ),
-            (&'a [Vec3], &'a [Vec3]),
-        );
-        let read = |((((gaps, rooms), before), faced), (points, normals)): Part<'_>| {
-            let mut pending = Pending::default();
-            let mut facing = Facing::new(self, limits, &mut pending);
-            let mut last = None;
-            for k in 0..points.len() {
-                let (point, normal) = (points[k], normals[k]);
-                if before[k] == point && faced[k] == normal {
-                    continue;
+        deal(
+            parts,
+            are_few,
+            |((((gaps, rooms), before), faced), (points, normals))| {
+                let mut pending = Pending::default();
+                let mut facing = Facing::new(self, limits, &mut pending);
+                let mut last = None;
+                for k in 0..points.len() {
+                    let (point, normal) = (points[k], normals[k]);
+                    if before[k] == point && faced[k] == normal {
+                        continue;
+                    }
+                    let room = rooms[k] - (point - before[k]).norm();
+                    let hint = gaps[k].map(|g| g.triangle).or(last);
+                    (gaps[k], rooms[k]) = if room > 0.0 {
+                        (facing.gap_beyond(point, Some(normal)), room)
+                    } else if !rooms[k].is_nan() {
+                        facing.gap_and_room(point, Some(normal), hint)
+                    } else {
+                        (facing.gap(point, Some(normal), hint), 0.0)
+                    };
+                    (before[k], faced[k]) = (point, normal);
+                    last = gaps[k].map(|g| g.triangle).or(last);
                 }
-                let room = rooms[k] - (point - before[k]).norm();
-                let hint = gaps[k].map(|g| g.triangle).or(last);
-                (gaps[k], rooms[k]) = if room > 0.0 {
-                    (facing.gap_beyond(point, Some(normal)), room)
-                } else if !rooms[k].is_nan() {
-                    facing.gap_and_room(point, Some(normal), hint)
-                } else {
-                    (facing.gap(point, Some(normal), hint), 0.0)
-                };
-                (before[k], faced[k]) = (point, normal);
-                last = gaps[k].map(|g| g.triangle).or(last);
-            }
-        };
-        if are_few {
-            parts.for_each(read);
-        } else {
-            parts.collect::<Vec<_>>().into_par_iter().for_each(read);
-        }
+            },
+        );
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. The sites
 //! of one patch feel the same others, so that their rows are a dense block, and products run over it without gaps. Entries are
-//! those of the rounded rows: reading them is what a product takes, and a press that the eye alone judges needs no more.
+//! those of the rounded rows: reading them is what a product takes, and a press that the eye alone judges needs no more. Each row
+//! is rounded by its own largest entry, so that the two entries of a pair agree but for that.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
@@ -11,8 +12,8 @@ use super::assembly::{Members, SHORT, layout, take};
 use super::rounded::{Rounded, rounded};
 use super::rows::Response;
 use crate::sites::Sites;
+use crate::solve::Axes;
 use crate::solve::operator::Run;
-use crate::solve::{Axes, total};
 
 /// Rows are filled up with zeros to a multiple of this: products need no remainder.
 const LANES: usize = 32;
@@ -29,7 +30,7 @@ struct Home {
     runs: u32,
 }
 
-/// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric.
+/// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric but for rounding.
 #[derive(Debug, Clone, Default)]
 pub struct Near {
     /// The sites, ascending.
@@ -237,7 +238,7 @@ impl Columns<'_> {
     }
 }
 
-/// Entries of a row along `row` times their cosines with the directions of their columns: the same for both of a pair.
+/// Entries of a row along `row` times their cosines with the directions of their columns, which both of a pair share.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 fn turn_row(row: [f32; 3], columns: &[Vec<f32>; 3], (values, out): (&[i16], &mut [i16])) {
     let [x, y, z] = columns;
@@ -281,6 +282,20 @@ fn field_block(entries: &[i16], [x, y, z]: [&[f32]; 3], out: &mut [Vec3]) {
         }
         *out = Vec3::from([along_x, along_y, along_z].map(|sums| f64::from(total(&sums))));
     }
+}
+
+/// The sum of all lanes, each half added to the other.
+///
+/// Called and not inlined: where it is, the compiler makes pairs of the whole loop before it.
+#[inline(never)]
+fn total(lanes: &[f32; LANES]) -> f32 {
+    let mut sums = *lanes;
+    for half in [16, 8, 4, 2, 1] {
+        for lane in 0..half {
+            sums[lane] += sums[lane + half];
+        }
+    }
+    sums[0]
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ const MOST: f32 = 32_000.0;
 /// Rows that are summed at once.
 const AT_ONCE: usize = 4;
 
-/// A row, laid out as [`Response::near`] says.
+/// A row, laid out as [`Response::near`] says; empty until it is made.
 #[derive(Debug, Clone, Default)]
 pub struct Row {
     /// Entries over `unit`; zero where the site meets itself.
@@ -27,9 +27,7 @@ pub struct Row {
 /// Rows that were needed so far.
 #[derive(Debug, Clone, Default)]
 pub struct Rounded {
-    rows: Vec<Option<Row>>,
-    /// What stands for a row that was not made.
-    none: Row,
+    rows: Vec<Row>,
 }
 
 impl Rounded {
@@ -39,21 +37,20 @@ impl Rounded {
         wanted: impl Iterator<Item = u32>,
         (response, sites): (&Response, &Sites),
     ) {
-        self.rows.resize(sites.len(), None);
+        self.rows.resize(sites.len(), Row::default());
         for site in wanted {
             let row = &mut self.rows[site as usize];
-            if row.is_none() {
+            if row.entries.is_empty() {
                 let patch = sites.patch[site as usize];
                 let own = own_offset(response, patch) + site - sites.patch_range[patch as usize].0;
-                *row = Some(Row::new(response.row(site), own as usize));
+                *row = Row::new(response.row(site), own as usize);
             }
         }
     }
 
-    /// The row of a site.
+    /// The row of a site, which was made.
     pub fn row(&self, site: u32) -> &Row {
-        let row = self.rows.get(site as usize).and_then(Option::as_ref);
-        row.unwrap_or(&self.none)
+        &self.rows[site as usize]
     }
 
     /// What [`displacements`](super::assembly::displacements) are by these rows.

@@ -8,7 +8,6 @@ mod conjugate_gradient;
 mod dense;
 mod half;
 mod kept;
-mod lanes;
 mod projection;
 
 pub use along::{Along, Axes, Part};
@@ -16,4 +15,3 @@ pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
 pub use half::{Compliance, Symmetric};
 pub use kept::Kept;
-pub use lanes::total;
