@@ -100,6 +100,31 @@ def test_pictures_take_the_threads_of_blender():
     assert here.threads([plain, pictured]) == here.ONE_THREAD
 
 
+@pytest.mark.parametrize(("save_s", "most"), [(0.0, 20), (0.5, 5)])
+def test_the_table_is_written_now_and_then_and_less_often_where_that_takes_long(monkeypatch, tmp_path, save_s, most):
+    """200 cases of a second: every ten seconds, but at most a hundredth of the time."""
+    clock, saves = [0.0], []
+
+    def come(tasks, by):
+        for task in tasks:
+            clock[0] += 1.0
+            yield task["case"]["name"], {"error": "spilled coffee"}
+
+    def save(*given):
+        clock[0] += save_s
+        saves.append(clock[0])
+
+    monkeypatch.setattr(conductor.time, "monotonic", lambda: clock[0])
+    monkeypatch.setattr(conductor, "_by", come)
+    monkeypatch.setattr(conductor, "_save", save)
+    cases = [{"name": f"case {number}"} for number in range(200)]
+    hashes, table = {case["name"]: "" for case in cases}, {}
+    conductor._answer(cases, cases, (tmp_path, hashes, table), None)
+    assert len(table) == 200
+    assert most - 3 <= len(saves) <= most
+    assert max(later - earlier for earlier, later in zip(saves, saves[1:], strict=False)) >= conductor.SAVED_EVERY_S
+
+
 def test_stiffness_is_a_factor_on_both_moduli():
     hand, _ = stage.scene()
     material = hand.thenar.default_material

@@ -308,3 +308,66 @@ pub fn strays(found: &Found<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>
     }
     (worst / deepest.max(f64::MIN_POSITIVE), far)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::test_sheet::sheet;
+    use crate::zone::detect;
+    use thenar_surface::{Mesh, Product};
+
+    #[test]
+    fn skin_that_is_carried_in_if_it_goes_on_joins_the_zone_with_its_neighbors() {
+        let (mut skin, _) = sheet();
+        // A plate that faces down, into which the sheet rises.
+        let corner = |x: f64, y: f64| Vec3::new(x, y, 2.0);
+        let corners = [(-50.0, -50.0), (90.0, -50.0), (90.0, 90.0), (-50.0, 90.0)];
+        let plate = Mesh::new(
+            corners.map(|(x, y)| corner(x, y)).to_vec(),
+            vec![[0, 2, 1], [0, 3, 2]],
+        );
+        let product = Product::new(plate.unwrap()).unwrap();
+        let mesh = skin.welded.mesh.clone();
+        let detection = detect(&mut skin, &mesh, &product, Vec3::zeros()).unwrap();
+        let count = skin.sites.len();
+        let weight = vec![0.5; count];
+        let setting = Setting {
+            product: &product,
+            detection: &detection,
+            weight: &weight,
+            start: None,
+            accuracy: Accuracy::Rough,
+            spacing: skin.spacing,
+        };
+        let distance = |site: u32| detection.distances[vertex(&skin, site)];
+        let zone: Vec<u32> = (0..count as u32).filter(|s| distance(*s) < 0.2).collect();
+        let lifted = (0..count as u32).find(|s| (0.8..1.2).contains(&distance(*s)));
+        let lifted = lifted.unwrap();
+        let (far, beside) = (
+            distance(lifted),
+            skin.adjacency.neighbors(vertex(&skin, lifted)),
+        );
+        let beside = beside.iter().map(|&v| skin.sites.of_vertex[v as usize]);
+        let mut wanted: Vec<u32> = zone.iter().copied().chain(beside).collect();
+        wanted.push(lifted);
+        wanted.sort_unstable();
+        wanted.dedup();
+        let none = vec![Vec3::zeros(); count];
+        // It lies half way there, and goes on by as much or by little.
+        for (change, wanted) in [(0.55, &wanted), (0.1, &zone)] {
+            let up = |share: f64| {
+                let mut field = none.clone();
+                let share = share * far / (weight[0] * skin.sites.follow[lifted as usize]);
+                field[lifted as usize] = Vec3::z() * share;
+                field
+            };
+            skin.memory.shown = Shown {
+                load: none.clone(),
+                field: up(0.5),
+                load_change: none.clone(),
+                field_change: up(change),
+            };
+            assert_eq!(&with_foreseen(&skin, &setting, zone.clone()), wanted);
+        }
+    }
+}

@@ -14,4 +14,4 @@ pub mod sheet;
 pub mod skin_metric;
 
 #[cfg(test)]
-mod test_sheet;
+pub(crate) mod test_sheet;
