@@ -25,14 +25,17 @@ def force():
 
 
 def test_colors_that_follow_are_those_of_the_pressure_as_a_whole(scene):
-    """Only what changed is colored anew: a slide, a tilt, a jump away and a jump back leave no old color."""
+    """Only what changed is colored anew: a slide, a tilt, a jump away and a jump back leave no old color.
+
+    The hand moves: all is colored anew where the product does.
+    """
     hand, product = stage.scene()
     settings = bpy.context.scene.thenar
     switch_on()
     for move in (0.3, -0.2, 0.0, -9.0, 9.5):
-        product.location.z += move * MM
-        product.location.x += 0.4 * MM
-        product.rotation_euler.y += 0.02
+        hand.location.z -= move * MM
+        hand.location.x -= 0.4 * MM
+        hand.rotation_euler.y -= 0.02
         assert follow()
         for obj, bare in ((hand, colors.SKIN), (product, colors.BARE)):
             whole = colors.linear(stage.attribute(obj, names.PRESSURE_KPA), settings, bare)
