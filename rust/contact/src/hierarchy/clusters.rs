@@ -22,7 +22,7 @@ pub struct Basis {
     /// The chosen sites.
     pub chosen: Vec<u32>,
     /// Share of each chosen site in every candidate, row by row: a smallest cluster's members, or its halves' chosen sites.
-    pub transfer: Vec<f64>,
+    pub transfer: Vec<f32>,
 }
 
 /// Some of a cluster's sites.
@@ -152,7 +152,8 @@ impl Clusters {
         let found = skeleton(&mut block, seen.len(), TOLERANCE);
         Some(Basis {
             chosen: found.chosen.iter().map(|&k| candidates[k]).collect(),
-            transfer: found.transfer,
+            // Rounding is far below the tolerance.
+            transfer: found.transfer.iter().map(|share| *share as f32).collect(),
         })
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::clusters::Clusters;
+use super::inverses::Inverses;
 use super::{Ground, Hierarchy, Listed, SEPARATION, gap};
 use crate::{ContactError, Control};
 
@@ -12,6 +13,8 @@ use crate::{ContactError, Control};
 pub const MOST_GIB: f64 = 12.0;
 /// Blocks that are made between two looks at the caller's wish to stop.
 const AT_ONCE: usize = 2048;
+/// Blocks of a strip: few enough for their result to stay in a core's cache, many enough to add it up seldom.
+const STRIP: usize = 256;
 
 /// Two clusters and where the block between them begins.
 #[derive(Debug, Clone, Copy)]
@@ -19,16 +22,41 @@ pub struct Pair {
     pub(super) a: usize,
     pub(super) b: usize,
     start: usize,
+    /// Where the strip's result has them.
+    pub(super) to_a: u32,
+    pub(super) to_b: u32,
 }
 
-/// Blocks of one kind, and which each cluster takes part in.
+impl Pair {
+    fn new(a: usize, b: usize) -> Pair {
+        let (start, to_a, to_b) = (0, 0, 0);
+        Pair {
+            a,
+            b,
+            start,
+            to_a,
+            to_b,
+        }
+    }
+}
+
+/// Blocks that follow one another and are multiplied together.
+#[derive(Debug, Clone)]
+pub struct Strip {
+    pub(super) pairs: Range<usize>,
+    /// Clusters of the pairs, and where each begins in the strip's result.
+    pub(super) touched: Vec<(u32, u32)>,
+    /// Length of the result.
+    pub(super) length: usize,
+}
+
+/// Blocks of one kind, in strips.
 #[derive(Debug, Clone, Default)]
 pub struct Blocks {
     pub(super) pairs: Vec<Pair>,
     pub(super) values: Vec<f32>,
     entries: usize,
-    /// Pairs of each cluster, and whether it is their second.
-    pub(super) of: Vec<Vec<(u32, bool)>>,
+    pub(super) strips: Vec<Strip>,
 }
 
 /// `K` between the sites of a zone, 1/mm.
@@ -44,6 +72,8 @@ pub struct Coupled {
     pub(super) far: Blocks,
     /// `K_ii` in the zone's order.
     pub(super) own: Vec<f64>,
+    /// What stands for the inverse of the near blocks.
+    pub(super) inverses: Inverses,
 }
 
 impl Coupled {
@@ -61,6 +91,7 @@ impl Coupled {
         coupled.check(MOST_GIB)?;
         coupled.fill(hierarchy, ground, control)?;
         coupled.own = coupled.diagonal();
+        coupled.inverses = Inverses::new(&coupled.near, &coupled.clusters.list);
         Ok(coupled)
     }
 
@@ -86,12 +117,15 @@ impl Coupled {
         Ok(coupled)
     }
 
-    /// Memory of the blocks and the skeletons, GiB, known before the blocks are made.
+    /// Memory of the blocks, the inverses and the skeletons, GiB, known before the blocks are made.
     pub fn needed_gib(&self) -> f64 {
         let bases = self.clusters.list.iter().filter_map(|c| c.basis.as_ref());
         let transfers: usize = bases.map(|basis| basis.transfer.len()).sum();
-        let entries = self.near.entries + self.far.entries;
-        (entries * size_of::<f32>() + transfers * size_of::<f64>()) as f64 / f64::from(1 << 30)
+        let own = self.near.pairs.iter().filter(|pair| pair.a == pair.b);
+        let members = |c: usize| self.clusters.list[c].last - self.clusters.list[c].first;
+        let inverses: usize = own.map(|pair| members(pair.a).pow(2)).sum();
+        let entries = self.near.entries + self.far.entries + inverses;
+        ((entries + transfers) * size_of::<f32>()) as f64 / f64::from(1 << 30)
     }
 
     /// # Errors
@@ -129,7 +163,7 @@ impl Coupled {
             }
             let is_far = gap(left, right) >= SEPARATION * left.radius.max(right.radius);
             if is_far && one.basis.is_some() && other.basis.is_some() {
-                self.far.pairs.push(Pair { a, b, start: 0 });
+                self.far.pairs.push(Pair::new(a, b));
                 return;
             }
         }
@@ -142,7 +176,7 @@ impl Coupled {
         }
         .clone();
         if halves.is_empty() {
-            self.near.pairs.push(Pair { a, b, start: 0 });
+            self.near.pairs.push(Pair::new(a, b));
         } else if a == b {
             for (k, &low) in halves.iter().enumerate() {
                 for &high in &halves[k..] {
@@ -205,19 +239,38 @@ impl Coupled {
 }
 
 impl Blocks {
-    /// Gives every block its place, and every cluster its blocks.
+    /// Gives every block its place, in memory and in a strip.
     fn lay_out(&mut self, size: impl Fn(usize) -> usize, clusters: usize) {
         let mut end = 0;
-        self.of = vec![Vec::new(); clusters];
-        for (number, pair) in self.pairs.iter_mut().enumerate() {
+        for pair in &mut self.pairs {
             pair.start = end;
             end += size(pair.a) * size(pair.b);
-            self.of[pair.a].push((number as u32, false));
-            if pair.a != pair.b {
-                self.of[pair.b].push((number as u32, true));
-            }
         }
         self.entries = end;
+        let mut place = vec![None; clusters];
+        self.strips.clear();
+        for (number, pairs) in self.pairs.chunks_mut(STRIP).enumerate() {
+            let (mut touched, mut length) = (Vec::new(), 0);
+            let mut put = |cluster: usize| {
+                *place[cluster].get_or_insert_with(|| {
+                    touched.push((cluster as u32, length as u32));
+                    length += size(cluster);
+                    touched[touched.len() - 1].1
+                })
+            };
+            for pair in pairs.iter_mut() {
+                (pair.to_a, pair.to_b) = (put(pair.a), put(pair.b));
+            }
+            for &(cluster, _) in &touched {
+                place[cluster as usize] = None;
+            }
+            let first = number * STRIP;
+            self.strips.push(Strip {
+                pairs: first..first + pairs.len(),
+                touched,
+                length,
+            });
+        }
     }
 
     /// Where the entries of a pair are.

@@ -2,7 +2,8 @@
 
 use super::blocks::zeros;
 use super::coupled::Coupled;
-use crate::solve::{Compliance, Kept, Symmetric};
+use super::inverses::OnSet;
+use crate::solve::{Compliance, Kept, Preconditioner, Symmetric};
 use thenar_surface::Vec3;
 
 /// Power steps that find the largest eigenvalue, and the factor that makes their result a bound.
@@ -47,6 +48,10 @@ impl Symmetric for Directed<'_> {
             *out = along.x * a[k] + along.y * b[k] + along.z * c[k];
         }
     }
+
+    fn preconditioner<'b>(&'b self, set: &'b [u32]) -> Box<dyn Preconditioner + 'b> {
+        Box::new(OnSet::new(self.coupled, self.along, set))
+    }
 }
 
 impl Compliance for Directed<'_> {
@@ -90,5 +95,9 @@ impl Compliance for Directed<'_> {
 
     fn is_narrow(&self, _is_rough: bool) -> bool {
         false
+    }
+
+    fn is_dear(&self) -> bool {
+        true
     }
 }

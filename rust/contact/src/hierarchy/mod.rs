@@ -9,6 +9,7 @@ mod skeleton;
 mod clusters;
 mod blocks;
 mod coupled;
+mod inverses;
 mod product;
 mod directed;
 mod field;

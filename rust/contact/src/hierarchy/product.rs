@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::blocks::{Fields, add_product, add_transposed, part, part_mut, zeros};
 use super::clusters::Clusters;
-use super::coupled::{Blocks, Coupled};
+use super::coupled::{Blocks, Coupled, Strip};
 
 impl Coupled {
     /// `K` times three fields over the zone, at every site whose cluster holds a place where `is_active`; zero elsewhere.
@@ -13,24 +13,19 @@ impl Coupled {
     pub fn times(&self, x: &Fields, is_active: &[bool]) -> Fields {
         let loads = self.gathered(x);
         let awake = self.awake(is_active);
+        let list = &self.clusters.list;
         let up = raise(&self.clusters, &self.offset, &loads);
-        let mut local = self.exchange(&up, &awake);
-        self.lower(&mut local, &awake);
-        let leaves: Vec<usize> = (0..awake.len())
-            .filter(|&c| awake[c] && self.clusters.list[c].children.is_empty())
-            .collect();
-        let found: Vec<Fields> = leaves
-            .par_iter()
-            .with_min_len(4)
-            .map(|&leaf| self.at_leaf(leaf, (&loads, &local), &awake))
-            .collect();
+        let mut local = zeros(up[0].len());
+        let chosen = |c: usize| (self.offset[c], self.offset[c + 1]);
+        self.far.add((&up, &awake), chosen, &mut local);
+        let mut found = zeros(self.len());
+        self.lower((&mut local, &awake), &mut found);
+        let members = |c: usize| (list[c].first, list[c].last);
+        self.near.add((&loads, &awake), members, &mut found);
         let mut out = zeros(self.len());
-        for (&leaf, found) in leaves.iter().zip(&found) {
-            let cluster = &self.clusters.list[leaf];
-            for (k, &place) in self.place[cluster.first..cluster.last].iter().enumerate() {
-                for axis in 0..3 {
-                    out[axis][place as usize] = found[axis][k];
-                }
+        for (out, found) in out.iter_mut().zip(&found) {
+            for (&k, v) in self.place.iter().zip(found) {
+                out[k as usize] = *v;
             }
         }
         out
@@ -49,93 +44,83 @@ impl Coupled {
             .collect()
     }
 
-    /// What the chosen sites of every cluster get from those of clusters far from it.
-    fn exchange(&self, up: &Fields, awake: &[bool]) -> Fields {
-        let of = |c: usize| (self.offset[c], self.offset[c + 1]);
-        let found: Vec<Fields> = (0..awake.len())
-            .into_par_iter()
-            .with_min_len(16)
-            .map(|c| {
-                let (first, last) = of(c);
-                let mut out = zeros(if awake[c] { last - first } else { 0 });
-                if awake[c] {
-                    self.far.add(c, (awake, |c| part(up, of(c))), &mut out);
-                }
-                out
-            })
-            .collect();
-        let mut local = zeros(up[0].len());
-        for (c, found) in found.iter().enumerate().filter(|(c, _)| awake[*c]) {
-            for (axis, to) in part_mut(&mut local, of(c)).into_iter().enumerate() {
-                to.copy_from_slice(&found[axis]);
-            }
-        }
-        local
-    }
-
-    /// Hands on to the halves what a cluster's chosen sites get.
-    fn lower(&self, local: &mut Fields, awake: &[bool]) {
+    /// Hands on what a cluster's chosen sites get: to those of its halves, and of the smallest to all members.
+    fn lower(&self, (local, awake): (&mut Fields, &[bool]), found: &mut Fields) {
         for (c, cluster) in self.clusters.list.iter().enumerate() {
             let Some(basis) = cluster.basis.as_ref().filter(|_| awake[c]) else {
                 continue;
             };
-            let (first, rank) = (self.offset[c], basis.chosen.len());
+            let own = (self.offset[c], self.offset[c + 1]);
+            if cluster.children.is_empty() {
+                let out = part_mut(found, (cluster.first, cluster.last));
+                add_product(&basis.transfer, part(local, own), out);
+                continue;
+            }
             let mut row = 0;
             for &child in &cluster.children {
-                for to in self.offset[child]..self.offset[child + 1] {
-                    let shares = &basis.transfer[row * rank..(row + 1) * rank];
-                    for axis in local.iter_mut() {
-                        let terms = shares.iter().zip(&axis[first..first + rank]);
-                        let sum: f64 = terms.map(|(s, v)| s * v).sum();
-                        axis[to] += sum;
-                    }
-                    row += 1;
-                }
+                // A cluster's sites come before those of its halves.
+                let (first, last) = (self.offset[child], self.offset[child + 1]);
+                let shares = &basis.transfer[row * (own.1 - own.0)..];
+                let shares = &shares[..(last - first) * (own.1 - own.0)];
+                let [x, y, z] = local.each_mut().map(|axis| axis.split_at_mut(first));
+                let from = [&*x.0, &*y.0, &*z.0].map(|axis| &axis[own.0..own.1]);
+                let to = [x.1, y.1, z.1].map(|axis| &mut axis[..last - first]);
+                add_product(shares, from, to);
+                row += last - first;
             }
         }
-    }
-
-    fn at_leaf(&self, leaf: usize, (loads, local): (&Fields, &Fields), awake: &[bool]) -> Fields {
-        let list = &self.clusters.list;
-        let cluster = &list[leaf];
-        let mut out = zeros(cluster.last - cluster.first);
-        if let Some(basis) = &cluster.basis {
-            let rank = basis.chosen.len();
-            let seen = part(local, (self.offset[leaf], self.offset[leaf + 1]));
-            for (k, shares) in basis.transfer.chunks(rank.max(1)).enumerate() {
-                for axis in 0..3 {
-                    out[axis][k] = shares.iter().zip(seen[axis]).map(|(s, v)| s * v).sum();
-                }
-            }
-        }
-        let of = |c: usize| part(loads, (list[c].first, list[c].last));
-        self.near.add(leaf, (awake, of), &mut out);
-        out
     }
 }
 
 impl Blocks {
-    /// Adds a cluster's blocks times what the other cluster of each bears.
-    fn add<'a>(
+    /// Adds the blocks times `x` to `out`, at clusters that are awake; `range`: where each cluster is in them.
+    fn add(
         &self,
-        cluster: usize,
-        (awake, of): (&[bool], impl Fn(usize) -> [&'a [f64]; 3]),
+        (x, awake): (&Fields, &[bool]),
+        range: impl Fn(usize) -> (usize, usize) + Sync,
         out: &mut Fields,
     ) {
-        for &(number, is_second) in &self.of[cluster] {
-            let pair = self.pairs[number as usize];
-            let other = if is_second { pair.a } else { pair.b };
-            if !awake[other] {
-                continue;
-            }
-            let block = self.block(number as usize);
-            let out = out.each_mut().map(|axis| &mut axis[..]);
-            if is_second {
-                add_transposed(block, of(other), out);
-            } else {
-                add_product(block, of(other), out);
+        // Strips are the same for any number of threads, and so is the order in which they are added up.
+        let many = 2 * rayon::current_num_threads();
+        for strips in self.strips.chunks(many) {
+            let found: Vec<Fields> = strips
+                .par_iter()
+                .map(|strip| self.times_strip(strip, (x, awake), &range))
+                .collect();
+            for (strip, found) in strips.iter().zip(&found) {
+                for &(cluster, first) in &strip.touched {
+                    let own = range(cluster as usize);
+                    let from = (first as usize, first as usize + own.1 - own.0);
+                    let to = part_mut(out, own).into_iter().zip(part(found, from));
+                    to.for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, v)| *to += v));
+                }
             }
         }
+    }
+
+    /// A strip's blocks times `x`, at the clusters that it touches.
+    fn times_strip(
+        &self,
+        strip: &Strip,
+        (x, awake): (&Fields, &[bool]),
+        range: impl Fn(usize) -> (usize, usize),
+    ) -> Fields {
+        let mut out = zeros(strip.length);
+        for number in strip.pairs.clone() {
+            let pair = self.pairs[number];
+            if !(awake[pair.a] && awake[pair.b]) {
+                continue;
+            }
+            let (a, b) = (range(pair.a), range(pair.b));
+            let place = |first: u32, (start, end)| (first as usize, first as usize + end - start);
+            let block = self.block(number);
+            add_product(block, part(x, b), part_mut(&mut out, place(pair.to_a, a)));
+            if pair.a != pair.b {
+                // The block is in the cache still.
+                add_transposed(block, part(x, a), part_mut(&mut out, place(pair.to_b, b)));
+            }
+        }
+        out
     }
 }
 
@@ -146,30 +131,22 @@ pub fn raise(clusters: &Clusters, offset: &[usize], loads: &Fields) -> Fields {
         let Some(basis) = &cluster.basis else {
             continue;
         };
-        let (first, rank) = (offset[c], basis.chosen.len());
-        let own = cluster.first..cluster.last;
-        let from = cluster
-            .children
-            .iter()
-            .flat_map(|&child| offset[child]..offset[child + 1]);
-        for axis in 0..3 {
-            let mut sum = vec![0.0; rank];
-            let mut add = |row: usize, load: f64| {
-                let shares = &basis.transfer[row * rank..(row + 1) * rank];
-                sum.iter_mut()
-                    .zip(shares)
-                    .for_each(|(s, share)| *s += share * load);
-            };
-            if cluster.children.is_empty() {
-                own.clone()
-                    .enumerate()
-                    .for_each(|(row, k)| add(row, loads[axis][k]));
-            } else {
-                from.clone()
-                    .enumerate()
-                    .for_each(|(row, k)| add(row, up[axis][k]));
-            }
-            up[axis][first..first + rank].copy_from_slice(&sum);
+        let own = (offset[c], offset[c + 1]);
+        if cluster.children.is_empty() {
+            let loads = part(loads, (cluster.first, cluster.last));
+            add_transposed(&basis.transfer, loads, part_mut(&mut up, own));
+            continue;
+        }
+        let mut row = 0;
+        for &child in &cluster.children {
+            let (first, last) = (offset[child], offset[child + 1]);
+            let shares = &basis.transfer[row * (own.1 - own.0)..];
+            let shares = &shares[..(last - first) * (own.1 - own.0)];
+            let [x, y, z] = up.each_mut().map(|axis| axis.split_at_mut(first));
+            let to = [x.0, y.0, z.0].map(|axis| &mut axis[own.0..own.1]);
+            let from = [&*x.1, &*y.1, &*z.1].map(|axis| &axis[..last - first]);
+            add_transposed(shares, from, to);
+            row += last - first;
         }
     }
     up

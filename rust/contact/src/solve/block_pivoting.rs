@@ -11,6 +11,8 @@ use crate::Control;
 
 /// Residual from which a level is loose.
 const ROUGH: f64 = 1e-4;
+/// Residual at which the set of a large problem is looked at once more: a set that proves wrong later is solved twice.
+const FINE: f64 = 1e-7;
 /// Residual of the certificate.
 const EXACT: f64 = 1e-12;
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
@@ -30,9 +32,12 @@ pub enum Accuracy {
 
 impl Accuracy {
     /// Residuals to go through, relative to the largest gap; the set must hold still before the next is taken.
-    fn levels(self) -> &'static [f64] {
+    ///
+    /// Where products are dear, the set is looked at on the way to the certificate, not only at its end.
+    fn levels(self, is_dear: bool) -> &'static [f64] {
         match self {
             Accuracy::Rough => &[1e-2, ROUGH],
+            Accuracy::Full if is_dear => &[FINE, EXACT],
             Accuracy::Full => &[EXACT],
         }
     }
@@ -154,7 +159,7 @@ impl<'a> Run<'a> {
         (scale, accuracy): (f64, Accuracy),
         control: &Control,
     ) -> bool {
-        let levels = accuracy.levels();
+        let levels = accuracy.levels(matrix.is_dear());
         let finest = levels.len() - 1;
         let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, 0);
         let mut tolerance = levels[0] * scale;

@@ -43,10 +43,8 @@ pub fn conjugate_gradient(
         .iter()
         .map(|&i| right[i as usize] - image[i as usize])
         .collect();
-    let per_diagonal: Vec<f64> = set
-        .iter()
-        .map(|&i| 1.0 / matrix.diagonal()[i as usize])
-        .collect();
+    let preconditioner = matrix.preconditioner(set);
+    let mut inverse = vec![0.0; set.len()];
     let mut direction = vec![0.0; n];
     let mut weight = 0.0;
     for step in 0..limits.steps {
@@ -55,15 +53,12 @@ pub fn conjugate_gradient(
             return (CgEnd::Converged, step);
         }
         let previous = weight;
-        weight = residual
-            .iter()
-            .zip(&per_diagonal)
-            .map(|(r, d)| r * r * d)
-            .sum();
+        preconditioner.apply(&residual, &mut inverse);
+        weight = residual.iter().zip(&inverse).map(|(r, z)| r * z).sum();
         let beta = if step == 0 { 0.0 } else { weight / previous };
-        for ((&i, r), d) in set.iter().zip(&residual).zip(&per_diagonal) {
+        for (&i, z) in set.iter().zip(&inverse) {
             let p = &mut direction[i as usize];
-            *p = r * d + beta * *p;
+            *p = z + beta * *p;
         }
         matrix.times(&direction, &mut image);
         let curvature: f64 = set

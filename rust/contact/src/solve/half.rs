@@ -10,6 +10,29 @@ pub trait Symmetric {
 
     /// The matrix times `x`; the same bits for any number of threads.
     fn times(&self, x: &[f64], out: &mut [f64]);
+
+    /// What stands for the inverse on the unknowns of `set` (ascending): that of the diagonal, where nothing better is at hand.
+    fn preconditioner<'a>(&'a self, set: &'a [u32]) -> Box<dyn Preconditioner + 'a> {
+        let per = set.iter().map(|&i| 1.0 / self.diagonal()[i as usize]);
+        Box::new(PerDiagonal(per.collect()))
+    }
+}
+
+/// A symmetric positive definite map near the inverse of a matrix on some unknowns.
+pub trait Preconditioner {
+    /// The map times `residual`.
+    fn apply(&self, residual: &[f64], out: &mut [f64]);
+}
+
+/// Jacobi's.
+struct PerDiagonal(Vec<f64>);
+
+impl Preconditioner for PerDiagonal {
+    fn apply(&self, residual: &[f64], out: &mut [f64]) {
+        for ((out, r), d) in out.iter_mut().zip(residual).zip(&self.0) {
+            *out = r * d;
+        }
+    }
 }
 
 impl<T: Entry> Symmetric for Rows<T> {
@@ -35,6 +58,11 @@ pub trait Compliance: Symmetric {
 
     /// Whether that part has less precision than the matrix.
     fn is_narrow(&self, is_rough: bool) -> bool;
+
+    /// Whether products are what a solution's time goes to, whatever else is done.
+    fn is_dear(&self) -> bool {
+        false
+    }
 }
 
 impl<T: Entry> Compliance for Rows<T> {

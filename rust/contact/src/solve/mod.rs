@@ -13,5 +13,5 @@ mod projection;
 pub use along::{Along, Axes, Part};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
-pub use half::{Compliance, Symmetric};
+pub use half::{Compliance, Preconditioner, Symmetric};
 pub use kept::Kept;
