@@ -124,8 +124,8 @@ impl Coupled {
         let own = self.near.pairs.iter().filter(|pair| pair.a == pair.b);
         let members = |c: usize| self.clusters.list[c].last - self.clusters.list[c].first;
         let inverses: usize = own.map(|pair| members(pair.a).pow(2)).sum();
-        let entries = self.near.entries + self.far.entries + inverses;
-        ((entries + transfers) * size_of::<f32>()) as f64 / f64::from(1 << 30)
+        let singles = self.near.entries + self.far.entries + transfers;
+        (singles * size_of::<f32>() + inverses * size_of::<f64>()) as f64 / f64::from(1 << 30)
     }
 
     /// # Errors

@@ -2,7 +2,7 @@
 //!
 //! Block Jacobi. A finer skin has smaller clusters, yet what stiffens fastest with the fineness lies within them.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
@@ -17,11 +17,17 @@ pub struct Inverses(Vec<Inverse>);
 /// That of one cluster.
 #[derive(Debug, Clone)]
 struct Inverse {
-    /// Its part of the clusters' sites.
+    /// The first of the clusters' sites that are its own.
     first: usize,
-    last: usize,
-    /// Row by row, mm.
-    values: Vec<f32>,
+    /// mm.
+    matrix: DMatrix<f64>,
+}
+
+impl Inverse {
+    /// Its part of what is listed by the clusters' sites.
+    fn part<'a, T>(&self, all: &'a [T]) -> &'a [T] {
+        &all[self.first..self.first + self.matrix.nrows()]
+    }
 }
 
 impl Inverses {
@@ -31,27 +37,30 @@ impl Inverses {
         let own = pairs.filter(|(_, pair)| pair.a == pair.b);
         let inverses = own.map(|(number, pair)| {
             let (first, last) = (clusters[pair.a].first, clusters[pair.a].last);
-            let values = inverse(near.block(number), last - first);
             Inverse {
                 first,
-                last,
-                values,
+                matrix: inverse(near.block(number), last - first),
             }
         });
         Inverses(inverses.collect())
     }
+
+    /// Number of entries.
+    #[cfg(test)]
+    pub fn entries(&self) -> usize {
+        self.0.iter().map(|inverse| inverse.matrix.len()).sum()
+    }
 }
 
 /// The inverse of a symmetric block; of its diagonal, where rounding has left it indefinite.
-fn inverse(block: &[f32], columns: usize) -> Vec<f32> {
+fn inverse(block: &[f32], columns: usize) -> DMatrix<f64> {
     let values = block.iter().map(|v| f64::from(*v));
     let matrix = DMatrix::from_iterator(columns, columns, values);
     let diagonal = matrix.diagonal();
-    let inverse = match matrix.cholesky() {
+    match matrix.cholesky() {
         Some(factor) => factor.inverse(),
         None => DMatrix::from_diagonal(&diagonal.map(|k| 1.0 / k)),
-    };
-    inverse.iter().map(|v| *v as f32).collect()
+    }
 }
 
 /// The approximate inverse of `A_ij = K_ij v_i . v_j` on a set: directions hardly differ within a cluster, lengths may.
@@ -71,7 +80,7 @@ impl<'a> OnSet<'a> {
         let mut is_in = vec![false; coupled.len()];
         set.iter().for_each(|&i| is_in[i as usize] = true);
         let holds = |inverse: &&Inverse| {
-            let mut places = coupled.place[inverse.first..inverse.last].iter();
+            let mut places = inverse.part(&coupled.place).iter();
             places.any(|&k| is_in[k as usize])
         };
         let per_length = set.iter().map(|&i| 1.0 / along[i as usize].norm());
@@ -91,13 +100,10 @@ impl Preconditioner for OnSet<'_> {
             all[i as usize] = r * per;
         }
         // A cluster reads and writes its own places alone.
-        let (mut loads, mut found) = (Vec::new(), Vec::new());
         for inverse in &self.inverses {
-            let places = &self.coupled.place[inverse.first..inverse.last];
-            loads.clear();
-            loads.extend(places.iter().map(|&k| all[k as usize]));
-            found.resize(loads.len(), 0.0);
-            multiply(&inverse.values, &loads, &mut found);
+            let places = inverse.part(&self.coupled.place);
+            let loads = places.iter().map(|&k| all[k as usize]);
+            let found = &inverse.matrix * DVector::from_iterator(places.len(), loads);
             for (&k, found) in places.iter().zip(&found) {
                 all[k as usize] = *found;
             }
@@ -105,23 +111,5 @@ impl Preconditioner for OnSet<'_> {
         for ((&i, out), per) in self.set.iter().zip(out).zip(&self.per_length) {
             *out = all[i as usize] * per;
         }
-    }
-}
-
-/// A square matrix (row by row) times `x`.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply(matrix: &[f32], x: &[f64], out: &mut [f64]) {
-    let (x8, x_rest) = x.as_chunks::<8>();
-    for (row, out) in matrix.chunks_exact(x.len()).zip(out) {
-        let (row8, row_rest) = row.as_chunks::<8>();
-        let mut sums = [0.0; 8];
-        for (a, b) in row8.iter().zip(x8) {
-            for lane in 0..8 {
-                sums[lane] += f64::from(a[lane]) * b[lane];
-            }
-        }
-        let rest = row_rest.iter().zip(x_rest);
-        let tail: f64 = rest.map(|(a, b)| f64::from(*a) * b).sum();
-        *out = sums.iter().sum::<f64>() + tail;
     }
 }

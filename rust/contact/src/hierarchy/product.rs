@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::blocks::{Fields, add_product, add_transposed, part, part_mut, zeros};
-use super::clusters::Clusters;
+use super::clusters::{Cluster, Clusters};
 use super::coupled::{Blocks, Coupled, Strip};
 
 impl Coupled {
@@ -56,17 +56,12 @@ impl Coupled {
                 add_product(&basis.transfer, part(local, own), out);
                 continue;
             }
-            let mut row = 0;
-            for &child in &cluster.children {
+            for ((first, last), shares) in halves(cluster, &self.offset) {
                 // A cluster's sites come before those of its halves.
-                let (first, last) = (self.offset[child], self.offset[child + 1]);
-                let shares = &basis.transfer[row * (own.1 - own.0)..];
-                let shares = &shares[..(last - first) * (own.1 - own.0)];
                 let [x, y, z] = local.each_mut().map(|axis| axis.split_at_mut(first));
                 let from = [&*x.0, &*y.0, &*z.0].map(|axis| &axis[own.0..own.1]);
                 let to = [x.1, y.1, z.1].map(|axis| &mut axis[..last - first]);
                 add_product(shares, from, to);
-                row += last - first;
             }
         }
     }
@@ -124,6 +119,22 @@ impl Blocks {
     }
 }
 
+/// Where the chosen sites of a cluster's halves are, and the shares of its own in them.
+fn halves<'a>(
+    cluster: &'a Cluster,
+    offset: &'a [usize],
+) -> impl Iterator<Item = ((usize, usize), &'a [f32])> {
+    let basis = cluster.basis.as_ref();
+    let mut rest = basis.map_or(&[][..], |basis| &basis.transfer);
+    let rank = basis.map_or(0, |basis| basis.chosen.len());
+    cluster.children.iter().map(move |&half| {
+        let (first, last) = (offset[half], offset[half + 1]);
+        let (shares, others) = rest.split_at((last - first) * rank);
+        rest = others;
+        ((first, last), shares)
+    })
+}
+
 /// What the chosen sites of every cluster bear in place of its members' `loads` (in the clusters' order).
 pub fn raise(clusters: &Clusters, offset: &[usize], loads: &Fields) -> Fields {
     let mut up = zeros(offset[offset.len() - 1]);
@@ -137,16 +148,11 @@ pub fn raise(clusters: &Clusters, offset: &[usize], loads: &Fields) -> Fields {
             add_transposed(&basis.transfer, loads, part_mut(&mut up, own));
             continue;
         }
-        let mut row = 0;
-        for &child in &cluster.children {
-            let (first, last) = (offset[child], offset[child + 1]);
-            let shares = &basis.transfer[row * (own.1 - own.0)..];
-            let shares = &shares[..(last - first) * (own.1 - own.0)];
+        for ((first, last), shares) in halves(cluster, offset) {
             let [x, y, z] = up.each_mut().map(|axis| axis.split_at_mut(first));
             let to = [x.0, y.0, z.0].map(|axis| &mut axis[own.0..own.1]);
             let from = [&*x.1, &*y.1, &*z.1].map(|axis| &axis[..last - first]);
             add_transposed(shares, from, to);
-            row += last - first;
         }
     }
     up
