@@ -39,9 +39,13 @@ impl Sites {
     }
 
     /// Numbers the skin of `mesh`. `regions` has one entry per vertex, `spacing` is the median edge (mm).
-    pub fn new(mesh: &Mesh, regions: &[i32], spacing: f64, metric: &SkinDistance) -> Self {
-        let adjacency = Adjacency::new(mesh);
-        let shares = blend_regions(regions, &adjacency, spacing);
+    pub fn new(
+        (mesh, adjacency): (&Mesh, &Adjacency),
+        regions: &[i32],
+        spacing: f64,
+        metric: &SkinDistance,
+    ) -> Self {
+        let shares = blend_regions(regions, adjacency, spacing);
         let (normals, areas) = (vertex_normals(mesh), vertex_areas(mesh));
         let mut sites = Sites::empty(mesh.positions().len());
         for (patch, members) in metric.patches().enumerate() {

@@ -88,9 +88,14 @@ impl Skin {
         control.step("preparing", 0.3)?;
         let thickest = materials.iter().map(|m| m.thickness_mm).fold(0.0, f64::max);
         let range = range(model, thickest);
-        let metric = SkinDistance::new(&welded.mesh, range);
+        let metric = SkinDistance::new(&welded.mesh, &adjacency, range);
         control.step("preparing", 0.6)?;
-        let sites = Sites::new(&welded.mesh, &welded_regions, spacing, &metric);
+        let sites = Sites::new(
+            (&welded.mesh, &adjacency),
+            &welded_regions,
+            spacing,
+            &metric,
+        );
         if sites.len() == 0 {
             return Err(ContactError::NoSkin);
         }
@@ -222,7 +227,7 @@ impl Skin {
             control.step("preparing", 0.0)?;
             let range = range(self.model, tissue.thickest());
             if range > self.range {
-                self.metric = SkinDistance::new(&self.welded.mesh, range);
+                self.metric = SkinDistance::new(&self.welded.mesh, &self.adjacency, range);
                 self.range = range;
             }
             self.response = Response::new(self.model, &tissue.geometry, &self.sites, &self.metric);

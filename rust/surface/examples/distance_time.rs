@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 use std::time::Instant;
 
-use thenar_surface::{GapLimits, Mesh, Product, SkinDistance, Vec3, vertex_normals};
+use thenar_surface::{Adjacency, GapLimits, Mesh, Product, SkinDistance, Vec3, vertex_normals};
 
 fn main() {
     // The pool is this thread alone, so that its CPU time is all there is.
@@ -64,7 +64,7 @@ fn run() {
             count(&product.gaps_near(&points, Some(&normals), cut, &last))
         });
         best("skin_distance_ms", 5, || {
-            SkinDistance::new(&skin, 60.0).len()
+            SkinDistance::new(&skin, &Adjacency::new(&skin), 60.0).len()
         });
     }
 }

@@ -34,6 +34,18 @@ impl Adjacency {
         Adjacency { starts, neighbors }
     }
 
+    /// From what lies around one after the other, in any order and as often as it is met.
+    pub(crate) fn of(around: impl Iterator<Item = Vec<u32>>) -> Adjacency {
+        let (mut starts, mut neighbors) = (vec![0], Vec::new());
+        for mut others in around {
+            others.sort_unstable();
+            others.dedup();
+            neighbors.extend(others);
+            starts.push(neighbors.len() as u32);
+        }
+        Adjacency { starts, neighbors }
+    }
+
     /// How many vertices there are.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

@@ -6,14 +6,30 @@ use crate::mesh::{Mesh, Vec3};
 ///
 /// Zero where no triangle with area meets. Degenerate and duplicated triangles are ignored.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
-    let mut sums = vec![Vec3::zeros(); mesh.positions().len()];
-    for (vertices, corners) in mesh.sound_triangles() {
+    normals_of(mesh.positions().len(), mesh.sound_triangles())
+}
+
+fn normals_of(count: usize, triangles: impl Iterator<Item = ([u32; 3], [Vec3; 3])>) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::zeros(); count];
+    for (vertices, corners) in triangles {
         add_angle_weighted(&mut sums, vertices, corners);
     }
     for n in &mut sums {
         *n = n.try_normalize(1e-12).unwrap_or_default();
     }
     sums
+}
+
+/// [`vertex_normals`] of some vertices, in their order.
+pub(crate) fn normals_at(mesh: &Mesh, vertices: &[u32]) -> Vec<Vec3> {
+    let mut is_wanted = vec![false; mesh.positions().len()];
+    vertices.iter().for_each(|&v| is_wanted[v as usize] = true);
+    let is_beside = |t: &[u32; 3]| t.iter().any(|&v| is_wanted[v as usize]);
+    let normals = normals_of(
+        mesh.positions().len(),
+        mesh.sound_triangles_where(is_beside),
+    );
+    vertices.iter().map(|&v| normals[v as usize]).collect()
 }
 
 /// [`vertex_normals`] and [`vertex_areas`] of a mesh of which some vertices have moved, bit for bit, from those before.

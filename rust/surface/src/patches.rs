@@ -14,6 +14,13 @@ const SIZE: usize = 32;
 const FIRST: f64 = 0.75;
 const MOST_PATCHES: usize = 1024;
 
+/// From this many vertices in a patch on, centers are found between small patches, and vertices shared out once: each time, paths over
+/// all vertices of so large a mesh wait for memory at every step.
+const LARGE: usize = 512;
+
+/// Vertices in a small patch, at most. 8 and 16 serve.
+const SMALL: usize = 16;
+
 /// How often vertices are shared out anew to the nearest center: patches become round. 1 to 5 serve.
 const ROUNDS: usize = 2;
 
@@ -47,23 +54,19 @@ impl Ord for Length {
 }
 
 impl Patches {
-    /// Grows patches by distance along edges, each from where the last ones stopped, makes them round, and halves those too large.
+    /// Cuts a mesh into patches, and measures how far their members are from their centers.
     pub(crate) fn new(mesh: &Mesh, adjacency: &Adjacency) -> Patches {
-        let count = mesh.positions().len();
-        let size = SIZE.max((count as f64 / (FIRST * MOST_PATCHES as f64)).ceil() as usize);
         let skin = Skin {
             positions: mesh.positions(),
             adjacency,
         };
-        let mut centers = skin.seeds((FIRST * size as f64) as usize);
-        let mut patches = Patches::collect(skin.share(&centers));
-        for _ in 0..ROUNDS {
-            centers = (0..patches.len())
-                .map(|p| skin.middle(patches.members(p)))
-                .collect();
-            patches = Patches::collect(skin.share(&centers));
-        }
-        skin.halve(&mut patches, size);
+        let count = mesh.positions().len();
+        let size = SIZE.max((count as f64 / (FIRST * MOST_PATCHES as f64)).ceil() as usize);
+        let mut patches = if size < LARGE {
+            skin.grow(size)
+        } else {
+            skin.grow_large(size)
+        };
         patches.measure(&skin);
         patches
     }
@@ -113,9 +116,7 @@ impl Patches {
 
     /// Finds the final centers, and how far the members are from them.
     fn measure(&mut self, skin: &Skin) {
-        self.centers = (0..self.len())
-            .map(|p| skin.middle(self.members(p)))
-            .collect();
+        self.centers = skin.middles(self);
         let mut spread = Spread::new(self.patch_of.len());
         for &center in &self.centers {
             let own = self.patch_of[center as usize];
@@ -132,7 +133,7 @@ impl Patches {
     }
 }
 
-/// A skin's vertices and edges.
+/// A skin's vertices and edges, or its small patches' middles and which of them touch.
 struct Skin<'a> {
     positions: &'a [Vec3],
     adjacency: &'a Adjacency,
@@ -178,40 +179,85 @@ impl Spread {
 }
 
 impl Skin<'_> {
-    /// Vertices to grow patches of `size` from, about one in `size`.
-    fn seeds(&self, size: usize) -> Vec<u32> {
-        let mut is_taken = vec![false; self.positions.len()];
+    /// Grows patches by distance along edges, each from where the last ones stopped, makes them round, and halves those too large.
+    fn grow(&self, size: usize) -> Patches {
+        let (centers, _) = self.seeds((FIRST * size as f64) as usize);
+        let mut patches = Patches::collect(self.share(&centers));
+        for _ in 0..ROUNDS {
+            patches = Patches::collect(self.share(&self.middles(&patches)));
+        }
+        self.halve(&mut patches, size);
+        patches
+    }
+
+    /// The same, where centers are those of patches of small patches.
+    fn grow_large(&self, size: usize) -> Patches {
+        let small = Patches::collect(self.seeds(SMALL).1);
+        let means: Vec<Vec3> = (0..small.len())
+            .map(|p| self.mean(small.members(p)))
+            .collect();
+        let adjacency = Adjacency::of((0..small.len()).map(|p| {
+            let members = small.members(p).iter();
+            let beside = members.flat_map(|&i| self.adjacency.neighbors(i as usize));
+            let others = beside.map(|&j| small.patch_of[j as usize]);
+            others.filter(|&other| other as usize != p).collect()
+        }));
+        let coarse = Skin {
+            positions: &means,
+            adjacency: &adjacency,
+        };
+        let of_small = (size * small.len()).div_ceil(self.positions.len());
+        let rough = coarse.grow(of_small).patch_of;
+        let rough = small.patch_of.iter().map(|&p| rough[p as usize]).collect();
+        let centers = self.middles(&Patches::collect(rough));
+        let mut patches = Patches::collect(self.share(&centers));
+        self.halve(&mut patches, size);
+        patches
+    }
+
+    /// The member nearest to the middle of each patch.
+    fn middles(&self, patches: &Patches) -> Vec<u32> {
+        (0..patches.len())
+            .map(|p| self.middle(patches.members(p)))
+            .collect()
+    }
+
+    /// Vertices to grow patches of `size` from, about one in `size`, and the number of the one that each vertex was reached from first.
+    fn seeds(&self, size: usize) -> (Vec<u32>, Vec<u32>) {
+        const FREE: u32 = u32::MAX;
+        let mut seed_of = vec![FREE; self.positions.len()];
         let (mut seeds, mut edge, mut next) =
             (Vec::new(), VecDeque::new(), 0..self.positions.len() as u32);
         while let Some(seed) = edge.pop_front().or_else(|| next.next()) {
-            if is_taken[seed as usize] {
+            if seed_of[seed as usize] != FREE {
                 continue;
             }
+            let number = seeds.len() as u32;
             seeds.push(seed);
             let mut heap = BinaryHeap::from([Reverse((Length(0.0), seed))]);
             let mut taken = 0;
             while let Some(Reverse((at, i))) = heap.pop() {
-                if is_taken[i as usize] {
+                if seed_of[i as usize] != FREE {
                     continue;
                 }
                 if taken == size {
                     edge.push_back(i);
                     continue;
                 }
-                is_taken[i as usize] = true;
+                seed_of[i as usize] = number;
                 taken += 1;
                 for &j in self
                     .adjacency
                     .neighbors(i as usize)
                     .iter()
-                    .filter(|&&j| !is_taken[j as usize])
+                    .filter(|&&j| seed_of[j as usize] == FREE)
                 {
                     let step = (self.positions[i as usize] - self.positions[j as usize]).norm();
                     heap.push(Reverse((Length(at.0 + step), j)));
                 }
             }
         }
-        seeds
+        (seeds, seed_of)
     }
 
     /// Gives every vertex the number of the center nearest along edges. Every connected part must hold a center.
@@ -222,13 +268,15 @@ impl Skin<'_> {
         spread.label
     }
 
+    /// Where members lie on average, mm.
+    fn mean(&self, members: &[u32]) -> Vec3 {
+        let places = members.iter().map(|&i| self.positions[i as usize]);
+        places.sum::<Vec3>() / members.len() as f64
+    }
+
     /// The member nearest to the middle.
     fn middle(&self, members: &[u32]) -> u32 {
-        let middle = members
-            .iter()
-            .map(|&i| self.positions[i as usize])
-            .sum::<Vec3>()
-            / members.len() as f64;
+        let middle = self.mean(members);
         let off = |i: &u32| (self.positions[*i as usize] - middle).norm_squared();
         members
             .iter()
@@ -272,5 +320,75 @@ impl Skin<'_> {
             }
             *patches = Patches::collect(patch_of);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// A lattice of triangles bent over a ridge, `side` by `side`, numbered in no order, spacing 1 mm.
+    fn ridge(side: u32) -> Mesh {
+        let count = side * side;
+        // 48,271 shares no divisor with a power of two: a step along the lattice leads far away in memory.
+        let number = |i: u32, j: u32| ((i * side + j) as u64 * 48_271 % u64::from(count)) as u32;
+        let mut positions = vec![Vec3::zeros(); count as usize];
+        let mut triangles = Vec::new();
+        for i in 0..side {
+            for j in 0..side {
+                let (x, y) = (f64::from(i) + 0.5 * f64::from(j % 2), 0.866 * f64::from(j));
+                let height = 20.0 * (x / 40.0).sin();
+                positions[number(i, j) as usize] = Vec3::new(x, y, height);
+                if i + 1 < side && j + 1 < side {
+                    let [a, b, c, d] = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)];
+                    let cut = if j % 2 == 0 {
+                        [a, b, c, b, d, c]
+                    } else {
+                        [a, b, d, a, d, c]
+                    };
+                    let cut = cut.map(|(i, j)| number(i, j));
+                    triangles.extend(cut.as_chunks::<3>().0);
+                }
+            }
+        }
+        Mesh::new(positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn large_patches_are_as_many_and_as_round_as_those_grown_vertex_by_vertex() {
+        let (mesh, size) = (ridge(256), LARGE);
+        let adjacency = Adjacency::new(&mesh);
+        let skin = Skin {
+            positions: mesh.positions(),
+            adjacency: &adjacency,
+        };
+        let measured = |mut patches: Patches| {
+            patches.measure(&skin);
+            patches
+        };
+        let (plain, large) = (measured(skin.grow(size)), measured(skin.grow_large(size)));
+        let counts = [plain.len() as f64, large.len() as f64];
+        assert!((counts[1] / counts[0] - 1.0).abs() < 0.15, "{counts:?}");
+        let mean = |patches: &Patches| patches.radii.iter().sum::<f64>() / patches.len() as f64;
+        assert!(
+            mean(&large) < 1.05 * mean(&plain),
+            "{} over {}",
+            mean(&large),
+            mean(&plain)
+        );
+        for p in 0..large.len() {
+            assert!((1..=size).contains(&large.members(p).len()));
+            assert!(
+                large
+                    .members(p)
+                    .iter()
+                    .all(|&i| large.patch_of[i as usize] as usize == p)
+            );
+        }
+        // Every vertex is in one, and joined with its center by members alone.
+        assert_eq!(large.members.len(), mesh.positions().len());
+        assert!(large.from_center.iter().all(|d| d.is_finite()));
     }
 }

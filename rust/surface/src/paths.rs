@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::adjacency::Adjacency;
 use crate::mesh::{Mesh, Vec3};
-use crate::normals::vertex_normals;
+use crate::normals::normals_at;
 use crate::patches::Patches;
 
 /// What is measured on a mesh is raised by this factor, for the pairs that were not measured.
@@ -116,15 +116,10 @@ impl Graph {
             links.extend(around);
             starts.push(links.len() as u32);
         }
-        let normals = vertex_normals(mesh);
         Graph {
             starts,
             links,
-            normals: patches
-                .centers
-                .iter()
-                .map(|&i| normals[i as usize])
-                .collect(),
+            normals: normals_at(mesh, &patches.centers),
             centers: patches.centers.iter().map(|&i| p[i as usize]).collect(),
         }
     }

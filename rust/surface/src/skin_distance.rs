@@ -22,11 +22,10 @@ pub struct SkinDistance {
 }
 
 impl SkinDistance {
-    /// Cuts a skin into patches and measures up to `range_mm` along it.
-    pub fn new(mesh: &Mesh, range_mm: f64) -> SkinDistance {
-        let adjacency = Adjacency::new(mesh);
-        let patches = Patches::new(mesh, &adjacency);
-        let graph = Graph::new(mesh, &adjacency, &patches);
+    /// Cuts a skin into patches and measures up to `range_mm` along it. `adjacency` is that of `mesh`.
+    pub fn new(mesh: &Mesh, adjacency: &Adjacency, range_mm: f64) -> SkinDistance {
+        let patches = Patches::new(mesh, adjacency);
+        let graph = Graph::new(mesh, adjacency, &patches);
         let balls = balls(mesh, &patches, &graph.centers);
         let stretch = Stretch::measure(&graph);
         let reach = 2.0 * patches.radii.iter().fold(0.0f64, |a, b| a.max(*b));

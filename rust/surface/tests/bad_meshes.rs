@@ -276,7 +276,10 @@ fn one_triangle_and_loose_vertices_give_derived_data() {
     assert_eq!(mesh.edges(), vec![[0, 1], [0, 2], [0, 3], [1, 2]]);
     assert_eq!(Adjacency::new(&mesh).neighbors(0), &[1, 2, 3]);
     assert!((median_edge_length(&mesh) - 5.0).abs() < 1e-12);
-    assert_eq!(SkinDistance::new(&mesh, 10.0).patch_of(0), 0);
+    assert_eq!(
+        SkinDistance::new(&mesh, &Adjacency::new(&mesh), 10.0).patch_of(0),
+        0
+    );
 }
 
 #[test]

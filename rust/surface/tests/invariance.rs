@@ -6,8 +6,8 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point, renew_shape,
-    self_intersections, vertex_areas, vertex_normals,
+    Adjacency, Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point,
+    renew_shape, self_intersections, vertex_areas, vertex_normals,
 };
 
 const FULL: GapLimits = GapLimits {
@@ -203,7 +203,7 @@ proptest! {
         let mesh = Mesh::new(p.clone(), t).unwrap();
         mesh.audit().warnings("it");
         self_intersections(&mesh);
-        let skin = SkinDistance::new(&mesh, 5.0);
+        let skin = SkinDistance::new(&mesh, &Adjacency::new(&mesh), 5.0);
         prop_assert_eq!(skin.patches().map(<[u32]>::len).sum::<usize>(), p.len());
         let Ok(product) = Product::new(mesh) else { return Ok(()) };
         let mut random = Random(seed);

@@ -5,7 +5,7 @@
 mod shapes;
 
 use shapes::{Random, sphere, together, v};
-use thenar_surface::{Mesh, SkinDistance, Vec3};
+use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3};
 
 /// A jittered triangular lattice in the plane, `n` by `n`, spacing 2.4 mm.
 fn sheet(n: u32, jitter: f64, seed: u64) -> Mesh {
@@ -38,7 +38,7 @@ fn sheet(n: u32, jitter: f64, seed: u64) -> Mesh {
 }
 
 fn check(mesh: &Mesh, true_distance: impl Fn(Vec3, Vec3) -> f64) -> f64 {
-    let skin = SkinDistance::new(mesh, 60.0);
+    let skin = SkinDistance::new(mesh, &Adjacency::new(mesh), 60.0);
     let p = mesh.positions();
     let is_center = |i: usize| skin.center(skin.patch_of(i)) == i as u32;
     let (mut tightest, mut loosest_far) = (0.0f64, 1.0f64);
@@ -95,7 +95,7 @@ fn patches_cover_every_vertex_once_and_parts_are_far() {
         sphere(5.0, 12, 16),
         shapes::moved(&sphere(5.0, 12, 16), |p| p + v(11.0, 0.0, 0.0)),
     ]);
-    let skin = SkinDistance::new(&two, 50.0);
+    let skin = SkinDistance::new(&two, &Adjacency::new(&two), 50.0);
     let mut seen = vec![0; two.positions().len()];
     for (k, members) in skin.patches().enumerate() {
         assert!(members.len() <= 32);
