@@ -7,16 +7,14 @@
 use thenar_surface::{Adjacency, Vec3};
 
 use crate::sites::Sites;
+use crate::spread::{Graph, spread};
+
+pub use crate::spread::Sums;
 
 /// Length over which normals are averaged along the skin, mm: about a fingertip (tests pass from 12 to 40).
 const AVERAGE_LENGTH: f64 = 16.0;
-/// Accuracy of the average: a fixed number of steps reaches it for any field, so the result turns with its input.
-const AVERAGE_ACCURACY: f64 = 1e-3;
 /// Least cosine between a site's normal and its direction.
 pub const LEAST_COSINE: f64 = 0.35;
-
-/// Sums of weighted normals and of weights around a site; their ratio is the average.
-pub type Sums = [f64; 4];
 
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///
@@ -97,96 +95,6 @@ fn strength(spacing: f64) -> f64 {
     AVERAGE_LENGTH * AVERAGE_LENGTH / (1.5 * spacing * spacing)
 }
 
-/// Solves `(1 + c L) x = b` with the graph's Laplacian L: every value spreads over about [`AVERAGE_LENGTH`].
-///
-/// Chebyshev's iteration, whose steps do not depend on `b`.
-fn spread(b: &[Sums], graph: &Graph) -> Vec<Sums> {
-    let degree = graph.most_neighbors as f64;
-    let (low, high) = (1.0, 1.0 + 2.0 * graph.strength * degree);
-    let (middle, half) = (0.5 * (high + low), 0.5 * (high - low).max(1e-12));
-    let steps = (0.5 * (high / low).sqrt() * (2.0 / AVERAGE_ACCURACY).ln()).ceil() as usize;
-    let mut x = vec![Sums::default(); b.len()];
-    let mut step = vec![Sums::default(); b.len()];
-    let mut rho = half / middle;
-    for k in 0..=steps {
-        let next = if k == 0 {
-            rho
-        } else {
-            1.0 / (2.0 * middle / half - rho)
-        };
-        let (keep, gain) = if k == 0 {
-            (0.0, 1.0 / middle)
-        } else {
-            (next * rho, 2.0 * next / half)
-        };
-        advance(graph, b, (keep, gain), (&mut x, &mut step));
-        rho = next;
-    }
-    x
-}
-
-/// Neighbors one after the other, with the diagonal of `1 + c L`.
-struct Graph {
-    strength: f64,
-    diagonal: Vec<f64>,
-    /// One past the last neighbor of each.
-    ends: Vec<u32>,
-    neighbors: Vec<u32>,
-    most_neighbors: usize,
-}
-
-impl Graph {
-    /// An empty one, with room for so many values.
-    fn new(strength: f64, values: usize) -> Self {
-        Graph {
-            strength,
-            diagonal: Vec::with_capacity(values),
-            ends: Vec::with_capacity(values),
-            neighbors: Vec::with_capacity(6 * values),
-            most_neighbors: 0,
-        }
-    }
-
-    /// Ends the list of the next value's neighbors, of which there are `degree`; those that are not listed are in `b`.
-    fn end(&mut self, degree: usize) {
-        self.diagonal.push(1.0 + self.strength * degree as f64);
-        self.ends.push(self.neighbors.len() as u32);
-        self.most_neighbors = self.most_neighbors.max(degree);
-    }
-}
-
-/// One of Chebyshev's steps: `step` becomes `keep` of itself and `gain` of the residual, and is added to `x`.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn advance(
-    graph: &Graph,
-    b: &[Sums],
-    (keep, gain): (f64, f64),
-    (x, step): (&mut [Sums], &mut [Sums]),
-) {
-    let mut from = 0;
-    let all = graph.ends.iter().zip(&graph.diagonal).zip(b).zip(&*x);
-    for ((((&to, own), b), here), step) in all.zip(&mut *step) {
-        let mut around = [0.0; 4];
-        for &j in &graph.neighbors[from as usize..to as usize] {
-            let there = x[j as usize];
-            for axis in 0..4 {
-                around[axis] += there[axis];
-            }
-        }
-        let mut next = *step;
-        for axis in 0..4 {
-            let residual = b[axis] - own * here[axis] + graph.strength * around[axis];
-            next[axis] = keep * next[axis] + gain * residual;
-        }
-        *step = next;
-        from = to;
-    }
-    let (x, step) = (x.as_flattened_mut(), step.as_flattened());
-    for (x, step) in x.iter_mut().zip(step) {
-        *x += step;
-    }
-}
-
 /// Unit direction nearest to `average` within the cone around `normal` that keeps the contact pressing.
 fn tame(average: Vec3, normal: Vec3) -> Vec3 {
     let direction = average.try_normalize(1e-300).unwrap_or(normal);
@@ -204,6 +112,7 @@ fn tame(average: Vec3, normal: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spread::ACCURACY;
 
     #[test]
     fn beside_values_that_stay_the_others_are_those_of_the_whole() {
@@ -223,9 +132,9 @@ mod tests {
         let off = all().flat_map(|((a, b), _)| (0..4).map(move |axis| (a[axis] - b[axis]).abs()));
         let off = off.fold(0.0, f64::max);
         let most = whole.iter().flatten().fold(0.0, |m, x| f64::max(m, *x));
-        assert!(off < 2.0 * AVERAGE_ACCURACY * most, "{off} of {most}");
+        assert!(off < 2.0 * ACCURACY * most, "{off} of {most}");
         // The whole is no constant, so that this says something.
         let least = whole.iter().flatten().fold(most, |m, x| f64::min(m, *x));
-        assert!(most - least > 20.0 * AVERAGE_ACCURACY * most);
+        assert!(most - least > 20.0 * ACCURACY * most);
     }
 }

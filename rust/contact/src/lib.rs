@@ -12,6 +12,7 @@ mod contact_state;
 mod control;
 mod carried;
 mod direction;
+mod spread;
 mod errors;
 mod fields;
 mod interface;
