@@ -5,7 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::clusters::Clusters;
-use super::inverses::Inverses;
+use super::inverse_factor::InverseFactor;
 use super::{Ground, Hierarchy, Listed, SEPARATION, gap};
 use crate::{ContactError, Control};
 
@@ -72,8 +72,8 @@ pub struct Coupled {
     pub(super) far: Blocks,
     /// `K_ii` in the zone's order.
     pub(super) own: Vec<f64>,
-    /// What stands for the inverse of the near blocks.
-    pub(super) inverses: Inverses,
+    /// What stands for the inverse.
+    pub(super) inverse_factor: InverseFactor,
 }
 
 impl Coupled {
@@ -91,11 +91,13 @@ impl Coupled {
         coupled.check(MOST_GIB)?;
         coupled.fill(hierarchy, ground, control)?;
         coupled.own = coupled.diagonal();
-        coupled.inverses = Inverses::new(&coupled.near, &coupled.clusters.list);
+        coupled
+            .inverse_factor
+            .fill(hierarchy, &coupled.clusters, ground);
         Ok(coupled)
     }
 
-    /// Finds skeletons and pairs; no block yet.
+    /// Finds skeletons, pairs and what lies beside each cluster; no block yet.
     pub(super) fn planned(
         hierarchy: &Hierarchy,
         zone: &[u32],
@@ -114,18 +116,18 @@ impl Coupled {
             coupled.pair(hierarchy, 0, 0);
         }
         coupled.lay_out();
+        let (near, clusters) = (&coupled.near, &coupled.clusters);
+        coupled.inverse_factor = InverseFactor::planned(near, clusters, ground);
         Ok(coupled)
     }
 
-    /// Memory of the blocks, the inverses and the skeletons, GiB, known before the blocks are made.
+    /// Memory of the blocks, the inverse factor and the skeletons, GiB, known before the blocks are made.
     pub fn needed_gib(&self) -> f64 {
         let bases = self.clusters.list.iter().filter_map(|c| c.basis.as_ref());
         let transfers: usize = bases.map(|basis| basis.transfer.len()).sum();
-        let own = self.near.pairs.iter().filter(|pair| pair.a == pair.b);
-        let members = |c: usize| self.clusters.list[c].last - self.clusters.list[c].first;
-        let inverses: usize = own.map(|pair| members(pair.a).pow(2)).sum();
         let singles = self.near.entries + self.far.entries + transfers;
-        (singles * size_of::<f32>() + inverses * size_of::<f64>()) as f64 / f64::from(1 << 30)
+        let doubles = self.inverse_factor.entries();
+        (singles * size_of::<f32>() + doubles * size_of::<f64>()) as f64 / f64::from(1 << 30)
     }
 
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::blocks::zeros;
 use super::coupled::Coupled;
-use super::inverses::OnSet;
+use super::inverse_factor::OnSet;
 use crate::solve::{Compliance, Kept, Preconditioner, Symmetric};
 use thenar_surface::Vec3;
 

@@ -9,7 +9,7 @@ mod skeleton;
 mod clusters;
 mod blocks;
 mod coupled;
-mod inverses;
+mod inverse_factor;
 mod product;
 mod directed;
 mod field;

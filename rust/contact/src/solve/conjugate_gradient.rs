@@ -1,4 +1,4 @@
-//! Conjugate gradients with Jacobi's preconditioner on a principal submatrix.
+//! Conjugate gradients on a principal submatrix, with the preconditioner that the matrix gives for it.
 
 use super::half::Symmetric;
 
