@@ -1,5 +1,7 @@
 //! Stages 1 and 2: which sites penetrate, how deep each region is pressed, and which sites may come to touch.
 
+use std::sync::Arc;
+
 use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3};
 
 use crate::memory::Shape;
@@ -31,7 +33,7 @@ pub struct Detection {
     /// Posed areas, mm2.
     pub areas: Vec<f64>,
     /// Signed distance and closest point, by welded vertex.
-    pub gaps: Vec<Option<Gap>>,
+    pub gaps: Arc<Vec<Option<Gap>>>,
     /// The distances alone, infinite beyond the reach of the query: most that ask need no more, and read a tenth.
     pub distances: Vec<f64>,
     /// Largest penetration, by region, mm.
@@ -84,8 +86,9 @@ pub fn detect(
     // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
     for (vertex, distance) in distances.iter_mut().enumerate() {
         if -*distance > MOST_DEPTH {
-            gaps[vertex] = product.gap(positions[vertex], None, limits());
-            *distance = gaps[vertex].map_or(f64::INFINITY, |gap| gap.distance);
+            let nearest = product.gap(positions[vertex], None, limits());
+            Arc::make_mut(&mut gaps)[vertex] = nearest;
+            *distance = nearest.map_or(f64::INFINITY, |gap| gap.distance);
         }
     }
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];

@@ -49,11 +49,16 @@ struct Candidate {
     neighbors: Vec<u32>,
 }
 
-/// Replaces the readings of points that have come through a wall.
-pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &mut [Option<Gap>]) {
+/// Replaces the readings of points that have come through a wall; returns which may differ now.
+pub(crate) fn settle(
+    product: &Product,
+    skin: &Skin,
+    limits: GapLimits,
+    gaps: &mut [Option<Gap>],
+) -> Vec<u32> {
     let (seen, away) = seen_and_away(skin, limits, gaps);
     if away.is_empty() {
-        return;
+        return Vec::new();
     }
     let vicinity = Vicinity::new(skin.points, &seen, &away);
     let mut is_settled = vec![false; gaps.len()];
@@ -87,6 +92,7 @@ pub(crate) fn settle(product: &Product, skin: &Skin, limits: GapLimits, gaps: &m
     }
     candidates.sort_by_key(|c| c.at);
     enclose(product, skin, &candidates, (&is_settled, gaps));
+    candidates.iter().map(|c| c.at).collect()
 }
 
 /// Points that have a reading, and those of them that face away from what they were measured to.

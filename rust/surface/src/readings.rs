@@ -1,5 +1,6 @@
 //! Gaps of the same points from posture to posture: only what moved is measured anew.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::facing::Facing;
@@ -11,7 +12,7 @@ use crate::product::{FEW, Gap, GapLimits, Product, deal};
 /// Points answered by one task.
 const CHUNK: usize = 256;
 
-/// What was read of some points the last time, before skin that has come through a wall was told from other skin.
+/// What was read of some points the last time.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
     /// Of which product; 0: of none.
@@ -19,7 +20,12 @@ pub struct Readings {
     limits: Option<GapLimits>,
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// Before skin that has come through a wall was told from other skin.
     gaps: Vec<Option<Gap>>,
+    /// And after.
+    settled: Arc<Vec<Option<Gap>>>,
+    /// Where the two may differ.
+    through: Vec<u32>,
     /// How far each may go before a face can be within the cut-off, mm; 0 if not known, NaN if nothing was read.
     rooms: Vec<f64>,
 }
@@ -31,7 +37,8 @@ pub(crate) fn new_number() -> u64 {
 }
 
 impl Product {
-    /// [`Product::gaps`], bit for bit; points that lie and face as in `readings` are not measured anew. Keeps what was read there.
+    /// [`Product::gaps`], bit for bit; points that lie and face as in `readings` are not measured anew. Keeps what was read there, and hands
+    /// it out: who lets go of it before the next query saves the copying of what stays.
     ///
     /// `points` (n), mm; `skin_normals` (n), unit, zero where there is none.
     pub fn gaps_after(
@@ -39,7 +46,7 @@ impl Product {
         readings: &mut Readings,
         (points, skin_normals): (&[Vec3], &[Vec3]),
         limits: GapLimits,
-    ) -> Vec<Option<Gap>> {
+    ) -> Arc<Vec<Option<Gap>>> {
         let fits = readings.product == self.number()
             && readings.limits == Some(limits)
             && readings.points.len() == points.len();
@@ -56,17 +63,23 @@ impl Product {
                 } else {
                     vec![None; points.len()]
                 },
+                settled: Arc::new(vec![None; points.len()]),
+                through: Vec::new(),
                 rooms: vec![f64::NAN; points.len()],
             };
         }
+        let settled = Arc::make_mut(&mut readings.settled);
+        for &k in &readings.through {
+            settled[k as usize] = readings.gaps[k as usize];
+        }
         self.read_moved(readings, (points, skin_normals), limits);
-        let mut settled = readings.gaps.clone();
         let skin = Skin {
             points,
             normals: skin_normals,
         };
-        settle(self, &skin, limits, &mut settled);
-        settled
+        let settled = Arc::make_mut(&mut readings.settled);
+        readings.through = settle(self, &skin, limits, settled);
+        Arc::clone(&readings.settled)
     }
 
     /// Measures anew what moved or turned.
@@ -80,9 +93,11 @@ impl Product {
         let now = points.iter().zip(skin_normals);
         let moved = before.zip(now).filter(|(before, now)| before != now);
         let are_few = moved.take(FEW).count() < FEW;
+        let settled = Arc::make_mut(&mut readings.settled);
         let parts = readings
             .gaps
             .chunks_mut(CHUNK)
+            .zip(settled.chunks_mut(CHUNK))
             .zip(readings.rooms.chunks_mut(CHUNK))
             .zip(readings.points.chunks_mut(CHUNK))
             .zip(readings.normals.chunks_mut(CHUNK))
@@ -90,7 +105,7 @@ impl Product {
         deal(
             parts,
             are_few,
-            |((((gaps, rooms), before), faced), (points, normals))| {
+            |(((((gaps, settled), rooms), before), faced), (points, normals))| {
                 let mut pending = Pending::default();
                 let mut facing = Facing::new(self, limits, &mut pending);
                 let mut last = None;
@@ -108,6 +123,7 @@ impl Product {
                     } else {
                         (facing.gap(point, Some(normal), hint), 0.0)
                     };
+                    settled[k] = gaps[k];
                     (before[k], faced[k]) = (point, normal);
                     last = gaps[k].map(|g| g.triangle).or(last);
                 }

@@ -257,12 +257,12 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
         let product = &products[frame / 6 % 2];
         let limits = if frame % 12 < 9 { CUT } else { FULL };
         let again = product.gaps_after(&mut readings, (&positions, &normals), limits);
-        assert_eq!(again, query(product, &posed, limits), "{frame}");
+        assert_eq!(*again, query(product, &posed, limits), "{frame}");
     }
     // Skin that lies where it lay and faces the other way.
     let turned: Vec<Vec3> = normals.iter().map(|n| -n).collect();
     let before = products[0].gaps_after(&mut readings, (&positions, &normals), CUT);
     let again = products[0].gaps_after(&mut readings, (&positions, &turned), CUT);
-    assert_eq!(again, products[0].gaps(&positions, Some(&turned), CUT));
+    assert_eq!(*again, products[0].gaps(&positions, Some(&turned), CUT));
     assert_ne!(again, before, "which way skin faces matters here");
 }

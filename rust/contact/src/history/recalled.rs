@@ -1,5 +1,7 @@
 //! A press of tissue that remembers: the posture moved by what is remembered before the solve, the forces scaled after it.
 
+use std::sync::Arc;
+
 use thenar_surface::{Product, Vec3};
 
 use super::state::Recall;
@@ -51,7 +53,7 @@ pub fn moved(
     for (site, u) in field.iter_mut().enumerate() {
         *u *= weight[site] * skin.sites.follow[site];
     }
-    let (mut positions, mut gaps) = (truth.positions.clone(), truth.gaps.clone());
+    let (mut positions, mut gaps) = (truth.positions.clone(), truth.gaps.to_vec());
     let mut near: Vec<usize> = Vec::new();
     for (u, &vertex) in field.iter().zip(&skin.sites.vertex) {
         let vertex = vertex as usize;
@@ -78,7 +80,7 @@ pub fn moved(
         normals: truth.normals.clone(),
         areas: truth.areas.clone(),
         distances: distances_of(&gaps),
-        gaps,
+        gaps: Arc::new(gaps),
         max_penetration: truth.max_penetration.clone(),
     };
     Ok(Moved { detection, field })
