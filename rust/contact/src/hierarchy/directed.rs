@@ -37,16 +37,7 @@ impl Symmetric for Directed<'_> {
     }
 
     fn times(&self, x: &[f64], out: &mut [f64]) {
-        let mut loads = zeros(x.len());
-        for (k, (x, along)) in x.iter().zip(self.along).enumerate() {
-            for axis in 0..3 {
-                loads[axis][k] = along[axis] * x;
-            }
-        }
-        let [a, b, c] = self.coupled.times(&loads, &self.is_active);
-        for (k, (out, along)) in out.iter_mut().zip(self.along).enumerate() {
-            *out = along.x * a[k] + along.y * b[k] + along.z * c[k];
-        }
+        self.between((&self.is_active, &self.is_active), x, out);
     }
 
     fn preconditioner<'b>(&'b self, set: &'b [u32]) -> Box<dyn Preconditioner + 'b> {
@@ -54,10 +45,29 @@ impl Symmetric for Directed<'_> {
     }
 }
 
+impl Directed<'_> {
+    /// The compliance times `x`, which is zero outside `from`, at the places of `to`.
+    fn between(&self, (from, to): (&[bool], &[bool]), x: &[f64], out: &mut [f64]) {
+        let mut loads = zeros(x.len());
+        for (k, (x, along)) in x.iter().zip(self.along).enumerate() {
+            for axis in 0..3 {
+                loads[axis][k] = along[axis] * x;
+            }
+        }
+        let [a, b, c] = self.coupled.times(&loads, (from, to));
+        for (k, (out, along)) in out.iter_mut().zip(self.along).enumerate() {
+            *out = along.x * a[k] + along.y * b[k] + along.z * c[k];
+        }
+    }
+}
+
 impl Compliance for Directed<'_> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
+        let from: Vec<bool> = x.iter().map(|x| *x != 0.0).collect();
+        let mut to = vec![false; x.len()];
+        rows.iter().for_each(|&i| to[i as usize] = true);
         let mut all = vec![0.0; x.len()];
-        self.times(x, &mut all);
+        self.between((&from, &to), x, &mut all);
         for (&i, out) in rows.iter().zip(out) {
             *out = all[i as usize];
         }

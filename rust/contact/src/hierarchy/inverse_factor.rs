@@ -191,3 +191,116 @@ impl Preconditioner for OnSet<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::Control;
+    use crate::hierarchy::Directed;
+    use crate::hierarchy::tests::{all, skin};
+    use crate::solve::Symmetric;
+
+    #[test]
+    fn where_all_sites_are_beside_the_preconditioner_is_the_inverse() {
+        let skin = skin(24, [6.0; 3], Vec::new());
+        let (ground, none) = (skin.ground(), Control::none());
+        let from_corner = |&i: &u32| {
+            let place = |i: u32| ground.sites.rest[i as usize].position;
+            (place(i) - place(0)).norm()
+        };
+        let mut zone = all(&skin);
+        zone.sort_by(|a, b| from_corner(a).total_cmp(&from_corner(b)));
+        zone.truncate(60);
+        zone.sort_unstable();
+        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let smallest = coupled.clusters.list.iter();
+        let smallest = smallest.filter(|c| c.children.is_empty()).count();
+        assert!(smallest > 2, "{smallest} clusters");
+        // One direction, lengths that differ.
+        let along: Vec<Vec3> = (0..zone.len())
+            .map(|k| Vec3::new(0.3, -0.2, 0.9).normalize() * (1.0 + 0.1 * (k % 5) as f64))
+            .collect();
+        let directed = Directed::new(&coupled, &along);
+        let right: Vec<f64> = (0..zone.len()).map(|k| (0.7 * k as f64).sin()).collect();
+        let (mut x, mut image) = (vec![0.0; zone.len()], vec![0.0; zone.len()]);
+        let set: Vec<u32> = (0..zone.len() as u32).collect();
+        directed.preconditioner(&set).apply(&right, &mut x);
+        directed.times(&x, &mut image);
+        for (image, right) in image.iter().zip(&right) {
+            assert!((image - right).abs() < 1e-4, "{image} {right}");
+        }
+    }
+
+    /// A linear map of `n` unknowns, written out.
+    fn written(n: usize, map: impl Fn(&[f64], &mut [f64])) -> DMatrix<f64> {
+        let mut columns = DMatrix::zeros(n, n);
+        for j in 0..n {
+            let (mut unit, mut image) = (vec![0.0; n], vec![0.0; n]);
+            unit[j] = 1.0;
+            map(&unit, &mut image);
+            columns.set_column(j, &DVector::from_vec(image));
+        }
+        (&columns + columns.transpose()) / 2.0
+    }
+
+    #[test]
+    fn the_preconditioned_compliance_is_near_the_identity_within_a_contact() {
+        let skin = skin(26, [6.0; 3], Vec::new());
+        let (ground, none) = (skin.ground(), Control::none());
+        let zone = all(&skin);
+        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let along = vec![Vec3::z(); zone.len()];
+        let directed = Directed::new(&coupled, &along);
+        // A round contact in the middle of the zone.
+        let from_middle = |&k: &u32| ground.sites.rest[zone[k as usize] as usize].position.norm();
+        let places = 0..zone.len() as u32;
+        let set: Vec<u32> = places.filter(|k| from_middle(k) < 4.5).collect();
+        let compliance = written(set.len(), |x, out| {
+            let (mut all, mut image) = (vec![0.0; zone.len()], vec![0.0; zone.len()]);
+            set.iter().zip(x).for_each(|(&i, x)| all[i as usize] = *x);
+            directed.times(&all, &mut image);
+            out.iter_mut()
+                .zip(&set)
+                .for_each(|(out, &i)| *out = image[i as usize]);
+        });
+        let spread = |map: &DMatrix<f64>| {
+            let root = compliance.clone().cholesky().unwrap().l();
+            let between = root.transpose() * map * &root;
+            let eigenvalues = between.symmetric_eigenvalues();
+            eigenvalues.max() / eigenvalues.min()
+        };
+        let map = directed.preconditioner(&set);
+        let found = spread(&written(set.len(), |x, out| map.apply(x, out)));
+        let jacobi = spread(&DMatrix::from_diagonal(
+            &compliance.diagonal().map(|a| 1.0 / a),
+        ));
+        assert!(found < 2.0, "{found}");
+        assert!(jacobi > 5.0, "{jacobi}: too small a contact to tell");
+    }
+
+    #[test]
+    fn the_preconditioner_is_symmetric_and_positive_on_any_set() {
+        let skin = skin(72, [3.0, 6.0, 11.0], Vec::new());
+        let (ground, none) = (skin.ground(), Control::none());
+        let zone = all(&skin);
+        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let along: Vec<Vec3> = (0..zone.len())
+            .map(|k| Vec3::new((0.01 * k as f64).sin(), 0.3, 1.0) * 0.4)
+            .collect();
+        let directed = Directed::new(&coupled, &along);
+        let set: Vec<u32> = (0..zone.len() as u32).filter(|k| k % 11 < 8).collect();
+        let map = directed.preconditioner(&set);
+        let field =
+            |pace: f64| -> Vec<f64> { (0..set.len()).map(|k| (pace * k as f64).sin()).collect() };
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let (x, y) = (field(0.9), field(2.3));
+        let (mut of_x, mut of_y) = (vec![0.0; set.len()], vec![0.0; set.len()]);
+        map.apply(&x, &mut of_x);
+        map.apply(&y, &mut of_y);
+        let size = (dot(&x, &of_x) * dot(&y, &of_y)).sqrt();
+        assert!(dot(&x, &of_x) > 0.0 && dot(&y, &of_y) > 0.0);
+        assert!((dot(&x, &of_y) - dot(&y, &of_x)).abs() < 1e-5 * size);
+    }
+}

@@ -107,11 +107,13 @@ impl Skin {
         // Within the zone the field is a product of the solver's own operator.
         let coupled = &self.memory.coupled;
         let mut fields = zeros(zone.len());
+        let (mut from, to) = (vec![false; zone.len()], vec![true; zone.len()]);
         for load in &loads {
             let place = zone.partition_point(|site| *site < load.site);
+            from[place] = true;
             (0..3).for_each(|axis| fields[axis][place] = load.load[axis]);
         }
-        let [x, y, z] = coupled.times(&fields, &vec![true; zone.len()]);
+        let [x, y, z] = coupled.times(&fields, (&from, &to));
         for (k, &site) in zone.iter().enumerate() {
             known[site as usize] = Some(Vec3::new(x[k], y[k], z[k]));
         }

@@ -6,22 +6,26 @@ use super::blocks::{Fields, add_product, add_transposed, part, part_mut, zeros};
 use super::clusters::{Cluster, Clusters};
 use super::coupled::{Blocks, Coupled, Strip};
 
+/// Which clusters bear loads, and which are asked what comes of them.
+type Awake<'a> = (&'a [bool], &'a [bool]);
+
 impl Coupled {
-    /// `K` times three fields over the zone, at every site whose cluster holds a place where `is_active`; zero elsewhere.
+    /// `K` times three fields over the zone, at every site whose cluster holds a place that is asked for (`to`); elsewhere
+    /// what comes of it is not all.
     ///
-    /// `x` must be zero where it is not active. The same bits for any number of threads.
-    pub fn times(&self, x: &Fields, is_active: &[bool]) -> Fields {
+    /// `x` must be zero outside `from`. The same bits for any number of threads.
+    pub fn times(&self, x: &Fields, (from, to): (&[bool], &[bool])) -> Fields {
         let loads = self.gathered(x);
-        let awake = self.awake(is_active);
+        let awake = (&*self.awake(from), &*self.awake(to));
         let list = &self.clusters.list;
         let up = raise(&self.clusters, &self.offset, &loads);
         let mut local = zeros(up[0].len());
         let chosen = |c: usize| (self.offset[c], self.offset[c + 1]);
-        self.far.add((&up, &awake), chosen, &mut local);
+        self.far.add((&up, awake), chosen, &mut local);
         let mut found = zeros(self.len());
-        self.lower((&mut local, &awake), &mut found);
+        self.lower((&mut local, awake.1), &mut found);
         let members = |c: usize| (list[c].first, list[c].last);
-        self.near.add((&loads, &awake), members, &mut found);
+        self.near.add((&loads, awake), members, &mut found);
         let mut out = zeros(self.len());
         for (out, found) in out.iter_mut().zip(&found) {
             for (&k, v) in self.place.iter().zip(found) {
@@ -68,10 +72,10 @@ impl Coupled {
 }
 
 impl Blocks {
-    /// Adds the blocks times `x` to `out`, at clusters that are awake; `range`: where each cluster is in them.
+    /// Adds the blocks times `x` to `out`, from and to clusters that are awake for it; `range`: where each cluster is in them.
     fn add(
         &self,
-        (x, awake): (&Fields, &[bool]),
+        (x, awake): (&Fields, Awake),
         range: impl Fn(usize) -> (usize, usize) + Sync,
         out: &mut Fields,
     ) {
@@ -97,20 +101,23 @@ impl Blocks {
     fn times_strip(
         &self,
         strip: &Strip,
-        (x, awake): (&Fields, &[bool]),
+        (x, (from, to)): (&Fields, Awake),
         range: impl Fn(usize) -> (usize, usize),
     ) -> Fields {
         let mut out = zeros(strip.length);
         for number in strip.pairs.clone() {
             let pair = self.pairs[number];
-            if !(awake[pair.a] && awake[pair.b]) {
+            let (is_read, is_read_back) = (from[pair.b] && to[pair.a], from[pair.a] && to[pair.b]);
+            if !(is_read || is_read_back) {
                 continue;
             }
             let (a, b) = (range(pair.a), range(pair.b));
             let place = |first: u32, (start, end)| (first as usize, first as usize + end - start);
             let block = self.block(number);
-            add_product(block, part(x, b), part_mut(&mut out, place(pair.to_a, a)));
-            if pair.a != pair.b {
+            if is_read {
+                add_product(block, part(x, b), part_mut(&mut out, place(pair.to_a, a)));
+            }
+            if pair.a != pair.b && is_read_back {
                 // The block is in the cache still.
                 add_transposed(block, part(x, a), part_mut(&mut out, place(pair.to_b, b)));
             }

@@ -33,9 +33,11 @@ pub enum Accuracy {
 impl Accuracy {
     /// Residuals to go through, relative to the largest gap; the set must hold still before the next is taken.
     ///
-    /// Where products are dear, the set is looked at on the way to the certificate, not only at its end.
+    /// Where products are dear, the set is looked at on the way to the certificate, not only at its end, and not before a rough
+    /// solution: steps are few, and each look costs two products.
     fn levels(self, is_dear: bool) -> &'static [f64] {
         match self {
+            Accuracy::Rough if is_dear => &[ROUGH],
             Accuracy::Rough => &[1e-2, ROUGH],
             Accuracy::Full if is_dear => &[FINE, EXACT],
             Accuracy::Full => &[EXACT],
