@@ -278,9 +278,6 @@ mod tests {
                 .fold(0.0, |m, x| f64::max(m, x.abs()));
             let off = wanted.iter().flatten().zip(found.iter().flatten());
             let off = off.fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
-            println!("off {:.2e}", off / most);
-            println!("off {:.2e}", off / most);
-            println!("off {:.2e}", off / most);
             assert!(off < ACCURACY * most, "{strength}: {off} of {most}");
         }
     }

@@ -45,17 +45,18 @@ pub(crate) struct Skin<'a> {
 /// A point outside that may have come through, with what it would read: through a wall, and through a sheet without thickness.
 struct Candidate {
     at: u32,
+    plain: Option<Gap>,
     readings: [Option<Gap>; 2],
     neighbors: Vec<u32>,
 }
 
-/// Replaces the readings of points that have come through a wall; returns which may differ now.
+/// Replaces the readings of points that have come through a wall; returns the points that may have, with what was read before.
 pub(crate) fn settle(
     product: &Product,
     skin: &Skin,
     limits: GapLimits,
     gaps: &mut [Option<Gap>],
-) -> Vec<u32> {
+) -> Vec<(u32, Option<Gap>)> {
     let (seen, away) = seen_and_away(skin, limits, gaps);
     if away.is_empty() {
         return Vec::new();
@@ -75,6 +76,7 @@ pub(crate) fn settle(
             let reading = |gap| product.readings_through(skin, at as usize, gap, limits);
             Candidate {
                 at,
+                plain: gaps[at as usize],
                 readings: gaps[at as usize].as_ref().map_or([None; 2], reading),
                 neighbors: neighbors(skin, &vicinity, at),
             }
@@ -92,7 +94,7 @@ pub(crate) fn settle(
     }
     candidates.sort_by_key(|c| c.at);
     enclose(product, skin, &candidates, (&is_settled, gaps));
-    candidates.iter().map(|c| c.at).collect()
+    candidates.iter().map(|c| (c.at, c.plain)).collect()
 }
 
 /// Points that have a reading, and those of them that face away from what they were measured to.

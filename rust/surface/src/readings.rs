@@ -20,12 +20,9 @@ pub struct Readings {
     limits: Option<GapLimits>,
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// Before skin that has come through a wall was told from other skin.
-    gaps: Vec<Option<Gap>>,
-    /// And after.
-    settled: Arc<Vec<Option<Gap>>>,
-    /// Where the two may differ.
-    through: Vec<u32>,
+    gaps: Arc<Vec<Option<Gap>>>,
+    /// What was read of skin that may have come through a wall, before it was told from other skin.
+    plain: Vec<(u32, Option<Gap>)>,
     /// How far each may go before a face can be within the cut-off, mm; 0 if not known, NaN if nothing was read.
     rooms: Vec<f64>,
 }
@@ -61,25 +58,24 @@ impl Product {
                 gaps: if hints.len() == points.len() {
                     hints
                 } else {
-                    vec![None; points.len()]
+                    Arc::new(vec![None; points.len()])
                 },
-                settled: Arc::new(vec![None; points.len()]),
-                through: Vec::new(),
+                plain: Vec::new(),
                 rooms: vec![f64::NAN; points.len()],
             };
         }
-        let settled = Arc::make_mut(&mut readings.settled);
-        for &k in &readings.through {
-            settled[k as usize] = readings.gaps[k as usize];
+        let gaps = Arc::make_mut(&mut readings.gaps);
+        for (k, plain) in readings.plain.drain(..) {
+            gaps[k as usize] = plain;
         }
         self.read_moved(readings, (points, skin_normals), limits);
         let skin = Skin {
             points,
             normals: skin_normals,
         };
-        let settled = Arc::make_mut(&mut readings.settled);
-        readings.through = settle(self, &skin, limits, settled);
-        Arc::clone(&readings.settled)
+        let gaps = Arc::make_mut(&mut readings.gaps);
+        readings.plain = settle(self, &skin, limits, gaps);
+        Arc::clone(&readings.gaps)
     }
 
     /// Measures anew what moved or turned.
@@ -93,11 +89,8 @@ impl Product {
         let now = points.iter().zip(skin_normals);
         let moved = before.zip(now).filter(|(before, now)| before != now);
         let are_few = moved.take(FEW).count() < FEW;
-        let settled = Arc::make_mut(&mut readings.settled);
-        let parts = readings
-            .gaps
+        let parts = Arc::make_mut(&mut readings.gaps)
             .chunks_mut(CHUNK)
-            .zip(settled.chunks_mut(CHUNK))
             .zip(readings.rooms.chunks_mut(CHUNK))
             .zip(readings.points.chunks_mut(CHUNK))
             .zip(readings.normals.chunks_mut(CHUNK))
@@ -105,7 +98,7 @@ impl Product {
         deal(
             parts,
             are_few,
-            |(((((gaps, settled), rooms), before), faced), (points, normals))| {
+            |((((gaps, rooms), before), faced), (points, normals))| {
                 let mut pending = Pending::default();
                 let mut facing = Facing::new(self, limits, &mut pending);
                 let mut last = None;
@@ -123,7 +116,6 @@ impl Product {
                     } else {
                         (facing.gap(point, Some(normal), hint), 0.0)
                     };
-                    settled[k] = gaps[k];
                     (before[k], faced[k]) = (point, normal);
                     last = gaps[k].map(|g| g.triangle).or(last);
                 }

@@ -91,9 +91,6 @@ impl Coupled {
         coupled.check(MOST_GIB)?;
         coupled.fill(hierarchy, ground, control)?;
         coupled.own = coupled.diagonal();
-        coupled
-            .inverse_factor
-            .fill(hierarchy, &coupled.clusters, ground);
         Ok(coupled)
     }
 
@@ -222,8 +219,12 @@ impl Coupled {
         )?;
         self.far.fill(
             |p, out| make(chosen(p.a), chosen(p.b), out),
-            |s| watched(0.8 + 0.2 * s),
-        )
+            |s| watched(0.8 + 0.15 * s),
+        )?;
+        let factor = &mut self.inverse_factor;
+        factor.fill(hierarchy, (&self.clusters, ground), |s| {
+            watched(0.95 + 0.05 * s)
+        })
     }
 
     fn diagonal(&self) -> Vec<f64> {

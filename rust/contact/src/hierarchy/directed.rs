@@ -40,7 +40,7 @@ impl Symmetric for Directed<'_> {
         self.between((&self.is_active, &self.is_active), x, out);
     }
 
-    fn preconditioner<'b>(&'b self, set: &'b [u32]) -> Box<dyn Preconditioner + 'b> {
+    fn preconditioner(&self, set: &[u32]) -> Box<dyn Preconditioner + '_> {
         Box::new(OnSet::new(self.coupled, self.along, set))
     }
 }

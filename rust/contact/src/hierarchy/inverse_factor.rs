@@ -11,8 +11,11 @@ use thenar_surface::Vec3;
 use super::clusters::Clusters;
 use super::coupled::{Blocks, Coupled};
 use super::{Ground, Hierarchy, Listed};
+use crate::ContactError;
 use crate::solve::Preconditioner;
 
+/// Clusters whose rows are made between two looks at the caller's wish to stop.
+const AT_ONCE: usize = 256;
 /// Sites of earlier clusters that a cluster's rows see. From 32 to 128 serve.
 const BESIDE: usize = 64;
 
@@ -59,15 +62,29 @@ impl InverseFactor {
     }
 
     /// Makes the rows.
-    pub fn fill(&mut self, hierarchy: &Hierarchy, clusters: &Clusters, ground: Ground<'_>) {
-        self.0.par_iter_mut().for_each(|rows| {
-            let sites = rows.columns.iter().map(|&k| clusters.sites[k as usize]);
-            let sites: Vec<u32> = sites.collect();
-            let mut response = vec![0.0; sites.len() * sites.len()];
-            let listed = Listed::new(&sites, ground.sites);
-            hierarchy.block(ground, &sites, &listed, &mut response);
-            rows.transposed = last_rows(&response, rows.own);
-        });
+    ///
+    /// # Errors
+    /// What `watch`, told the share that is done, ends it with.
+    pub fn fill(
+        &mut self,
+        hierarchy: &Hierarchy,
+        (clusters, ground): (&Clusters, Ground<'_>),
+        watch: impl Fn(f64) -> Result<(), ContactError>,
+    ) -> Result<(), ContactError> {
+        let (mut done, all) = (0, self.0.len());
+        for some in self.0.chunks_mut(AT_ONCE) {
+            watch(done as f64 / all as f64)?;
+            some.par_iter_mut().for_each(|rows| {
+                let sites = rows.columns.iter().map(|&k| clusters.sites[k as usize]);
+                let sites: Vec<u32> = sites.collect();
+                let mut response = vec![0.0; sites.len() * sites.len()];
+                let listed = Listed::new(&sites, ground.sites);
+                hierarchy.block(ground, &sites, &listed, &mut response);
+                rows.transposed = last_rows(&response, rows.own);
+            });
+            done += some.len();
+        }
+        Ok(())
     }
 }
 

@@ -12,7 +12,7 @@ pub trait Symmetric {
     fn times(&self, x: &[f64], out: &mut [f64]);
 
     /// What stands for the inverse on the unknowns of `set` (ascending): that of the diagonal, where nothing better is at hand.
-    fn preconditioner<'a>(&'a self, set: &'a [u32]) -> Box<dyn Preconditioner + 'a> {
+    fn preconditioner(&self, set: &[u32]) -> Box<dyn Preconditioner + '_> {
         let per = set.iter().map(|&i| 1.0 / self.diagonal()[i as usize]);
         Box::new(PerDiagonal(per.collect()))
     }
