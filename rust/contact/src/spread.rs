@@ -12,7 +12,7 @@ pub const ACCURACY: f64 = 1e-3;
 
 /// Strength from which on groups of values are spread first: Chebyshev's steps over all values grow with its root.
 const STRONG: f64 = 500.0;
-/// Groups, about; as many equations are solved at once. 256 and 512 serve.
+/// Groups, about; as many equations are solved at once. 128 to 512 serve.
 const GROUPS: usize = 256;
 /// Rounds of groups and single values that reach [`ACCURACY`], and what is left of the differences within a group after each.
 const ROUNDS: usize = 5;

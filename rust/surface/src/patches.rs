@@ -18,7 +18,7 @@ const MOST_PATCHES: usize = 1024;
 /// all vertices of so large a mesh wait for memory at every step.
 const LARGE: usize = 512;
 
-/// Vertices in a small patch, at most. 8 and 16 serve.
+/// Vertices in a small patch, at most. 8 to 32 serve.
 const SMALL: usize = 16;
 
 /// How often vertices are shared out anew to the nearest center: patches become round. 1 to 5 serve.

@@ -16,7 +16,7 @@ use crate::solve::Preconditioner;
 
 /// Clusters whose rows are made between two looks at the caller's wish to stop.
 const AT_ONCE: usize = 256;
-/// Sites of earlier clusters that a cluster's rows see. From 32 to 128 serve.
+/// Sites of earlier clusters that a cluster's rows see. 64 and 128 serve.
 const BESIDE: usize = 64;
 
 /// The factor of a zone, by its smallest clusters.
