@@ -5,8 +5,9 @@ use thenar_surface::{Gap, Vec3};
 use crate::Model;
 use crate::carried::Found;
 use crate::direction::{LEAST_COSINE, Sums, yielding_directions};
+use crate::held::Met;
 use crate::linearize::{Setting, vertex};
-use crate::live::{self, Met};
+use crate::live;
 use crate::press::Convergence;
 use crate::skin::Skin;
 use crate::zone::limits;
@@ -29,8 +30,8 @@ pub(crate) enum Beyond {
 /// What is known so far, by place in the zone.
 pub(crate) struct State {
     pub zone: Vec<u32>,
-    /// What sites hold from the last live solve; empty if all are solved.
-    pub held: Vec<Option<Met>>,
+    /// Which hold on to what they met in the last live solve; empty if all are solved.
+    pub held: Vec<bool>,
     pub beyond: Beyond,
     pub force: Vec<f64>,
     pub touch: Vec<Gap>,
@@ -96,13 +97,13 @@ impl State {
         if self.beyond == Beyond::Trend {
             self.carry_travel_on(skin, setting);
         }
-        self.take_held();
+        self.take_held(skin);
         self.placed = vec![f64::NAN; self.zone.len()];
         if !travel.is_empty() && skin.model == Model::Layer {
             self.place(skin, setting);
         }
-        self.see_along_normals();
-        self.slack = self.held_or(|met| met.slack, vec![0.0; self.zone.len()]);
+        self.see_along_normals(skin);
+        self.slack = self.held_or(skin, |met| met.slack, vec![0.0; self.zone.len()]);
         let carried = std::mem::take(&mut self.force);
         self.force = if carried.len() == self.zone.len() {
             carried
@@ -116,14 +117,19 @@ impl State {
         if self.beyond == Beyond::Trend {
             self.carry_forces_on(skin, setting, &mut force);
         }
-        self.force = self.held_or(|met| met.force, force);
+        self.force = self.held_or(skin, |met| met.force, force);
     }
 
     /// Changes travels as the last live press did: a drag goes on more often than not.
     fn carry_travel_on(&mut self, skin: &Skin, setting: &Setting<'_>) {
         for (k, &site) in self.zone.iter().enumerate() {
-            let change = live::goes_on(skin, setting, site);
-            self.travel[k] += change.dot(&self.direction[k]);
+            // What joins the zone lay where the field carried it.
+            self.travel[k] = match skin.memory.held.of(site) {
+                Some(_) => {
+                    self.travel[k] + live::goes_on(skin, setting, site).dot(&self.direction[k])
+                }
+                None => live::ahead(skin, setting, site).dot(&self.direction[k]),
+            };
         }
     }
 
@@ -142,18 +148,24 @@ impl State {
         }
     }
 
+    /// What a place holds on to.
+    fn met<'a>(&self, skin: &'a Skin, k: usize) -> Option<&'a Met> {
+        let is_held = self.held.get(k) == Some(&true);
+        is_held.then(|| skin.memory.held.of(self.zone[k]))?
+    }
+
     /// `values` by place in the zone, with those of held sites in their places.
-    pub(crate) fn held_or(&self, value: impl Fn(&Met) -> f64, mut values: Vec<f64>) -> Vec<f64> {
-        for (own, met) in values.iter_mut().zip(&self.held) {
-            *own = met.as_ref().map_or(*own, &value);
+    fn held_or(&self, skin: &Skin, value: impl Fn(&Met) -> f64, mut values: Vec<f64>) -> Vec<f64> {
+        for (k, own) in values.iter_mut().enumerate() {
+            *own = self.met(skin, k).map_or(*own, &value);
         }
         values
     }
 
     /// Takes over what is held; before the rest is measured where it lay last.
-    pub(crate) fn take_held(&mut self) {
-        for (k, met) in self.held.iter().enumerate() {
-            if let Some(met) = met {
+    fn take_held(&mut self, skin: &Skin) {
+        for k in 0..self.held.len() {
+            if let Some(met) = self.met(skin, k) {
                 (self.touch[k], self.direction[k]) = (met.touch, met.direction);
                 self.travel[k] = met.travel;
             }
@@ -162,7 +174,7 @@ impl State {
 
     /// Places in the zone that are solved.
     pub(crate) fn solved(&self) -> Vec<usize> {
-        let is_solved = |k: &usize| self.held.get(*k).is_none_or(Option::is_none);
+        let is_solved = |k: &usize| self.held.get(*k) != Some(&true);
         (0..self.zone.len()).filter(is_solved).collect()
     }
 
@@ -185,7 +197,7 @@ impl State {
         let sites: Vec<u32> = inside.iter().map(|&k| self.zone[k]).collect();
         let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
         let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
-        let sums = |&k: &usize| self.held.get(k)?.as_ref().map(|met| met.sums);
+        let sums = |&k: &usize| self.met(skin, k).map(|met| met.sums);
         let known: Vec<Option<Sums>> = inside.iter().map(sums).collect();
         let around = (&skin.sites, &skin.adjacency, setting.spacing);
         let (averaged, sums) = yielding_directions(&sites, (&normals, &gaps), &known, around);
@@ -197,11 +209,11 @@ impl State {
     }
 
     /// Takes the cosines between directions and the product's normals as they are now.
-    pub(crate) fn see_along_normals(&mut self) {
+    pub(crate) fn see_along_normals(&mut self, skin: &Skin) {
         let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
         let cosines = self.touch.iter().zip(&self.direction).map(cosine);
         let cosines = cosines.map(|c| c.max(LEAST_COSINE)).collect();
-        self.cosine = self.held_or(|met| met.cosine, cosines);
+        self.cosine = self.held_or(skin, |met| met.cosine, cosines);
     }
 
     /// Measures the displaced zone against the product; in a live press, what hardly travelled since it was measured is only

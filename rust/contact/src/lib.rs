@@ -17,6 +17,7 @@ mod errors;
 mod fields;
 mod interface;
 mod force_control;
+mod held;
 mod hierarchy;
 mod history;
 mod linearize;

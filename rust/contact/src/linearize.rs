@@ -4,7 +4,8 @@ use thenar_surface::{Gap, Product, Vec3};
 
 use crate::carried::{field, keep_out, lifted_sites};
 use crate::contact_state::{Beyond, State};
-use crate::live::{self, held, keep, strays};
+use crate::held::{held, keep, strays};
+use crate::live;
 use crate::memory::Last;
 use crate::press::Convergence;
 use crate::skin::Skin;
@@ -90,7 +91,7 @@ pub fn solve(
         state.beyond = live::beyond(skin, setting, round);
         match state.beyond {
             Beyond::Nothing => skin.couple(&state.solved_sites(), control)?,
-            _ => live::couple(skin, &state.solved_sites(), control)?,
+            _ => live::couple(skin, (&state.zone, &state.solved_sites()), control)?,
         }
         skin.memory.zone.clone_from(&state.zone);
         state.open(skin, setting);
@@ -105,7 +106,8 @@ pub fn solve(
         };
         keep_out(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
-        keep(skin, setting, &state.found(), (&state.slack, &state.sums));
+        let left = (&state.slack[..], &state.sums[..], &state.held[..]);
+        keep(skin, setting, &state.found(), left);
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let wanted = (tolerance, setting.accuracy.certificate());
@@ -145,7 +147,7 @@ impl State {
             }
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
-                self.see_along_normals();
+                self.see_along_normals(skin);
                 self.matrix(skin, setting, &mut turned);
             }
         }

@@ -1,12 +1,12 @@
 //! What one press leaves for the next, so that small moves are cheap.
 
+use crate::held::Held;
 use crate::hierarchy::Coupled;
 use crate::interface::attraction::Pull;
 use crate::interface::shear_kernel::ShearTables;
 use crate::interface::shear_response::Pairs;
 use crate::linearize::Solved;
-use crate::live::Held;
-use crate::response::near::Nears;
+use crate::response::near::Near;
 use crate::response::rounded::Rounded;
 use crate::solve::Accuracy;
 use crate::solve::operator::Rows;
@@ -40,6 +40,30 @@ pub struct Memory {
     pub shear: Option<ShearTables>,
     /// And what they are between the sites that were last in contact.
     pub pairs: Pairs,
+}
+
+/// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
+#[derive(Debug, Clone, Default)]
+pub struct Nears {
+    of_rounds: [Near; 2],
+    now: usize,
+}
+
+impl Nears {
+    /// Takes the one of a `round`, from 1.
+    pub fn turn_to(&mut self, round: usize) {
+        self.now = usize::from(round > 1);
+    }
+
+    /// The one of this round.
+    pub fn now(&self) -> &Near {
+        &self.of_rounds[self.now]
+    }
+
+    /// The same, to be made anew.
+    pub fn now_mut(&mut self) -> &mut Near {
+        &mut self.of_rounds[self.now]
+    }
 }
 
 /// Where one solve ended, for the next to start from; a walk through a protocol keeps its own.

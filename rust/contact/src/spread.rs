@@ -27,7 +27,6 @@ pub struct Graph {
     ends: Vec<u32>,
     /// Those that are unknown too.
     pub neighbors: Vec<u32>,
-    most_neighbors: usize,
 }
 
 impl Graph {
@@ -38,7 +37,6 @@ impl Graph {
             diagonal: Vec::with_capacity(values),
             ends: Vec::with_capacity(values),
             neighbors: Vec::with_capacity(6 * values),
-            most_neighbors: 0,
         }
     }
 
@@ -46,7 +44,6 @@ impl Graph {
     pub fn end(&mut self, degree: usize) {
         self.diagonal.push(1.0 + self.strength * degree as f64);
         self.ends.push(self.neighbors.len() as u32);
-        self.most_neighbors = self.most_neighbors.max(degree);
     }
 
     fn beside(&self, k: usize) -> &[u32] {
@@ -55,8 +52,17 @@ impl Graph {
     }
 
     /// A bound on the largest eigenvalue of `1 + c L`; the least is 1 at least.
+    ///
+    /// That of L is at most a degree and the mean of those beside it (Merris, A note on Laplacian graph eigenvalues, 1998); where some
+    /// neighbors are not among the values, all the more so.
     fn highest(&self) -> f64 {
-        1.0 + 2.0 * self.strength * self.most_neighbors as f64
+        let c_degree = |k: usize| self.diagonal[k] - 1.0;
+        let sum = |k: usize| {
+            let beside = self.beside(k).iter().map(|&j| c_degree(j as usize));
+            let mean = beside.sum::<f64>() / c_degree(k).max(f64::MIN_POSITIVE);
+            c_degree(k) + self.strength * mean
+        };
+        1.0 + (0..self.diagonal.len()).map(sum).fold(0.0, f64::max)
     }
 }
 
@@ -279,6 +285,36 @@ mod tests {
             let off = wanted.iter().flatten().zip(found.iter().flatten());
             let off = off.fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()));
             assert!(off < ACCURACY * most, "{strength}: {off} of {most}");
+        }
+    }
+
+    #[test]
+    fn no_eigenvalue_is_above_the_bound() {
+        // A lattice with holes, all of it and a part whose edge pulls at values that are known.
+        let whole = lattice(9, 30.0);
+        let part = {
+            let mut part = Graph::new(30.0, 0);
+            let is_in = |k: u32| k >= 20;
+            for k in (0..whole.ends.len() as u32).filter(|k| is_in(*k)) {
+                let beside = whole.beside(k as usize);
+                let inside = beside.iter().filter(|j| is_in(**j));
+                part.neighbors.extend(inside.map(|j| j - 20));
+                part.end(beside.len());
+            }
+            part
+        };
+        for graph in [whole, part] {
+            let n = graph.ends.len();
+            let mut matrix = DMatrix::zeros(n, n);
+            for k in 0..n {
+                matrix[(k, k)] = graph.diagonal[k];
+                for &j in graph.beside(k) {
+                    matrix[(k, j as usize)] -= graph.strength;
+                }
+            }
+            let largest = matrix.symmetric_eigenvalues().max();
+            let bound = graph.highest();
+            assert!((1.0..1.6).contains(&(bound / largest)), "{bound} {largest}");
         }
     }
 }

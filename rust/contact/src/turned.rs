@@ -64,7 +64,7 @@ impl State {
         };
         let load =
             |&site: &u32| shown.load[site as usize] + shown.load_change[site as usize] * ahead;
-        let loads: Vec<Vec3> = near.sites.iter().map(load).collect();
+        let loads: Vec<Vec3> = near.sites().iter().map(load).collect();
         let own = near.field(&loads);
         let push = |((&k, t), own): ((&u32, &Vec3), &Vec3)| {
             let site = self.zone[k as usize] as usize;

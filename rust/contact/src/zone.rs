@@ -82,7 +82,7 @@ pub fn detect(
     let Shape { normals, areas } = seen.shape(posed);
     let facing = (&positions[..], &normals[..]);
     let mut gaps = product.gaps_after(&mut seen.readings, facing, limits());
-    let mut distances = distances_of(&gaps);
+    let mut distances = seen.readings.distances().to_vec();
     // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
     for (vertex, distance) in distances.iter_mut().enumerate() {
         if -*distance > MOST_DEPTH {

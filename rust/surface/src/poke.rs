@@ -51,13 +51,15 @@ struct Candidate {
 }
 
 /// Replaces the readings of points that have come through a wall; returns the points that may have, with what was read before.
+///
+/// `sights`: how each faces what it was measured to.
 pub(crate) fn settle(
     product: &Product,
     skin: &Skin,
     limits: GapLimits,
-    gaps: &mut [Option<Gap>],
+    (sights, gaps): (&[Sight], &mut [Option<Gap>]),
 ) -> Vec<(u32, Option<Gap>)> {
-    let (seen, away) = seen_and_away(skin, limits, gaps);
+    let (seen, away) = seen_and_away(sights);
     if away.is_empty() {
         return Vec::new();
     }
@@ -97,18 +99,42 @@ pub(crate) fn settle(
     candidates.iter().map(|c| (c.at, c.plain)).collect()
 }
 
-/// Points that have a reading, and those of them that face away from what they were measured to.
-fn seen_and_away(skin: &Skin, limits: GapLimits, gaps: &[Option<Gap>]) -> (Vec<u32>, Vec<u32>) {
-    let (mut seen, mut away) = (Vec::new(), Vec::new());
-    for (i, gap) in gaps.iter().enumerate() {
-        let Some(gap) = gap else { continue };
-        seen.push(i as u32);
+/// How skin faces what it was measured to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sight {
+    /// Nothing was within reach.
+    Nothing,
+    /// As skin does that is pressed.
+    Toward,
+    /// It is outside and faces away: it may have come through.
+    Away,
+}
+
+impl Sight {
+    /// Of a point with a skin normal and its gap.
+    pub(crate) fn new(gap: Option<&Gap>, normal: &Vec3, limits: GapLimits) -> Sight {
+        let Some(gap) = gap else {
+            return Sight::Nothing;
+        };
         let is_outside = gap.distance > 0.0 && gap.distance <= limits.max_depth_mm;
-        if is_outside && gap.normal.dot(&skin.normals[i]) > FACING_AWAY {
-            away.push(i as u32);
+        if is_outside && gap.normal.dot(normal) > FACING_AWAY {
+            Sight::Away
+        } else {
+            Sight::Toward
         }
     }
-    (seen, away)
+}
+
+/// Points that have a reading, and those of them that face away from what they were measured to.
+fn seen_and_away(sights: &[Sight]) -> (Vec<u32>, Vec<u32>) {
+    let those = |wanted: fn(&Sight) -> bool| {
+        let all = (0..).zip(sights).filter(|(_, sight)| wanted(sight));
+        all.map(|(i, _)| i).collect()
+    };
+    (
+        those(|sight| *sight != Sight::Nothing),
+        those(|sight| *sight == Sight::Away),
+    )
 }
 
 /// What `f` gives for each item, in order.

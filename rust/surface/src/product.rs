@@ -8,7 +8,7 @@ use crate::mesh::{Mesh, MeshError, Standing, Vec3};
 use crate::nearest::{Hit, Pending};
 use crate::normals::vertex_areas;
 use crate::orient::orient;
-use crate::poke::{Skin, settle};
+use crate::poke::{Sight, Skin, settle};
 use crate::readings::new_number;
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
@@ -190,7 +190,11 @@ impl Product {
             }
         });
         if let Some(normals) = skin_normals.filter(|n| n.len() == points.len()) {
-            settle(self, &Skin { points, normals }, limits, &mut gaps);
+            let sight =
+                |(gap, normal): (&Option<Gap>, &Vec3)| Sight::new(gap.as_ref(), normal, limits);
+            let sights: Vec<Sight> = gaps.iter().zip(normals).map(sight).collect();
+            let skin = Skin { points, normals };
+            settle(self, &skin, limits, (&sights, &mut gaps));
         }
         gaps
     }

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::facing::Facing;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
-use crate::poke::{Skin, settle};
+use crate::poke::{Sight, Skin, settle};
 use crate::product::{FEW, Gap, GapLimits, Product, deal};
 
 /// Points answered by one task.
@@ -21,6 +21,10 @@ pub struct Readings {
     points: Vec<Vec3>,
     normals: Vec<Vec3>,
     gaps: Arc<Vec<Option<Gap>>>,
+    /// Their distances, mm; infinite where there is none.
+    distances: Vec<f64>,
+    /// How each faces what it was measured to, before skin that has come through a wall was told from other skin.
+    sights: Vec<Sight>,
     /// What was read of skin that may have come through a wall, before it was told from other skin.
     plain: Vec<(u32, Option<Gap>)>,
     /// How far each may go before a face can be within the cut-off, mm; 0 if not known, NaN if nothing was read.
@@ -31,6 +35,17 @@ pub struct Readings {
 pub(crate) fn new_number() -> u64 {
     static LAST: AtomicU64 = AtomicU64::new(0);
     LAST.fetch_add(1, Ordering::Relaxed) + 1
+}
+
+impl Readings {
+    /// The signed distances of the gaps handed out last, mm; infinite where there is none. Most that ask need no more.
+    pub fn distances(&self) -> &[f64] {
+        &self.distances
+    }
+}
+
+fn distance(gap: &Option<Gap>) -> f64 {
+    gap.as_ref().map_or(f64::INFINITY, |gap| gap.distance)
 }
 
 impl Product {
@@ -60,6 +75,8 @@ impl Product {
                 } else {
                     Arc::new(vec![None; points.len()])
                 },
+                distances: vec![f64::INFINITY; points.len()],
+                sights: vec![Sight::Nothing; points.len()],
                 plain: Vec::new(),
                 rooms: vec![f64::NAN; points.len()],
             };
@@ -67,6 +84,7 @@ impl Product {
         let gaps = Arc::make_mut(&mut readings.gaps);
         for (k, plain) in readings.plain.drain(..) {
             gaps[k as usize] = plain;
+            readings.distances[k as usize] = distance(&plain);
         }
         self.read_moved(readings, (points, skin_normals), limits);
         let skin = Skin {
@@ -74,7 +92,10 @@ impl Product {
             normals: skin_normals,
         };
         let gaps = Arc::make_mut(&mut readings.gaps);
-        readings.plain = settle(self, &skin, limits, gaps);
+        readings.plain = settle(self, &skin, limits, (&readings.sights, gaps));
+        for (k, _) in &readings.plain {
+            readings.distances[*k as usize] = distance(&gaps[*k as usize]);
+        }
         Arc::clone(&readings.gaps)
     }
 
@@ -92,13 +113,15 @@ impl Product {
         let parts = Arc::make_mut(&mut readings.gaps)
             .chunks_mut(CHUNK)
             .zip(readings.rooms.chunks_mut(CHUNK))
+            .zip(readings.distances.chunks_mut(CHUNK))
+            .zip(readings.sights.chunks_mut(CHUNK))
             .zip(readings.points.chunks_mut(CHUNK))
             .zip(readings.normals.chunks_mut(CHUNK))
             .zip(points.chunks(CHUNK).zip(skin_normals.chunks(CHUNK)));
         deal(
             parts,
             are_few,
-            |((((gaps, rooms), before), faced), (points, normals))| {
+            |((((((gaps, rooms), distances), sights), before), faced), (points, normals))| {
                 let mut pending = Pending::default();
                 let mut facing = Facing::new(self, limits, &mut pending);
                 let mut last = None;
@@ -116,6 +139,8 @@ impl Product {
                     } else {
                         (facing.gap(point, Some(normal), hint), 0.0)
                     };
+                    distances[k] = distance(&gaps[k]);
+                    sights[k] = Sight::new(gaps[k].as_ref(), &normal, limits);
                     (before[k], faced[k]) = (point, normal);
                     last = gaps[k].map(|g| g.triangle).or(last);
                 }

@@ -258,6 +258,9 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
         let limits = if frame % 12 < 9 { CUT } else { FULL };
         let again = product.gaps_after(&mut readings, (&positions, &normals), limits);
         assert_eq!(*again, query(product, &posed, limits), "{frame}");
+        let distance = |gap: &Option<Gap>| gap.map_or(f64::INFINITY, |gap| gap.distance);
+        let distances: Vec<f64> = again.iter().map(distance).collect();
+        assert_eq!(readings.distances(), distances, "{frame}");
     }
     // Skin that lies where it lay and faces the other way.
     let turned: Vec<Vec3> = normals.iter().map(|n| -n).collect();

@@ -1,145 +1,162 @@
 //! The response among sites near each other, as a live press solves with it: what lies farther off answers as it did last.
 //!
-//! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. The sites
-//! of one patch feel the same others, so that their rows are a dense block, and products run over it without gaps. Entries are
-//! those of the rounded rows: reading them is what a product takes, and a press that the eye alone judges needs no more. Each row
-//! is rounded by its own largest entry, so that the two entries of a pair agree but for that.
+//! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. Columns are
+//! all sites of some patches, so that the same serve while other sites of these are solved; rows are made as they are needed. The
+//! sites of one patch feel the same others, and products run over their rows without gaps. Entries are those of the rounded rows:
+//! reading them is what a product takes, and a press that the eye alone judges needs no more. Each row is rounded by its own
+//! largest entry, so that the two entries of a pair agree but for that.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use super::assembly::{Members, SHORT, layout, take};
-use super::rounded::{Rounded, rounded};
+use super::near_rows::{LANES, field_block, multiply_block, turn_row};
+use super::rounded::Rounded;
 use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::Axes;
 use crate::solve::operator::Run;
 
-/// Rows are filled up with zeros to a multiple of this: products need no remainder.
-const LANES: usize = 32;
 /// Entries from which products are worth several threads.
 const PARALLEL_ENTRIES: usize = 6_000_000;
+/// How many times as many sites as the patches of the zone hold may be columns: what was in it may soon be again. From 1 on any
+/// serves.
+const MOST_COLUMNS: f64 = 1.6;
+const MISSING: usize = usize::MAX;
 
-/// Rows of one patch.
-#[derive(Debug, Clone, Copy)]
+/// What the rows of one patch have in common; empty where it is not coupled.
+#[derive(Debug, Clone, Default)]
 struct Home {
-    rows: u32,
     /// Entries of each, a multiple of [`LANES`].
-    width: u32,
-    /// How many runs its columns are.
-    runs: u32,
+    width: usize,
+    /// The columns that they feel, and where these lie in the rows of the response: first and number.
+    runs: Vec<Run>,
+    pieces: Vec<(u32, u32)>,
 }
 
 /// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric but for rounding.
 #[derive(Debug, Clone, Default)]
 pub struct Near {
-    /// The sites, ascending.
-    pub sites: Vec<u32>,
-    /// How far apart patches may lie, mm.
-    pub range: f64,
-    homes: Vec<Home>,
-    /// Places of the sites of the columns, home by home; zeros follow.
-    runs: Vec<Run>,
-    /// Entries, row by row; zero where a site meets itself.
-    values: Vec<i16>,
+    /// The sites that are solved, ascending; the patch and the column of each.
+    sites: Vec<u32>,
+    patches: Vec<u32>,
+    places: Vec<u32>,
     /// What one of an entry is worth, by row, and the entry where the site meets itself, 1/mm.
     pub(super) units: Vec<f64>,
     pub(super) own: Vec<f64>,
-}
-
-/// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
-#[derive(Debug, Clone, Default)]
-pub struct Nears {
-    of_rounds: [Near; 2],
-    now: usize,
-}
-
-impl Nears {
-    /// Takes the one of a `round`, from 1.
-    pub fn turn_to(&mut self, round: usize) {
-        self.now = usize::from(round > 1);
-    }
-
-    /// The one of this round.
-    pub fn now(&self) -> &Near {
-        &self.of_rounds[self.now]
-    }
-
-    /// The same, to be made anew.
-    pub fn now_mut(&mut self) -> &mut Near {
-        &mut self.of_rounds[self.now]
-    }
+    /// How far apart patches may lie, mm.
+    range: f64,
+    /// The sites of the columns, ascending, and where the row of each begins.
+    columns: Vec<u32>,
+    begins: Vec<usize>,
+    /// By patch.
+    homes: Vec<Home>,
+    /// Entries of the rows that were made; zero where a site meets itself.
+    values: Vec<i16>,
 }
 
 impl Near {
-    /// Makes it anew for `zone` (ascending), whose `rows` are made, from patches nearer than `range` (mm).
-    pub fn renew(
+    /// The sites between which it is, ascending.
+    pub fn sites(&self) -> &[u32] {
+        &self.sites
+    }
+
+    /// Whether it is between these sites, with nothing left out that is nearer than `range` (mm).
+    pub fn is_of(&self, sites: &[u32], range: f64) -> bool {
+        self.sites == sites && self.range >= range
+    }
+
+    /// Makes it the coupling of `open`, whose `rows` are made, with patches nearer than `range` (mm).
+    ///
+    /// `zone`: what may be solved next; both ascending, and `open` within it.
+    pub fn take_up(
         &mut self,
-        zone: &[u32],
+        (zone, open): (&[u32], &[u32]),
         rows: &Rounded,
         (response, sites): (&Response, &Sites),
         range: f64,
     ) {
-        self.range = range;
-        self.sites.clear();
-        self.sites.extend_from_slice(zone);
-        self.homes.clear();
-        self.runs.clear();
-        self.values.clear();
-        self.units.clear();
-        self.own.clear();
         let patch = |site: &u32| sites.patch[*site as usize];
-        let members: Vec<Members> = sites
-            .patch_range
-            .iter()
-            .map(|&range| Members::new(zone, range))
-            .collect();
-        for home in zone.chunk_by(|a, b| patch(a) == patch(b)) {
-            self.push_home(home, rows, (response, sites), &members);
+        let patches = sites.patch_range.len();
+        let wanted = |of: &[u32]| {
+            let mut is_wanted = vec![false; patches];
+            of.iter().for_each(|s| is_wanted[patch(s) as usize] = true);
+            is_wanted
+        };
+        let is_known = self.range == range && self.homes.len() == patches;
+        let is_there = |p: usize| is_known && self.homes[p].width > 0;
+        let is_open = wanted(open);
+        let serves = (0..patches).all(|p| !is_open[p] || is_there(p));
+        if !serves {
+            let of_zone = wanted(zone);
+            let size = |p: &usize| (sites.patch_range[*p].1 - sites.patch_range[*p].0) as f64;
+            let columns = |is_column: &[bool]| {
+                let all = (0..patches).filter(|p| is_column[*p]);
+                all.map(|p| size(&p)).sum::<f64>()
+            };
+            let both: Vec<bool> = (0..patches).map(|p| of_zone[p] || is_there(p)).collect();
+            let are_few = columns(&both) <= MOST_COLUMNS * columns(&of_zone);
+            self.range = range;
+            self.couple(if are_few { &both } else { &of_zone }, (response, sites));
+        }
+        self.sites.clear();
+        self.sites.extend_from_slice(open);
+        self.patches = open.iter().map(patch).collect();
+        let column = |site| self.columns.partition_point(|c| c < site) as u32;
+        self.places = open.iter().map(column).collect();
+        self.units = open.iter().map(|&s| f64::from(rows.row(s).unit)).collect();
+        self.own = open.iter().map(|&s| f64::from(rows.row(s).own)).collect();
+        for (&site, (&patch, &place)) in open.iter().zip(self.patches.iter().zip(&self.places)) {
+            let begin = &mut self.begins[place as usize];
+            if *begin == MISSING {
+                *begin = self.values.len();
+                let home = &self.homes[patch as usize];
+                push_row(&rows.row(site).entries, home, &mut self.values);
+            }
         }
     }
 
-    /// Appends the rows of one patch's sites. `members`: what of every patch is coupled.
-    fn push_home(
-        &mut self,
-        home: &[u32],
-        rows: &Rounded,
-        (response, sites): (&Response, &Sites),
-        members: &[Members],
-    ) {
-        let patch = sites.patch[home[0] as usize];
-        let felt = response.bounds(patch).zip(response.near(patch));
-        let felt = felt.filter(|((other, bound), _)| *bound < self.range || *other == patch);
-        let felt: Vec<(u32, u32)> = felt.map(|(_, entry)| *entry).collect();
-        let (runs, pieces) = layout(&felt, members);
-        let width: u32 = runs.iter().map(|run| run.len).sum();
-        let width = width.next_multiple_of(LANES as u32);
-        self.homes.push(Home {
-            rows: home.len() as u32,
-            width,
-            runs: runs.len() as u32,
-        });
-        self.runs.extend(runs);
-        for &site in home {
-            let row = rows.row(site);
-            let begin = self.values.len();
-            let end = begin + width as usize;
-            self.values.resize(end + SHORT, 0);
-            let taken = take(&row.entries, &pieces, &mut self.values[begin..]).len();
-            self.values.truncate(end);
-            self.values[begin + taken..].fill(0);
-            self.units.push(f64::from(row.unit));
-            self.own.push(f64::from(row.own));
-        }
+    /// Takes all sites of the coupled patches as columns; no row is made.
+    fn couple(&mut self, is_coupled: &[bool], (response, sites): (&Response, &Sites)) {
+        let ranges = sites.patch_range.iter().zip(is_coupled);
+        let ranges = ranges.filter(|(_, is_coupled)| **is_coupled);
+        self.columns = ranges.flat_map(|(&(first, last), _)| first..last).collect();
+        self.begins = vec![MISSING; self.columns.len()];
+        self.values.clear();
+        let members = |&range| Members::new(&self.columns, range);
+        let members: Vec<Members> = sites.patch_range.iter().map(members).collect();
+        let home = |(patch, &is_coupled): (u32, &bool)| {
+            if !is_coupled {
+                return Home::default();
+            }
+            let felt = response.bounds(patch).zip(response.near(patch));
+            let felt = felt.filter(|((other, bound), _)| *bound < self.range || *other == patch);
+            let felt: Vec<(u32, u32)> = felt.map(|(_, entry)| *entry).collect();
+            let (runs, pieces) = layout(&felt, &members);
+            let width: usize = runs.iter().map(|run| run.len as usize).sum();
+            Home {
+                width: width.next_multiple_of(LANES),
+                runs,
+                pieces,
+            }
+        };
+        self.homes = (0..).zip(is_coupled).map(home).collect();
     }
 
     /// `sum_j K_ij load_j` at its sites; `loads` by site.
     pub fn field(&self, loads: &[Vec3]) -> Vec<Vec3> {
-        let load = [0, 1, 2].map(|axis| loads.iter().map(|load| load[axis] as f32).collect());
-        let load: [Vec<f32>; 3] = load;
+        let load = |axis: usize| loads.iter().map(|load| load[axis] as f32).collect();
+        let load = self.at_columns([0, 1, 2].map(load));
+        let rows = self.all();
         let mut field = vec![Vec3::zeros(); loads.len()];
-        let load = load.each_ref().map(|axis| &axis[..]);
-        self.by_home(&self.values, load, &mut field, field_block);
+        self.by_home(
+            load.each_ref(),
+            &rows,
+            &mut field,
+            |(begins, width), x, out| {
+                field_block(&self.values, (begins, width), x, out);
+            },
+        );
         let rows = self.units.iter().zip(&self.own);
         for ((sum, (unit, own)), load) in field.iter_mut().zip(rows).zip(loads) {
             *sum = *sum * *unit + load * *own;
@@ -147,90 +164,107 @@ impl Near {
         field
     }
 
-    /// The entries times the cosines between the directions of their rows and columns, written to `out`.
+    /// The entries times the cosines between the directions of their rows and columns, written to `out`; for its sites alone.
     pub fn turn(&self, axes: &Axes, out: &mut Vec<i16>) {
         out.resize(self.values.len(), 0);
         let all: [Vec<f32>; 3] = axes.narrow();
-        let (mut row, mut at, mut there) = (0, 0, [(); 3].map(|()| Vec::new()));
-        for (home, columns) in self.homes() {
-            columns.gather(all.each_ref().map(|axis| &axis[..]), &mut there);
-            for _ in 0..home.rows {
-                let own = all.each_ref().map(|axis| axis[row]);
-                let entries = at..at + home.width as usize;
-                turn_row(
-                    own,
-                    &there,
-                    (&self.values[entries.clone()], &mut out[entries]),
-                );
-                (at, row) = (at + home.width as usize, row + 1);
+        let columns = self.at_columns(all.clone());
+        let mut there = [(); 3].map(|()| Vec::new());
+        let rows = self.all();
+        for rows in rows.chunk_by(|a, b| self.patch(*a) == self.patch(*b)) {
+            let home = self.home(rows[0]);
+            home.gather(columns.each_ref(), &mut there);
+            for &row in rows {
+                let own = all.each_ref().map(|axis| axis[row as usize]);
+                let entries = self.begin(row)..self.begin(row) + home.width;
+                let (values, out) = (&self.values[entries.clone()], &mut out[entries]);
+                turn_row(own, &there, (values, out));
             }
         }
     }
 
-    /// A matrix of this pattern, with `entries`, times `x`; the same bits for any number of threads.
-    pub(super) fn multiply(&self, entries: &[i16], x: &[f32], out: &mut [f64]) {
-        self.by_home(entries, [x], out, |entries, [x], out| {
-            multiply_block(entries, x, out);
+    /// Some `rows` (places among its sites, ascending) of a matrix of this pattern, with `entries`, times `x`, which is by site; the
+    /// same bits for any number of threads and any other rows beside.
+    pub(super) fn multiply(&self, entries: &[i16], rows: &[u32], x: Vec<f32>, out: &mut [f64]) {
+        let columns = self.at_columns([x]);
+        self.by_home(columns.each_ref(), rows, out, |of_rows, [there], out| {
+            multiply_block(entries, of_rows, there, out);
         });
-        let rows = self.units.iter().zip(&self.own);
-        for ((sum, (unit, own)), x) in out.iter_mut().zip(rows).zip(x) {
-            *sum = *sum * unit + own * f64::from(*x);
+        for (&row, sum) in rows.iter().zip(out) {
+            let row = row as usize;
+            let x = columns[0][self.places[row] as usize];
+            *sum = *sum * self.units[row] + self.own[row] * f64::from(x);
         }
     }
 
-    /// Homes with their columns.
-    fn homes(&self) -> impl Iterator<Item = (&Home, Columns<'_>)> {
-        let mut runs = &self.runs[..];
-        self.homes.iter().map(move |home| {
-            let own;
-            (own, runs) = runs.split_at(home.runs as usize);
-            let width = home.width as usize;
-            (home, Columns { runs: own, width })
+    /// All rows.
+    pub(super) fn all(&self) -> Vec<u32> {
+        (0..self.sites.len() as u32).collect()
+    }
+
+    fn patch(&self, row: u32) -> u32 {
+        self.patches[row as usize]
+    }
+
+    fn home(&self, row: u32) -> &Home {
+        &self.homes[self.patch(row) as usize]
+    }
+
+    fn begin(&self, row: u32) -> usize {
+        self.begins[self.places[row as usize] as usize]
+    }
+
+    /// Values by column from those by site; zero for what is not solved.
+    fn at_columns<const N: usize>(&self, x: [Vec<f32>; N]) -> [Vec<f32>; N] {
+        x.map(|x| {
+            let mut columns = vec![0.0; self.columns.len()];
+            for (&place, x) in self.places.iter().zip(x) {
+                columns[place as usize] = x;
+            }
+            columns
         })
     }
 
-    /// Calls `block` with the entries of every home, the values of `x` at its columns and its places in `out`.
+    /// Calls `block` with where some rows of one patch begin, their width, the values of `x` (by column) there, and their places in
+    /// `out` (by row).
     fn by_home<T: Send, const N: usize>(
         &self,
-        mut entries: &[i16],
-        x: [&[f32]; N],
+        x: [&Vec<f32>; N],
+        rows: &[u32],
         mut out: &mut [T],
-        block: impl Fn(&[i16], [&[f32]; N], &mut [T]) + Sync,
+        block: impl Fn((&[usize], usize), [&[f32]; N], &mut [T]) + Sync,
     ) {
         let mut blocks = Vec::with_capacity(self.homes.len());
-        for (home, columns) in self.homes() {
-            let (own, written);
-            (own, entries) = entries.split_at((home.rows * home.width) as usize);
-            (written, out) = out.split_at_mut(home.rows as usize);
-            blocks.push((own, columns, written));
+        for rows in rows.chunk_by(|a, b| self.patch(*a) == self.patch(*b)) {
+            let written;
+            (written, out) = out.split_at_mut(rows.len());
+            blocks.push((rows, written));
         }
-        let block = |there: &mut [Vec<f32>; N], (own, columns, written): (_, Columns<'_>, _)| {
-            columns.gather(x, there);
-            block(own, there.each_ref().map(|x| &x[..]), written);
+        let block = |(begins, there): &mut (Vec<usize>, [Vec<f32>; N]),
+                     (rows, written): (&[u32], _)| {
+            let home = self.home(rows[0]);
+            home.gather(x, there);
+            begins.clear();
+            begins.extend(rows.iter().map(|&row| self.begin(row)));
+            let there = there.each_ref().map(|x| &x[..]);
+            block((&begins[..], home.width), there, written);
         };
-        let none = || [(); N].map(|()| Vec::new());
+        let none = || (Vec::new(), [(); N].map(|()| Vec::new()));
         if self.values.len() < PARALLEL_ENTRIES {
-            let mut there = none();
-            blocks.into_iter().for_each(|home| block(&mut there, home));
+            let mut own = none();
+            blocks.into_iter().for_each(|rows| block(&mut own, rows));
         } else {
             blocks.into_par_iter().for_each_init(none, block);
         }
     }
 }
 
-/// The columns of a home.
-#[derive(Clone, Copy)]
-struct Columns<'a> {
-    runs: &'a [Run],
-    width: usize,
-}
-
-impl Columns<'_> {
-    /// Writes the values of `all` there to `there`, filled up with zeros.
-    fn gather<const N: usize>(&self, all: [&[f32]; N], there: &mut [Vec<f32>; N]) {
+impl Home {
+    /// Writes the values of `all` at the columns to `there`, filled up with zeros.
+    fn gather<const N: usize>(&self, all: [&Vec<f32>; N], there: &mut [Vec<f32>; N]) {
         for (all, there) in all.into_iter().zip(there) {
             there.clear();
-            for run in self.runs {
+            for run in &self.runs {
                 there.extend_from_slice(&all[run.start as usize..][..run.len as usize]);
             }
             there.resize(self.width, 0.0);
@@ -238,64 +272,14 @@ impl Columns<'_> {
     }
 }
 
-/// Entries of a row along `row` times their cosines with the directions of their columns, which both of a pair share.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn turn_row(row: [f32; 3], columns: &[Vec<f32>; 3], (values, out): (&[i16], &mut [i16])) {
-    let [x, y, z] = columns;
-    for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
-        *out = rounded(f32::from(*value) * (row[0] * x + row[1] * y + row[2] * z));
-    }
-}
-
-/// A dense block times `x`, as long as its rows: a multiple of [`LANES`].
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply_block(entries: &[i16], x: &[f32], out: &mut [f64]) {
-    let (x, _) = x.as_chunks::<LANES>();
-    for (row, out) in entries.chunks_exact(x.len() * LANES).zip(out) {
-        let (row, _) = row.as_chunks::<LANES>();
-        let mut sums = [0.0; LANES];
-        for (entries, x) in row.iter().zip(x) {
-            for lane in 0..LANES {
-                sums[lane] += f32::from(entries[lane]) * x[lane];
-            }
-        }
-        *out = f64::from(total(&sums));
-    }
-}
-
-/// [`multiply_block`] of the three axes of a vector at once.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn field_block(entries: &[i16], [x, y, z]: [&[f32]; 3], out: &mut [Vec3]) {
-    let (x, _) = x.as_chunks::<LANES>();
-    let (y, _) = y.as_chunks::<LANES>();
-    let (z, _) = z.as_chunks::<LANES>();
-    for (row, out) in entries.chunks_exact(x.len() * LANES).zip(out) {
-        let (row, _) = row.as_chunks::<LANES>();
-        let (mut along_x, mut along_y, mut along_z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for (((entries, x), y), z) in row.iter().zip(x).zip(y).zip(z) {
-            for lane in 0..LANES {
-                let entry = f32::from(entries[lane]);
-                along_x[lane] += entry * x[lane];
-                along_y[lane] += entry * y[lane];
-                along_z[lane] += entry * z[lane];
-            }
-        }
-        *out = Vec3::from([along_x, along_y, along_z].map(|sums| f64::from(total(&sums))));
-    }
-}
-
-/// The sum of all lanes, each half added to the other.
-///
-/// Called and not inlined: where it is, the compiler makes pairs of the whole loop before it.
-#[inline(never)]
-fn total(lanes: &[f32; LANES]) -> f32 {
-    let mut sums = *lanes;
-    for half in [16, 8, 4, 2, 1] {
-        for lane in 0..half {
-            sums[lane] += sums[lane + half];
-        }
-    }
-    sums[0]
+/// Appends what a row holds at the columns of its home, filled up with zeros.
+fn push_row(row: &[i16], home: &Home, values: &mut Vec<i16>) {
+    let begin = values.len();
+    let end = begin + home.width;
+    values.resize(end + SHORT, 0);
+    let taken = take(row, &home.pieces, &mut values[begin..]).len();
+    values.truncate(end);
+    values[begin + taken..].fill(0);
 }
 
 #[cfg(test)]
@@ -360,5 +344,43 @@ mod tests {
             left_out > pairs / 10 && left_out < 9 * pairs / 10,
             "{left_out} of {pairs}"
         );
+    }
+
+    #[test]
+    fn what_is_taken_up_beside_other_sites_is_what_is_made_anew() {
+        let (skin, zone) = sheet();
+        let ground = (&skin.response, &skin.sites);
+        let mut kept = near(&skin, &zone, 9.0);
+        // A corner, the sheet without it, some sites of all patches, and all again.
+        let corner: Vec<u32> = zone[..zone.len() / 5].to_vec();
+        let others: Vec<u32> = zone[zone.len() / 5..].to_vec();
+        let some: Vec<u32> = zone.iter().copied().step_by(3).collect();
+        for open in [&corner, &others, &some, &zone] {
+            kept.take_up((&zone, open), &skin.memory.rounded, ground, 9.0);
+            let anew = near(&skin, open, 9.0);
+            let loads = loads(open.len());
+            assert!(kept.is_of(open, 9.0) && !kept.is_of(open, 10.0));
+            let (ours, wanted) = (kept.field(&loads), anew.field(&loads));
+            // Sums of as many terms in another order.
+            let most = wanted.iter().map(Vec3::norm).fold(0.0, f64::max);
+            for (ours, wanted) in ours.iter().zip(&wanted) {
+                assert!((ours - wanted).norm() < 1e-5 * most, "{ours} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn some_rows_are_those_of_all_to_the_bit() {
+        let (skin, zone) = sheet();
+        let near = near(&skin, &zone, 12.0);
+        let x: Vec<f32> = (0..zone.len()).map(|k| (k as f32).cos()).collect();
+        let mut all = vec![0.0; zone.len()];
+        near.multiply(&near.values, &near.all(), x.clone(), &mut all);
+        let rows: Vec<u32> = near.all().into_iter().filter(|k| k % 7 < 3).collect();
+        let mut some = vec![0.0; rows.len()];
+        near.multiply(&near.values, &rows, x, &mut some);
+        for (&row, some) in rows.iter().zip(&some) {
+            assert_eq!(*some, all[row as usize]);
+        }
     }
 }

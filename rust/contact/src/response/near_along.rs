@@ -24,47 +24,75 @@ impl<'a> NearAlong<'a> {
     }
 }
 
+impl NearAlong<'_> {
+    /// Some rows (ascending) times `x`, each written to the same place of `out`.
+    fn multiply(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
+        let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
+        let weighted = x.iter().zip(self.weight).map(weighted).collect();
+        self.near.multiply(self.entries, rows, weighted, out);
+        for (&i, out) in rows.iter().zip(out) {
+            *out *= self.weight[i as usize];
+        }
+    }
+}
+
 impl Symmetric for NearAlong<'_> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
 
     fn times(&self, x: &[f64], out: &mut [f64]) {
-        let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
-        let weighted: Vec<f32> = x.iter().zip(self.weight).map(weighted).collect();
-        self.near.multiply(self.entries, &weighted, out);
-        for (out, w) in out.iter_mut().zip(self.weight) {
-            *out *= w;
-        }
+        self.multiply(&self.near.all(), x, out);
     }
 }
 
 impl Compliance for NearAlong<'_> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
-        let mut all = vec![0.0; x.len()];
-        self.times(x, &mut all);
-        for (&i, out) in rows.iter().zip(out) {
-            *out = all[i as usize];
-        }
+        self.multiply(rows, x, out);
     }
 
     /// Gershgorin's.
     fn norm_bound(&self) -> f64 {
         let mut sums = vec![0.0; self.weight.len()];
         let entries: Vec<i16> = self.entries.iter().map(|entry| entry.abs()).collect();
-        let weight: Vec<f32> = self.weight.iter().map(|w| *w as f32).collect();
-        self.near.multiply(&entries, &weight, &mut sums);
+        let weight = self.weight.iter().map(|w| *w as f32).collect();
+        self.near
+            .multiply(&entries, &self.near.all(), weight, &mut sums);
         let rows = sums.iter().zip(self.weight).map(|(sum, w)| sum * w);
         rows.fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    fn kept(&self, _set: &[u32], _is_rough: bool) -> Kept<'_> {
-        let all = (0..self.weight.len() as u32).collect();
-        Kept::of(all, Box::new(self))
+    fn kept(&self, set: &[u32], _is_rough: bool) -> Kept<'_> {
+        let of_set = OfSet {
+            all: self,
+            set: set.to_vec(),
+        };
+        Kept::in_place(self.weight.len(), set, Box::new(of_set))
     }
 
     fn is_narrow(&self, _is_rough: bool) -> bool {
         false
+    }
+}
+
+/// The same for some unknowns alone: elsewhere products are zero.
+struct OfSet<'a> {
+    all: &'a NearAlong<'a>,
+    set: Vec<u32>,
+}
+
+impl Symmetric for OfSet<'_> {
+    fn diagonal(&self) -> &[f64] {
+        &self.all.diagonal
+    }
+
+    fn times(&self, x: &[f64], out: &mut [f64]) {
+        let mut image = vec![0.0; self.set.len()];
+        self.all.multiply(&self.set, x, &mut image);
+        out.fill(0.0);
+        for (&i, image) in self.set.iter().zip(image) {
+            out[i as usize] = image;
+        }
     }
 }
 
@@ -108,6 +136,15 @@ mod tests {
         }
         let largest = wanted.iter().fold(0.0, |m, x| f64::max(m, x.abs()));
         assert!(most < 5e-3 * largest, "{most} of {largest}");
+        let set: Vec<u32> = (0..zone.len() as u32).filter(|k| k % 5 > 1).collect();
+        let mut some = vec![f64::NAN; zone.len()];
+        let kept = ours.kept(&set, true);
+        kept.matrix.times(&x, &mut some);
+        assert!(kept.holds(&set) && !kept.holds(&[0]));
+        for (k, (some, all)) in some.iter().zip(&product).enumerate() {
+            let wanted = if k % 5 > 1 { *all } else { 0.0 };
+            assert_eq!(*some, wanted, "{k}");
+        }
         for (ours, wanted) in ours.diagonal().iter().zip(theirs.diagonal()) {
             assert!((ours / wanted - 1.0).abs() < 1e-6, "{ours} {wanted}");
         }

@@ -37,8 +37,8 @@ pub fn sheet() -> (Skin, Vec<u32>) {
 /// The coupling of a zone within a range, mm.
 pub fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
     let mut near = Near::default();
-    near.renew(
-        zone,
+    near.take_up(
+        (zone, zone),
         &skin.memory.rounded,
         (&skin.response, &skin.sites),
         range,

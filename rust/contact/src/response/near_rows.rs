@@ -1,0 +1,93 @@
+//! The loops over the rows of a near coupling, as wide as the processor allows.
+
+use thenar_surface::Vec3;
+
+use super::rounded::rounded;
+
+/// Rows are filled up with zeros to a multiple of this: products need no remainder.
+pub(super) const LANES: usize = 16;
+/// Rows that are multiplied at once.
+const AT_ONCE: usize = 4;
+
+/// Entries of a row along `row` times their cosines with the directions of their columns, which both of a pair share.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub(super) fn turn_row(
+    row: [f32; 3],
+    columns: &[Vec<f32>; 3],
+    (values, out): (&[i16], &mut [i16]),
+) {
+    let [x, y, z] = columns;
+    for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
+        *out = rounded(f32::from(*value) * (row[0] * x + row[1] * y + row[2] * z));
+    }
+}
+
+/// Rows that begin at `begins` times `x`, as long as they: a multiple of [`LANES`].
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub(super) fn multiply_block(
+    entries: &[i16],
+    (begins, width): (&[usize], usize),
+    x: &[f32],
+    out: &mut [f64],
+) {
+    let (x, _) = x.as_chunks::<LANES>();
+    for (begins, out) in begins.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
+        // Where there are fewer, the first stands in.
+        let row = |k: usize| {
+            let begin = begins.get(k).copied().unwrap_or(begins[0]);
+            &entries[begin..begin + width].as_chunks::<LANES>().0[..x.len()]
+        };
+        let rows: [_; AT_ONCE] = std::array::from_fn(row);
+        let mut sums = [[0.0; LANES]; AT_ONCE];
+        for (at, x) in x.iter().enumerate() {
+            for k in 0..AT_ONCE {
+                for lane in 0..LANES {
+                    sums[k][lane] += f32::from(rows[k][at][lane]) * x[lane];
+                }
+            }
+        }
+        for (out, sums) in out.iter_mut().zip(&sums) {
+            *out = f64::from(total(sums));
+        }
+    }
+}
+
+/// [`multiply_block`] of the three axes of a vector at once.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub(super) fn field_block(
+    entries: &[i16],
+    (begins, width): (&[usize], usize),
+    [x, y, z]: [&[f32]; 3],
+    out: &mut [Vec3],
+) {
+    let (x, _) = x.as_chunks::<LANES>();
+    let (y, _) = y.as_chunks::<LANES>();
+    let (z, _) = z.as_chunks::<LANES>();
+    for (&begin, out) in begins.iter().zip(out) {
+        let (row, _) = entries[begin..begin + width].as_chunks::<LANES>();
+        let (mut along_x, mut along_y, mut along_z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for (((entries, x), y), z) in row.iter().zip(x).zip(y).zip(z) {
+            for lane in 0..LANES {
+                let entry = f32::from(entries[lane]);
+                along_x[lane] += entry * x[lane];
+                along_y[lane] += entry * y[lane];
+                along_z[lane] += entry * z[lane];
+            }
+        }
+        *out = Vec3::from([along_x, along_y, along_z].map(|sums| f64::from(total(&sums))));
+    }
+}
+
+/// The sum of all lanes, each half added to the other.
+///
+/// Called and not inlined: where it is, the compiler makes pairs of the whole loop before it.
+#[inline(never)]
+fn total(lanes: &[f32; LANES]) -> f32 {
+    let mut sums = *lanes;
+    for half in [8, 4, 2, 1] {
+        for lane in 0..half {
+            sums[lane] += sums[lane + half];
+        }
+    }
+    sums[0]
+}
