@@ -96,26 +96,7 @@ pub fn held(
     held
 }
 
-/// How far skin is off that is carried by `u` instead of along `direction` by `travel`, mm.
-///
-/// Skin that bears nothing, at a `distance` from the product, is where it is carried as long as it stays out.
-fn off(
-    u: &Vec3,
-    (direction, travel): (&Vec3, f64),
-    bears: bool,
-    distance: f64,
-    cosine: f64,
-) -> f64 {
-    let off = direction.dot(u) - travel;
-    if bears {
-        off.abs()
-    } else {
-        (-distance - cosine * off).max(0.0)
-    }
-}
-
-/// Sites of `zone` that would stray if they were held while what changed last goes on; skin that bears nothing as any other, for
-/// where it is carried off, what lies beside it soon is.
+/// Sites of `zone` that would stray if they were held while what changed last goes on.
 fn will_stray(skin: &Skin, setting: &Setting<'_>, zone: &[u32], met: &[Option<&Met>]) -> Vec<u32> {
     let most = EARLY * STRAY * setting.detection.deepest();
     let strays = |(site, met): &(&u32, &Option<&Met>)| {
@@ -189,40 +170,11 @@ pub fn strays(found: &Found<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>
     let most = STRAY * deepest;
     let (mut worst, mut far) = (0.0f64, Vec::new());
     for (k, &site) in found.zone.iter().enumerate() {
-        let along = (&found.direction[k], found.travel[k]);
-        let distance = found.touch[k].distance;
-        let off = off(
-            &field[site as usize],
-            along,
-            found.force[k] > 0.0,
-            distance,
-            found.cosine[k],
-        );
+        let off = (found.direction[k].dot(&field[site as usize]) - found.travel[k]).abs();
         worst = worst.max(off);
         if off > most {
             far.push(site);
         }
     }
     (worst / deepest.max(f64::MIN_POSITIVE), far)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn skin_that_bears_nothing_is_off_only_where_it_is_carried_into_the_product() {
-        // A product above, 0.1 mm away from where the skin lies; along its normal and aslant.
-        for direction in [-Vec3::z(), Vec3::new(0.6, 0.0, -0.8)] {
-            let cosine = direction.dot(&-Vec3::z());
-            let along = (&direction, 0.05);
-            let free = |by: f64| off(&(direction * by), along, false, 0.1, cosine);
-            assert_eq!(free(3.0), 0.0, "away from the product");
-            assert_eq!(free(0.05 - 0.09 / cosine), 0.0, "nearer, and still outside");
-            assert!((free(0.05 - 0.12 / cosine) - 0.02).abs() < 1e-12);
-            let bearing = |by: f64| off(&(direction * by), along, true, 0.0, cosine);
-            assert!((bearing(0.09) - 0.04).abs() < 1e-12);
-            assert!((bearing(0.01) - 0.04).abs() < 1e-12);
-        }
-    }
 }

@@ -146,11 +146,11 @@ impl Near {
     /// `sum_j K_ij load_j` at its sites; `loads` by site.
     pub fn field(&self, loads: &[Vec3]) -> Vec<Vec3> {
         let load = |axis: usize| loads.iter().map(|load| load[axis] as f32).collect();
-        let load = self.at_columns([0, 1, 2].map(load));
+        let load: [Vec<f32>; 3] = [0, 1, 2].map(load);
         let rows = self.all();
         let mut field = vec![Vec3::zeros(); loads.len()];
         self.by_home(
-            load.each_ref(),
+            slices(&load),
             &rows,
             &mut field,
             |(begins, width), x, out| {
@@ -168,12 +168,12 @@ impl Near {
     pub fn turn(&self, axes: &Axes, out: &mut Vec<i16>) {
         out.resize(self.values.len(), 0);
         let all: [Vec<f32>; 3] = axes.narrow();
-        let columns = self.at_columns(all.clone());
+        let columns = self.at_columns(slices(&all));
         let mut there = [(); 3].map(|()| Vec::new());
         let rows = self.all();
         for rows in rows.chunk_by(|a, b| self.patch(*a) == self.patch(*b)) {
             let home = self.home(rows[0]);
-            home.gather(columns.each_ref(), &mut there);
+            home.gather(slices(&columns), &mut there);
             for &row in rows {
                 let own = all.each_ref().map(|axis| axis[row as usize]);
                 let entries = self.begin(row)..self.begin(row) + home.width;
@@ -185,15 +185,13 @@ impl Near {
 
     /// Some `rows` (places among its sites, ascending) of a matrix of this pattern, with `entries`, times `x`, which is by site; the
     /// same bits for any number of threads and any other rows beside.
-    pub(super) fn multiply(&self, entries: &[i16], rows: &[u32], x: Vec<f32>, out: &mut [f64]) {
-        let columns = self.at_columns([x]);
-        self.by_home(columns.each_ref(), rows, out, |of_rows, [there], out| {
+    pub(super) fn multiply(&self, entries: &[i16], rows: &[u32], x: &[f32], out: &mut [f64]) {
+        self.by_home([x], rows, out, |of_rows, [there], out| {
             multiply_block(entries, of_rows, there, out);
         });
         for (&row, sum) in rows.iter().zip(out) {
             let row = row as usize;
-            let x = columns[0][self.places[row] as usize];
-            *sum = *sum * self.units[row] + self.own[row] * f64::from(x);
+            *sum = *sum * self.units[row] + self.own[row] * f64::from(x[row]);
         }
     }
 
@@ -215,25 +213,26 @@ impl Near {
     }
 
     /// Values by column from those by site; zero for what is not solved.
-    fn at_columns<const N: usize>(&self, x: [Vec<f32>; N]) -> [Vec<f32>; N] {
+    fn at_columns<const N: usize>(&self, x: [&[f32]; N]) -> [Vec<f32>; N] {
         x.map(|x| {
             let mut columns = vec![0.0; self.columns.len()];
             for (&place, x) in self.places.iter().zip(x) {
-                columns[place as usize] = x;
+                columns[place as usize] = *x;
             }
             columns
         })
     }
 
-    /// Calls `block` with where some rows of one patch begin, their width, the values of `x` (by column) there, and their places in
-    /// `out` (by row).
+    /// Calls `block` with where some rows of one patch begin, their width, the values of `x` (by site) at their columns, and their
+    /// places in `out` (by row).
     fn by_home<T: Send, const N: usize>(
         &self,
-        x: [&Vec<f32>; N],
+        x: [&[f32]; N],
         rows: &[u32],
         mut out: &mut [T],
         block: impl Fn((&[usize], usize), [&[f32]; N], &mut [T]) + Sync,
     ) {
+        let columns = self.at_columns(x);
         let mut blocks = Vec::with_capacity(self.homes.len());
         for rows in rows.chunk_by(|a, b| self.patch(*a) == self.patch(*b)) {
             let written;
@@ -243,11 +242,10 @@ impl Near {
         let block = |(begins, there): &mut (Vec<usize>, [Vec<f32>; N]),
                      (rows, written): (&[u32], _)| {
             let home = self.home(rows[0]);
-            home.gather(x, there);
+            home.gather(slices(&columns), there);
             begins.clear();
             begins.extend(rows.iter().map(|&row| self.begin(row)));
-            let there = there.each_ref().map(|x| &x[..]);
-            block((&begins[..], home.width), there, written);
+            block((&begins[..], home.width), slices(there), written);
         };
         let none = || (Vec::new(), [(); N].map(|()| Vec::new()));
         if self.values.len() < PARALLEL_ENTRIES {
@@ -261,7 +259,7 @@ impl Near {
 
 impl Home {
     /// Writes the values of `all` at the columns to `there`, filled up with zeros.
-    fn gather<const N: usize>(&self, all: [&Vec<f32>; N], there: &mut [Vec<f32>; N]) {
+    fn gather<const N: usize>(&self, all: [&[f32]; N], there: &mut [Vec<f32>; N]) {
         for (all, there) in all.into_iter().zip(there) {
             there.clear();
             for run in &self.runs {
@@ -270,6 +268,10 @@ impl Home {
             there.resize(self.width, 0.0);
         }
     }
+}
+
+fn slices<const N: usize>(values: &[Vec<f32>; N]) -> [&[f32]; N] {
+    values.each_ref().map(|values| &values[..])
 }
 
 /// Appends what a row holds at the columns of its home, filled up with zeros.
@@ -375,10 +377,10 @@ mod tests {
         let near = near(&skin, &zone, 12.0);
         let x: Vec<f32> = (0..zone.len()).map(|k| (k as f32).cos()).collect();
         let mut all = vec![0.0; zone.len()];
-        near.multiply(&near.values, &near.all(), x.clone(), &mut all);
+        near.multiply(&near.values, &near.all(), &x, &mut all);
         let rows: Vec<u32> = near.all().into_iter().filter(|k| k % 7 < 3).collect();
         let mut some = vec![0.0; rows.len()];
-        near.multiply(&near.values, &rows, x, &mut some);
+        near.multiply(&near.values, &rows, &x, &mut some);
         for (&row, some) in rows.iter().zip(&some) {
             assert_eq!(*some, all[row as usize]);
         }

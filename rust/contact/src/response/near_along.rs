@@ -28,8 +28,8 @@ impl NearAlong<'_> {
     /// Some rows (ascending) times `x`, each written to the same place of `out`.
     fn multiply(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
         let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
-        let weighted = x.iter().zip(self.weight).map(weighted).collect();
-        self.near.multiply(self.entries, rows, weighted, out);
+        let weighted: Vec<f32> = x.iter().zip(self.weight).map(weighted).collect();
+        self.near.multiply(self.entries, rows, &weighted, out);
         for (&i, out) in rows.iter().zip(out) {
             *out *= self.weight[i as usize];
         }
@@ -55,9 +55,9 @@ impl Compliance for NearAlong<'_> {
     fn norm_bound(&self) -> f64 {
         let mut sums = vec![0.0; self.weight.len()];
         let entries: Vec<i16> = self.entries.iter().map(|entry| entry.abs()).collect();
-        let weight = self.weight.iter().map(|w| *w as f32).collect();
+        let weight: Vec<f32> = self.weight.iter().map(|w| *w as f32).collect();
         self.near
-            .multiply(&entries, &self.near.all(), weight, &mut sums);
+            .multiply(&entries, &self.near.all(), &weight, &mut sums);
         let rows = sums.iter().zip(self.weight).map(|(sum, w)| sum * w);
         rows.fold(f64::MIN_POSITIVE, f64::max)
     }
