@@ -37,10 +37,10 @@ impl State {
             self.touch[k].distance - self.cosine[k] * self.travel[k] < 0.0
         };
         let axes = Axes::new(&direction);
-        let mut near = Vec::new();
-        if self.beyond != Beyond::Nothing {
-            skin.memory.near.now().turn(&axes, &mut near);
-        }
+        let near = match self.beyond {
+            Beyond::Nothing => Vec::new(),
+            _ => skin.memory.near.now().turn(&axes),
+        };
         Turned {
             axes,
             near,

@@ -7,6 +7,7 @@ pub mod grid;
 pub mod kernel;
 pub mod near;
 pub mod near_along;
+mod near_home;
 mod near_rows;
 pub mod rounded;
 pub mod stiff_skin;

@@ -9,13 +9,13 @@
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
-use super::assembly::{Members, SHORT, layout, take};
+use super::assembly::{Members, layout};
+use super::near_home::{Home, slices};
 use super::near_rows::{LANES, field_block, multiply_block, turn_row};
 use super::rounded::Rounded;
 use super::rows::Response;
 use crate::sites::Sites;
 use crate::solve::Axes;
-use crate::solve::operator::Run;
 
 /// Entries from which products are worth several threads.
 const PARALLEL_ENTRIES: usize = 6_000_000;
@@ -23,16 +23,6 @@ const PARALLEL_ENTRIES: usize = 6_000_000;
 /// serves.
 const MOST_COLUMNS: f64 = 1.6;
 const MISSING: usize = usize::MAX;
-
-/// What the rows of one patch have in common; empty where it is not coupled.
-#[derive(Debug, Clone, Default)]
-struct Home {
-    /// Entries of each, a multiple of [`LANES`].
-    width: usize,
-    /// The columns that they feel, and where these lie in the rows of the response: first and number.
-    runs: Vec<Run>,
-    pieces: Vec<(u32, u32)>,
-}
 
 /// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric but for rounding.
 #[derive(Debug, Clone, Default)]
@@ -53,6 +43,8 @@ pub struct Near {
     homes: Vec<Home>,
     /// Entries of the rows that were made; zero where a site meets itself.
     values: Vec<i16>,
+    /// Where the entries of each site's row begin once they are turned, and where those of the last end.
+    turned: Vec<usize>,
 }
 
 impl Near {
@@ -111,7 +103,22 @@ impl Near {
             if *begin == MISSING {
                 *begin = self.values.len();
                 let home = &self.homes[patch as usize];
-                push_row(&rows.row(site).entries, home, &mut self.values);
+                home.push_row(&rows.row(site).entries, &mut self.values);
+            }
+        }
+        self.choose_chunks();
+    }
+
+    /// Finds the columns of the solved sites in the rows of each, and where rows begin that hold no others.
+    fn choose_chunks(&mut self) {
+        let solved = self.at_columns([&vec![1.0; self.sites.len()]]);
+        self.turned = vec![0];
+        for patches in self.patches.chunk_by(|a, b| a == b) {
+            let home = &mut self.homes[patches[0] as usize];
+            home.choose_chunks(&solved[0]);
+            for _ in patches {
+                let begin = self.turned[self.turned.len() - 1];
+                self.turned.push(begin + home.chunks.len() * LANES);
             }
         }
     }
@@ -132,13 +139,7 @@ impl Near {
             let felt = response.bounds(patch).zip(response.near(patch));
             let felt = felt.filter(|((other, bound), _)| *bound < self.range || *other == patch);
             let felt: Vec<(u32, u32)> = felt.map(|(_, entry)| *entry).collect();
-            let (runs, pieces) = layout(&felt, &members);
-            let width: usize = runs.iter().map(|run| run.len as usize).sum();
-            Home {
-                width: width.next_multiple_of(LANES),
-                runs,
-                pieces,
-            }
+            Home::new(layout(&felt, &members))
         };
         self.homes = (0..).zip(is_coupled).map(home).collect();
     }
@@ -149,14 +150,10 @@ impl Near {
         let load: [Vec<f32>; 3] = [0, 1, 2].map(load);
         let rows = self.all();
         let mut field = vec![Vec3::zeros(); loads.len()];
-        self.by_home(
-            slices(&load),
-            &rows,
-            &mut field,
-            |(begins, width), x, out| {
-                field_block(&self.values, (begins, width), x, out);
-            },
-        );
+        let begin = |row| self.begin(row);
+        self.by_home(begin, slices(&load), (&rows, &mut field), |rows, x, out| {
+            field_block(&self.values, rows, x, out);
+        });
         let rows = self.units.iter().zip(&self.own);
         for ((sum, (unit, own)), load) in field.iter_mut().zip(rows).zip(loads) {
             *sum = *sum * *unit + load * *own;
@@ -164,30 +161,31 @@ impl Near {
         field
     }
 
-    /// The entries times the cosines between the directions of their rows and columns, written to `out`; for its sites alone.
-    pub fn turn(&self, axes: &Axes, out: &mut Vec<i16>) {
-        out.resize(self.values.len(), 0);
+    /// The entries times the cosines between the directions of their rows and columns, for its sites alone.
+    pub fn turn(&self, axes: &Axes) -> Vec<i16> {
         let all: [Vec<f32>; 3] = axes.narrow();
         let columns = self.at_columns(slices(&all));
         let mut there = [(); 3].map(|()| Vec::new());
+        let mut turned = Vec::with_capacity(self.turned[self.sites.len()]);
         let rows = self.all();
         for rows in rows.chunk_by(|a, b| self.patch(*a) == self.patch(*b)) {
             let home = self.home(rows[0]);
-            home.gather(slices(&columns), &mut there);
+            home.gather_solved(slices(&columns), &mut there);
             for &row in rows {
                 let own = all.each_ref().map(|axis| axis[row as usize]);
-                let entries = self.begin(row)..self.begin(row) + home.width;
-                let (values, out) = (&self.values[entries.clone()], &mut out[entries]);
-                turn_row(own, &there, (values, out));
+                let values = &self.values[self.begin(row)..][..home.width];
+                turn_row(own, slices(&there), (values, &home.chunks), &mut turned);
             }
         }
+        turned
     }
 
-    /// Some `rows` (places among its sites, ascending) of a matrix of this pattern, with `entries`, times `x`, which is by site; the
-    /// same bits for any number of threads and any other rows beside.
+    /// Some `rows` (places among its sites, ascending) of turned `entries` times `x`, which is by site; the same bits for any
+    /// number of threads and any other rows beside.
     pub(super) fn multiply(&self, entries: &[i16], rows: &[u32], x: &[f32], out: &mut [f64]) {
-        self.by_home([x], rows, out, |of_rows, [there], out| {
-            multiply_block(entries, of_rows, there, out);
+        let begin = |row| self.turned[row as usize];
+        self.by_home(begin, [x], (rows, out), |(begins, _), [there], out| {
+            multiply_block(entries, begins, there, out);
         });
         for (&row, sum) in rows.iter().zip(out) {
             let row = row as usize;
@@ -223,14 +221,14 @@ impl Near {
         })
     }
 
-    /// Calls `block` with where some rows of one patch begin, their width, the values of `x` (by site) at their columns, and their
-    /// places in `out` (by row).
+    /// Calls `block` with where some `rows` of one patch begin, their chunks, the values of `x` (by site) there, and the places of
+    /// the rows in `out`.
     fn by_home<T: Send, const N: usize>(
         &self,
+        begin: impl Fn(u32) -> usize + Sync,
         x: [&[f32]; N],
-        rows: &[u32],
-        mut out: &mut [T],
-        block: impl Fn((&[usize], usize), [&[f32]; N], &mut [T]) + Sync,
+        (rows, mut out): (&[u32], &mut [T]),
+        block: impl Fn((&[usize], &[u32]), [&[f32]; N], &mut [T]) + Sync,
     ) {
         let columns = self.at_columns(x);
         let mut blocks = Vec::with_capacity(self.homes.len());
@@ -242,10 +240,10 @@ impl Near {
         let block = |(begins, there): &mut (Vec<usize>, [Vec<f32>; N]),
                      (rows, written): (&[u32], _)| {
             let home = self.home(rows[0]);
-            home.gather(slices(&columns), there);
+            home.gather_solved(slices(&columns), there);
             begins.clear();
-            begins.extend(rows.iter().map(|&row| self.begin(row)));
-            block((&begins[..], home.width), slices(there), written);
+            begins.extend(rows.iter().map(|&row| begin(row)));
+            block((&begins[..], &home.chunks), slices(there), written);
         };
         let none = || (Vec::new(), [(); N].map(|()| Vec::new()));
         if self.values.len() < PARALLEL_ENTRIES {
@@ -255,33 +253,6 @@ impl Near {
             blocks.into_par_iter().for_each_init(none, block);
         }
     }
-}
-
-impl Home {
-    /// Writes the values of `all` at the columns to `there`, filled up with zeros.
-    fn gather<const N: usize>(&self, all: [&[f32]; N], there: &mut [Vec<f32>; N]) {
-        for (all, there) in all.into_iter().zip(there) {
-            there.clear();
-            for run in &self.runs {
-                there.extend_from_slice(&all[run.start as usize..][..run.len as usize]);
-            }
-            there.resize(self.width, 0.0);
-        }
-    }
-}
-
-fn slices<const N: usize>(values: &[Vec<f32>; N]) -> [&[f32]; N] {
-    values.each_ref().map(|values| &values[..])
-}
-
-/// Appends what a row holds at the columns of its home, filled up with zeros.
-fn push_row(row: &[i16], home: &Home, values: &mut Vec<i16>) {
-    let begin = values.len();
-    let end = begin + home.width;
-    values.resize(end + SHORT, 0);
-    let taken = take(row, &home.pieces, &mut values[begin..]).len();
-    values.truncate(end);
-    values[begin + taken..].fill(0);
 }
 
 #[cfg(test)]
@@ -375,12 +346,13 @@ mod tests {
     fn some_rows_are_those_of_all_to_the_bit() {
         let (skin, zone) = sheet();
         let near = near(&skin, &zone, 12.0);
+        let turned = near.turn(&Axes::new(&loads(zone.len())));
         let x: Vec<f32> = (0..zone.len()).map(|k| (k as f32).cos()).collect();
         let mut all = vec![0.0; zone.len()];
-        near.multiply(&near.values, &near.all(), &x, &mut all);
+        near.multiply(&turned, &near.all(), &x, &mut all);
         let rows: Vec<u32> = near.all().into_iter().filter(|k| k % 7 < 3).collect();
         let mut some = vec![0.0; rows.len()];
-        near.multiply(&near.values, &rows, &x, &mut some);
+        near.multiply(&turned, &rows, &x, &mut some);
         for (&row, some) in rows.iter().zip(&some) {
             assert_eq!(*some, all[row as usize]);
         }

@@ -121,8 +121,7 @@ mod tests {
             Part::default(),
             vec![true; zone.len()],
         );
-        let mut entries = Vec::new();
-        near.turn(&axes, &mut entries);
+        let entries = near.turn(&axes);
         let ours = NearAlong::new(&near, &entries, &weight);
         let theirs = Along::new((&whole, &axes), (&weight, &likely), &part);
         let x: Vec<f64> = (0..zone.len()).map(|k| (0.3 * k as f64).cos()).collect();

@@ -9,33 +9,36 @@ pub(super) const LANES: usize = 16;
 /// Rows that are multiplied at once.
 const AT_ONCE: usize = 4;
 
-/// Entries of a row along `row` times their cosines with the directions of their columns, which both of a pair share.
+/// Appends the entries of a row in some `chunks`, along `row` times their cosines with the directions of their columns, which both
+/// of a pair share.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn turn_row(
     row: [f32; 3],
-    columns: &[Vec<f32>; 3],
-    (values, out): (&[i16], &mut [i16]),
+    columns: [&[f32]; 3],
+    (values, chunks): (&[i16], &[u32]),
+    turned: &mut Vec<i16>,
 ) {
-    let [x, y, z] = columns;
-    for ((((value, x), y), z), out) in values.iter().zip(x).zip(y).zip(z).zip(out) {
-        *out = rounded(f32::from(*value) * (row[0] * x + row[1] * y + row[2] * z));
+    let (values, _) = values.as_chunks::<LANES>();
+    let [x, y, z] = columns.map(|axis| axis.as_chunks::<LANES>().0);
+    for (((&at, x), y), z) in chunks.iter().zip(x).zip(y).zip(z) {
+        let values = &values[at as usize];
+        let entry = |lane: usize| {
+            let cosine = row[0] * x[lane] + row[1] * y[lane] + row[2] * z[lane];
+            rounded(f32::from(values[lane]) * cosine)
+        };
+        turned.extend_from_slice(&std::array::from_fn::<i16, LANES, _>(entry));
     }
 }
 
 /// Rows that begin at `begins` times `x`, as long as they: a multiple of [`LANES`].
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-pub(super) fn multiply_block(
-    entries: &[i16],
-    (begins, width): (&[usize], usize),
-    x: &[f32],
-    out: &mut [f64],
-) {
+pub(super) fn multiply_block(entries: &[i16], begins: &[usize], x: &[f32], out: &mut [f64]) {
     let (x, _) = x.as_chunks::<LANES>();
     for (begins, out) in begins.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
         // Where there are fewer, the first stands in.
         let row = |k: usize| {
             let begin = begins.get(k).copied().unwrap_or(begins[0]);
-            &entries[begin..begin + width].as_chunks::<LANES>().0[..x.len()]
+            &entries[begin..].as_chunks::<LANES>().0[..x.len()]
         };
         let rows: [_; AT_ONCE] = std::array::from_fn(row);
         let mut sums = [[0.0; LANES]; AT_ONCE];
@@ -52,21 +55,20 @@ pub(super) fn multiply_block(
     }
 }
 
-/// [`multiply_block`] of the three axes of a vector at once.
+/// Some `chunks` of the rows that begin at `begins` times vectors there, by axis.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(super) fn field_block(
     entries: &[i16],
-    (begins, width): (&[usize], usize),
-    [x, y, z]: [&[f32]; 3],
+    (begins, chunks): (&[usize], &[u32]),
+    vectors: [&[f32]; 3],
     out: &mut [Vec3],
 ) {
-    let (x, _) = x.as_chunks::<LANES>();
-    let (y, _) = y.as_chunks::<LANES>();
-    let (z, _) = z.as_chunks::<LANES>();
+    let [x, y, z] = vectors.map(|axis| axis.as_chunks::<LANES>().0);
     for (&begin, out) in begins.iter().zip(out) {
-        let (row, _) = entries[begin..begin + width].as_chunks::<LANES>();
+        let (row, _) = entries[begin..].as_chunks::<LANES>();
         let (mut along_x, mut along_y, mut along_z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for (((entries, x), y), z) in row.iter().zip(x).zip(y).zip(z) {
+        for (((&at, x), y), z) in chunks.iter().zip(x).zip(y).zip(z) {
+            let entries = &row[at as usize];
             for lane in 0..LANES {
                 let entry = f32::from(entries[lane]);
                 along_x[lane] += entry * x[lane];
