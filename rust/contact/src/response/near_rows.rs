@@ -38,14 +38,14 @@ pub(super) fn multiply_block(entries: &[i16], begins: &[usize], x: &[f32], out: 
         // Where there are fewer, the first stands in.
         let row = |k: usize| {
             let begin = begins.get(k).copied().unwrap_or(begins[0]);
-            &entries[begin..].as_chunks::<LANES>().0[..x.len()]
+            entries[begin..].as_chunks::<LANES>().0
         };
-        let rows: [_; AT_ONCE] = std::array::from_fn(row);
+        let [a, b, c, d]: [_; AT_ONCE] = std::array::from_fn(row);
         let mut sums = [[0.0; LANES]; AT_ONCE];
-        for (at, x) in x.iter().enumerate() {
-            for k in 0..AT_ONCE {
+        for ((((x, a), b), c), d) in x.iter().zip(a).zip(b).zip(c).zip(d) {
+            for (sums, row) in sums.iter_mut().zip([a, b, c, d]) {
                 for lane in 0..LANES {
-                    sums[k][lane] += f32::from(rows[k][at][lane]) * x[lane];
+                    sums[lane] += f32::from(row[lane]) * x[lane];
                 }
             }
         }
