@@ -83,7 +83,7 @@ pub fn held(
         None if changed.is_empty() => {}
         None => changed.extend(will_stray(skin, setting, zone, &met)),
     }
-    changed.sort_unstable();
+    changed.sort();
     let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
     let is_open = near(skin, &changed, reach);
     let held = zone.iter().zip(met);

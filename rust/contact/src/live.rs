@@ -79,7 +79,7 @@ pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> 
     let carried_in = (0..skin.sites.len() as u32).filter(is_carried_in);
     let more = ringed(skin, setting, &zone, carried_in.collect());
     zone.extend(more);
-    zone.sort_unstable();
+    zone.sort();
     zone
 }
 

@@ -137,7 +137,8 @@ pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32
     let is_known = |s: &&u32| distance(**s) < f64::INFINITY;
     let mut both = lasting.clone();
     both.extend(last.iter().filter(is_known));
-    both.sort_unstable();
+    // Of two ascending lists, which a stable sort merges.
+    both.sort();
     both.dedup();
     if both.len() > lasting.len() + lasting.len() / 4 {
         lasting

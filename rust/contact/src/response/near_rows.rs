@@ -1,8 +1,9 @@
 //! The loops over the rows of a near coupling, as wide as the processor allows.
 
+use multiversion::target::target_cfg_f;
 use thenar_surface::Vec3;
 
-use super::rounded::rounded;
+use super::rounded::{plus, rounded};
 
 /// Rows are filled up with zeros to a multiple of this: products need no remainder.
 pub(super) const LANES: usize = 16;
@@ -31,8 +32,9 @@ pub(super) fn turn_row(
 }
 
 /// Rows that begin at `begins` times `x`, as long as they: a multiple of [`LANES`].
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2+fma"))]
 pub(super) fn multiply_block(entries: &[i16], begins: &[usize], x: &[f32], out: &mut [f64]) {
+    const IS_FUSED: bool = target_cfg_f!(any(target_feature = "fma", target_feature = "avx512f"));
     let (x, _) = x.as_chunks::<LANES>();
     for (begins, out) in begins.chunks(AT_ONCE).zip(out.chunks_mut(AT_ONCE)) {
         // Where there are fewer, the first stands in.
@@ -45,7 +47,7 @@ pub(super) fn multiply_block(entries: &[i16], begins: &[usize], x: &[f32], out: 
         for ((((x, a), b), c), d) in x.iter().zip(a).zip(b).zip(c).zip(d) {
             for (sums, row) in sums.iter_mut().zip([a, b, c, d]) {
                 for lane in 0..LANES {
-                    sums[lane] += f32::from(row[lane]) * x[lane];
+                    sums[lane] = plus::<IS_FUSED>(sums[lane], f32::from(row[lane]), x[lane]);
                 }
             }
         }

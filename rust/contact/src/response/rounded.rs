@@ -2,6 +2,7 @@
 //!
 //! An entry is off by 1/64000 of the largest of its row; where a site answers itself, it is kept apart as it is.
 
+use multiversion::target::target_cfg_f;
 use thenar_surface::Vec3;
 
 use super::assembly::{Load, own_offset};
@@ -112,8 +113,9 @@ impl Rounded {
 }
 
 /// Adds rows, each times its weights, to the sums of three axes.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2+fma"))]
 fn add_rows(rows: [&[i16]; AT_ONCE], weights: [[f32; AT_ONCE]; 3], [x, y, z]: [&mut [f32]; 3]) {
+    const IS_FUSED: bool = target_cfg_f!(any(target_feature = "fma", target_feature = "avx512f"));
     let length = x.len();
     let rows = rows.map(|row| &row[..length]);
     let (y, z) = (&mut y[..length], &mut z[..length]);
@@ -123,10 +125,19 @@ fn add_rows(rows: [&[i16]; AT_ONCE], weights: [[f32; AT_ONCE]; 3], [x, y, z]: [&
         for k in 0..AT_ONCE {
             let entry = f32::from(rows[k][i]);
             for axis in 0..3 {
-                sums[axis] += entry * weights[axis][k];
+                sums[axis] = plus::<IS_FUSED>(sums[axis], entry, weights[axis][k]);
             }
         }
         [x[i], y[i], z[i]] = sums;
+    }
+}
+
+/// `sum` and a product, rounded once where the processor does both at once: elsewhere that would take a call.
+#[inline(always)]
+pub(super) fn plus<const IS_FUSED: bool>(sum: f32, a: f32, b: f32) -> f32 {
+    match IS_FUSED {
+        true => a.mul_add(b, sum),
+        false => sum + a * b,
     }
 }
 
