@@ -170,6 +170,15 @@ mod tests {
     use crate::response::test_sheet::sheet;
 
     #[test]
+    fn a_product_is_added_on_every_processor() {
+        assert_eq!(plus::<true>(0.5, 3.0, -2.0), -5.5);
+        assert_eq!(plus::<false>(0.5, 3.0, -2.0), -5.5);
+        // The square of 1 + 2^-12 has a last bit that a product alone would lose.
+        let x = 1.0 + 2.0f32.powi(-12);
+        assert_eq!(plus::<true>(-x, x, x), 2.0f32.powi(-12) + 2.0f32.powi(-24));
+    }
+
+    #[test]
     fn numbers_are_rounded_to_the_nearest() {
         for k in -320..=320 {
             let value = k as f32 * 99.83;
