@@ -29,7 +29,9 @@ class MaterialError(ThenarError):
     """A material number is not admissible, or a region has no material."""
 
 class SolveError(ThenarError):
-    """A press was asked for something it cannot do, or failed inside."""
+    """A press was asked for something it cannot do, or was not solved; `vertices` are those of the hand where it failed."""
+
+    vertices: list[int]
 
 class RecordingError(ThenarError):
     """A recording or study file cannot be used."""
@@ -160,6 +162,7 @@ class Skin:
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
         live: bool = False,
+        keep_unsolved: bool = False,
     ) -> Contact: ...
     @overload
     def press(
@@ -177,6 +180,7 @@ class Skin:
         drag_n: ArrayLike | None = None,
         warm_start: bool = False,
         live: bool = False,
+        keep_unsolved: bool = False,
     ) -> Contact: ...
     @overload
     def run(
@@ -373,6 +377,12 @@ class Contact:
     def convergence(self) -> Record: ...
     @property
     def warnings(self) -> list[str]: ...
+    @property
+    def grade(self) -> Literal["good", "read this", "do not use"]: ...
+    @property
+    def reason(self) -> str | None: ...
+    @property
+    def remarks(self) -> list[Record]: ...
     @property
     def seconds(self) -> Record: ...
 

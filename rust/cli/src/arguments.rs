@@ -59,6 +59,9 @@ pub struct PressArguments {
     /// TOML with a table of material numbers by region number, name, or `default`; without it all skin is a fingertip's.
     #[arg(long, value_name = "M.toml")]
     pub materials: Option<PathBuf>,
+    /// Writes a contact that does not reach its tolerances as far as it came, graded "do not use"; else it is an error.
+    #[arg(long)]
+    pub keep_unsolved: bool,
     /// Moves the product until the normal force is this, N.
     #[arg(
         long,

@@ -8,7 +8,7 @@ use crate::{effects, interrupt, materials, protocol, regions, results, threads};
 use serde_json::{Value, json};
 use std::path::Path;
 use thenar_contact::{
-    Contact, Control, ForceTarget, Keep, Model, Press, Run, Skin, SkinInput, Start,
+    Contact, Control, ForceTarget, Keep, Model, Press, Run, Skin, SkinInput, Start, Unsolved,
 };
 use thenar_recordings::meshes::{self, MeshFile};
 use thenar_surface::{Mesh, Product, Vec3};
@@ -97,6 +97,7 @@ fn press(
             .map(|newton| ForceTarget { newton, direction }),
         drag: None,
         start: Start::Fresh,
+        unsolved: Unsolved::kept_if(arguments.keep_unsolved),
     };
     Ok((skin.press(&press, control)?, regions, None))
 }
@@ -156,6 +157,7 @@ fn report(contact: &Contact, regions: &RegionTable, out: &Path) -> String {
         "{:>20} {force:>10.3} {:>10.1} {peak:>10.2}\n",
         "all", contact.contact_area
     );
+    text += &format!("{:>20} {:>10}\n", "grade", contact.grade().name());
     for warning in &contact.warnings {
         text += &format!("note: {warning}\n");
     }

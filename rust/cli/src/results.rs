@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use thenar_contact::{Contact, RegionResult};
+use thenar_contact::{Contact, RegionResult, Warning};
 
 const KPA_PER_MPA: f64 = 1e3;
 
@@ -114,7 +114,9 @@ pub fn summary(contact: &Contact, regions: &RegionTable, run: Value) -> Output {
             "pivots": contact.convergence.pivots,
             "cg_steps": contact.convergence.cg_steps,
         },
-        "warnings": contact.warnings,
+        "grade": contact.grade().name(),
+        "reason": contact.reason().map(Warning::to_string),
+        "warnings": contact.warnings.iter().map(Warning::to_string).collect::<Vec<_>>(),
     });
     Output {
         name: "summary.json",

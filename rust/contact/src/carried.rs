@@ -139,7 +139,7 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
     let normals: Vec<Vec3> = free.iter().map(|&k| -found.touch[k].normal).collect();
     let hints: Vec<u32> = free.iter().map(|&k| found.touch[k].triangle).collect();
     let product = setting.product;
-    let gaps = product.gaps_near(&points, Some(&normals), limits(), &hints);
+    let gaps = product.gaps_along(&points, Some(&normals), limits(), &hints);
     for (k, gap) in free.into_iter().zip(gaps) {
         is_carried[k] = gap.is_none_or(|g| g.distance >= 0.0);
     }
@@ -188,7 +188,7 @@ pub fn lifted_sites(
     };
     let hints: Vec<u32> = near.iter().map(hint).collect();
     let product = setting.product;
-    let gaps = product.gaps_near(&points, Some(&normals), limits(), &hints);
+    let gaps = product.gaps_along(&points, Some(&normals), limits(), &hints);
     let depth = |g: &Option<Gap>| g.as_ref().map_or(0.0, |g| -g.distance);
     let worst = gaps.iter().map(depth).fold(0.0, f64::max);
     let lifted = near

@@ -1,6 +1,6 @@
 //! A zone while its contact is found: forces, touches and travels of its sites, measured against the product.
 
-use thenar_surface::{Gap, Vec3};
+use thenar_surface::{Gap, GapLimits, Vec3};
 
 use crate::Model;
 use crate::carried::Found;
@@ -232,7 +232,8 @@ impl State {
         let hints: Vec<u32> = places.iter().map(|&k| self.touch[k].triangle).collect();
         let fresh = setting
             .product
-            .gaps_near(&written, Some(&normals), limits(), &hints);
+            .gaps_along(&written, Some(&normals), limits(), &hints);
+        let fresh = self.found_again(setting, &written, fresh);
         for (k, gap) in places.into_iter().zip(fresh) {
             if let Some(gap) = gap {
                 self.touch[k] = gap;
@@ -240,6 +241,51 @@ impl State {
             }
         }
         self.misfit = self.measure();
+    }
+
+    /// Measures again, as far as it takes, what has left the reach of the query: it is outside, never where it was before.
+    fn found_again(
+        &self,
+        setting: &Setting<'_>,
+        written: &[Vec3],
+        mut gaps: Vec<Option<Gap>>,
+    ) -> Vec<Option<Gap>> {
+        let lost: Vec<usize> = (0..gaps.len()).filter(|&k| gaps[k].is_none()).collect();
+        let points: Vec<Vec3> = lost.iter().map(|&k| written[k]).collect();
+        let in_full = GapLimits {
+            cut_off_mm: f64::INFINITY,
+            ..limits()
+        };
+        let found = setting.product.gaps_along(&points, None, in_full, &[]);
+        for (k, gap) in lost.into_iter().zip(found) {
+            gaps[k] = gap;
+        }
+        gaps
+    }
+
+    /// Distance from the product's surface of each place under a force, or depth of each without, mm.
+    pub(crate) fn misfits(&self) -> Vec<f64> {
+        self.touch
+            .iter()
+            .zip(&self.force)
+            .map(|(gap, force)| misfit(gap, *force))
+            .collect()
+    }
+
+    /// Takes back half the way of what did not come nearer to fitting, from travels and misfits (mm) that were better, and measures it.
+    pub(crate) fn step_back(
+        &mut self,
+        skin: &Skin,
+        setting: &Setting<'_>,
+        (travel, misfits): (&[f64], &[f64]),
+    ) {
+        let now = self.misfits();
+        for k in 0..self.travel.len() {
+            if now[k] > misfits[k] {
+                self.travel[k] = 0.5 * (self.travel[k] + travel[k]);
+            }
+        }
+        self.place(skin, setting);
     }
 
     /// Whether a place travelled so little since it was measured that its distance follows; it then does.
@@ -258,17 +304,8 @@ impl State {
 
     /// Largest penetration of the zone, or opening under a force, mm.
     pub(crate) fn measure(&self) -> f64 {
-        let misfit = |(g, f): (&Gap, &f64)| {
-            if *f > 0.0 {
-                g.distance.abs()
-            } else {
-                (-g.distance).max(0.0)
-            }
-        };
-        self.touch
-            .iter()
-            .zip(&self.force)
-            .map(misfit)
+        let all = self.touch.iter().zip(&self.force);
+        all.map(|(gap, force)| misfit(gap, *force))
             .fold(0.0, f64::max)
     }
 
@@ -298,5 +335,14 @@ impl State {
                 .map_or(0.0, |k| carried[k].1)
         };
         self.force = self.zone.iter().map(find).collect();
+    }
+}
+
+/// Distance from the surface under a force, or depth without, mm.
+fn misfit(gap: &Gap, force: f64) -> f64 {
+    if force > 0.0 {
+        gap.distance.abs()
+    } else {
+        (-gap.distance).max(0.0)
     }
 }

@@ -80,6 +80,18 @@ pub enum ContactError {
         depth_mm: f64,
         limit_mm: f64,
     },
+    /// The contact did not reach its tolerances, and no result is given.
+    #[error(
+        "the contact was not solved: {title}{} is left {left_mm:.2} mm off the product's surface after {passes} passes; open the \
+         hand a little there, move the product, or refine the hand's mesh there", at(.vertices)
+    )]
+    Unsolved {
+        title: String,
+        left_mm: f64,
+        passes: usize,
+        /// Of the hand as given, where it does not fit, the worst first.
+        vertices: Vec<usize>,
+    },
     /// A force target is negative, zero or not finite.
     #[error("the force target is {newton} N, but must be positive and finite")]
     ForceTarget { newton: f64 },
@@ -148,4 +160,24 @@ pub enum ContactError {
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl ContactError {
+    /// The vertices of the hand that it is about, the worst first; empty where it is about none.
+    pub fn vertices(&self) -> &[usize] {
+        match self {
+            ContactError::Unsolved { vertices, .. } => vertices,
+            ContactError::TooCoarse { vertex, .. }
+            | ContactError::Swallowed { vertex, .. }
+            | ContactError::PosedNotFinite { vertex } => std::slice::from_ref(vertex),
+            _ => &[],
+        }
+    }
+}
+
+/// Where skin does not fit, in words.
+fn at(vertices: &[usize]) -> String {
+    vertices
+        .first()
+        .map_or_else(String::new, |vertex| format!(", at vertex {vertex},"))
 }

@@ -34,6 +34,7 @@ mod skin;
 mod solve;
 mod summary;
 mod turned;
+mod warning;
 mod weld;
 mod zone;
 
@@ -45,7 +46,8 @@ pub use interface::{StickSlip, solve_stick_slip};
 pub use material::{Material, Swelling};
 pub use press::{
     Contact, Convergence, Drag, ForceTarget, Model, Press, RegionResult, Residual, Shear,
-    SkinInput, Start,
+    SkinInput, Start, Unsolved,
 };
 pub use skin::Skin;
 pub use solve::{Solution, solve_dense};
+pub use warning::{Grade, Warning};

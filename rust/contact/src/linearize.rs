@@ -20,7 +20,11 @@ const OUTER_SHARE: f64 = 5e-4;
 /// Largest certificate of a large skin's far field.
 const FAR_FIELD_TOLERANCE: f64 = 1e-4;
 /// Most re-linearizations.
-const MOST_PASSES: usize = 14;
+const MOST_PASSES: usize = 30;
+/// Passes without a lower misfit that end the loop.
+const MOST_STALLED: usize = 3;
+/// Depth to which skin outside the zone may be left lifted into the product after the last round, mm.
+const MOST_LIFTED: f64 = 0.02;
 /// Most rounds in which sites lifted into the product join the zone.
 const MOST_ROUNDS: usize = 4;
 
@@ -49,6 +53,32 @@ pub struct Solved {
     pub far_field: f64,
     /// How it ended.
     pub convergence: Convergence,
+    /// Sites that do not fit the product within the tolerance, the worst first, and how far that is off, mm.
+    pub unfit: Vec<u32>,
+    pub left: f64,
+}
+
+impl Solved {
+    /// The error that names where the contact did not reach its tolerances; None where it did.
+    pub fn refusal(&self, skin: &Skin) -> Option<ContactError> {
+        if self.convergence.has_converged {
+            return None;
+        }
+        let source = |site: &u32| skin.welded.source[vertex(skin, *site)] as usize;
+        let region = self
+            .unfit
+            .first()
+            .map_or(-1, |&site| skin.sites.region[site as usize]);
+        Some(ContactError::Unsolved {
+            title: match usize::try_from(region) {
+                Ok(region) => skin.region_title(region),
+                Err(_) => "the skin".to_owned(),
+            },
+            left_mm: self.left,
+            passes: self.convergence.passes,
+            vertices: self.unfit.iter().map(source).collect(),
+        })
+    }
 }
 
 /// What does not change within a solve.
@@ -111,7 +141,7 @@ pub fn solve(
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let wanted = (tolerance, setting.accuracy.certificate());
-            return Ok(state.finish((field, far_field), worst, wanted));
+            return Ok(state.finish((field, far_field), (worst, lifted), wanted));
         }
         strayed.extend(far);
         state.extend(match setting.accuracy {
@@ -120,6 +150,35 @@ pub fn solve(
         });
     }
     Err(ContactError::Cancelled)
+}
+
+/// The best fit so far: the merit of a pass is the misfit of the written skin, and what does not lower it goes half the way.
+#[derive(Default)]
+struct Best {
+    misfit: Option<f64>,
+    travel: Vec<f64>,
+    misfits: Vec<f64>,
+    stalled: usize,
+}
+
+impl Best {
+    /// Takes over a state that fits better; whether it does.
+    fn take(&mut self, state: &State) -> bool {
+        let is_better = self.misfit.is_none_or(|best| state.misfit < best);
+        if is_better {
+            self.misfit = Some(state.misfit);
+            self.travel.clone_from(&state.travel);
+            self.misfits = state.misfits();
+            self.stalled = 0;
+        } else {
+            self.stalled += 1;
+        }
+        is_better
+    }
+
+    fn is_stuck(&self) -> bool {
+        self.stalled >= MOST_STALLED
+    }
 }
 
 impl State {
@@ -132,23 +191,28 @@ impl State {
     ) -> Result<(), ContactError> {
         let mut turned = self.turned(skin);
         self.matrix(skin, setting, &mut turned);
+        let mut best = Best::default();
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
             self.convergence.passes = pass + 1;
             self.solve(skin, &turned, (Accuracy::Rough, control))?;
             self.place(skin, setting);
-            let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES;
+            let has_improved = best.take(self);
+            let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || best.is_stuck();
             if is_last && setting.accuracy != Accuracy::Rough {
                 self.solve(skin, &turned, (setting.accuracy, control))?;
                 self.place(skin, setting);
             }
-            if self.misfit <= tolerance {
+            if self.misfit <= tolerance || best.is_stuck() {
                 break;
             }
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
                 self.see_along_normals(skin);
                 self.matrix(skin, setting, &mut turned);
+            }
+            if !has_improved {
+                self.step_back(skin, setting, (&best.travel, &best.misfits));
             }
         }
         Ok(())
@@ -157,11 +221,21 @@ impl State {
     fn finish(
         mut self,
         (displacement, far_field): (Vec<Vec3>, f64),
-        worst: f64,
+        (worst, lifted): (f64, Vec<u32>),
         (tolerance, certificate): (f64, f64),
     ) -> Solved {
-        let is_solved = self.misfit <= tolerance && self.complementarity <= certificate;
+        let is_fit = self.misfit <= tolerance && (lifted.is_empty() || worst <= MOST_LIFTED);
+        let is_solved = is_fit && self.complementarity <= certificate;
         self.convergence.has_converged = is_solved && far_field <= FAR_FIELD_TOLERANCE;
+        let misfits = self.misfits();
+        let mut unfit: Vec<usize> = (0..misfits.len())
+            .filter(|&k| misfits[k] > tolerance)
+            .collect();
+        unfit.sort_by(|&a, &b| misfits[b].total_cmp(&misfits[a]));
+        let mut unfit: Vec<u32> = unfit.into_iter().map(|k| self.zone[k]).collect();
+        if !is_fit {
+            unfit.extend(lifted);
+        }
         let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
         let bearing = self.direction.iter().zip(&self.cosine);
         Solved {
@@ -176,6 +250,8 @@ impl State {
             complementarity: self.complementarity,
             far_field,
             convergence: self.convergence,
+            unfit,
+            left: self.misfit.max(worst),
         }
     }
 }

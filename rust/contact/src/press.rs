@@ -3,6 +3,7 @@
 use thenar_surface::{Mesh, Product, Vec3};
 
 use crate::Material;
+use crate::warning::{Grade, Warning, grade, reason};
 
 /// The contact model, chosen by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,6 +80,28 @@ pub struct Press<'a> {
     pub drag: Option<Drag>,
     /// Where the solver starts.
     pub start: Start,
+    /// What becomes of a contact that does not reach its tolerances.
+    pub unsolved: Unsolved,
+}
+
+/// What becomes of a contact that does not reach its tolerances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Unsolved {
+    /// It is an error that names the place.
+    #[default]
+    Refuse,
+    /// The best state found is returned, graded [`Grade::DoNotUse`].
+    Keep,
+}
+
+impl Unsolved {
+    /// From what a caller asks for.
+    pub fn kept_if(keep: bool) -> Unsolved {
+        match keep {
+            true => Unsolved::Keep,
+            false => Unsolved::Refuse,
+        }
+    }
 }
 
 /// Where the solver starts.
@@ -211,8 +234,20 @@ pub struct Contact {
     pub residual: Residual,
     /// How the solve ended.
     pub convergence: Convergence,
-    /// Sentences for the user.
-    pub warnings: Vec<String>,
+    /// What there is to say about it.
+    pub warnings: Vec<Warning>,
     /// Wall time by stage, s, in order.
     pub seconds: Vec<(&'static str, f64)>,
+}
+
+impl Contact {
+    /// How far the result may be used.
+    pub fn grade(&self) -> Grade {
+        grade(&self.warnings)
+    }
+
+    /// The gravest remark, unless the result is good.
+    pub fn reason(&self) -> Option<&Warning> {
+        reason(&self.warnings)
+    }
 }

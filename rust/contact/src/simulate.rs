@@ -12,13 +12,13 @@ use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull, stea
 use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
 use crate::memory::{Last, Trail};
-use crate::press::{Contact, Press, Start};
+use crate::press::{Contact, Press, Start, Unsolved};
 use crate::skin::Skin;
 use crate::solve::Accuracy;
 use crate::summary::summarize;
+use crate::warning::Warning;
 use crate::zone::{
-    Detection, candidates, check_resolution, detect, kept_stiffness, lasting_with,
-    pressed_thickness,
+    Detection, check_resolution, detect, kept_stiffness, pressed_thickness, serving,
 };
 use crate::{ContactError, Control, Model};
 
@@ -123,6 +123,13 @@ impl Skin {
                 (control, &mut seconds),
             )?,
         };
+        if press.unsolved == Unsolved::Refuse
+            && let Some(refusal) = pressed.solved.refusal(self)
+        {
+            // What is known of it starts no other press.
+            self.memory.trail = Trail::default();
+            return Err(refusal);
+        }
         if let Some(drag) = press.drag {
             let started = Instant::now();
             let from_rest = (drag, &Grasp::default());
@@ -137,11 +144,10 @@ impl Skin {
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);
             if (reached - target.newton).abs() > FORCE_MISS * target.newton {
-                contact.warnings.push(format!(
-                    "{:.3} N were asked for, but the force leaps there: {reached:.3} N is the nearest; a finer hand mesh, or \
-                     a product with thickness, leaps less",
-                    target.newton
-                ));
+                contact.warnings.push(Warning::ForceLeaps {
+                    asked: target.newton,
+                    reached,
+                });
             }
         }
         contact.seconds = seconds;
@@ -217,7 +223,7 @@ impl Skin {
     ) -> Result<Solved, ContactError> {
         let moved = self.moved_posture(state, pulls, control)?;
         let detection = moved.as_ref().map_or(state.truth, |moved| &moved.detection);
-        let zone = self.zone(detection);
+        let zone = serving(self, detection);
         check_resolution(self, &zone)?;
         let last = std::mem::take(&mut self.memory.trail.last);
         let elastic = state.recall.map(|recall| Last {
@@ -317,24 +323,6 @@ impl Skin {
     fn recall(&self, detection: &Detection) -> Option<Recall> {
         let history = self.history.as_ref()?;
         Some(history.recall(&detection.max_penetration, &self.sites))
-    }
-
-    /// The last zone where it still serves, else the sites that may touch.
-    fn zone(&self, detection: &Detection) -> Vec<u32> {
-        let zone = candidates(self, detection);
-        let last = &self.memory.zone;
-        let is_warm = !self.memory.trail.last.force.is_empty();
-        let distance = |s: u32| detection.distances[self.sites.vertex[s as usize] as usize];
-        let is_known = |&s: &u32| distance(s) < f64::INFINITY;
-        let serves = is_warm
-            && last.len() <= zone.len() + zone.len() / 4
-            && zone.iter().all(|site| last.binary_search(site).is_ok())
-            && last.iter().all(is_known);
-        match (serves, is_warm && !zone.is_empty()) {
-            (true, _) => last.clone(),
-            (false, true) => lasting_with(self, detection, last),
-            (false, false) => zone,
-        }
     }
 
     /// Moduli with what escapes sideways in deep presses taken off; model layer only.

@@ -7,7 +7,7 @@ use crate::fields::patch_peak::{Field, patch_peak};
 use crate::fields::product_side::product_pressure;
 use crate::interface::shear_fields::{shear_fields, shear_load};
 use crate::press::{Contact, Convergence, RegionResult, Residual};
-use crate::remarks::remarks;
+use crate::remarks::{Figures, remarks};
 use crate::simulate::Pressed;
 use crate::skin::Skin;
 
@@ -42,6 +42,13 @@ pub fn summarize(
     let peak_pressure = peak_pressure.fold(0.0, |most, p| f64::max(most, *p));
     let patch_peak = fields.patch_peak(skin, posed);
     let regions = region_table(skin, pressed, &fields);
+    let figures = Figures {
+        displacement: &fields.displacement,
+        force: &fields.force,
+        pressure: &fields.pressure,
+        patch_peak,
+    };
+    let warnings = remarks(skin, (posed, product), pressed, &figures);
     let shear = shear_fields(skin, pressed, &fields.area);
     let solved = &pressed.solved;
     let load_balance = if normal_force > 0.0 {
@@ -88,7 +95,7 @@ pub fn summarize(
             has_converged: pressed.has_converged(),
             ..solved.convergence
         },
-        warnings: remarks(skin, posed, product, pressed),
+        warnings,
         seconds: Vec::new(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3};
+use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, Vec3};
 
 use crate::memory::Shape;
 use crate::skin::Skin;
@@ -80,17 +80,13 @@ pub fn detect(
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
     let seen = &mut skin.memory.seen;
     let Shape { normals, areas } = seen.shape(posed);
-    let facing = (&positions[..], &normals[..]);
-    let mut gaps = product.gaps_after(&mut seen.readings, facing, limits());
-    let mut distances = seen.readings.distances().to_vec();
-    // Skin in a fold may face a far wall: what reads deeper than any tissue is measured again to the nearest one.
-    for (vertex, distance) in distances.iter_mut().enumerate() {
-        if -*distance > MOST_DEPTH {
-            let nearest = product.gap(positions[vertex], None, limits());
-            Arc::make_mut(&mut gaps)[vertex] = nearest;
-            *distance = nearest.map_or(f64::INFINITY, |gap| gap.distance);
-        }
-    }
+    let facing = PosedSkin {
+        points: &positions,
+        normals: &normals,
+        triangles: posed.triangles(),
+    };
+    let gaps = product.gaps_after(&mut seen.readings, &facing, limits());
+    let distances = seen.readings.distances().to_vec();
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let (region, depth) = (skin.sites.region[site], -distances[vertex as usize]);
@@ -144,6 +140,24 @@ pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32
         lasting
     } else {
         both
+    }
+}
+
+/// The last zone where it still serves, else the sites that may touch.
+pub fn serving(skin: &Skin, detection: &Detection) -> Vec<u32> {
+    let zone = candidates(skin, detection);
+    let last = &skin.memory.zone;
+    let is_warm = !skin.memory.trail.last.force.is_empty();
+    let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
+    let is_known = |&s: &u32| distance(s) < f64::INFINITY;
+    let serves = is_warm
+        && last.len() <= zone.len() + zone.len() / 4
+        && zone.iter().all(|site| last.binary_search(site).is_ok())
+        && last.iter().all(is_known);
+    match (serves, is_warm && !zone.is_empty()) {
+        (true, _) => last.clone(),
+        (false, true) => lasting_with(skin, detection, last),
+        (false, false) => zone,
     }
 }
 

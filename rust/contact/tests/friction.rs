@@ -6,7 +6,7 @@ mod scenes;
 use nalgebra::{Rotation3, Vector3};
 use scenes::{SHEAR_MODULUS, lattice, paraboloid, rubbing_skin};
 use thenar_contact::{
-    ActiveEffect, Contact, ContactError, Control, Drag, Press, Shear, Skin, Start,
+    ActiveEffect, Contact, ContactError, Control, Drag, Press, Shear, Skin, Start, Unsolved,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -19,6 +19,7 @@ fn drag(skin: &mut Skin, product: &Product, drag: Option<Drag>) -> Result<Contac
         force: None,
         drag,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
     };
     skin.press(&press, &Control::none())
 }

@@ -4,7 +4,7 @@
 mod scenes;
 
 use scenes::{flat_skin, paraboloid, press};
-use thenar_contact::{ContactError, Control, Material, Model, Press, Start};
+use thenar_contact::{ContactError, Control, Material, Model, Press, Start, Unsolved};
 
 fn half_space() -> Material {
     Material {
@@ -50,6 +50,7 @@ fn a_fine_half_space_is_hertzian() {
         force: None,
         drag: None,
         start: Start::Warm,
+        unsolved: Unsolved::Refuse,
     };
     let warm = skin.press(&again, &Control::none()).unwrap();
     assert!((warm.total_force.z / contact.total_force.z - 1.0).abs() < 1e-6);

@@ -6,7 +6,7 @@ mod scenes;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use scenes::{lattice, material, paraboloid, press_posed};
-use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start};
+use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start, Unsolved};
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
 /// Largest difference of a nodal force from a full press, over the largest force.
@@ -36,6 +36,7 @@ fn follow(skin: &mut Skin, product: &Product, posed: &[Vec3], start: Start) -> C
         force: None,
         drag: None,
         start,
+        unsolved: Unsolved::Refuse,
     };
     skin.press(&press, &Control::none()).unwrap()
 }
@@ -193,6 +194,7 @@ fn held_skin_keeps_the_forces_of_a_press_that_was_broken_off() {
         force: None,
         drag: None,
         start: Start::Live,
+        unsolved: Unsolved::Refuse,
     };
     assert!(live.press(&press, &control).is_err());
     let shown = follow(&mut live, &product, &then, Start::Live);

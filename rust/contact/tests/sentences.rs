@@ -7,7 +7,7 @@ use std::sync::Mutex;
 
 use scenes::{lattice, paraboloid, press};
 use thenar_contact::{
-    ContactError, Control, ForceTarget, Material, Model, Press, Skin, SkinInput, Start,
+    ContactError, Control, ForceTarget, Material, Model, Press, Skin, SkinInput, Start, Unsolved,
 };
 use thenar_surface::Vec3;
 
@@ -41,7 +41,9 @@ fn warnings_and_errors_call_regions_by_their_names() {
         "region 'index fingertip' is pressed",
     ] {
         assert!(
-            said.warnings.iter().any(|w| w.starts_with(name)),
+            said.warnings
+                .iter()
+                .any(|w| w.to_string().starts_with(name)),
             "{:?}",
             said.warnings
         );
@@ -51,7 +53,7 @@ fn warnings_and_errors_call_regions_by_their_names() {
         numbered
             .warnings
             .iter()
-            .any(|w| w.starts_with("region 1 is pressed"))
+            .any(|w| w.to_string().starts_with("region 1 is pressed"))
     );
     let product = paraboloid(9.0, 0.1, 7.0);
     let request = Press {
@@ -59,6 +61,7 @@ fn warnings_and_errors_call_regions_by_their_names() {
         posed: None,
         force: None,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
         drag: None,
     };
     let refused = named(0.3, &["thumb", "index fingertip"]).press(&request, &Control::none());
@@ -86,7 +89,10 @@ fn a_note_is_repeated_by_every_result() {
     skin.note(Model::Layer.preset_note());
     for depth in [0.5, 1.0] {
         let said = press(&mut skin, &paraboloid(9.0, depth, 8.0)).warnings;
-        assert!(said[0].contains("preset finger_layer"), "{said:?}");
+        assert!(
+            said[0].to_string().contains("preset finger_layer"),
+            "{said:?}"
+        );
     }
 }
 
@@ -111,6 +117,7 @@ fn progress_advances_through_a_search_for_a_force() {
         posed: None,
         force,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
         drag: None,
     };
     named(7.0, &[]).press(&request, &control).unwrap();

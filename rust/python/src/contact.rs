@@ -4,10 +4,9 @@ use crate::arrays::{Argument, column, owned_rows, triple, zeros};
 use crate::contact_records as records;
 use crate::record::Once;
 use pyo3::prelude::*;
-use pyo3::types::PyList;
 use std::mem::take;
 use std::sync::Arc;
-use thenar_contact::{Convergence, RegionResult, Residual, Shear};
+use thenar_contact::{Convergence, Grade, RegionResult, Residual, Shear, Warning};
 use thenar_surface::Vec3;
 
 /// The result of a press. Arrays over vertices are in the order of the skin's vertices.
@@ -43,13 +42,16 @@ pub struct Contact {
     friction: Once<Option<Shear>>,
     residual: Once<Residual>,
     convergence: Once<Convergence>,
-    warnings: Once<Vec<String>>,
+    warnings: Vec<Warning>,
+    grade: Grade,
+    reason: Option<String>,
     seconds: Once<Vec<(&'static str, f64)>>,
 }
 
 impl Contact {
     /// Takes the result over; `region_names` is empty or has one name per region.
     pub fn new(result: thenar_contact::Contact, region_names: Arc<Vec<String>>) -> Contact {
+        let (grade, reason) = (result.grade(), result.reason().map(Warning::to_string));
         let mut shear = result.shear;
         Contact {
             in_contact: Once::new(is_loaded(&result.nodal_force)),
@@ -80,7 +82,9 @@ impl Contact {
             is_sticking: Once::new(shear.as_mut().map(|shear| take(&mut shear.is_sticking))),
             residual: Once::new(result.residual),
             convergence: Once::new(result.convergence),
-            warnings: Once::new(result.warnings),
+            grade,
+            reason,
+            warnings: result.warnings,
             seconds: Once::new(result.seconds),
             friction: Once::new(shear),
             region_names,
@@ -297,9 +301,26 @@ impl Contact {
 
     /// Sentences for the user.
     #[getter]
-    fn warnings(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        self.warnings
-            .get(py, |texts| Ok(PyList::new(py, texts)?.into_any().unbind()))
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.iter().map(Warning::to_string).collect()
+    }
+
+    /// How far the result may be used: "good", "read this" or "do not use".
+    #[getter]
+    fn grade(&self) -> &'static str {
+        self.grade.name()
+    }
+
+    /// The gravest of the warnings; None where the grade is "good".
+    #[getter]
+    fn reason(&self) -> Option<&str> {
+        self.reason.as_deref()
+    }
+
+    /// A record per warning: kind, grade, text, and vertex, None where it is about none.
+    #[getter]
+    fn remarks(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        records::remarks(py, &self.warnings)
     }
 
     /// A record of wall time by stage, s.

@@ -5,11 +5,25 @@ use crate::record::record;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
-use thenar_contact::{Convergence, RegionResult, Residual, Shear};
+use thenar_contact::{Convergence, RegionResult, Residual, Shear, Warning};
 
 /// A list of records; `names` is empty or has one name per region.
 pub fn regions(py: Python<'_>, results: &[RegionResult], names: &[String]) -> PyResult<Py<PyAny>> {
     let each = results.iter().map(|region| region_of(py, region, names));
+    let records = each.collect::<PyResult<Vec<_>>>()?;
+    Ok(PyList::new(py, records)?.into_any().unbind())
+}
+
+/// A list of records, one per warning.
+pub fn remarks(py: Python<'_>, warnings: &[Warning]) -> PyResult<Py<PyAny>> {
+    let each = warnings.iter().map(|warning| {
+        let entries = PyDict::new(py);
+        entries.set_item(intern!(py, "kind"), warning.kind())?;
+        entries.set_item(intern!(py, "grade"), warning.grade().name())?;
+        entries.set_item(intern!(py, "text"), warning.to_string())?;
+        entries.set_item(intern!(py, "vertex"), warning.vertex())?;
+        record(entries)
+    });
     let records = each.collect::<PyResult<Vec<_>>>()?;
     Ok(PyList::new(py, records)?.into_any().unbind())
 }

@@ -31,7 +31,7 @@ create_exception!(
     thenar,
     SolveError,
     ThenarError,
-    "A press was asked for something it cannot do, or failed inside."
+    "A press was asked for something it cannot do, or was not solved; `vertices` are those of the hand where it failed."
 );
 create_exception!(
     thenar,
@@ -114,6 +114,14 @@ impl From<Failure> for PyErr {
 
 fn from_contact(error: ContactError) -> PyErr {
     let message = error.to_string();
+    let vertices = error.vertices().to_vec();
+    let raised = exception(error, message);
+    // Without memory for it the message still says the place.
+    Python::attach(|py| drop(raised.value(py).setattr("vertices", vertices)));
+    raised
+}
+
+fn exception(error: ContactError, message: String) -> PyErr {
     match error {
         ContactError::Cancelled => Failure::Cancelled.into(),
         ContactError::Hand(_)

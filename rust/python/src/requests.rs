@@ -6,7 +6,7 @@ use crate::material::Regions;
 use crate::product::{Product, Surface};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use thenar_contact::{ActiveEffect, Drag, ForceTarget, Keep, Model, Protocol, Start};
+use thenar_contact::{ActiveEffect, Drag, ForceTarget, Keep, Model, Protocol, Start, Unsolved};
 use thenar_surface::Vec3;
 
 /// One press as it came from Python.
@@ -16,6 +16,7 @@ pub struct Request {
     pub force: Option<ForceTarget>,
     pub drag: Option<Drag>,
     pub start: Start,
+    pub unsolved: Unsolved,
 }
 
 /// One protocol as it came from Python.

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
-use thenar_contact::{ContactError, Control, Model, Press, Run, SkinInput, Start};
+use thenar_contact::{ContactError, Control, Model, Press, Run, SkinInput, Start, Unsolved};
 use thenar_surface::Mesh;
 
 /// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
@@ -115,8 +115,10 @@ impl Skin {
     /// `twist_rad` (3,) about the center of the contact, or was dragged by the force `drag_n` (3,); `warm_start`: begin
     /// at the last result of this skin, faster and equal within the tolerances, else the
     /// result depends on the arguments alone, bit for bit; `live`: the same for what moves before the eye, skin away from what
-    /// moved keeps its forces until it is off by 0.5 % of the deepest penetration, and no residual is above that. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
-    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false, live=false))]
+    /// moved keeps its forces until it is off by 0.5 % of the deepest penetration, and no residual is above that;
+    /// `keep_unsolved`: a contact that misses its tolerances is returned, graded "do not use", in place of a `SolveError` whose
+    /// `vertices` say where, the worst first. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
+    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false, live=false, keep_unsolved=false))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of the public interface"
@@ -136,6 +138,7 @@ impl Skin {
         drag_n: Option<&Bound<'_, PyAny>>,
         warm_start: bool,
         live: bool,
+        keep_unsolved: bool,
     ) -> PyResult<Contact> {
         let hooks = Hooks::new(cancel, progress)?;
         let target = target_of(product_vertices_mm, product_triangles)?;
@@ -155,6 +158,7 @@ impl Skin {
             force,
             drag,
             start,
+            unsolved: Unsolved::kept_if(keep_unsolved),
         };
         let inner = Arc::clone(&self.inner);
         let contact = run(py, &hooks, move |control| inner.press(request, control))?;
@@ -327,6 +331,7 @@ impl Inner {
             force: request.force,
             drag: request.drag,
             start: request.start,
+            unsolved: request.unsolved,
         };
         let mut contact = self.skin(control)?.press(&press, control)?;
         contact.seconds.insert(0, ("product", prepared_in));

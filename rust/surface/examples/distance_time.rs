@@ -57,11 +57,11 @@ fn run() {
         .map(|g| g.map_or(u32::MAX, |g| g.triangle))
         .collect();
     best("cut_hint_ms", 40, || {
-        count(&product.gaps_near(&points, None, cut, &last))
+        count(&product.gaps_along(&points, None, cut, &last))
     });
     if let Some(normals) = normals {
         best("cut_skin_ms", 40, || {
-            count(&product.gaps_near(&points, Some(&normals), cut, &last))
+            count(&product.gaps_along(&points, Some(&normals), cut, &last))
         });
         best("skin_distance_ms", 5, || {
             SkinDistance::new(&skin, &Adjacency::new(&skin), 60.0).len()

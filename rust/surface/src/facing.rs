@@ -3,6 +3,7 @@
 use crate::mesh::Vec3;
 use crate::nearest::{Hit, Pending};
 use crate::product::{Gap, GapLimits, Product, Side};
+use crate::sight::FACING_AWAY;
 use crate::tree::{Face, Query, Tree};
 use crate::triangle::ClosestPoint;
 use crate::winding::Winding;
@@ -20,17 +21,27 @@ const ROOM: f64 = 0.5;
 /// What rounding may do to such a distance, with room to spare, in parts of it and of the product's extent.
 const ROUNDING: f64 = 1e-7;
 
+/// What a point inside reads, whose nearest wall faces the way of the skin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Turned {
+    /// The nearest wall: the neighborhood decides later (`poke`).
+    Nearest,
+    /// The wall that opposes it: which one is known.
+    Opposing,
+}
+
 /// Answers one point after the other.
 pub(crate) struct Facing<'a> {
     product: &'a Product,
     limits: GapLimits,
+    turned: Turned,
     pending: &'a mut Pending,
 }
 
 impl<'a> Facing<'a> {
     pub(crate) fn new(
         product: &'a Product,
-        limits: GapLimits,
+        (limits, turned): (GapLimits, Turned),
         pending: &'a mut Pending,
     ) -> Facing<'a> {
         // What is not a length is none.
@@ -43,6 +54,7 @@ impl<'a> Facing<'a> {
         Facing {
             product,
             limits,
+            turned,
             pending,
         }
     }
@@ -123,11 +135,7 @@ impl<'a> Facing<'a> {
         }
     }
 
-    /// The depth of a point inside, whose nearest face is `hit`.
-    ///
-    /// That face answers if it opposes the skin. Otherwise the face with the least distance times reluctance does. Where that lies deeper than
-    /// the limit, and the nearest face is not plainly the far side of a wall, the nearest one is kept. Surface that lies within another part of
-    /// the product is no way out.
+    /// The depth of a point inside, whose nearest face is `hit`. Surface that lies within another part of the product is no way out.
     fn inside(&mut self, query: &Query, skin: Option<Vec3>, hit: Hit) -> Option<Gap> {
         let product = self.product;
         let tree = &product.tree;
@@ -141,29 +149,40 @@ impl<'a> Facing<'a> {
             }
         };
         let plain = product.reading(query, &hit, Side::Inside);
-        let Some(skin) = skin.filter(|m| *m != Vec3::zeros()) else {
-            return Some(plain);
-        };
-        let away = tree.faces[hit.slot as usize].normal.dot(&skin);
-        if away <= 0.0 {
+        let skin = skin.filter(|m| *m != Vec3::zeros());
+        let away = skin.map_or(0.0, |m| tree.faces[hit.slot as usize].normal.dot(&m));
+        if away <= 0.0 || self.turned == Turned::Nearest {
             return Some(plain);
         }
-        let may_lead_out = |face: &Face| reluctance(face, &skin) < f64::INFINITY;
+        let through = self.opposing(query, &skin?, TURNED_AWAY);
+        let is_shallow = |gap: &Gap| -gap.distance <= self.limits.max_depth_mm;
+        through
+            .filter(|gap| is_shallow(gap) || away >= TURNED_AWAY)
+            .or(Some(plain))
+    }
+
+    /// What a point inside reads of the walls that oppose the skin, or face less than `most` (cosine) as it does: the one with the least
+    /// distance times reluctance.
+    fn opposing(&mut self, query: &Query, skin: &Vec3, most: f64) -> Option<Gap> {
+        let product = self.product;
+        let tree = &product.tree;
+        let may_lead_out = |face: &Face| face.normal.dot(skin) < most;
         let weigh = |face: &Face, on: &ClosestPoint| {
             let open = product
                 .overlaps()
                 .is_none_or(|winding| !is_buried(tree, winding, query, on));
-            reluctance(face, &skin) * weight_if(open)
+            reluctance(face, skin) * weight_if(open)
         };
         let choice = (may_lead_out, weigh);
-        let through = tree.nearest_of(query, f64::INFINITY, self.pending, choice);
-        let is_shallow = |h: &Hit| h.on.distance_squared <= square(self.limits.max_depth_mm);
-        match through {
-            Some(through) if is_shallow(&through) || away >= TURNED_AWAY => {
-                Some(product.reading(query, &through, Side::Inside))
-            }
-            _ => Some(plain),
-        }
+        let through = tree.nearest_of(query, f64::INFINITY, self.pending, choice)?;
+        Some(product.reading(query, &through, Side::Inside))
+    }
+
+    /// What a point inside reads if it has come through the wall that opposes its skin, no deeper than the limit.
+    pub(crate) fn through(&mut self, point: Vec3, skin: &Vec3) -> Option<Gap> {
+        let query = self.query(point, None);
+        self.opposing(&query, skin, FACING_AWAY)
+            .filter(|gap| -gap.distance <= self.limits.max_depth_mm)
     }
 }
 

@@ -1,28 +1,32 @@
-//! Depth of skin that has come out on the far side of a thin wall.
+//! Depth of skin that lies beyond the middle of a wall, or has come out on its far side.
 //!
-//! Such a vertex is outside, and faces away from the wall; so does the back of a finger whose pad presses the other side. What tells them
-//! apart is their neighborhood: walking over the skin from where it plainly touches or enters the wall, the depth grows steadily up to the
-//! vertex that has come out, while it would have to jump to reach the back. So a reading through the wall is accepted only if
-//! 1. the ray from the vertex into the finger meets the wall's far side, then its near side, within the deepest depth asked for, and
+//! The nearest wall of such a vertex faces the way of the skin. So it does in a crease, where a coarse skin's normals point anywhere, and at
+//! the back of a finger whose pad presses the other side. What tells them apart is their neighborhood: walking over the skin from where it
+//! plainly touches or enters the wall, the depth grows steadily up to the vertex that has come out, while it would have to jump to reach the
+//! back. So a reading through a wall is accepted only if
+//! 1. outside, the ray from the vertex into the finger meets the wall's far side, then its near side, within the deepest depth asked for;
+//!    inside, a wall that opposes the skin lies within that depth, and
 //! 2. at least two neighbors, whose reading is settled, are pushed the same way and to a depth that differs by no more than the way between
-//!    (a signed distance grows by at most 1 mm a mm). Settled are readings found without this rule, and those it has accepted.
+//!    (a signed distance grows by at most 1 mm a mm). Settled are readings found without this rule, and those it has accepted; or
+//! 3. it is inside, or no deeper than skin yields, as many neighbors at least agree as speak against it, and flesh lies behind it as far as the wall, and as much beyond
+//!    it (`flesh`): a flat skin pressed beyond the middle of a plate. From there on 2 goes on.
 //!
 //! A piece of skin that lies wholly behind a sheet, as all of a patch in a box without its lid, has no such neighbors: it is through where
-//! the sheet winds around all of it.
+//! the sheet winds around all of it. All else reads the nearest wall.
 //!
 //! What is accepted does not depend on the order of the vertices.
 
 use rayon::prelude::*;
 
+use crate::facing::{Facing, Turned};
+use crate::flesh::Flesh;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::product::{Gap, GapLimits, Product, Side};
+use crate::sight::{PosedSkin, Sight, seen_and_away};
 use crate::tree::Face;
 use crate::triangle::ClosestPoint;
 use crate::vicinity::Vicinity;
-
-/// Cosine between skin normal and the product's outward direction from which a point outside may have come through. Tests pass from 0.1 to 0.5.
-const FACING_AWAY: f64 = 0.3;
 
 /// Cosine from which two readings push the same way.
 const SAME_WAY: f64 = 0.5;
@@ -30,21 +34,21 @@ const SAME_WAY: f64 = 0.5;
 /// Growth of depth, mm a mm, that neighbors may show; 1 in a smooth field, and some for the corners of a product.
 const STEEPEST: f64 = 1.1;
 
+/// Depth to which a point outside, all of whose neighbors are outside as well, may have come through, mm: what skin yields before bone.
+/// Tests pass from 2 to 10.
+const THROUGH: f64 = 6.0;
+
 /// Settled neighbors needed, so that no vertex is judged by one other alone.
 const WITNESSES: usize = 2;
 
 /// Up to so many items are answered one after the other: to wake other threads takes as long.
 const FEW: usize = 256;
 
-/// Points of one query, with the skin's normals.
-pub(crate) struct Skin<'a> {
-    pub points: &'a [Vec3],
-    pub normals: &'a [Vec3],
-}
-
-/// A point outside that may have come through, with what it would read: through a wall, and through a sheet without thickness.
+/// A point that may have come through, with what it would read: through a wall, and through a sheet without thickness.
 struct Candidate {
     at: u32,
+    /// Whether it is still inside the wall.
+    is_within: bool,
     plain: Option<Gap>,
     readings: [Option<Gap>; 2],
     neighbors: Vec<u32>,
@@ -55,7 +59,7 @@ struct Candidate {
 /// `sights`: how each faces what it was measured to.
 pub(crate) fn settle(
     product: &Product,
-    skin: &Skin,
+    skin: &PosedSkin<'_>,
     limits: GapLimits,
     (sights, gaps): (&[Sight], &mut [Option<Gap>]),
 ) -> Vec<(u32, Option<Gap>)> {
@@ -63,21 +67,31 @@ pub(crate) fn settle(
     if away.is_empty() {
         return Vec::new();
     }
-    let vicinity = Vicinity::new(skin.points, &seen, &away);
+    let places = (&away[..], spacing(skin, &away));
+    let vicinity = Vicinity::new(skin.points, &seen, places);
     let mut is_settled = vec![false; gaps.len()];
     seen.iter().for_each(|&i| is_settled[i as usize] = true);
     away.iter().for_each(|&i| is_settled[i as usize] = false);
     let mut is_unread = vec![true; away.len()];
     let mut candidates = Vec::new();
-    let mut has_grown = true;
+    let (mut tested, mut has_grown) = (0, true);
     // Points that were read deeper make others agree.
     while has_grown {
-        let needed = needed(skin, (&vicinity, &away, &is_unread), (product, gaps));
+        let is_within = |k: usize| sights[away[k] as usize] == Sight::Within;
+        let mut needed = needed(skin, (&vicinity, &away, &is_unread), (product, gaps));
+        needed.extend((0..away.len()).filter(|&k| is_unread[k] && is_within(k)));
+        needed.sort_unstable();
+        needed.dedup();
         let read = |&k: &usize| {
             let at = away[k];
-            let reading = |gap| product.readings_through(skin, at as usize, gap, limits);
+            let is_within = is_within(k);
+            let reading = |gap| match is_within {
+                true => [product.reading_within(skin, at as usize, limits), None],
+                false => product.readings_through(skin, at as usize, gap, limits),
+            };
             Candidate {
                 at,
+                is_within,
                 plain: gaps[at as usize],
                 readings: gaps[at as usize].as_ref().map_or([None; 2], reading),
                 neighbors: neighbors(skin, &vicinity, at),
@@ -93,48 +107,29 @@ pub(crate) fn settle(
             }
         }
         has_grown = grow(skin, &candidates, &mut is_settled, gaps);
+        if !has_grown {
+            has_grown = sink(skin, &candidates[tested..], (&mut is_settled, gaps));
+            tested = candidates.len();
+        }
     }
     candidates.sort_by_key(|c| c.at);
     enclose(product, skin, &candidates, (&is_settled, gaps));
     candidates.iter().map(|c| (c.at, c.plain)).collect()
 }
 
-/// How skin faces what it was measured to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Sight {
-    /// Nothing was within reach.
-    Nothing,
-    /// As skin does that is pressed.
-    Toward,
-    /// It is outside and faces away: it may have come through.
-    Away,
-}
-
-impl Sight {
-    /// Of a point with a skin normal and its gap.
-    pub(crate) fn new(gap: Option<&Gap>, normal: &Vec3, limits: GapLimits) -> Sight {
-        let Some(gap) = gap else {
-            return Sight::Nothing;
-        };
-        let is_outside = gap.distance > 0.0 && gap.distance <= limits.max_depth_mm;
-        if is_outside && gap.normal.dot(normal) > FACING_AWAY {
-            Sight::Away
-        } else {
-            Sight::Toward
-        }
-    }
-}
-
-/// Points that have a reading, and those of them that face away from what they were measured to.
-fn seen_and_away(sights: &[Sight]) -> (Vec<u32>, Vec<u32>) {
-    let those = |wanted: fn(&Sight) -> bool| {
-        let all = (0..).zip(sights).filter(|(_, sight)| wanted(sight));
-        all.map(|(i, _)| i).collect()
-    };
-    (
-        those(|sight| *sight != Sight::Nothing),
-        those(|sight| *sight == Sight::Away),
-    )
+/// Median edge of the triangles at some points, mm; on a mesh whose triangles are slender, the nearest vertex says little of that.
+fn spacing(skin: &PosedSkin<'_>, places: &[u32]) -> Option<f64> {
+    let mut is_place = vec![false; skin.points.len()];
+    places.iter().for_each(|&i| is_place[i as usize] = true);
+    let there = skin
+        .triangles
+        .iter()
+        .filter(|triangle| triangle.iter().any(|&v| is_place[v as usize]));
+    let edge = |a: u32, b: u32| (skin.points[a as usize] - skin.points[b as usize]).norm();
+    let edges = there.flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]);
+    let mut edges: Vec<f64> = edges.collect();
+    let middle = edges.len() / 2;
+    (!edges.is_empty()).then(|| *edges.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// What `f` gives for each item, in order.
@@ -150,7 +145,7 @@ fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec
 ///
 /// Through a wall a point is at least as deep as it is now away, so that most are never read.
 fn needed(
-    skin: &Skin,
+    skin: &PosedSkin<'_>,
     (vicinity, away, is_unread): (&Vicinity, &[u32], &[bool]),
     (product, gaps): (&Product, &[Option<Gap>]),
 ) -> Vec<usize> {
@@ -159,12 +154,12 @@ fn needed(
     let (distances, deepest) = (vicinity.values(distance), STEEPEST * vicinity.reach());
     let least = vicinity.least_near(away, &distances);
     let may_be = |&k: &usize| {
-        let is_deep = distance(away[k]) + least[k] <= deepest;
+        let is_deep = distance(away[k]).abs() + least[k] <= deepest;
         is_unread[k] && (is_deep || product.is_sheet_at(gap(away[k])))
     };
     let may_be: Vec<usize> = (0..away.len()).filter(may_be).collect();
     let agreeing = |&k: &usize| {
-        let (i, own) = (away[k], distance(away[k]));
+        let (i, own) = (away[k], distance(away[k]).abs());
         let agrees = |&j: &u32| {
             let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
             own + distance(j) <= STEEPEST * apart && faces_alike(skin, i, j)
@@ -189,20 +184,20 @@ fn needed(
 }
 
 /// The points near a point whose skin faces the same way.
-fn neighbors(skin: &Skin, vicinity: &Vicinity, at: u32) -> Vec<u32> {
+fn neighbors(skin: &PosedSkin<'_>, vicinity: &Vicinity, at: u32) -> Vec<u32> {
     let mut near = vicinity.around(at);
     near.retain(|&j| faces_alike(skin, at, j));
     near
 }
 
 /// Whether skin at two different points faces the same way, by and large.
-fn faces_alike(skin: &Skin, i: u32, j: u32) -> bool {
+fn faces_alike(skin: &PosedSkin<'_>, i: u32, j: u32) -> bool {
     i != j && skin.normals[j as usize].dot(&skin.normals[i as usize]) > 0.0
 }
 
 /// Accepts candidates next to settled points, until no more can be; returns whether there were any.
 fn grow(
-    skin: &Skin,
+    skin: &PosedSkin<'_>,
     candidates: &[Candidate],
     is_settled: &mut [bool],
     gaps: &mut [Option<Gap>],
@@ -217,11 +212,7 @@ fn grow(
             let at = candidates[k].at as usize;
             let continues = |reading: &Gap, j: u32| {
                 let other = gaps[j as usize].filter(|_| is_settled[j as usize]);
-                let apart = (skin.points[at] - skin.points[j as usize]).norm();
-                other.is_some_and(|g| {
-                    let grown = (g.distance - reading.distance).abs();
-                    g.normal.dot(&reading.normal) > SAME_WAY && grown <= STEEPEST * apart
-                })
+                other.is_some_and(|g| continues(skin, (at as u32, reading), (j, &g)))
             };
             let agreed = candidates[k].readings.iter().flatten().find(|reading| {
                 candidates[k]
@@ -245,10 +236,70 @@ fn grow(
     pending.len() < all
 }
 
+/// Accepts candidates inside that more neighbors agree with than speak against them, and that have flesh behind them as far as the wall and
+/// as much beyond it; returns whether there were any.
+///
+/// Of points without triangles nothing is known of the flesh: those inside are taken to have come through.
+fn sink(
+    skin: &PosedSkin<'_>,
+    candidates: &[Candidate],
+    (is_settled, gaps): (&mut [bool], &mut [Option<Gap>]),
+) -> bool {
+    let mut open: Vec<(&Candidate, Gap)> = candidates
+        .iter()
+        .filter(|c| !is_settled[c.at as usize])
+        .filter_map(|c| {
+            let through = c.readings[0]?;
+            let is_near = -through.distance <= THROUGH && !skin.triangles.is_empty();
+            (c.is_within || is_near).then_some((c, through))
+        })
+        .collect();
+    open.sort_unstable_by_key(|(c, _)| c.at);
+    if !skin.triangles.is_empty() {
+        let agrees = |(c, reading): &(&Candidate, Gap)| {
+            let (mut with, mut against) = (0, 0);
+            for &j in &c.neighbors {
+                let is_alike = |other: &Gap| continues(skin, (c.at, reading), (j, other));
+                if is_settled[j as usize] {
+                    let alike = gaps[j as usize].as_ref().is_some_and(is_alike);
+                    (with, against) = (with + usize::from(alike), against + usize::from(!alike));
+                } else if let Ok(k) = open.binary_search_by_key(&j, |(c, _)| c.at) {
+                    with += usize::from(is_alike(&open[k].1));
+                }
+            }
+            with >= WITNESSES && with >= against
+        };
+        let agreed: Vec<bool> = open.iter().map(agrees).collect();
+        let mut agreed = agreed.into_iter();
+        open.retain(|_| agreed.next() == Some(true));
+        let ways = open.iter().map(|(c, reading)| {
+            let from = skin.points[c.at as usize];
+            (from, reading.closest)
+        });
+        let ways: Vec<(Vec3, Vec3)> = ways.collect();
+        let flesh = Flesh::new(skin.points, skin.triangles, &ways);
+        let reaches = each(&open, |(c, reading)| flesh.reaches(c.at, reading.closest));
+        let mut reaches = reaches.into_iter();
+        open.retain(|_| reaches.next() == Some(true));
+    }
+    for (candidate, reading) in &open {
+        gaps[candidate.at as usize] = Some(*reading);
+        is_settled[candidate.at as usize] = true;
+    }
+    !open.is_empty()
+}
+
+/// Whether the readings of two points push the same way, to depths that differ by no more than the way between.
+fn continues(skin: &PosedSkin<'_>, (i, own): (u32, &Gap), (j, other): (u32, &Gap)) -> bool {
+    let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
+    let grown = (other.distance - own.distance).abs();
+    other.normal.dot(&own.normal) > SAME_WAY && grown <= STEEPEST * apart
+}
+
 /// Accepts pieces of skin that lie wholly behind a sheet which winds around all of them.
 fn enclose(
     product: &Product,
-    skin: &Skin,
+    skin: &PosedSkin<'_>,
     candidates: &[Candidate],
     (is_settled, gaps): (&[bool], &mut [Option<Gap>]),
 ) {
@@ -293,10 +344,17 @@ impl Product {
         gap.is_some_and(|g| face(g).is_sheet)
     }
 
+    /// What a point inside would read if it had come through the wall that opposes its skin.
+    fn reading_within(&self, skin: &PosedSkin<'_>, at: usize, limits: GapLimits) -> Option<Gap> {
+        let mut pending = Pending::default();
+        let how = (limits, Turned::Opposing);
+        Facing::new(self, how, &mut pending).through(skin.points[at], &skin.normals[at])
+    }
+
     /// What a point outside, whose plain gap is `gap`, would read if it had come through a wall, and if it had come through a sheet.
     fn readings_through(
         &self,
-        skin: &Skin,
+        skin: &PosedSkin<'_>,
         at: usize,
         gap: &Gap,
         limits: GapLimits,

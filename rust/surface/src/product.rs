@@ -2,14 +2,15 @@
 
 use rayon::prelude::*;
 
-use crate::facing::Facing;
+use crate::facing::{Facing, Turned};
 use crate::interior::{Interior, Place};
 use crate::mesh::{Mesh, MeshError, Standing, Vec3};
 use crate::nearest::{Hit, Pending};
 use crate::normals::vertex_areas;
 use crate::orient::orient;
-use crate::poke::{Sight, Skin, settle};
+use crate::poke::settle;
 use crate::readings::new_number;
+use crate::sight::{PosedSkin, Sight};
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
 use crate::triangle::Feature;
@@ -145,10 +146,11 @@ impl Product {
     /// the surface that opposes the skin, so that a thin wall does not cut it short. Points outside read the plain distance: a single point
     /// has no neighbors that could show that it has come out on the far side; [`Product::gaps`] sees that.
     pub fn gap(&self, point: Vec3, skin_normal: Option<Vec3>, limits: GapLimits) -> Option<Gap> {
-        Facing::new(self, limits, &mut Pending::default()).gap(point, skin_normal, None)
+        let how = (limits, Turned::Opposing);
+        Facing::new(self, how, &mut Pending::default()).gap(point, skin_normal, None)
     }
 
-    /// Signed distances of many points, as [`Product::gap`]; with skin normals also through thin walls.
+    /// Signed distances of many points, as [`Product::gap`]; with skin normals also through thin walls, as far as the neighborhood agrees.
     ///
     /// `points` (n), mm; `skin_normals` (n), unit, outward from the skin, zero where there is none. A point that is not finite gives `None`.
     /// The same bits for any number of threads.
@@ -158,24 +160,70 @@ impl Product {
         skin_normals: Option<&[Vec3]>,
         limits: GapLimits,
     ) -> Vec<Option<Gap>> {
-        self.gaps_near(points, skin_normals, limits, &[])
+        let Some(normals) = skin_normals else {
+            return self.gaps_along(points, None, limits, &[]);
+        };
+        self.gaps_of_skin(&PosedSkin::of_points(points, normals), limits)
     }
 
-    /// [`Product::gaps`] with a triangle for each point to begin with, such as that of the last frame; the result is the same.
+    /// Signed distances of the vertices of a posed skin, through thin walls as well: where skin has come through a wall, depth is measured to
+    /// the side it came from (`poke`). A vertex that is not finite gives `None`. The same bits for any number of threads.
+    pub fn gaps_of_skin(&self, skin: &PosedSkin<'_>, limits: GapLimits) -> Vec<Option<Gap>> {
+        let how = (limits, Turned::Nearest);
+        let mut gaps = self.read(skin.points, Some(skin.normals), how, &[]);
+        let sights = gaps
+            .iter()
+            .zip(skin.normals)
+            .map(|(gap, normal)| Sight::new(gap.as_ref(), normal, limits));
+        let sights: Vec<Sight> = sights.collect();
+        if sights.len() == gaps.len() {
+            settle(self, skin, limits, (&sights, &mut gaps));
+        }
+        gaps
+    }
+
+    /// Signed distances of points that follow a wall they have met: depth is measured to the side of the product that opposes `facing`, the
+    /// normals with which they met it (outward from the skin, unit, zero or missing where none is known).
     ///
-    /// `hints` (n), indices into the triangles of [`Product::mesh`]; others, such as `u32::MAX`, and missing ones stand for none.
-    pub fn gaps_near(
+    /// `hints` (n), indices into the triangles of [`Product::mesh`] to begin with, which only saves time; others, such as `u32::MAX`, and
+    /// missing ones stand for none. Points outside that have come through a thin wall are told from others by their neighbors.
+    pub fn gaps_along(
+        &self,
+        points: &[Vec3],
+        facing: Option<&[Vec3]>,
+        limits: GapLimits,
+        hints: &[u32],
+    ) -> Vec<Option<Gap>> {
+        let mut gaps = self.read(points, facing, (limits, Turned::Opposing), hints);
+        if let Some(normals) = facing.filter(|n| n.len() == points.len()) {
+            let sight = |(gap, normal): (&Option<Gap>, &Vec3)| match Sight::new(
+                gap.as_ref(),
+                normal,
+                limits,
+            ) {
+                Sight::Within => Sight::Toward,
+                sight => sight,
+            };
+            let sights: Vec<Sight> = gaps.iter().zip(normals).map(sight).collect();
+            let skin = PosedSkin::of_points(points, normals);
+            settle(self, &skin, limits, (&sights, &mut gaps));
+        }
+        gaps
+    }
+
+    /// What each point reads alone.
+    fn read(
         &self,
         points: &[Vec3],
         skin_normals: Option<&[Vec3]>,
-        limits: GapLimits,
+        how: (GapLimits, Turned),
         hints: &[u32],
     ) -> Vec<Option<Gap>> {
         let mut gaps = vec![None; points.len()];
         let parts = gaps.chunks_mut(CHUNK).enumerate();
         deal(parts, points.len() < FEW, |(chunk, out)| {
             let mut pending = Pending::default();
-            let mut facing = Facing::new(self, limits, &mut pending);
+            let mut facing = Facing::new(self, how, &mut pending);
             let mut last = None;
             for (k, gap) in out.iter_mut().enumerate() {
                 let i = chunk * CHUNK + k;
@@ -189,13 +237,6 @@ impl Product {
                 last = gap.map(|g| g.triangle).or(last);
             }
         });
-        if let Some(normals) = skin_normals.filter(|n| n.len() == points.len()) {
-            let sight =
-                |(gap, normal): (&Option<Gap>, &Vec3)| Sight::new(gap.as_ref(), normal, limits);
-            let sights: Vec<Sight> = gaps.iter().zip(normals).map(sight).collect();
-            let skin = Skin { points, normals };
-            settle(self, &skin, limits, (&sights, &mut gaps));
-        }
         gaps
     }
 

@@ -4,6 +4,10 @@ use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::tree::{Child, Face, Node, Tree};
 
+/// Part of a face's size by which a ray may pass beside it: one through an edge must not slip between its two faces. Who asks has to bear
+/// that such a ray crosses both.
+const ON_EDGE: f64 = 1e-9;
+
 impl Tree {
     /// Where the ray `from + t * along` (about the tree's center) crosses faces for t in 0..=`reach`: (t, slot), sorted.
     pub(crate) fn crossings(
@@ -58,7 +62,8 @@ impl Face {
         let turned = to.cross(&self.ab);
         let v = along.dot(&turned) / det;
         let t = self.ac.dot(&turned) / det;
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=reach).contains(&t)).then_some(t)
+        let is_on = u >= -ON_EDGE && v >= -ON_EDGE && u + v <= 1.0 + ON_EDGE;
+        (is_on && (0.0..=reach).contains(&t)).then_some(t)
     }
 }
 

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::facing::Facing;
+use crate::facing::{Facing, Turned};
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
-use crate::poke::{Sight, Skin, settle};
+use crate::poke::settle;
 use crate::product::{FEW, Gap, GapLimits, Product, deal};
+use crate::sight::{PosedSkin, Sight};
 
 /// Points answered by one task.
 const CHUNK: usize = 256;
@@ -52,13 +53,13 @@ impl Product {
     /// [`Product::gaps`], bit for bit; points that lie and face as in `readings` are not measured anew. Keeps what was read there, and hands
     /// it out: who lets go of it before the next query saves the copying of what stays.
     ///
-    /// `points` (n), mm; `skin_normals` (n), unit, zero where there is none.
     pub fn gaps_after(
         &self,
         readings: &mut Readings,
-        (points, skin_normals): (&[Vec3], &[Vec3]),
+        skin: &PosedSkin<'_>,
         limits: GapLimits,
     ) -> Arc<Vec<Option<Gap>>> {
+        let (points, skin_normals) = (skin.points, skin.normals);
         let fits = readings.product == self.number()
             && readings.limits == Some(limits)
             && readings.points.len() == points.len();
@@ -87,12 +88,8 @@ impl Product {
             readings.distances[k as usize] = distance(&plain);
         }
         self.read_moved(readings, (points, skin_normals), limits);
-        let skin = Skin {
-            points,
-            normals: skin_normals,
-        };
         let gaps = Arc::make_mut(&mut readings.gaps);
-        readings.plain = settle(self, &skin, limits, (&readings.sights, gaps));
+        readings.plain = settle(self, skin, limits, (&readings.sights, gaps));
         for (k, _) in &readings.plain {
             readings.distances[*k as usize] = distance(&gaps[*k as usize]);
         }
@@ -123,7 +120,7 @@ impl Product {
             are_few,
             |((((((gaps, rooms), distances), sights), before), faced), (points, normals))| {
                 let mut pending = Pending::default();
-                let mut facing = Facing::new(self, limits, &mut pending);
+                let mut facing = Facing::new(self, (limits, Turned::Nearest), &mut pending);
                 let mut last = None;
                 for k in 0..points.len() {
                     let (point, normal) = (points[k], normals[k]);

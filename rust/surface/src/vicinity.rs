@@ -36,8 +36,12 @@ struct Grid {
 }
 
 impl<'a> Vicinity<'a> {
-    /// Sorts the points `members`, which are finite; their spacing is measured at some of `places`, which is not empty.
-    pub(crate) fn new(points: &'a [Vec3], members: &[u32], places: &[u32]) -> Vicinity<'a> {
+    /// Sorts the points `members`, which are finite; their `spacing` (mm) is measured at some of `places`, which is not empty, if not known.
+    pub(crate) fn new(
+        points: &'a [Vec3],
+        members: &[u32],
+        (places, spacing): (&[u32], Option<f64>),
+    ) -> Vicinity<'a> {
         let mut grid = Grid::over(members.iter().map(|&i| points[i as usize]));
         let (members, homes) = grid.sort(points, members);
         let mut vicinity = Vicinity {
@@ -48,6 +52,10 @@ impl<'a> Vicinity<'a> {
             members,
             homes,
         };
+        if let Some(spacing) = spacing {
+            vicinity.reach = REACH * spacing;
+            return vicinity;
+        }
         let mut spacings: Vec<f64> = places
             .iter()
             .step_by(places.len().div_ceil(SAMPLES))
@@ -236,7 +244,7 @@ mod tests {
             .collect();
         let members: Vec<u32> = (0..640).filter(|k| k % 2 == 0).collect();
         let places = &members[20..200];
-        let vicinity = Vicinity::new(&points, &members, places);
+        let vicinity = Vicinity::new(&points, &members, (places, None));
         let value = |i: u32| f64::from(i * 7919 % 641) - 300.0;
         let least = vicinity.least_near(places, &vicinity.values(value));
         let mut sharp = 0;

@@ -6,8 +6,8 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Adjacency, Gap, GapLimits, Mesh, Product, Readings, SkinDistance, Vec3, closest_point,
-    renew_shape, self_intersections, vertex_areas, vertex_normals,
+    Adjacency, Gap, GapLimits, Mesh, PosedSkin, Product, Readings, SkinDistance, Vec3,
+    closest_point, renew_shape, self_intersections, vertex_areas, vertex_normals,
 };
 
 const FULL: GapLimits = GapLimits {
@@ -31,7 +31,16 @@ fn scene() -> (Mesh, Mesh) {
 }
 
 fn query(product: &Product, skin: &Mesh, limits: GapLimits) -> Vec<Option<Gap>> {
-    product.gaps(skin.positions(), Some(&vertex_normals(skin)), limits)
+    let (normals, triangles) = (vertex_normals(skin), skin.triangles());
+    product.gaps_of_skin(&posed(skin.positions(), &normals, triangles), limits)
+}
+
+fn posed<'a>(points: &'a [Vec3], normals: &'a [Vec3], triangles: &'a [[u32; 3]]) -> PosedSkin<'a> {
+    PosedSkin {
+        points,
+        normals,
+        triangles,
+    }
 }
 
 fn with_threads(
@@ -58,13 +67,9 @@ fn same_bits_for_any_threads_and_hints() {
             .iter()
             .map(|_| (random.next() * count * 1.1) as u32)
             .collect();
-        let hinted = product.gaps_near(
-            skin.positions(),
-            Some(&vertex_normals(&skin)),
-            limits,
-            &hints,
-        );
-        assert_eq!(one, hinted);
+        let normals = vertex_normals(&skin);
+        let along = |hints| product.gaps_along(skin.positions(), Some(&normals), limits, hints);
+        assert_eq!(along(&[]), along(&hints));
         let single: Vec<_> = skin
             .positions()
             .iter()
@@ -236,6 +241,7 @@ proptest! {
 fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_for_bit() {
     let (dented, skin) = scene();
     let other = Product::new(moved(&dented, |p| p * 1.02)).unwrap();
+    let triangles = skin.triangles().to_vec();
     let products = [Product::new(dented).unwrap(), other];
     let mut random = Random(11);
     let (mut readings, mut positions) = (Readings::default(), skin.positions().to_vec());
@@ -250,22 +256,30 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
         for (p, has_moved) in positions.iter_mut().zip(&has_moved) {
             *p += if *has_moved { by } else { Vec3::zeros() };
         }
-        let posed = skin.with_positions(positions.clone()).unwrap();
-        renew_shape(&posed, &has_moved, (&mut normals, &mut areas));
-        assert_eq!(normals, vertex_normals(&posed), "{frame}");
-        assert_eq!(areas, vertex_areas(&posed), "{frame}");
+        let moved = skin.with_positions(positions.clone()).unwrap();
+        renew_shape(&moved, &has_moved, (&mut normals, &mut areas));
+        assert_eq!(normals, vertex_normals(&moved), "{frame}");
+        assert_eq!(areas, vertex_areas(&moved), "{frame}");
         let product = &products[frame / 6 % 2];
         let limits = if frame % 12 < 9 { CUT } else { FULL };
-        let again = product.gaps_after(&mut readings, (&positions, &normals), limits);
-        assert_eq!(*again, query(product, &posed, limits), "{frame}");
+        let again = product.gaps_after(
+            &mut readings,
+            &posed(&positions, &normals, &triangles),
+            limits,
+        );
+        assert_eq!(*again, query(product, &moved, limits), "{frame}");
         let distance = |gap: &Option<Gap>| gap.map_or(f64::INFINITY, |gap| gap.distance);
         let distances: Vec<f64> = again.iter().map(distance).collect();
         assert_eq!(readings.distances(), distances, "{frame}");
     }
     // Skin that lies where it lay and faces the other way.
     let turned: Vec<Vec3> = normals.iter().map(|n| -n).collect();
-    let before = products[0].gaps_after(&mut readings, (&positions, &normals), CUT);
-    let again = products[0].gaps_after(&mut readings, (&positions, &turned), CUT);
-    assert_eq!(*again, products[0].gaps(&positions, Some(&turned), CUT));
+    let before =
+        products[0].gaps_after(&mut readings, &posed(&positions, &normals, &triangles), CUT);
+    let again = products[0].gaps_after(&mut readings, &posed(&positions, &turned, &triangles), CUT);
+    assert_eq!(
+        *again,
+        products[0].gaps_of_skin(&posed(&positions, &turned, &triangles), CUT)
+    );
     assert_ne!(again, before, "which way skin faces matters here");
 }

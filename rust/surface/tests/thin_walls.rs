@@ -4,7 +4,7 @@
 mod shapes;
 
 use shapes::{Random, cuboid, moved, sphere, v};
-use thenar_surface::{Gap, GapLimits, Mesh, Product, Readings, Vec3, vertex_normals};
+use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, Readings, Vec3, vertex_normals};
 
 const LIMITS: GapLimits = GapLimits {
     cut_off_mm: 8.0,
@@ -18,7 +18,15 @@ fn tip(depth: f64) -> Mesh {
 }
 
 fn press(product: &Product, skin: &Mesh) -> Vec<Option<Gap>> {
-    product.gaps(skin.positions(), Some(&vertex_normals(skin)), LIMITS)
+    let normals = vertex_normals(skin);
+    product.gaps_of_skin(
+        &PosedSkin {
+            points: skin.positions(),
+            normals: &normals,
+            triangles: skin.triangles(),
+        },
+        LIMITS,
+    )
 }
 
 /// Largest error of the readings of the lower half against the depth below z = 0, and how many of the upper half read inside.
@@ -281,8 +289,23 @@ fn readings_kept_from_posture_to_posture_are_those_of_all_skin_bit_for_bit() {
             let mut readings = Readings::default();
             for (frame, skin) in wandering(32, seed).iter().enumerate() {
                 let normals = vertex_normals(skin);
-                let kept = product.gaps_after(&mut readings, (skin.positions(), &normals), limits);
-                let anew = product.gaps(skin.positions(), Some(&normals), limits);
+                let kept = product.gaps_after(
+                    &mut readings,
+                    &PosedSkin {
+                        points: skin.positions(),
+                        normals: &normals,
+                        triangles: skin.triangles(),
+                    },
+                    limits,
+                );
+                let anew = product.gaps_of_skin(
+                    &PosedSkin {
+                        points: skin.positions(),
+                        normals: &normals,
+                        triangles: skin.triangles(),
+                    },
+                    limits,
+                );
                 assert_eq!(*kept, anew, "product {seed}, frame {frame}, {cut_off_mm}");
                 let distance = |g: &Option<Gap>| g.map_or(f64::INFINITY, |g| g.distance);
                 let distances: Vec<f64> = anew.iter().map(distance).collect();

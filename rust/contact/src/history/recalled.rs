@@ -71,7 +71,7 @@ pub fn moved(
         .iter()
         .map(|&v| gaps[v].as_ref().map_or(u32::MAX, |g| g.triangle))
         .collect();
-    let fresh = product.gaps_near(&points, Some(&normals), limits(), &hints);
+    let fresh = product.gaps_along(&points, Some(&normals), limits(), &hints);
     for (vertex, gap) in near.into_iter().zip(fresh) {
         gaps[vertex] = gap.or(gaps[vertex]);
     }

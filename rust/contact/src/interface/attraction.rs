@@ -152,7 +152,7 @@ impl Attraction {
         }
         let facing: Vec<Vec3> = apart.iter().map(|(_, gap)| -gap.normal).collect();
         let hints: Vec<u32> = apart.iter().map(|(_, gap)| gap.triangle).collect();
-        let gaps = product.gaps_near(&points, Some(&facing), limits(), &hints);
+        let gaps = product.gaps_along(&points, Some(&facing), limits(), &hints);
         let reached = apart.iter().zip(gaps);
         pulls.extend(reached.filter_map(|((site, _), gap)| self.pull(*site, &gap?, gap?.distance)));
         pulls.sort_unstable_by_key(|pull| pull.site);

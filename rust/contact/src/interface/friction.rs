@@ -375,7 +375,7 @@ fn lay_on_product(
         .collect();
     let facing: Vec<Vec3> = near.iter().map(|(_, g)| -g.normal).collect();
     let hints: Vec<u32> = near.iter().map(|(_, g)| g.triangle).collect();
-    let fresh = product.gaps_near(&points, Some(&facing), limits(), &hints);
+    let fresh = product.gaps_along(&points, Some(&facing), limits(), &hints);
     for ((site, _), gap) in near.iter().zip(fresh) {
         let Some(gap) = gap else { continue };
         if gap.distance < 0.0 || is_pressed.contains(site) {

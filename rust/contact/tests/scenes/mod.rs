@@ -2,7 +2,7 @@
 #![allow(dead_code, clippy::unwrap_used)]
 
 use thenar_contact::{
-    ActiveEffect, Contact, Control, Material, Model, Press, Skin, SkinInput, Start,
+    ActiveEffect, Contact, Control, Material, Model, Press, Skin, SkinInput, Start, Unsolved,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -106,6 +106,7 @@ pub fn press(skin: &mut Skin, product: &Product) -> Contact {
         force: None,
         drag: None,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
     };
     skin.press(&press, &Control::none()).unwrap()
 }
@@ -117,6 +118,7 @@ pub fn press_posed(skin: &mut Skin, product: &Product, posed: &[Vec3]) -> Contac
         force: None,
         drag: None,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
     };
     skin.press(&press, &Control::none()).unwrap()
 }
