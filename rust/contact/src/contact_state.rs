@@ -37,6 +37,8 @@ pub(crate) struct State {
     pub touch: Vec<Gap>,
     pub slack: Vec<f64>,
     pub direction: Vec<Vec3>,
+    /// Normal of the wall that each was detected at: the side of the product on which it stays.
+    wall: Vec<Vec3>,
     /// What each direction comes from, where it is an average.
     pub sums: Vec<Sums>,
     /// Cosine between each direction and the product's normal.
@@ -66,6 +68,7 @@ impl State {
             touch: Vec::new(),
             slack: Vec::new(),
             direction: Vec::new(),
+            wall: Vec::new(),
             sums: Vec::new(),
             cosine: Vec::new(),
             travel: Vec::new(),
@@ -83,6 +86,7 @@ impl State {
         self.touch = self.zone.iter().filter_map(gap_of).collect();
         debug_assert_eq!(self.touch.len(), self.zone.len());
         let normal: Vec<Vec3> = self.touch.iter().map(|g| g.normal).collect();
+        self.wall.clone_from(&normal);
         self.sums = vec![Sums::default(); self.zone.len()];
         self.direction = match skin.model {
             Model::Paper => normal,
@@ -227,8 +231,8 @@ impl State {
         let written =
             |&k: &usize| positions[vertex(skin, self.zone[k])] + self.direction[k] * self.travel[k];
         let written: Vec<Vec3> = places.iter().map(written).collect();
-        // The side first touched stays the side: skin in a fold may face another wall once it has moved.
-        let normals: Vec<Vec3> = places.iter().map(|&k| -self.touch[k].normal).collect();
+        // The side detected stays the side: skin in a fold, or at a thin wall, may be nearer to another wall once it has moved.
+        let normals: Vec<Vec3> = places.iter().map(|&k| -self.wall[k]).collect();
         let hints: Vec<u32> = places.iter().map(|&k| self.touch[k].triangle).collect();
         let fresh = setting
             .product
@@ -270,6 +274,36 @@ impl State {
             .zip(&self.force)
             .map(|(gap, force)| misfit(gap, *force))
             .collect()
+    }
+
+    /// Travel (mm) and distance to the product there (mm) of each place, as measured last.
+    pub(crate) fn measured(&self) -> impl Iterator<Item = (f64, f64)> {
+        let distances = self.touch.iter().map(|gap| gap.distance);
+        self.travel.iter().copied().zip(distances)
+    }
+
+    /// Takes the slope of the distance over the last step as the cosine of what does not fit: at an edge it lies between those of the sides.
+    pub(crate) fn take_secants(&mut self, before: &[(f64, f64)], tolerance: f64) {
+        let misfits = self.misfits();
+        for k in 0..self.travel.len() {
+            let way = self.travel[k] - before[k].0;
+            let slope = (self.touch[k].distance - before[k].1) / way;
+            if misfits[k] > tolerance && way != 0.0 && slope.is_finite() {
+                self.cosine[k] = slope.clamp(LEAST_COSINE, 1.0);
+            }
+        }
+    }
+
+    /// Lets what does not fit yield along the normal of the wall that it was detected at, from where it was posed.
+    pub(crate) fn yield_along_walls(&mut self, skin: &Skin, setting: &Setting<'_>, tolerance: f64) {
+        let misfits = self.misfits();
+        for k in (0..self.travel.len()).filter(|&k| misfits[k] > tolerance) {
+            self.direction[k] = self.wall[k];
+            let vertex = vertex(skin, self.zone[k]);
+            let depth = setting.detection.distances[vertex];
+            (self.travel[k], self.cosine[k]) = ((-depth).max(0.0), 1.0);
+        }
+        self.place(skin, setting);
     }
 
     /// Takes back half the way of what did not come nearer to fitting, from travels and misfits (mm) that were better, and measures it.

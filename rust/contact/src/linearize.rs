@@ -19,6 +19,10 @@ const OUTER_TOLERANCE: f64 = 0.008;
 const OUTER_SHARE: f64 = 5e-4;
 /// Largest certificate of a large skin's far field.
 const FAR_FIELD_TOLERANCE: f64 = 1e-4;
+/// Passes in which slopes are those of the walls met; later ones take secants where the skin does not fit.
+const PLAIN_PASSES: usize = 2;
+/// Passes after which, at the latest, skin that does not fit along the averaged direction yields along the normal of its own wall.
+const MOST_AVERAGED: usize = 10;
 /// Most re-linearizations.
 const MOST_PASSES: usize = 30;
 /// Passes without a lower misfit that end the loop.
@@ -191,19 +195,21 @@ impl State {
     ) -> Result<(), ContactError> {
         let mut turned = self.turned(skin);
         self.matrix(skin, setting, &mut turned);
-        let mut best = Best::default();
+        let (mut best, mut is_along_walls) = (Best::default(), false);
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
             self.convergence.passes = pass + 1;
+            let before: Vec<(f64, f64)> = self.measured().collect();
             self.solve(skin, &turned, (Accuracy::Rough, control))?;
             self.place(skin, setting);
             let has_improved = best.take(self);
-            let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || best.is_stuck();
+            let is_stuck = best.is_stuck() && is_along_walls;
+            let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || is_stuck;
             if is_last && setting.accuracy != Accuracy::Rough {
                 self.solve(skin, &turned, (setting.accuracy, control))?;
                 self.place(skin, setting);
             }
-            if self.misfit <= tolerance || best.is_stuck() {
+            if self.misfit <= tolerance || is_stuck {
                 break;
             }
             if pass == 0 && skin.model == Model::Layer {
@@ -211,8 +217,18 @@ impl State {
                 self.see_along_normals(skin);
                 self.matrix(skin, setting, &mut turned);
             }
-            if !has_improved {
-                self.step_back(skin, setting, (&best.travel, &best.misfits));
+            if pass >= PLAIN_PASSES || !has_improved {
+                self.take_secants(&before, tolerance);
+                if !is_along_walls && (best.is_stuck() || pass + 1 >= MOST_AVERAGED) {
+                    is_along_walls = true;
+                    // What does not fit along the averaged direction yields along the normal of its own wall.
+                    self.yield_along_walls(skin, setting, tolerance);
+                    turned = self.turned(skin);
+                    best = Best::default();
+                } else if !has_improved {
+                    self.step_back(skin, setting, (&best.travel, &best.misfits));
+                }
+                self.matrix(skin, setting, &mut turned);
             }
         }
         Ok(())
