@@ -95,7 +95,7 @@ pub(crate) fn audit_of(
     };
     for s in standing {
         match s {
-            Standing::Sound => {}
+            Standing::Sound | Standing::Within => {}
             Standing::Duplicate => audit.duplicate_triangles += 1,
             Standing::Flat | Standing::Collapsed => audit.degenerate_triangles += 1,
         }
@@ -144,14 +144,18 @@ fn parts_by_vertex(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize)
     (part, count as usize)
 }
 
-/// Volume enclosed by the given triangles, mm3: the sum of the cones about the middle of the mesh so that far meshes keep their digits.
+/// Volume enclosed by the given triangles, mm3: the sum of their cones.
 pub(crate) fn signed_volume(mesh: &Mesh, triangles: impl Iterator<Item = usize>) -> f64 {
+    triangles.map(cone_volumes(mesh)).sum()
+}
+
+/// Volume of the cone over each triangle, mm3, about the middle of the mesh so that far meshes keep their digits.
+pub(crate) fn cone_volumes(mesh: &Mesh) -> impl Fn(usize) -> f64 + '_ {
     let middle = mesh.positions().iter().sum::<Vec3>() / mesh.positions().len() as f64;
-    let cone = |t| {
+    move |t| {
         let [a, b, c] = mesh.corners(t).map(|p| p - middle);
         a.dot(&b.cross(&c)) / 6.0
-    };
-    triangles.map(cone).sum()
+    }
 }
 
 fn parts(mesh: &Mesh, triangles: &[[u32; 3]], standing: &[Standing]) -> usize {

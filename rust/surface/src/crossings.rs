@@ -12,6 +12,7 @@ pub fn self_intersections(mesh: &Mesh) -> usize {
         id: t as u32,
         corners: mesh.corners(t),
         is_sheet: false,
+        piece_of: None,
     };
     let sound: Vec<Source> = sound.map(source).collect();
     if sound.is_empty() {

@@ -4,16 +4,12 @@ use crate::mesh::Vec3;
 use crate::nearest::{Hit, Pending};
 use crate::product::{Gap, GapLimits, Product, Side};
 use crate::sight::FACING_AWAY;
-use crate::tree::{Face, Query, Tree};
+use crate::tree::{Face, Query};
 use crate::triangle::ClosestPoint;
-use crate::winding::Winding;
 
 /// Cosine between skin normal and face normal from which a face is not one the skin can have come through: 46 degrees off its own
 /// direction. Between 0 and this, faces count with growing reluctance. Tests pass from 0.5 to 0.85.
 const TURNED_AWAY: f64 = 0.7;
-
-/// How far beyond the surface to look for another part, in parts of the product's extent: above rounding, below any wall.
-const BEYOND: f64 = 1e-6;
 
 /// How far beyond the cut-off faces are sought to tell how much room a point has, in parts of the cut-off.
 const ROOM: f64 = 0.5;
@@ -135,19 +131,10 @@ impl<'a> Facing<'a> {
         }
     }
 
-    /// The depth of a point inside, whose nearest face is `hit`. Surface that lies within another part of the product is no way out.
+    /// The depth of a point inside, whose nearest face is `hit`.
     fn inside(&mut self, query: &Query, skin: Option<Vec3>, hit: Hit) -> Option<Gap> {
         let product = self.product;
         let tree = &product.tree;
-        let hit = match product.overlaps() {
-            None => hit,
-            Some(winding) => {
-                let buried =
-                    |_: &Face, on: &ClosestPoint| weight_if(!is_buried(tree, winding, query, on));
-                tree.nearest(query, f64::INFINITY, self.pending, buried)
-                    .unwrap_or(hit)
-            }
-        };
         let plain = product.reading(query, &hit, Side::Inside);
         let skin = skin.filter(|m| *m != Vec3::zeros());
         let away = skin.map_or(0.0, |m| tree.faces[hit.slot as usize].normal.dot(&m));
@@ -167,12 +154,7 @@ impl<'a> Facing<'a> {
         let product = self.product;
         let tree = &product.tree;
         let may_lead_out = |face: &Face| face.normal.dot(skin) < most;
-        let weigh = |face: &Face, on: &ClosestPoint| {
-            let open = product
-                .overlaps()
-                .is_none_or(|winding| !is_buried(tree, winding, query, on));
-            reluctance(face, skin) * weight_if(open)
-        };
+        let weigh = |face: &Face, _: &ClosestPoint| reluctance(face, skin);
         let choice = (may_lead_out, weigh);
         let through = tree.nearest_of(query, f64::INFINITY, self.pending, choice)?;
         Some(product.reading(query, &through, Side::Inside))
@@ -184,18 +166,6 @@ impl<'a> Facing<'a> {
         self.opposing(&query, skin, FACING_AWAY)
             .filter(|gap| -gap.distance <= self.limits.max_depth_mm)
     }
-}
-
-/// Whether the way out at a closest point leads into another part of the product.
-fn is_buried(tree: &Tree, winding: &Winding, query: &Query, on: &ClosestPoint) -> bool {
-    let Some(out) = (on.point - query.point).try_normalize(0.0) else {
-        return false;
-    };
-    winding.number(tree, on.point + out * (BEYOND / tree.shrink)) > 0.5
-}
-
-fn weight_if(counts: bool) -> f64 {
-    if counts { 1.0 } else { f64::INFINITY }
 }
 
 /// Weight of a face on squared distances, for a skin of outward normal `skin`: 1 where they oppose, infinite where they agree.

@@ -62,6 +62,7 @@ impl<'a> Flesh<'a> {
                 id,
                 corners,
                 is_sheet: false,
+                piece_of: None,
             })
         });
         let near: Vec<Source> = near.collect();

@@ -7,6 +7,7 @@
 
 mod adjacency;
 mod audit;
+mod cells;
 mod crossings;
 mod edges;
 mod facing;
@@ -29,6 +30,8 @@ mod skin_distance;
 mod tree;
 mod leaf;
 mod triangle;
+mod union;
+mod weld;
 mod winding;
 
 pub use adjacency::Adjacency;

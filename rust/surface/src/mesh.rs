@@ -234,6 +234,8 @@ pub(crate) enum Standing {
     Collapsed,
     /// Has the vertices of an earlier triangle, in any order.
     Duplicate,
+    /// Stands within a solid, which it does not bound.
+    Within,
 }
 
 /// Whether a triangle is too thin to have a normal.

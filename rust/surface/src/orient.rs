@@ -1,18 +1,29 @@
 //! Makes a product's mesh face outward, and finds out how inside and outside can be told on it.
 
-use crate::audit::{audit_of, find, join, signed_volume};
+use crate::audit::{audit_of, cone_volumes, find, join};
+use crate::cells::{Verdict, verdicts};
 use crate::edges::{Side, joins, sides};
 use crate::mesh::{Mesh, Standing, Vec3, standings};
+use crate::weld::weld;
 use crate::winding::solid_angle;
 
 /// A part whose holes, spanned flat, have more than this part of its area is a sheet. A mug with a missing facet has less than 0.01, a tube
 /// ten times as long as wide 0.05 for each open end.
 const SHEET: f64 = 0.02;
 
+/// Walls and gaps that are not thicker than this, in parts of the product's extent, or than [`THIN_MM`], are none.
+const THIN: f64 = 1e-6;
+
+/// The same in mm: blocks laid side by side leave as much by rounding and by the tolerance of CAD. Skin cannot enter it.
+const THIN_MM: f64 = 0.001;
+
+/// How many triangles a warning names.
+const NAMED: usize = 6;
+
 /// A product's mesh, turned outward where that could be decided.
 pub(crate) struct Oriented {
     pub mesh: Mesh,
-    /// The triangles with vertices of equal position made one, as exporters split them at seams.
+    /// The triangles with vertices of equal position made one, as exporters split them at seams; those of separate closed parts stay apart.
     pub welded: Vec<[u32; 3]>,
     pub standing: Vec<Standing>,
     /// Whether there are holes: then a point may be half inside.
@@ -25,37 +36,72 @@ pub(crate) struct Oriented {
     pub may_overlap: bool,
     /// Sides of the triangles that join their neighbors.
     pub sides: Vec<Side>,
+    pub parts: Vec<Part>,
+    /// What counts as no distance between two surfaces, mm.
+    pub thin: f64,
     pub warnings: Vec<String>,
 }
 
-/// A piece of surface connected over edges with two triangles.
-struct Part {
-    triangles: Vec<usize>,
-    volume: f64,
-    is_closed: bool,
-    low: Vec3,
-    high: Vec3,
+/// A piece of surface connected over edges with two triangles, or all that bounds one solid.
+pub(crate) struct Part {
+    pub triangles: Vec<usize>,
+    pub volume: f64,
+    pub is_closed: bool,
+    pub low: Vec3,
+    pub high: Vec3,
 }
 
 /// Welds, turns and judges a product's mesh.
 pub(crate) fn orient(mesh: Mesh) -> Oriented {
     let mut welded = weld(&mesh);
-    let standing = standings(mesh.positions(), &welded);
-    let listed =
-        |welded: &[[u32; 3]]| sides(mesh.positions().len(), welded, |t| joins(standing[t]));
-    let mut all = listed(&welded);
-    let mut warnings = audit_of(&mesh, &welded, &standing, &all).warnings("the product");
-    warnings.retain(|w| !w.ends_with("flip its normals") && !w.contains("opposite ways"));
+    let mut standing = standings(mesh.positions(), &welded);
+    let listed = |welded: &[[u32; 3]], standing: &[Standing]| {
+        sides(mesh.positions().len(), welded, |t| joins(standing[t]))
+    };
+    let mut all = listed(&welded, &standing);
+    let mut audit = audit_of(&mesh, &welded, &standing, &all);
+    let mut warnings = Vec::new();
     let mut flips = turn_alike(&all, welded.len());
     let turned = flips.iter().filter(|f| **f).count();
     if turned > 0 {
         warnings.push(format!("the product has {turned} triangles that faced against their neighbors; they were turned"));
+        welded = flipped(&welded, &flips);
+        all = listed(&welded, &standing);
     }
-    let before = mesh.clone().with_triangles(flipped(&welded, &flips));
-    let parts = parts(&before, &all);
+    let thin = thin(&mesh);
+    let before = mesh.clone().with_triangles(welded.clone());
+    let verdicts = verdicts(&before, &all, thin);
+    let is_told = verdicts.iter().any(|v| *v != Verdict::Unknown);
+    if is_told {
+        // The rooms tell more than the count of edges.
+        if !verdicts.contains(&Verdict::Fin) {
+            audit.non_manifold_edges = 0;
+        }
+        for (t, verdict) in verdicts.iter().enumerate() {
+            match verdict {
+                Verdict::Within => standing[t] = Standing::Within,
+                Verdict::Bounds {
+                    is_inward: true, ..
+                } => {
+                    welded[t].swap(1, 2);
+                    flips[t] = !flips[t];
+                }
+                _ => {}
+            }
+        }
+        all = listed(&welded, &standing);
+        warnings.extend(within(&verdicts));
+    }
+    let before = if is_told {
+        before.with_triangles(welded.clone())
+    } else {
+        before
+    };
+    let parts = parts(&before, &all, &verdicts);
     let inward = inward_parts(&before, &parts);
-    for part in inward.iter().map(|&p| &parts[p]) {
-        part.triangles.iter().for_each(|&t| flips[t] = !flips[t]);
+    for &t in inward.iter().flat_map(|&p| &parts[p].triangles) {
+        flips[t] = !flips[t];
+        welded[t].swap(1, 2);
     }
     if !inward.is_empty() {
         warnings.push(format!(
@@ -63,20 +109,31 @@ pub(crate) fn orient(mesh: Mesh) -> Oriented {
             inward.len(),
             parts.len()
         ));
+        all = listed(&welded, &standing);
     }
-    if flips.contains(&true) {
-        welded = flipped(&welded, &flips);
-        all = listed(&welded);
-    }
+    let mut audited = audit.warnings("the product");
+    audited.retain(|w| !w.ends_with("flip its normals") && !w.contains("opposite ways"));
+    warnings.splice(0..0, audited);
     let ascending = |g: &[Side]| g.iter().filter(|s| s.ascends).count();
     let is_open = all.chunk_by(same_edge).any(|g| 2 * ascending(g) != g.len());
     let is_manifold = all.chunk_by(same_edge).all(|g| g.len() == 2);
     let has_flat = standing.contains(&Standing::Flat);
-    let may_overlap = may_overlap(&parts);
+    let may_overlap = may_overlap(&parts, thin);
     let is_simple = !is_open && is_manifold && !has_flat && !may_overlap;
-    let triangles = flipped(mesh.triangles(), &flips);
-    let mesh = mesh.with_triangles(triangles);
-    let is_sheet = sheets(&mesh, &welded, &parts, &all);
+    let mesh = if flips.contains(&true) {
+        let triangles = flipped(mesh.triangles(), &flips);
+        mesh.with_triangles(triangles)
+    } else {
+        mesh
+    };
+    let mut is_sheet = sheets(&mesh, &welded, &parts, &all);
+    for (t, _) in verdicts
+        .iter()
+        .enumerate()
+        .filter(|(_, v)| **v == Verdict::Fin)
+    {
+        is_sheet[t] = true;
+    }
     Oriented {
         mesh,
         welded,
@@ -86,8 +143,35 @@ pub(crate) fn orient(mesh: Mesh) -> Oriented {
         is_simple,
         may_overlap,
         sides: all,
+        parts,
+        thin,
         warnings,
     }
+}
+
+/// What counts as no distance, mm.
+fn thin(mesh: &Mesh) -> f64 {
+    let p = mesh.positions();
+    let low = p.iter().fold(Vec3::repeat(f64::INFINITY), |m, p| m.inf(p));
+    let high = p
+        .iter()
+        .fold(Vec3::repeat(f64::NEG_INFINITY), |m, p| m.sup(p));
+    THIN_MM.max(THIN * (high - low).amax())
+}
+
+/// The sentence on triangles within the solid, which names them.
+fn within(verdicts: &[Verdict]) -> Option<String> {
+    let all = || (0..verdicts.len()).filter(|&t| verdicts[t] == Verdict::Within);
+    let count = all().count();
+    let named: Vec<String> = all().take(NAMED).map(|t| t.to_string()).collect();
+    let more = if count > NAMED { ", ..." } else { "" };
+    (count > 0).then(|| {
+        format!(
+            "the product has {count} triangles inside its solid, where nothing can touch them; they are ignored (triangles {}{more}): \
+             delete interior faces",
+            named.join(", ")
+        )
+    })
 }
 
 fn same_edge(a: &Side, b: &Side) -> bool {
@@ -97,30 +181,6 @@ fn same_edge(a: &Side, b: &Side) -> bool {
 fn flipped(triangles: &[[u32; 3]], flips: &[bool]) -> Vec<[u32; 3]> {
     let turn = |(&[a, b, c], &flip): (&[u32; 3], &bool)| if flip { [a, c, b] } else { [a, b, c] };
     triangles.iter().zip(flips).map(turn).collect()
-}
-
-/// Triangles that name, for each vertex, the first one at the same place.
-fn weld(mesh: &Mesh) -> Vec<[u32; 3]> {
-    let p = mesh.positions();
-    // Adding 0 makes -0 and 0 one.
-    let bits = |i: u32| {
-        let q = p[i as usize];
-        [
-            (q.x + 0.0).to_bits(),
-            (q.y + 0.0).to_bits(),
-            (q.z + 0.0).to_bits(),
-        ]
-    };
-    let mut order: Vec<u32> = (0..p.len() as u32).collect();
-    order.sort_unstable_by_key(|&i| (bits(i), i));
-    let mut first = vec![0u32; p.len()];
-    for group in order.chunk_by(|a, b| bits(*a) == bits(*b)) {
-        group.iter().for_each(|&i| first[i as usize] = group[0]);
-    }
-    mesh.triangles()
-        .iter()
-        .map(|t| t.map(|i| first[i as usize]))
-        .collect()
 }
 
 /// Which triangles to flip so that neighbors across edges with two triangles agree; the fewer of each piece. One-sided surfaces are left.
@@ -167,15 +227,24 @@ fn turn_alike(all: &[Side], triangles: usize) -> Vec<bool> {
     flips.into_iter().map(|f| f == Some(true)).collect()
 }
 
-fn parts(mesh: &Mesh, all: &[Side]) -> Vec<Part> {
+fn parts(mesh: &Mesh, all: &[Side], verdicts: &[Verdict]) -> Vec<Part> {
     let mut root: Vec<u32> = (0..mesh.triangles().len() as u32).collect();
     let mut is_closed = vec![true; root.len()];
     for group in all.chunk_by(same_edge) {
         match group {
-            [a, b] => join(&mut root, a.triangle, b.triangle),
+            [a, b] if verdicts[a.triangle as usize] == verdicts[b.triangle as usize] => {
+                join(&mut root, a.triangle, b.triangle);
+            }
             _ => group
                 .iter()
                 .for_each(|s| is_closed[s.triangle as usize] = false),
+        }
+    }
+    let mut first = std::collections::BTreeMap::new();
+    for (t, verdict) in verdicts.iter().enumerate() {
+        if let Verdict::Bounds { body, .. } = verdict {
+            join(&mut root, *first.entry(*body).or_insert(t as u32), t as u32);
+            is_closed[t] = true;
         }
     }
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); root.len()];
@@ -183,11 +252,12 @@ fn parts(mesh: &Mesh, all: &[Side]) -> Vec<Part> {
         members[find(&mut root, t) as usize].push(t as usize);
     }
     members.retain(|m| !m.is_empty());
+    let cones = cone_volumes(mesh);
     let describe = |mut triangles: Vec<usize>| {
         triangles.sort_unstable();
         let corners = || triangles.iter().flat_map(|&t| mesh.corners(t));
         Part {
-            volume: signed_volume(mesh, triangles.iter().copied()),
+            volume: triangles.iter().map(|&t| cones(t)).sum(),
             is_closed: triangles.iter().all(|&t| is_closed[t]),
             low: corners().fold(Vec3::repeat(f64::INFINITY), |m, p| m.inf(&p)),
             high: corners().fold(Vec3::repeat(f64::NEG_INFINITY), |m, p| m.sup(&p)),
@@ -233,14 +303,17 @@ fn contains(mesh: &Mesh, outer: &Part, inner: &Part) -> bool {
 }
 
 /// Whether the boxes of any two parts meet, by a sweep along x. Cavities do too; the winding number is right for them as well.
-fn may_overlap(parts: &[Part]) -> bool {
+fn may_overlap(parts: &[Part], thin: f64) -> bool {
     let mut order: Vec<&Part> = parts.iter().collect();
     order.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
     order.iter().enumerate().any(|(i, a)| {
-        let ahead = order[i + 1..].iter().take_while(|b| b.low.x <= a.high.x);
-        ahead
-            .into_iter()
-            .any(|b| (1..3).all(|k| a.low[k] <= b.high[k] && b.low[k] <= a.high[k]))
+        let ahead = order[i + 1..]
+            .iter()
+            .take_while(|b| b.low.x <= a.high.x + thin);
+        let meets = |b: &&Part| {
+            (1..3).all(|k| a.low[k] <= b.high[k] + thin && b.low[k] <= a.high[k] + thin)
+        };
+        ahead.into_iter().any(meets)
     })
 }
 

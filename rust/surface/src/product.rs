@@ -13,8 +13,9 @@ use crate::readings::new_number;
 use crate::sight::{PosedSkin, Sight};
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
-use crate::triangle::Feature;
-use crate::winding::Winding;
+use crate::triangle::{Feature, closest_point};
+use crate::union::boundary;
+use crate::winding::{Counted, Winding};
 
 /// Points answered by one task.
 const CHUNK: usize = 256;
@@ -51,8 +52,9 @@ pub struct Gap {
 /// A mesh prepared for signed-distance queries.
 ///
 /// Degenerate and duplicated triangles are left out. Triangles that face against their neighbors, and closed parts that are inside out, are
-/// turned (cavities stay). Inside and outside follow angle-weighted pseudo-normals; where the surface is open, not manifold, or made of
-/// parts that may overlap, the generalised winding number.
+/// turned (cavities stay). Faces, and pieces of faces, with solid on both sides are left out, so that distances are measured to the
+/// boundary of the union of all parts. Inside and outside follow angle-weighted pseudo-normals; where the surface is open, not manifold,
+/// or made of parts that may overlap, the generalised winding number.
 #[derive(Debug, Clone)]
 pub struct Product {
     mesh: Mesh,
@@ -63,7 +65,8 @@ pub struct Product {
     interior: Option<Interior>,
     /// Whether some part is not a sheet.
     has_body: bool,
-    may_overlap: bool,
+    /// The winding number of sheets, where they stand beside bodies.
+    sheets: Option<Winding>,
     vertex_areas: Vec<f64>,
     warnings: Vec<String>,
 }
@@ -81,6 +84,7 @@ impl Product {
             id: t as u32,
             corners: oriented.mesh.corners(t),
             is_sheet: oriented.is_sheet[t],
+            piece_of: None,
         };
         let sound: Vec<Source> = sound.map(source).collect();
         if sound.is_empty() {
@@ -88,11 +92,19 @@ impl Product {
                 triangles: oriented.standing.len(),
             });
         }
-        let tree = Tree::new(&sound, oriented.standing.len());
+        let mut tree = Tree::new(&sound, oriented.standing.len());
+        let bare = match oriented.may_overlap {
+            true => boundary(&oriented, &tree, &sound).filter(|bare| !bare.is_empty()),
+            false => None,
+        };
+        if let Some(bare) = bare {
+            tree = Tree::new(&bare, oriented.standing.len());
+        }
         let sign = Sign::new(&oriented, &tree);
         let is_closed = !oriented.is_open;
         let has_body = tree.faces.iter().any(|f| !f.is_sheet);
-        let may_overlap = oriented.may_overlap;
+        let has_sheet = tree.faces.iter().any(|f| f.is_sheet);
+        let sheets = (has_body && has_sheet).then(|| Winding::of(&tree, Counted::Sheets));
         let (mesh, warnings) = (oriented.mesh, oriented.warnings);
         let vertex_areas = vertex_areas(&mesh);
         let mut product = Product {
@@ -103,7 +115,7 @@ impl Product {
             sign,
             interior: None,
             has_body,
-            may_overlap,
+            sheets,
             warnings,
         };
         if is_closed {
@@ -240,14 +252,6 @@ impl Product {
         gaps
     }
 
-    /// The winding number, where parts may lie within each other and leave surface inside.
-    pub(crate) fn overlaps(&self) -> Option<&Winding> {
-        match &self.sign {
-            Sign::Winding(winding) if self.may_overlap && self.is_closed() => Some(winding),
-            _ => None,
-        }
-    }
-
     /// Whether a point beyond the cut-off is inside; sheets have no inside.
     pub(crate) fn holds_far(&self, query: &Query, pending: &mut Pending) -> bool {
         match (&self.interior, &self.sign) {
@@ -266,7 +270,12 @@ impl Product {
     /// Whether an open product winds around a point more than it leaves open.
     pub(crate) fn winds_around(&self, point: Vec3) -> bool {
         let query = self.tree.query(point);
-        matches!(&self.sign, Sign::Winding(winding) if winding.number(&self.tree, query.point) > 0.5)
+        let winding = match (&self.sheets, &self.sign) {
+            (Some(sheets), _) => sheets,
+            (None, Sign::Winding(winding)) => winding,
+            (None, Sign::Normals(_)) => return false,
+        };
+        winding.number(&self.tree, query.point) > 0.5
     }
 
     /// Whether a point about the tree's center is inside.
@@ -281,6 +290,16 @@ impl Product {
     /// The gap to a face found, on the given side.
     pub(crate) fn reading(&self, query: &Query, hit: &Hit, side: Side) -> Gap {
         let face = &self.tree.faces[hit.slot as usize];
+        let mut on = hit.on;
+        if face.is_piece {
+            // Weights and feature are those of the whole triangle.
+            let corners = self
+                .mesh
+                .corners(face.id as usize)
+                .map(|p| p - self.tree.center);
+            let whole = closest_point(corners, on.point);
+            (on.barycentric, on.feature) = (whole.barycentric, whole.feature);
+        }
         let distance = hit.on.distance_squared.sqrt();
         let sign = if side == Side::Inside { -1.0 } else { 1.0 };
         let away = (query.point - hit.on.point) * sign;
@@ -289,14 +308,14 @@ impl Product {
                 .normal(&self.tree, hit)
                 .try_normalize(0.0)
                 .unwrap_or(face.normal)
-        } else if hit.on.feature == Feature::Face {
+        } else if on.feature == Feature::Face {
             // Over a face it is the face's own: the difference of two points that all but touch tells it badly.
             face.normal * away.dot(&face.normal).signum()
         } else {
             // Normalized anew: far from the product, the root of the square is not exactly its length.
             away.normalize()
         };
-        let (closest, barycentric) = (hit.on.point + self.tree.center, hit.on.barycentric);
+        let (closest, barycentric) = (on.point + self.tree.center, on.barycentric);
         Gap {
             distance: sign * distance,
             closest,

@@ -6,7 +6,7 @@ use crate::normals::add_angle_weighted;
 use crate::orient::Oriented;
 use crate::tree::Tree;
 use crate::triangle::Feature;
-use crate::winding::Winding;
+use crate::winding::{Counted, Winding};
 
 /// How a product tells inside from outside.
 #[derive(Debug, Clone)]
@@ -30,7 +30,13 @@ impl Sign {
         if product.is_simple {
             Sign::Normals(PseudoNormals::new(product, tree))
         } else {
-            Sign::Winding(Winding::new(tree))
+            let has_body = tree.faces.iter().any(|f| !f.is_sheet);
+            let counted = if has_body {
+                Counted::Bodies
+            } else {
+                Counted::All
+            };
+            Sign::Winding(Winding::of(tree, counted))
         }
     }
 

@@ -66,6 +66,8 @@ pub(crate) struct Face {
     pub id: u32,
     /// Whether it is of a sheet, which has two sides and no inside.
     pub is_sheet: bool,
+    /// Whether it is only a piece of that triangle.
+    pub is_piece: bool,
 }
 
 /// A triangle to build the tree over.
@@ -76,6 +78,8 @@ pub(crate) struct Source {
     /// Corners, mm.
     pub corners: [Vec3; 3],
     pub is_sheet: bool,
+    /// Of a piece of a triangle, the whole triangle's unit normal: that of a thin piece has few digits.
+    pub piece_of: Option<Vec3>,
 }
 
 /// Faces in the order of the tree's leaves, and boxes over them.
@@ -193,6 +197,7 @@ impl Tree {
             id,
             corners,
             is_sheet,
+            piece_of,
         }: &Source,
     ) {
         let [a, b, c] = corners.map(|p| p - self.center);
@@ -202,9 +207,10 @@ impl Tree {
             a,
             ab,
             ac,
-            normal: ab.cross(&ac).normalize(),
+            normal: piece_of.unwrap_or_else(|| ab.cross(&ac).normalize()),
             id,
             is_sheet,
+            is_piece: piece_of.is_some(),
         });
     }
 }

@@ -24,10 +24,30 @@ struct Dipole {
 #[derive(Debug, Clone)]
 pub(crate) struct Winding {
     dipoles: Vec<[Dipole; WIDTH]>,
+    counted: Counted,
+}
+
+/// Which faces wind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Counted {
+    All,
+    /// A sheet winds by half a turn about points close to it, inside or not.
+    Bodies,
+    Sheets,
+}
+
+impl Counted {
+    fn holds(self, face: &Face) -> bool {
+        match self {
+            Counted::All => true,
+            Counted::Bodies => !face.is_sheet,
+            Counted::Sheets => face.is_sheet,
+        }
+    }
 }
 
 impl Winding {
-    pub(crate) fn new(tree: &Tree) -> Winding {
+    pub(crate) fn of(tree: &Tree, counted: Counted) -> Winding {
         let nothing = Dipole {
             moment: Vec3::zeros(),
             center: Vec3::zeros(),
@@ -44,7 +64,10 @@ impl Winding {
                             .iter()
                             .copied(),
                     ),
-                    Child::Leaf(leaf) => gather(tree.leaf_faces(leaf).1.iter().map(of_face)),
+                    Child::Leaf(leaf) => {
+                        let faces = tree.leaf_faces(leaf).1.iter();
+                        gather(faces.filter(|f| counted.holds(f)).map(of_face))
+                    }
                 };
                 let corner = |axis: usize| {
                     let (low, high) = (
@@ -58,7 +81,7 @@ impl Winding {
                 dipoles[at][lane] = sum;
             }
         }
-        Winding { dipoles }
+        Winding { dipoles, counted }
     }
 
     /// How many times the product winds around a point about the tree's center: 1 inside, 0 outside, between near holes
@@ -80,6 +103,7 @@ impl Winding {
                     Child::Node(below) => pending.push(below),
                     Child::Leaf(leaf) => {
                         let faces = tree.leaf_faces(leaf).1.iter();
+                        let faces = faces.filter(|f| self.counted.holds(f));
                         let angle = |f: &Face| solid_angle([f.a, f.a + f.ab, f.a + f.ac], point);
                         sum += faces.map(angle).sum::<f64>();
                     }
