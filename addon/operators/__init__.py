@@ -3,9 +3,9 @@
 import bpy
 
 from .. import reports, status
-from . import bake, clear, computing, display, effects, export, regions, report, solve
+from . import bake, clear, computing, display, effects, export, regions, report, sizing, solve
 
-_MODULES = (solve, clear, display, regions, effects, export, bake, report)
+_MODULES = (solve, clear, display, regions, effects, export, bake, report, sizing)
 
 
 def register():
