@@ -321,7 +321,7 @@ def has_output(context):
     if hand is None or hand.type != "MESH":
         return False
     carried = own.contact_key(hand) is not None or names.PRESSURE_KPA in hand.data.attributes
-    return carried or settings.result.is_valid or bool(own.bake_modifiers(hand))
+    return carried or settings.result.is_valid or bool(own.played_modifiers(hand))
 
 
 def clear(context):
