@@ -2,6 +2,8 @@
 
 VERSION = "0.1.0"
 SCHEMA = 1
+_LONGEST = 63
+"""Bytes of a name in a file of Blender 4."""
 
 SHAPE_KEY = "Thenar Contact"
 """Shape key on the hand that holds the contact's displacement."""
@@ -66,3 +68,9 @@ FRICTION = "friction"
 
 WHOLE_SKIN = "Whole skin"
 """Name of the one region of a hand on which no region was assigned."""
+
+
+def suffixed(name, suffix):
+    """The name with the suffix, cut in front of it where both would be too long for Blender."""
+    room = _LONGEST - len(suffix.encode())
+    return name.encode()[:room].decode(errors="ignore") + suffix

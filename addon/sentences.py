@@ -5,7 +5,8 @@ from functools import lru_cache, partial
 
 SENTENCES_KEPT = 256
 """Notes whose wording is kept: from frame to frame most of them are the same."""
-_REGION = re.compile(r"region (\d+)\b")
+_PLACES = r"\b[Tt]he (?P<role>hand|product)\b(?! ')|\bregion (?P<region>\d+)\b"
+"""Where a name belongs; names of regions that the native module already put are found first, and left as they are."""
 _NUMBERS = dict.fromkeys(map(ord, "0123456789."))
 
 
@@ -22,18 +23,23 @@ def remarks(contact, job):
 @lru_cache(maxsize=4)
 def _namer(hand_name, part_names, region_names):
     """What does this for one hand and product: it remembers sentences without looking at all these names each time."""
-    objects = (hand_name, ", ".join(part_names))
-    return lru_cache(maxsize=SENTENCES_KEPT)(partial(_named, objects=objects, region_names=region_names))
+    objects = {"hand": hand_name, "product": ", ".join(part_names)}
+    told = "|".join(re.escape(f"'{name}'") for name in sorted(region_names, key=len, reverse=True))
+    places = re.compile(rf"{told}|{_PLACES}" if told else _PLACES)
+    return lru_cache(maxsize=SENTENCES_KEPT)(partial(_named, places=places, names=(objects, region_names)))
 
 
-def _named(text, objects, region_names):
-    for role, name in zip(("hand", "product"), objects, strict=True):
-        if f"he {role}" in text:
-            text = re.sub(rf"\b([Tt]he {role})\b(?! ')", rf"\1 '{name}'", text, count=1)
-    if not _REGION.search(text):
-        return text
-    regions = dict(enumerate(region_names))
-    return _REGION.sub(lambda found: f"region '{regions.get(int(found[1]), found[1])}'", text)
+def _named(text, places, names):
+    """One pass, so that a name is never looked into, whatever stands in it; each role is named once."""
+    objects, regions = dict(names[0]), dict(enumerate(names[1]))
+
+    def name(found):
+        if found["region"]:
+            return f"region '{regions.get(int(found['region']), found['region'])}'"
+        known = objects.pop(found["role"], None) if found["role"] else None
+        return found[0] if known is None else f"{found[0]} '{known}'"
+
+    return places.sub(name, text)
 
 
 def joined(notes):

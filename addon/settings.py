@@ -299,6 +299,9 @@ class ThenarScene(bpy.types.PropertyGroup):
     show_legend: BoolProperty(
         name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
     )
+    accepted_mm: FloatProperty(
+        name="Accepted Size (mm)", description="Longest side of a product that is as large as it seems, mm", min=0.0
+    )
     live: BoolProperty(
         name="Live",
         description="The contact follows while hand, armature or product move; not in renders, for those bake",

@@ -9,7 +9,8 @@ import numpy as np
 
 from . import cache, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
-from .scene import checks, own, read, state, units, write
+from .scene import checks, own, read, sizes, state, units, write
+from .scene import parts as parts_of
 from .settings import MATERIAL_NUMBERS
 from .steps import at_once
 
@@ -49,6 +50,9 @@ def prepare(context):
     return job
 
 
+product_parts = parts_of.product_parts
+
+
 def check(context):
     """Refuse a scene that cannot be pressed. Returns hand and product parts. Raises `Refusal`."""
     problem = native.problem()
@@ -58,6 +62,7 @@ def check(context):
     hand, parts = settings.hand, product_parts(settings)
     checks.check_hand(context, hand)
     checks.check_product(context, parts, hand)
+    sizes.check_product_size(context, hand, parts)
     return hand, parts
 
 
@@ -120,15 +125,6 @@ def check_groups(hand, group_names):
 def material_numbers(hand):
     """The library's numbers of every region's material; of the one material where no region is listed."""
     return tuple(_numbers(material) for material in (tuple(hand.thenar.materials) or (hand.thenar.default_material,)))
-
-
-def product_parts(settings):
-    """The objects that together are the product, in a fixed order, hand and Thenar's own copies left out."""
-    parts = [settings.product] if settings.product is not None else []
-    if settings.product_collection is not None:
-        found = sorted(settings.product_collection.all_objects, key=lambda part: part.name)
-        parts += [part for part in found if _is_part(part, settings) and part not in parts]
-    return parts
 
 
 def compute(job, cancel=None, progress=None):
@@ -286,11 +282,6 @@ def is_out_of_date(context):
     return stale
 
 
-def _is_part(part, settings):
-    drawn = part.type in checks.PRODUCT_TYPES or part.instance_type != "NONE"
-    return drawn and part != settings.hand and not part.thenar.copy_of
-
-
 def _numbers(material):
     """The library's numbers of a region's material, in the table's order; six digits of Blender's single precision."""
     numbers = {}
@@ -330,7 +321,7 @@ def has_output(context):
     if hand is None or hand.type != "MESH":
         return False
     carried = own.contact_key(hand) is not None or names.PRESSURE_KPA in hand.data.attributes
-    return carried or settings.result.is_valid or bool(own.bake_modifiers(hand))
+    return carried or settings.result.is_valid or bool(own.played_modifiers(hand))
 
 
 def clear(context):

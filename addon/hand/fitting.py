@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native, workflow
-from ..scene import checks, mesh, read, regions, units
+from ..scene import checks, mesh, read, regions, sizes, units
 from . import capsules, force, grasp, normals, pads, reading, roles
 
 _PALM = re.compile("palm|thenar")
@@ -40,6 +40,7 @@ def prepare(context, hand_object, parts, wish, force_n=None):
         raise checks.Refusal(problem)
     checks.check_hand(context, hand_object)
     checks.check_product(context, parts, hand_object)
+    sizes.check_product_size(context, hand_object, parts)
     hand = read_hand(context, hand_object)
     scale = units.mm_per_unit(context.scene)
     product = read.read_product(context, parts, scale, np.zeros(3))

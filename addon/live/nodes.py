@@ -25,15 +25,30 @@ def attach(hand):
 
 def detach(hand):
     """Take modifier and offsets off the hand again."""
-    modifier = own.live_modifier(hand)
-    if modifier is not None:
-        hand.modifiers.remove(modifier)
+    _take_off(hand)
     if hand.type == "MESH" and hand.data.is_editable and hand.mode != "EDIT":
         attributes.remove(hand.data, [names.LIVE_OFFSET])
         hand.data.update()
+    _drop_unused_tree()
+
+
+def sweep(kept=()):
+    """Take the modifier off every object but the hands that are `kept`: duplicates, former hands, files cut short.
+
+    Looks at objects only where the node group says that there are more users than those.
+    """
     tree = bpy.data.node_groups.get(names.LIVE_MODIFIER)
-    if tree is not None and tree.users == 0:
-        bpy.data.node_groups.remove(tree)
+    if tree is None or tree.users <= sum(own.live_modifier(hand) is not None for hand in kept):
+        return
+    meshes = {hand.data for hand in kept}
+    for obj in bpy.data.objects:
+        if obj in kept or not obj.is_editable or not _live_modifiers(obj):
+            continue
+        if obj.data in meshes:  # the offsets in it are still needed
+            _take_off(obj)
+        else:
+            detach(obj)
+    _drop_unused_tree()
 
 
 def base_positions(hand, depsgraph):
@@ -50,6 +65,24 @@ def base_positions(hand, depsgraph):
             "or switch Live off and on"
         )
     return np.ascontiguousarray(values[:count])
+
+
+def _live_modifiers(obj):
+    """All that show a live contact; a copy of the modifier has another name and the same nodes."""
+    tree = bpy.data.node_groups.get(names.LIVE_MODIFIER)
+    nodes = [modifier for modifier in obj.modifiers if modifier.type == "NODES"]
+    return [one for one in nodes if one.name == names.LIVE_MODIFIER or (tree is not None and one.node_group == tree)]
+
+
+def _take_off(obj):
+    for modifier in _live_modifiers(obj):
+        obj.modifiers.remove(modifier)
+
+
+def _drop_unused_tree():
+    tree = bpy.data.node_groups.get(names.LIVE_MODIFIER)
+    if tree is not None and tree.users == 0:
+        bpy.data.node_groups.remove(tree)
 
 
 def _tree():

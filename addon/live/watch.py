@@ -36,6 +36,7 @@ def follow_now(context):
     began = time.perf_counter()
     with _alone():
         try:
+            nodes.sweep(_followed())
             is_new = _follow(context, scene)
             told.problem = ""
         except (Refusal, *native.error_types()) as error:
@@ -68,6 +69,7 @@ def switched(context):
     _sessions.pop(scene.name, None)
     status.live.pop(scene.name, None)
     with _alone():
+        nodes.sweep(_followed())
         _leave(context)
 
 
@@ -92,20 +94,24 @@ def _follow(context, scene):
             return True
         if now.setup == session.setup_of(context, hand):
             return False
-    elif now is not None and now.job.hand_name in scene.objects and now.job.hand_name != hand.name:
-        nodes.detach(scene.objects[now.job.hand_name])
     _sessions.pop(scene.name, None)
     now = session.begin(context, hand, parts)
     _sessions[scene.name] = now
     return session.follow(context, now, hand, parts)
 
 
+def _followed():
+    """The hands that Live may keep its modifier on."""
+    chosen = [scene.thenar.hand for scene in bpy.data.scenes if scene.thenar.live]
+    return [hand for hand in chosen if hand is not None and hand.type == "MESH"]
+
+
 def _leave(context):
-    """Take the modifier off, and leave the contact as Solve would, where that can be."""
+    """Leave the contact as Solve would, where that can be."""
     hand = context.scene.thenar.hand
-    if hand is None or hand.type != "MESH":
+    if hand is None or hand.type != "MESH" or hand in _followed():
         return
-    nodes.detach(hand)
+    nodes.detach(hand)  # its offsets, too
     context.view_layer.update()
     try:
         workflow.solve(context)
@@ -180,6 +186,14 @@ def _replaced(*_):
 
 
 @persistent
+def _loaded(*_):
+    """A file may have been saved by a process that did not end well, or by one without the extension."""
+    with _alone():
+        nodes.sweep(_followed())
+    _replaced()
+
+
+@persistent
 def _render_began(*_):
     _state["rendering"] = True
 
@@ -195,7 +209,7 @@ _HANDLERS = (
     ("frame_change_post", _changed),
     ("undo_post", _replaced),
     ("redo_post", _replaced),
-    ("load_post", _replaced),
+    ("load_post", _loaded),
     ("render_init", _render_began),
     ("render_complete", _render_ended),
     ("render_cancel", _render_ended),
@@ -212,7 +226,7 @@ def register():
 
 
 def unregister():
-    """Take them out, and forget every session."""
+    """Take them out, leave no modifier behind, and forget every session."""
     status.live_switched.remove(switched)
     for event, handler in _HANDLERS:
         handlers = getattr(bpy.app.handlers, event)
@@ -221,4 +235,8 @@ def unregister():
     for timer in (_tick, _rest):
         if bpy.app.timers.is_registered(timer):
             bpy.app.timers.unregister(timer)
+    for scene in bpy.data.scenes:
+        if scene.thenar.live:
+            scene.thenar.result.state_hash = ""  # what it says is out of date from now on
+    nodes.sweep()
     forget()

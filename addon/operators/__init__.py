@@ -3,22 +3,24 @@
 import bpy
 
 from .. import reports, status
-from . import bake, clear, display, effects, export, regions, report, solve
+from . import bake, clear, computing, display, effects, export, regions, report, sizing, solve
 
-_MODULES = (solve, clear, display, regions, effects, export, bake, report)
+_MODULES = (solve, clear, display, regions, effects, export, bake, report, sizing)
 
 
 def register():
     """Register every operator."""
     status.look_changed.append(display.refresh)
     status.comfort_changed.append(display.judge)
+    computing.register()
     for module in _MODULES:
         for cls in module.CLASSES:
             bpy.utils.register_class(cls)
 
 
 def unregister():
-    """Unregister them again."""
+    """End what computes, and unregister them again."""
+    computing.unregister()
     status.look_changed.remove(display.refresh)
     status.comfort_changed.remove(display.judge)
     for module in reversed(_MODULES):

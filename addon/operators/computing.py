@@ -1,9 +1,25 @@
 """The base of operators that compute beside the window: one modal loop, with progress and Esc, for all of them."""
 
+import atexit
+from dataclasses import dataclass
+
 import bpy
+from bpy.app.handlers import persistent
 
 from .. import steps
 from . import running
+
+_under_way = {}
+"""Steps -> `_Run` of every computation that a button started."""
+_GOES_ON = object()
+
+
+@dataclass
+class _Run:
+    """A computation that a button started."""
+
+    timer: object
+    worker: running.Worker
 
 
 class Computing:
@@ -27,19 +43,20 @@ class Computing:
         work = running.attempt(self, next, self._steps)
         if work is None:
             return {"CANCELLED"}
-        self._timer = running.begin(context, self)
-        self._worker = running.Worker(work)
+        self._start(context, work)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """A turn of the window: Esc, progress, or the next step."""
+        if self._steps not in _under_way:
+            return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.cancel(context)
             self.report({"WARNING"}, f"{self.noun} cancelled; the scene is as before")
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if running.is_navigation(event) else {"RUNNING_MODAL"}
-        if not self._worker.is_done():
+        if not _under_way[self._steps].worker.is_done():
             running.show(context)
             return {"RUNNING_MODAL"}
         try:
@@ -47,24 +64,61 @@ class Computing:
         except BaseException:  # a bug: the window must stay usable while Blender shows the traceback
             self.cancel(context)
             raise
-        if outcome is self._worker:
+        if outcome is _GOES_ON:
             return {"RUNNING_MODAL"}
-        running.end(context, self._timer)
+        running.end(context, _under_way.pop(self._steps).timer)
         return self._end(context, outcome)
 
     def cancel(self, context):
         """Stop the computation; also called by Blender when the window goes."""
-        self._worker.stop()
-        self._steps.close()
-        running.end(context, self._timer)
+        _stop(context, self._steps)
+
+    def _start(self, context, work):
+        """Hand the first work to a thread, and tick."""
+        _under_way[self._steps] = _Run(running.begin(context, self), running.Worker(work))
 
     def _advance(self):
-        """Go on with the worker's value. Returns the next worker, or the outcome."""
+        """Go on with the worker's value. Returns `_GOES_ON`, or the outcome."""
+        run = _under_way[self._steps]
         try:
-            self._worker = running.Worker(self._worker.hand_back(self._steps))
+            run.worker = running.Worker(run.worker.hand_back(self._steps))
         except StopIteration as end:
             return end.value
-        return self._worker
+        return _GOES_ON
 
     def _end(self, context, outcome):
         return {"CANCELLED"} if outcome is None else self._report(context, outcome)
+
+
+def stop_all(context):
+    """End every computation and put the scene back: before a file is loaded, and before the operators go."""
+    for under_way in list(_under_way):
+        _stop(context, under_way)
+
+
+def register():
+    """See that no computation outlives its file, its operators or the process."""
+    atexit.register(running.stop_workers)
+    bpy.app.handlers.load_pre.append(_before_load)
+
+
+def unregister():
+    """End what is under way, and stop watching."""
+    stop_all(bpy.context)
+    running.stop_workers()
+    bpy.app.handlers.load_pre.remove(_before_load)
+    atexit.unregister(running.stop_workers)
+
+
+@persistent
+def _before_load(*_):
+    stop_all(bpy.context)
+
+
+def _stop(context, under_way):
+    run = _under_way.pop(under_way, None)
+    if run is None:
+        return
+    run.worker.stop()
+    under_way.close()
+    running.end(context, run.timer)

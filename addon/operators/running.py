@@ -1,6 +1,8 @@
 """Runs a computation beside Blender's window: worker thread, progress, Esc. The scene is touched by the caller only."""
 
 import threading
+import time
+import weakref
 
 from .. import native, status
 from ..scene.checks import Refusal
@@ -8,6 +10,8 @@ from ..scene.checks import Refusal
 TICK_S = 0.05
 STOP_S = 0.2
 """Longest wait of the window for a cancelled computation."""
+END_S = 2.0
+"""Longest wait at the end of the process, when nobody waits for the window any more."""
 _NAVIGATION = {
     "MIDDLEMOUSE",
     "WHEELUPMOUSE",
@@ -19,8 +23,11 @@ _NAVIGATION = {
 }
 
 
+_workers = weakref.WeakSet()
+
+
 class Worker:
-    """One piece of work in a daemon thread: `work(cancel, progress)`."""
+    """One piece of work in a daemon thread: `work(cancel, progress)`; `stop_workers` knows it."""
 
     def __init__(self, work):
         self._cancel = threading.Event()
@@ -28,6 +35,7 @@ class Worker:
         self._work = work
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
+        _workers.add(self)
 
     def is_done(self):
         """Whether the work has ended, well or not."""
@@ -39,8 +47,16 @@ class Worker:
 
     def stop(self):
         """Ask the work to end and wait for it, `STOP_S` at most; an outcome that comes later is dropped."""
+        self.ask_to_end()
+        self.join(STOP_S)
+
+    def ask_to_end(self):
+        """Ask the work to end and do not wait."""
         self._cancel.set()
-        self._thread.join(STOP_S)
+
+    def join(self, seconds):
+        """Wait for its end, at most `seconds`."""
+        self._thread.join(max(seconds, 0.0))
 
     def _run(self):
         try:
@@ -51,6 +67,16 @@ class Worker:
     def _progress(self, stage, fraction):
         if not self._cancel.is_set():  # a late word would show as a run that never ends
             status.run.stage, status.run.fraction = stage, fraction
+
+
+def stop_workers():
+    """End every thread, before Python ends: one that it loses on the way may crash the process."""
+    living = list(_workers)
+    for worker in living:
+        worker.ask_to_end()
+    until = time.monotonic() + END_S
+    for worker in living:
+        worker.join(until - time.monotonic())
 
 
 def is_navigation(event):

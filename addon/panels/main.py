@@ -3,6 +3,8 @@
 import bpy
 
 from .. import effect_settings, maps, names, status
+from ..scene import sizes
+from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
 from . import text
 from .preferences import draw_state
@@ -59,6 +61,7 @@ class THENAR_PT_main(Tab, bpy.types.Panel):
         column.prop(settings, "hand")
         column.prop(settings, "product")
         column.prop(settings, "product_collection")
+        _draw_sizes(layout, context)
         if settings.hand is None:
             layout.operator("thenar.pick", icon="RESTRICT_SELECT_OFF")
         layout.prop(settings, "model")
@@ -95,6 +98,26 @@ def _draw_state(layout, context):
         row.label(text="Out of date: the scene changed", icon="ERROR")
     else:
         column.label(text="Result up to date", icon="CHECKMARK")
+
+
+def _draw_sizes(layout, context):
+    """Hand's and product's size; in place of the product's, if it is not believed, the ways out."""
+    settings = context.scene.thenar
+    parts = product_parts(settings)
+    if settings.hand is None or not parts:
+        return
+    measured = sizes.glance(context.scene, settings.hand, parts)
+    if not measured.factors:
+        row = layout.row()
+        row.active = False
+        row.label(text=str(measured), icon="DRIVER_DISTANCE")
+        return
+    box = layout.box().column(align=True)
+    text.alert(box, context, f"{measured}: read in the wrong unit?")
+    for factor in measured.factors:
+        size = sizes.length(factor * measured.product_mm)
+        box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {size}").factor = factor
+    box.operator("thenar.accept_size", text=f"It is {sizes.length(measured.product_mm)} long")
 
 
 def _draw_force(layout, settings):

@@ -4,18 +4,21 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, units
+from . import attributes, colors, shading, units
 
 
 def copy_name(part_name):
-    """Name of the copy of the product part of that name."""
-    return part_name[: 60 - len(names.COPY_SUFFIX)] + names.COPY_SUFFIX
+    """Name of the copy of the product part of that name; Blender may have to number it."""
+    return names.suffixed(part_name, names.COPY_SUFFIX)
 
 
 def find_copy(part_name):
     """The copy of that product part, or None."""
-    copy = bpy.data.objects.get(copy_name(part_name))
-    return copy if copy is not None and copy.thenar.copy_of == part_name else None
+    home = bpy.data.collections.get(names.RESULTS_COLLECTION)
+    usual = bpy.data.objects.get(copy_name(part_name))
+    found = [usual] if usual is not None else []
+    found += home.objects if home is not None else ()
+    return next((obj for obj in found if obj.thenar.copy_of == part_name), None)
 
 
 def write_copy(context, record, reading, offset_mm, pressure_mpa):
@@ -40,6 +43,7 @@ def remove_copy(part_name):
     copy = find_copy(part_name)
     if copy is None:
         return
+    shading.hide(copy)
     mesh = copy.data
     bpy.data.objects.remove(copy)
     bpy.data.meshes.remove(mesh)

@@ -21,6 +21,12 @@ def live_modifier(obj):
     return next((modifier for modifier in obj.modifiers if modifier.name == names.LIVE_MODIFIER), None)
 
 
+def played_modifiers(obj):
+    """All modifiers of Thenar's on this hand."""
+    live = live_modifier(obj)
+    return [*bake_modifiers(obj), *([live] if live is not None else [])]
+
+
 def roots(parts):
     """Those of `parts` that no other part carries along as a parent."""
     chosen = set(parts)
@@ -36,8 +42,7 @@ def without_own_output(context, hand, parts):
         if key is not None and not key.mute:
             restore.callback(setattr, key, "mute", False)
             key.mute = True
-        live = live_modifier(hand)
-        for modifier in (*bake_modifiers(hand), *([live] if live is not None else [])):
+        for modifier in played_modifiers(hand):
             restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
             modifier.show_viewport = False
         for part in parts:

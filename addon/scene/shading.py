@@ -38,7 +38,7 @@ def hide(obj):
         slot.link = "OBJECT"
         slot.material = kept.material
         slot.link = kept.link
-        if copy is not None and copy.name.endswith(names.MATERIAL_SUFFIX) and copy.users == 0:
+        if copy is not None and _is_overlaid(copy) and copy.users == 0:
             bpy.data.materials.remove(copy)
     if state.added_slot and len(obj.material_slots):
         obj.data.materials.pop()
@@ -63,10 +63,16 @@ def update_group(look):
     _fill_ramp(tree.nodes["Ramp"].color_ramp, scale.palette)
 
 
+def _is_overlaid(material):
+    nodes = material.node_tree.nodes if material.node_tree is not None else ()
+    group = bpy.data.node_groups.get(names.OVERLAY_GROUP)
+    return any(node.type == "GROUP" and node.node_tree == group for node in nodes)
+
+
 def _overlaid(own, look, is_skin):
     base = own.copy() if own is not None else _plain(is_skin)
     stem = own.name if own is not None else ("Skin" if is_skin else "Product")
-    base.name = stem[: 60 - len(names.MATERIAL_SUFFIX)] + names.MATERIAL_SUFFIX
+    base.name = names.suffixed(stem, names.MATERIAL_SUFFIX)
     if base.node_tree is None or (bpy.app.version < (5, 0) and not base.use_nodes):
         base.use_nodes = True
     tree = base.node_tree

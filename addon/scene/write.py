@@ -129,11 +129,11 @@ def _notes(hand, product, report):
 
 def clear(context, hand, parts):
     """Remove Thenar's key, attributes, copies and bake, and put the product back."""
-    for modifier in own.bake_modifiers(hand):
+    for modifier in own.played_modifiers(hand):
         hand.modifiers.remove(modifier)
     hand.thenar.bake_path = ""
     key.remove_key(hand)
-    attributes.remove(hand.data, names.HAND_ATTRIBUTES)
+    attributes.remove(hand.data, (*names.HAND_ATTRIBUTES, names.LIVE_OFFSET))
     hand.data.update()
     for part in parts:
         copies.remove_copy(part.name)

@@ -52,8 +52,7 @@ def started(operator, context):
     """The operator as a button starts it; in background, `invoke` would run it at once."""
     operator._steps = operator.steps(context)
     work = next(operator._steps)
-    operator._timer = running.begin(context, operator)
-    operator._worker = running.Worker(work)
+    operator._start(context, work)
     return operator
 
 

@@ -152,6 +152,18 @@ def test_a_solved_scene_with_effects_is_drawn():
     assert not too_long(drawn)
 
 
+def test_both_sizes_are_shown_and_a_doubtful_one_has_its_buttons():
+    _, product = stage.scene()
+    said = [words for words, _ in draw()["THENAR_PT_main"]]
+    assert "Hand 16 mm, product 30 mm" in said
+    product.scale = (1000, 1000, 1000)
+    bpy.context.view_layer.update()
+    drawn = draw()
+    said = [words for words, _ in drawn["THENAR_PT_main"]]
+    assert "Scale by 0.001, to 30 mm" in said and "It is 30 m long" in said
+    assert not too_long(drawn)
+
+
 def test_the_bones_of_a_made_hand_are_drawn_in_full():
     bpy.ops.thenar.make_hand(spacing_mm=6.0)
     drawn = draw()

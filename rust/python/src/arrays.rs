@@ -3,6 +3,7 @@
 //! Any real number type, byte order and memory layout is taken, and anything that `numpy.asarray` takes. Booleans,
 //! complex numbers, texts and objects are refused by the argument's name, what was expected and what was given.
 
+use crate::ending;
 use crate::errors::Topic;
 use numpy::ndarray::IntoDimension;
 use numpy::{
@@ -211,6 +212,7 @@ impl<'a, 'py> Argument<'a, 'py> {
         fits: impl Fn(&[usize]) -> bool,
     ) -> PyResult<Bound<'py, PyUntypedArray>> {
         let py = self.value.py();
+        let _inside = ending::enter()?; // numpy may give the lock away
         let array = match self.value.cast::<PyUntypedArray>() {
             Ok(array) => array.clone(),
             Err(_) => {
@@ -270,6 +272,7 @@ impl<'a, 'py> Argument<'a, 'py> {
         take: impl FnOnce(&[T]) -> R,
     ) -> PyResult<R> {
         let py = array.py();
+        let _inside = ending::enter()?;
         let options = PyDict::new(py);
         options.set_item("dtype", numpy::dtype::<T>(py))?;
         let contiguous = numpy::get_array_module(py)?.call_method(

@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use thenar_contact::ball::{Ball, SHALLOWEST, StiffSkin};
 
 use crate::arrays::{Argument, column};
+use crate::ending;
 use crate::errors::Topic;
 
 /// Sizes that a press can have, mm, and the deepest depth over the radius at least.
@@ -41,7 +42,7 @@ pub fn press_ball(
     });
     check(radius_mm, &depths, (thickness_mm, poisson_ratio), skin).map_err(refuse)?;
     let deepest = depths.last().copied().unwrap_or(radius_mm);
-    let found = py.detach(|| {
+    let found = ending::call(py, || {
         Ball::new((thickness_mm, poisson_ratio), radius_mm, deepest).forces(skin, &depths)
     });
     let unsettled = "the skin's tension does not settle; take a smaller skin_mm or skin_ratio";

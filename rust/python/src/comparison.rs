@@ -1,6 +1,7 @@
 //! `thenar.compare` and `thenar.compare_map`: recordings beside simulation, as records of arrays, JSON and a page.
 
 use crate::arrays::{Argument, column};
+use crate::ending;
 use crate::errors::RecordingError;
 use crate::prints::printed;
 use crate::readings::{frame, mat, scan};
@@ -131,7 +132,7 @@ pub fn spread_map(
         .map(|k| given[k])
         .collect();
     let positions = Argument::mesh("positions_mm", positions_mm).points()?;
-    let carried = py.detach(move || on_skin(&positions, &mat, &values, depth_mm));
+    let carried = ending::call(py, move || on_skin(&positions, &mat, &values, depth_mm));
     Ok(column(py, carried))
 }
 
@@ -192,13 +193,13 @@ impl Comparison {
     /// comparison.json.
     fn to_json(&self, py: Python<'_>) -> String {
         let inner = Arc::clone(&self.inner);
-        py.detach(move || comparison_json(&inner))
+        ending::call(py, move || comparison_json(&inner))
     }
 
     /// The self-contained page.
     fn report_html(&self, py: Python<'_>) -> String {
         let inner = Arc::clone(&self.inner);
-        py.detach(move || comparison_html(&inner))
+        ending::call(py, move || comparison_html(&inner))
     }
 
     #[getter]

@@ -1,6 +1,7 @@
 //! The solvers of contact and friction alone, for a compliance that somebody else made.
 
 use crate::arrays::{Argument, column, table};
+use crate::ending;
 use crate::errors::Failure;
 use crate::record::record;
 use pyo3::prelude::*;
@@ -19,7 +20,7 @@ pub fn solve_complementarity(
     let matrix = Argument::solve("matrix", matrix).square()?;
     let n = (matrix.len() as f64).sqrt().round() as usize;
     let gap = Argument::solve("gap", gap).numbers_of(n)?;
-    let solved = py.detach(|| thenar_contact::solve_dense(matrix, &gap));
+    let solved = ending::call(py, || thenar_contact::solve_dense(matrix, &gap));
     Ok(column(py, solved.map_err(Failure::from)?.force))
 }
 
@@ -39,7 +40,9 @@ pub fn solve_stick_slip(
     let sites = (matrix.len() as f64).sqrt().round() as usize / 2;
     let travel = Argument::solve("travel_mm", travel_mm).pairs_of(sites)?;
     let limit = Argument::solve("limit_n", limit_n).numbers_of(sites)?;
-    let solved = py.detach(|| thenar_contact::solve_stick_slip(&matrix, &travel, &limit));
+    let solved = ending::call(py, || {
+        thenar_contact::solve_stick_slip(&matrix, &travel, &limit)
+    });
     let solved = solved.map_err(Failure::from)?;
     let entries = PyDict::new(py);
     entries.set_item("force_n", table(py, solved.force, 2)?)?;

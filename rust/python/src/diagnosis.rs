@@ -1,6 +1,7 @@
 //! `thenar.diagnose`: what a study's recordings show that the model leaves out, as JSON and a page.
 
 use crate::arrays::column;
+use crate::ending;
 use crate::record::record;
 use crate::running::{Hooks, run};
 use crate::study::Study;
@@ -46,13 +47,13 @@ impl Diagnosis {
     /// findings.json, schema 1.
     fn to_json(&self, py: Python<'_>) -> String {
         let inner = Arc::clone(&self.inner);
-        py.detach(move || findings_json(&inner))
+        ending::call(py, move || findings_json(&inner))
     }
 
     /// The self-contained page: the diagnosis, then the comparison that it started from.
     fn report_html(&self, py: Python<'_>) -> String {
         let inner = Arc::clone(&self.inner);
-        py.detach(move || diagnosis_html(&inner))
+        ending::call(py, move || diagnosis_html(&inner))
     }
 
     /// What a designer reads first.

@@ -1,6 +1,7 @@
 //! The native Python module: exports, arrays, one error table. Knows no algorithm.
 
 mod errors;
+mod ending;
 mod arrays;
 mod readings;
 mod record;
@@ -34,6 +35,7 @@ use pyo3::prelude::*;
 fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     running::keep_panics_off_the_terminal();
     errors::register(module)?;
+    ending::register(module)?;
     record::register(module)?;
     module.add_class::<material::Material>()?;
     module.add_class::<product::Product>()?;

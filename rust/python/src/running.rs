@@ -1,5 +1,6 @@
 //! Long calls: work in a thread of its own without the interpreter's lock, while the caller watches signals and hooks.
 
+use crate::ending;
 use crate::errors::{Failure, SolveError};
 use pyo3::prelude::*;
 use std::any::Any;
@@ -55,6 +56,7 @@ impl Hooks {
         cancel: Option<Bound<'_, PyAny>>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Hooks> {
+        let _inside = ending::enter()?;
         let ask = |hook: Bound<'_, PyAny>| {
             match hook.getattr("is_set") {
                 Ok(is_set) if is_set.is_callable() => return Ok(is_set.unbind()),
@@ -135,12 +137,13 @@ impl<T> Shared<T> {
 /// A cancelled thread that does not end within [`GRACE`] is left behind: it owns all it touches and ends by itself.
 ///
 /// # Errors
-/// What `work` returns; `Cancelled`; whatever a hook or a signal handler raises; `SolveError` for a panic.
+/// What `work` returns; `Cancelled`; `SystemExit` where Python is about to end; whatever a hook or a signal handler raises; `SolveError` for a panic.
 pub fn run<T, W>(py: Python<'_>, hooks: &Hooks, work: W) -> PyResult<T>
 where
     T: Send + 'static,
     W: FnOnce(&Control) -> Result<T, Failure> + Send + 'static,
 {
+    let _inside = ending::enter()?;
     if hooks.wants_to_stop(py)? {
         return Err(Failure::Cancelled.into());
     }
@@ -165,7 +168,7 @@ where
         Ok(Err(panic)) => Err(internal_error(panic.as_ref())),
         Err(error) => {
             shared.cancelled.store(true, Ordering::Relaxed);
-            py.detach(|| shared.wait(GRACE));
+            ending::detach(py, || shared.wait(GRACE));
             Err(error)
         }
     }
@@ -173,12 +176,15 @@ where
 
 fn watch<T: Send>(py: Python<'_>, hooks: &Hooks, shared: &Shared<T>) -> PyResult<Outcome<T>> {
     loop {
-        let (reports, outcome) = py.detach(|| shared.wait(TICK));
+        let (reports, outcome) = ending::detach(py, || shared.wait(TICK));
         hooks.tell(py, reports)?;
         if let Some(outcome) = outcome {
             return Ok(outcome);
         }
         py.check_signals()?;
+        if ending::is_near() {
+            return Err(ending::torn_out());
+        }
         if hooks.wants_to_stop(py)? {
             return Err(Failure::Cancelled.into());
         }

@@ -1,0 +1,149 @@
+"""How large hand and product are, and whether the product's size is a mistake of units. Evaluates no mesh."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import checks, own, units
+
+FACTORS = (1e-3, 1e-2, 1e-1, 0.0254, 1.0 / 0.0254, 10.0, 100.0, 1000.0)
+"""What a file in one unit is off by when it is read in another: mm, cm, dm and inches as m, and the other way."""
+LONG_MM = 8000.0
+"""Products from here on are asked about. A car or a wall is shorter; 80 mm read as cm, or 203 mm as inches, are not."""
+THICK_MM = 600.0
+"""A product thinner than this is a rail, a rope or a wall, and may be long; a handle in wrong units is thick too."""
+SHORT = 1.0 / 50.0
+"""Products shorter than this share of the hand are asked about: 4 mm for a whole hand, less for a patch of skin."""
+USUAL_MM = (10.0, 1000.0)
+"""Longest side of what a hand holds or presses, to which a factor must bring it."""
+_KEPT = 20.0
+"""A size is kept for so many times what measuring it took: a redraw of many parts must stay cheap."""
+_kept = {}
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Longest sides, mm; `factors` bring a product that is not believed to a usual size, the likeliest first."""
+
+    hand_mm: float
+    product_mm: float
+    factors: tuple = ()
+
+    def __str__(self):
+        return f"Hand {length(self.hand_mm)}, product {length(self.product_mm)}"
+
+
+def measure(scene, hand, parts):
+    """Sizes by the bounding boxes as last evaluated, and factors where the product's is not believed."""
+    scale = units.mm_per_unit(scene)
+    sides = np.sort(np.ptp(_corners(parts), axis=0)) * scale
+    hand_mm, product_mm = float(np.ptp(_corners([hand]), axis=0).max() * scale), float(sides[-1])
+    too_long = product_mm > LONG_MM and sides[0] > THICK_MM
+    is_doubtful = (too_long or product_mm < SHORT * hand_mm) and not _is_accepted(scene, product_mm)
+    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault, which is told later
+    low, high = USUAL_MM
+    usual = [factor for factor in FACTORS if low <= factor * product_mm <= high] if is_doubtful else []
+    nearness = sorted(usual, key=lambda factor: abs(np.log(factor * product_mm / 150.0)))
+    return Sizes(hand_mm, product_mm, tuple(nearness))
+
+
+def glance(scene, hand, parts):
+    """The same for a panel: kept a moment where measuring takes long."""
+    until, key, sizes = _kept.get(scene.name, (0.0, None, None))
+    began = time.monotonic()
+    wanted = hand.name, len(parts), parts[0].name
+    if began < until and key == wanted:
+        return sizes
+    sizes = measure(scene, hand, parts)
+    now = time.monotonic()
+    _kept[scene.name] = now + _KEPT * (now - began), wanted, sizes
+    return sizes
+
+
+def check_product_size(context, hand, parts):
+    """Refuse a product whose size is a likely mistake of units. Raises `Refusal`, which names sizes and remedy."""
+    sizes = measure(context.scene, hand, parts)
+    if not sizes.factors:
+        return
+    factor = sizes.factors[0]
+    raise checks.Refusal(
+        f"the product '{parts[0].name}' is {length(sizes.product_mm)} long beside a hand of {length(sizes.hand_mm)}, "
+        f"as if its file were read in the wrong unit; scale it by {factor:.4g} to {length(factor * sizes.product_mm)}, "
+        "or accept its size, in the Thenar panel"
+    )
+
+
+def accept(scene, hand, parts):
+    """Believe the product's size from now on, as long as it stays so."""
+    scene.thenar.accepted_mm = measure(scene, hand, parts).product_mm
+
+
+def scale_product(context, hand, parts, factor):
+    """Scale the whole product by `factor`; the parts keep their places to each other.
+
+    One object is scaled about its own origin, several about the world's, as their importer would have. Returns the new
+    `Sizes`. Raises `Refusal`, with nothing changed, where an object is linked, held by keys, drivers or constraints,
+    or carries the hand.
+    """
+    roots = own.roots(parts)
+    for part in roots:
+        if not part.is_editable or part.library is not None:
+            raise checks.Refusal(f"'{part.name}' is linked; make it local, or scale it in its own file")
+    before = measure(context.scene, hand, parts)
+    kept = [(part, part.matrix_basis.copy()) for part in roots]
+    wanted = [_scaled(part, roots, factor) for part in roots]
+    for part, matrix in zip(roots, wanted, strict=True):
+        part.matrix_world = matrix
+    context.view_layer.update()
+    after = measure(context.scene, hand, parts)
+    problem = ""
+    if abs(after.hand_mm - before.hand_mm) > 1e-3 * before.hand_mm:
+        problem = f"the hand '{hand.name}' hangs on the product and would be scaled too; clear its parent first"
+    elif abs(after.product_mm - factor * before.product_mm) > 1e-3 * factor * before.product_mm:
+        held = ", ".join(f"'{part.name}'" for part in roots)
+        problem = f"{held} did not take the scale: keys, a driver or a constraint hold it; scale it by hand"
+    if problem:
+        for part, basis in kept:
+            part.matrix_basis = basis
+        context.view_layer.update()
+        raise checks.Refusal(problem)
+    return after
+
+
+def length(mm):
+    """A length as one reads it: m from 1000 mm on, else mm."""
+    return f"{mm / 1000:.4g} m" if mm >= 1000.0 else f"{mm:.3g} mm"
+
+
+def _scaled(part, roots, factor):
+    """The part's world matrix after the scaling."""
+    matrix = part.matrix_world.copy()
+    place = matrix.translation.copy()
+    matrix = matrix * factor
+    matrix.translation = place if len(roots) == 1 else place * factor
+    matrix[3] = (0.0, 0.0, 0.0, 1.0)
+    return matrix
+
+
+def _is_accepted(scene, product_mm):
+    return abs(product_mm - scene.thenar.accepted_mm) < 0.01 * product_mm
+
+
+def _corners(objects):
+    """World corners (k, 3) of the objects' boxes, Blender units; of what an empty instances in its stead."""
+    boxes = []
+    for obj in objects:
+        matrix = np.array(obj.matrix_world)
+        if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
+            offset = np.array(obj.instance_collection.instance_offset)
+            inside = [_box(member) - offset for member in obj.instance_collection.all_objects]
+            boxes += [box @ matrix[:3, :3].T + matrix[:3, 3] for box in inside]
+        else:
+            boxes.append(_box(obj))
+    return np.concatenate(boxes) if boxes else np.zeros((1, 3))
+
+
+def _box(obj):
+    matrix = np.array(obj.matrix_world)
+    return np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
