@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 
-from . import cache, comfort, effect_settings, effects, names, native, sentences, status
+from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
 from .scene import checks, own, read, state, units, write
 from .settings import MATERIAL_NUMBERS
-from .steps import at_once
+from .steps import PAUSE, at_once
 
 
 @dataclass
@@ -33,6 +33,8 @@ class Job:
     seconds: dict = field(default_factory=dict)
     thickness_mm: np.ndarray | None = None
     """(n), set by `compute`."""
+    product: object = None
+    """The native module's product, set by `compute`."""
 
 
 def prepare(context):
@@ -171,9 +173,12 @@ def _skin_key(job):
 def _press(job, skin, cancel, progress):
     hand, product = job.reading.hand, job.reading.product
     started = time.perf_counter()
+    job.product = cache.product(
+        cache.content_hash(product.vertices_mm, product.triangles),
+        lambda: native.module.Product(product.vertices_mm, product.triangles),
+    )
     contact = skin.press(
-        product.vertices_mm,
-        product.triangles,
+        job.product,
         posed_vertices_mm=hand.posed_mm,
         force_n=job.force_n,
         direction=None if job.direction is None else np.array(job.direction, dtype=np.float64),
@@ -186,7 +191,7 @@ def _press(job, skin, cancel, progress):
 
 
 def finish(context, job, contact):
-    """Write the contact back and keep its numbers in the scene. Returns the scene's result.
+    """Write the contact back, check what is shown, and keep its numbers; steps that return the scene's result.
 
     Raises `Refusal` if the scene changed meanwhile; on any failure the scene is as before.
     """
@@ -196,9 +201,14 @@ def finish(context, job, contact):
         raise checks.Refusal("hand or product were changed while solving; solve again")
     if job.state_hash != state_hash(context):
         raise checks.Refusal(f"'{hand.name}', its product or a setting was changed while solving; solve again")
+    yield PAUSE
     started = time.perf_counter()
     fields = fields_of(contact, job)
-    written = write.write_contact(context, hand, parts, job.reading, fields)
+
+    def measure(surface):
+        return partial(certificate.measure, surface, job.product, fields.offset_mm)
+
+    written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
@@ -212,7 +222,7 @@ def steps(context):
     """One press as the steps of a computation. Returns the scene's result."""
     job = prepare(context)
     contact = yield partial(compute, job)
-    return finish(context, job, contact)
+    return (yield from finish(context, job, contact))
 
 
 def solve(context):

@@ -1,9 +1,14 @@
 """The base of operators that compute beside the window: one modal loop, with progress and Esc, for all of them."""
 
+import time
+
 import bpy
 
 from .. import steps
 from . import running
+
+TURN_S = 0.1
+"""How long steps that only pause go on before the window has its turn."""
 
 
 class Computing:
@@ -24,11 +29,10 @@ class Computing:
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._steps = self.steps(context)
-        work = running.attempt(self, next, self._steps)
-        if work is None:
+        self._worker = running.attempt(self, self._begin)
+        if self._worker is None:
             return {"CANCELLED"}
         self._timer = running.begin(context, self)
-        self._worker = running.Worker(work)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
@@ -58,13 +62,19 @@ class Computing:
         self._steps.close()
         running.end(context, self._timer)
 
+    def _begin(self):
+        return running.start(next(self._steps))
+
     def _advance(self):
-        """Go on with the worker's value. Returns the next worker, or the outcome."""
+        """Go on, and over pauses while the turn lasts. Returns the next worker, or the outcome."""
+        ends = time.perf_counter() + TURN_S
         try:
-            self._worker = running.Worker(self._worker.hand_back(self._steps))
+            while True:
+                self._worker = running.start(self._worker.hand_back(self._steps))
+                if not self._worker.is_pause or time.perf_counter() > ends:
+                    return self._worker
         except StopIteration as end:
             return end.value
-        return self._worker
 
     def _end(self, context, outcome):
         return {"CANCELLED"} if outcome is None else self._report(context, outcome)

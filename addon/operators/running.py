@@ -4,6 +4,7 @@ import threading
 
 from .. import native, status
 from ..scene.checks import Refusal
+from ..steps import PAUSE
 
 TICK_S = 0.05
 STOP_S = 0.2
@@ -19,8 +20,32 @@ _NAVIGATION = {
 }
 
 
+class Turn:
+    """Nothing to compute: the steps go on after the window had its turn."""
+
+    is_pause = True
+
+    def is_done(self):
+        """Always."""
+        return True
+
+    def hand_back(self, steps):
+        """Let `steps` go on. Returns their next work; raises what they raise."""
+        return steps.send(None)
+
+    def stop(self):
+        """Nothing runs."""
+
+
+def start(work):
+    """What carries `work` out: a `Worker`, or a `Turn` for `PAUSE`."""
+    return Turn() if work is PAUSE else Worker(work)
+
+
 class Worker:
     """One piece of work in a daemon thread: `work(cancel, progress)`."""
+
+    is_pause = False
 
     def __init__(self, work):
         self._cancel = threading.Event()

@@ -77,7 +77,7 @@ def _still(context, item):
     contact = yield partial(workflow.compute, job)
     by_cell = _compare_print if item.kind == settings.PRINT else _compare
     comparison, mat, residual = yield partial(by_cell, job, contact, told)
-    workflow.finish(context, job, contact)
+    yield from workflow.finish(context, job, contact)
     _write(context, job, (comparison, mat, residual))
     return comparison
 

@@ -27,6 +27,11 @@ def roots(parts):
     return [part for part in parts if not any(parent in chosen for parent in _parents(part))]
 
 
+def shown_modifiers(obj):
+    """The modifiers that bring the shown surface to the contact, as far as its key does not."""
+    return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.SHOWN_MODIFIER)]
+
+
 @contextmanager
 def without_own_output(context, hand, parts):
     """The scene as if Thenar had never run; yields the evaluated depsgraph, and restores on leaving."""
@@ -37,7 +42,7 @@ def without_own_output(context, hand, parts):
             restore.callback(setattr, key, "mute", False)
             key.mute = True
         live = live_modifier(hand)
-        for modifier in (*bake_modifiers(hand), *([live] if live is not None else [])):
+        for modifier in (*bake_modifiers(hand), *shown_modifiers(hand), *([live] if live is not None else [])):
             restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
             modifier.show_viewport = False
         for part in parts:
@@ -46,6 +51,19 @@ def without_own_output(context, hand, parts):
                 part.delta_location = part.thenar.home
         context.view_layer.update()
         yield context.evaluated_depsgraph_get()
+
+
+@contextmanager
+def without_types(hand, types):
+    """The hand without its modifiers of these types."""
+    shown = [modifier for modifier in hand.modifiers if modifier.type in types and modifier.show_viewport]
+    for modifier in shown:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in shown:
+            modifier.show_viewport = True
 
 
 @contextmanager
