@@ -18,6 +18,8 @@ _THROUGH_MM = 0.5
 _BENEATH = 0.7
 """Least cosine between the skin's normal and the way back to a sheet."""
 _CHUNK = 20_000
+_ROUNDS = 12
+"""How often added vertices take the mean of their neighbours."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +37,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Found:
-    """What was measured. `push_mm` (m, 3) puts every vertex that is inside onto the product.
+    """What was measured. `offsets_mm` (m, 3) bring every vertex to where it was measured, and the added ones out.
 
     `depth_mm` at vertices and `between_mm` at mid points of edges and centres of triangles, with their places (3);
     `vertex` is the nearest one of the hand's own mesh, -1 where nothing is inside.
@@ -46,12 +48,18 @@ class Found:
     vertex: int
     between_mm: float
     between_place_mm: np.ndarray
-    push_mm: np.ndarray
+    offsets_mm: np.ndarray
 
 
-def measure(surface, product, offset_mm, cancel=None, progress=None):
-    """Measure the shown skin against `product` (`thenar.Product`) moved by `offset_mm` (3). Returns a `Found`."""
-    points = surface.points_mm - offset_mm
+def measure(surface, left_mm, place, cancel=None, progress=None):
+    """Measure the shown skin against a product. Returns a `Found`.
+
+    `place`: the prepared product (`thenar.Product`), and how far it moved (3), mm.
+    `left_mm` (n, 3): what the hand's own vertices still have to go, or None; vertices that modifiers added go along.
+    """
+    product, offset_mm = place
+    offsets = np.zeros_like(surface.points_mm) if left_mm is None else spread(surface, left_mm)
+    points = surface.points_mm + offsets - offset_mm
     held = np.zeros(len(points), bool)
     held[surface.triangles.ravel()] = True  # loose vertices show nothing
     rows = np.flatnonzero(held & surface.counts)
@@ -60,8 +68,8 @@ def measure(surface, product, offset_mm, cancel=None, progress=None):
     normals = _normals(points, surface.triangles)
     gap, closest = asked.at(points[rows], normals[rows])
     inside = gap < 0.0
-    push = np.zeros_like(points)
-    push[rows[inside]] = closest[inside] - points[rows[inside]]
+    added = inside & (rows >= surface.base_count)
+    offsets[rows[added]] += closest[added] - points[rows[added]]
     near = np.full(len(points), np.inf)
     near[rows] = gap
     samples, faces = _between(points, triangles, near)
@@ -77,8 +85,26 @@ def measure(surface, product, offset_mm, cancel=None, progress=None):
         vertex=_nearest(surface, place if depth >= below else there) if max(depth, below) > 0.0 else -1,
         between_mm=float(below),
         between_place_mm=there,
-        push_mm=push,
+        offsets_mm=offsets,
     )
+
+
+def spread(surface, left_mm):
+    """Offsets (m, 3) of all vertices from those (n, 3) of the hand's own: again and again their neighbours' mean."""
+    count, total = surface.base_count, len(surface.points_mm)
+    offsets = np.zeros((total, 3))
+    offsets[:count] = left_mm
+    if total == count:
+        return offsets
+    ends = np.concatenate([surface.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    ends = ends[ends[:, 0] >= count]
+    degree = np.maximum(np.bincount(ends[:, 0], minlength=total), 1)[count:]
+    for _ in range(_ROUNDS):
+        for axis in range(3):
+            sums = np.bincount(ends[:, 0], offsets[ends[:, 1], axis], minlength=total)
+            offsets[count:, axis] = sums[count:] / degree
+    return offsets
 
 
 class _Asked:
@@ -97,6 +123,8 @@ class _Asked:
             piece = slice(first, first + _CHUNK)
             found = self.product.gap_mm(points[piece], cut_off_mm=_REACH_MM, **self.hooks)
             gap[piece], closest[piece] = found["gap_mm"], found["closest_mm"]
+        if self.product.is_closed:
+            return gap, closest
         away = points - closest
         beneath = np.einsum("ij,ij->i", away, normals)
         with np.errstate(invalid="ignore"):

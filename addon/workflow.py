@@ -1,7 +1,7 @@
 """The order of a press: read, call the library, write back. Knows nothing of buttons and layout."""
 
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -35,18 +35,25 @@ class Job:
     """(n), set by `compute`."""
     product: object = None
     """The native module's product, set by `compute`."""
+    taken: ExitStack | None = None
+    """What puts Thenar's earlier output back."""
 
 
-def prepare(context):
-    """Read the scene's hand and product into a `Job`. Raises `Refusal`; the scene stays as it is."""
+def prepare(context, taken):
+    """Read the scene's hand and product into a `Job`. Raises `Refusal`.
+
+    Thenar's own output stays out of the scene until the stack `taken` is closed, or a contact is written: putting it
+    back in between would have a subdivided hand evaluated twice more.
+    """
     started = time.perf_counter()
     hand, parts = check(context)
     if own.bake_modifiers(hand):
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then solve")
     if context.scene.thenar.live:
         raise checks.Refusal(f"Live keeps the contact of '{hand.name}' up to date; switch it off first")
+    own.take_out(context, hand, parts, taken)
     job = read_job(context, hand, parts)
-    job.state_hash = state_hash(context)
+    job.taken, job.state_hash = taken, state_hash(context)
     job.seconds["read"] = time.perf_counter() - started
     return job
 
@@ -205,10 +212,11 @@ def finish(context, job, contact):
     started = time.perf_counter()
     fields = fields_of(contact, job)
 
-    def measure(surface):
-        return partial(certificate.measure, surface, job.product, fields.offset_mm)
+    def measure(surface, left_mm):
+        return partial(certificate.measure, surface, left_mm, (job.product, fields.offset_mm))
 
     written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
+    job.taken.pop_all()
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
@@ -220,9 +228,10 @@ def finish(context, job, contact):
 
 def steps(context):
     """One press as the steps of a computation. Returns the scene's result."""
-    job = prepare(context)
-    contact = yield partial(compute, job)
-    return (yield from finish(context, job, contact))
+    with ExitStack() as taken:
+        job = prepare(context, taken)
+        contact = yield partial(compute, job)
+        return (yield from finish(context, job, contact))
 
 
 def solve(context):

@@ -1,8 +1,8 @@
 """The modifier that stands last in the hand's stack and adds what the contact's key could not bring to the surface.
 
-Two parts: an attribute of the hand's own vertices, which Blender carries through Subdivision at any level, and offsets
-of every evaluated vertex, held by the vertices of a mesh that no scene shows; these act only while the evaluated hand
-has as many vertices as it had when they were found, so that a render at another level is not torn.
+Its offsets are those of every evaluated vertex, held by the vertices of a mesh that no scene shows, while the evaluated
+hand has as many vertices as when they were found. Else, as in a render at another level of Subdivision, they are an
+attribute of the hand's own vertices, which Blender carries to all others.
 """
 
 import bpy
@@ -12,42 +12,46 @@ from .. import names
 from . import attributes, own
 
 
-def attach(hand, offsets):
-    """Hang a new modifier on the hand; `offsets` (n, 3) of its own vertices, local, Blender units. Returns it."""
-    attributes.write(hand.data, names.SHOWN_OFFSET, "FLOAT_VECTOR", offsets)
-    modifier = hand.modifiers.new(names.SHOWN_MODIFIER, "NODES")
-    modifier.node_group = _tree()
-    modifier.show_expanded = False
+def attach(hand, offsets, undo):
+    """Have the modifier move the evaluated vertices by `offsets` (m, 3), local, Blender units. Returns it.
+
+    The hand's own vertices come first. `undo` (an `ExitStack`) gets what takes it back. A modifier that is there is
+    used again, so that the hand is evaluated once less.
+    """
+    count = len(hand.data.vertices)
+    attributes.write(hand.data, names.SHOWN_OFFSET, "FLOAT_VECTOR", offsets[:count])
+    modifier = next(iter(own.shown_modifiers(hand)), None)
+    if modifier is None or modifier.node_group is None:
+        modifier = hand.modifiers.new(names.SHOWN_MODIFIER, "NODES")
+        modifier.node_group, modifier.show_expanded = _tree(), False
+        undo.callback(detach, hand, modifier)
+    if modifier.node_group.users > 1:  # the hand was duplicated
+        modifier.node_group = modifier.node_group.copy()
+    socket = modifier.node_group.nodes["Carrier"].inputs["Object"]
+    undo.callback(tidy)
+    undo.callback(setattr, socket, "default_value", socket.default_value)
+    socket.default_value = _carrier(offsets) if len(offsets) > count else None
+    modifier.show_viewport = True
     hand.modifiers.move(hand.modifiers.find(modifier.name), len(hand.modifiers) - 1)
     return modifier
-
-
-def refine(modifier, offsets):
-    """Add `offsets` (m, 3) of the evaluated vertices, local, Blender units, to what the modifier does."""
-    tree = modifier.node_group
-    info = tree.nodes["Carrier"]
-    carrier = info.inputs["Object"].default_value
-    if carrier is not None:
-        raise ValueError("the modifier already carries offsets of evaluated vertices")
-    mesh = bpy.data.meshes.new(names.SHOWN_MODIFIER)
-    mesh.vertices.add(len(offsets))
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(offsets, np.float32).ravel())
-    info.inputs["Object"].default_value = bpy.data.objects.new(names.SHOWN_MODIFIER, mesh)
 
 
 def detach(hand, modifier):
     """Take one such modifier off the hand, and what only it used."""
     tree = modifier.node_group
     hand.modifiers.remove(modifier)
-    if tree is None or tree.users:
-        return
-    info = tree.nodes.get("Carrier")
-    carrier = info.inputs["Object"].default_value if info is not None else None
-    bpy.data.node_groups.remove(tree)
-    if carrier is not None and not carrier.users:
-        mesh = carrier.data
-        bpy.data.objects.remove(carrier)
-        if mesh is not None and not mesh.users:
+    if tree is not None and not tree.users:
+        bpy.data.node_groups.remove(tree)
+    tidy()
+
+
+def tidy():
+    """Remove meshes of offsets that no modifier uses any more."""
+    for mesh in [mesh for mesh in bpy.data.meshes if mesh.name.startswith(names.SHOWN_MODIFIER)]:
+        carriers = [obj for obj in bpy.data.objects if obj.data == mesh] if mesh.users else []
+        if all(not carrier.users for carrier in carriers):
+            for carrier in carriers:
+                bpy.data.objects.remove(carrier)
             bpy.data.meshes.remove(mesh)
 
 
@@ -96,14 +100,19 @@ def _tree():
     choose.input_type = "VECTOR"
     link(same.outputs[0], _enabled(choose.inputs, "Switch"))
     link(_enabled(sample.outputs, "Value"), _enabled(choose.inputs, "True"))
-    total = new("ShaderNodeVectorMath")
-    link(_enabled(offset.outputs, "Attribute"), total.inputs[0])
-    link(_enabled(choose.outputs, "Output"), total.inputs[1])
+    link(_enabled(offset.outputs, "Attribute"), _enabled(choose.inputs, "False"))
     move = new("GeometryNodeSetPosition")
     link(hand, move.inputs["Geometry"])
-    link(total.outputs[0], move.inputs["Offset"])
+    link(_enabled(choose.outputs, "Output"), move.inputs["Offset"])
     link(move.outputs[0], new("NodeGroupOutput").inputs[0])
     return tree
+
+
+def _carrier(offsets):
+    mesh = bpy.data.meshes.new(names.SHOWN_MODIFIER)
+    mesh.vertices.add(len(offsets))
+    mesh.vertices.foreach_set("co", np.ascontiguousarray(offsets, np.float32).ravel())
+    return bpy.data.objects.new(names.SHOWN_MODIFIER, mesh)
 
 
 def _points(tree, geometry):

@@ -36,21 +36,27 @@ def shown_modifiers(obj):
 def without_own_output(context, hand, parts):
     """The scene as if Thenar had never run; yields the evaluated depsgraph, and restores on leaving."""
     with ExitStack() as restore:
-        restore.callback(context.view_layer.update)
-        key = contact_key(hand)
-        if key is not None and not key.mute:
-            restore.callback(setattr, key, "mute", False)
-            key.mute = True
-        live = live_modifier(hand)
-        for modifier in (*bake_modifiers(hand), *shown_modifiers(hand), *([live] if live is not None else [])):
-            restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
-            modifier.show_viewport = False
-        for part in parts:
-            if part.thenar.is_moved:
-                restore.callback(setattr, part, "delta_location", part.delta_location.copy())
-                part.delta_location = part.thenar.home
-        context.view_layer.update()
+        take_out(context, hand, parts, restore)
         yield context.evaluated_depsgraph_get()
+
+
+def take_out(context, hand, parts, restore):
+    """Take Thenar's own output out of the scene; the stack `restore` gets what puts it back."""
+    restore.callback(context.view_layer.update)
+    key = contact_key(hand)
+    if key is not None and not key.mute:
+        restore.callback(setattr, key, "mute", False)
+        key.mute = True
+    live = live_modifier(hand)
+    for modifier in (*bake_modifiers(hand), *shown_modifiers(hand), *([live] if live is not None else [])):
+        if modifier.show_viewport:  # to set it anew, even to the same, has Blender evaluate the hand
+            restore.callback(setattr, modifier, "show_viewport", True)
+            modifier.show_viewport = False
+    for part in parts:
+        if part.thenar.is_moved:
+            restore.callback(setattr, part, "delta_location", part.delta_location.copy())
+            part.delta_location = part.thenar.home
+    context.view_layer.update()
 
 
 @contextmanager

@@ -31,8 +31,8 @@ LOST_MM = 0.05
 class Shown:
     """The certificate: what was `found` (`certificate.Found`), and what it took.
 
-    `error_mm`: largest error of the displacement at the hand's own vertices; `moved`: how many vertices of the evaluated
-    hand the modifier moves, by `moved_mm` at most; `suspects`: (name, kind) of the modifiers that call for it.
+    `error_mm`: largest error of the displacement at the hand's own vertices; `moved`: how many vertices of the
+    evaluated hand the modifier moves, by `moved_mm` at most; `suspects`: names and kinds of what stands before it.
     """
 
     found: object
@@ -47,39 +47,30 @@ def mark_skin(hand, regions):
     attributes.write(hand.data, names.SHOWN_SKIN, "FLOAT", regions >= 0)
 
 
-def certify(context, hand, reading, wanted_mm, measure):
+def certify(context, hand, reading, wanted_mm, tools):
     """Bring the shown skin to the contact and measure it; steps that return a `Shown`.
 
-    `wanted_mm` (n, 3), world axes, of the hand's own vertices; `measure(surface)` is the work that gives a `Found`.
+    `wanted_mm` (n, 3), world axes, of the hand's own vertices; `tools`: `measure(surface, left_mm)`, the work
+    that gives a `Found`, and the stack of what undoes all this.
     Raises `Refusal` where the shown skin does not follow.
     """
-    skin = reading.hand
+    skin, (measure, undo) = reading.hand, tools
     goal = skin.posed_mm + wanted_mm
     count = len(goal)
     surface = _read(context, hand, skin)
     attributes.remove(hand.data, [names.SHOWN_SKIN])
+    yield PAUSE
     left = goal - surface.points_mm[:count]
-    error, moved, moved_mm = _largest(left), 0, 0.0
-    modifier = None
-    if error > WELL_MM:
-        modifier = correction.attach(hand, units.vectors_to_local(left, skin.matrix, skin.scale))
-        moved, moved_mm = int((np.linalg.norm(left, axis=1) > WELL_MM).sum()), error
-        yield PAUSE
+    follows = _largest(left) <= WELL_MM
+    found = yield measure(surface, None if follows else left)
+    far = np.sqrt(np.einsum("ij,ij->i", found.offsets_mm, found.offsets_mm))
+    moved, moved_mm = int((far > WELL_MM).sum()), float(far.max(initial=0.0))
+    if moved:
+        offsets = units.vectors_to_local(found.offsets_mm, skin.matrix, skin.scale)
+        correction.attach(hand, offsets, undo)
         surface = _read(context, hand, skin, surface)
         yield PAUSE
-    found = yield measure(surface)
-    if found.depth_mm > WELL_MM and len(surface.points_mm) > count:
-        push = found.push_mm.copy()
-        push[:count] = goal - surface.points_mm[:count]
-        if modifier is None:
-            modifier = correction.attach(hand, np.zeros((count, 3)))
-        correction.refine(modifier, units.vectors_to_local(push, skin.matrix, skin.scale))
-        pushed = np.linalg.norm(push, axis=1)
-        moved, moved_mm = moved + int((pushed[count:] > WELL_MM).sum()), max(moved_mm, float(pushed.max()))
-        yield PAUSE
-        surface = _read(context, hand, skin, surface)
-        yield PAUSE
-        found = yield measure(surface)
+        found = yield measure(surface, None)
     error = _largest(goal - surface.points_mm[:count])
     suspects = tuple(_suspects(hand))
     if error > LOST_MM:
@@ -104,8 +95,8 @@ def notes(hand, shown, origin_mm):
     if found.between_mm > BETWEEN_MM:
         yield (
             f"between its vertices the skin of '{hand.name}' cuts up to {found.between_mm:.2f} mm into the product, at "
-            f"{_place(found.between_place_mm, origin_mm)}: its triangles are flat; one more Subdivision level on the hand "
-            "shows rounds four times closer"
+            f"{_place(found.between_place_mm, origin_mm)}: its triangles are flat; one more Subdivision level "
+            "on the hand shows rounds four times closer"
         )
     levels = [modifier for modifier in hand.modifiers if _renders_otherwise(modifier)]
     for modifier in levels:

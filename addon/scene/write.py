@@ -48,7 +48,7 @@ class WriteReport:
 def write_contact(context, hand, parts, job, measure):
     """Shape key, attributes and the product's place, as steps that return a `WriteReport`.
 
-    `job`: what was read and the `Fields`; `measure(surface)`: work that measures the shown skin, a `certificate.Found`.
+    `job`: what was read and the `Fields`; `measure(surface, left_mm)`: work that gives a `certificate.Found`.
     On any failure, and where the steps are closed, the scene is as before.
     """
     reading, fields = job
@@ -57,7 +57,7 @@ def write_contact(context, hand, parts, job, measure):
         undo.callback(context.view_layer.update)
         _keep_key(undo, hand)
         undo.callback(attributes.snapshot(hand.data, (*names.HAND_ATTRIBUTES, names.SHOWN_OFFSET, names.SHOWN_SKIN)))
-        before = _hide_correction(undo, hand)
+        _hide_correction(undo, hand)
         moving.move_parts(context, undo, parts, fields.offset_mm / skin.scale)
         contact = key.ensure_key(hand)
         wanted = units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale)
@@ -69,13 +69,11 @@ def write_contact(context, hand, parts, job, measure):
         for record in reading.product.parts:
             _write_part(context, undo, record, reading, fields)
             yield PAUSE
-        seen = yield from shown.certify(context, hand, reading, fields.displacement_mm, measure)
-        for modifier in before:
-            correction.detach(hand, modifier)
-        for modifier in own.shown_modifiers(hand):
-            modifier.name = names.SHOWN_MODIFIER
-        if not own.shown_modifiers(hand):
-            attributes.remove(hand.data, [names.SHOWN_OFFSET])
+        seen = yield from shown.certify(context, hand, reading, fields.displacement_mm, (measure, undo))
+        if seen.moved:
+            correction.tidy()
+        else:
+            correction.remove(hand)
         context.view_layer.update()
         told = (*_notes(reading.product), *shown.notes(hand, seen, skin.origin_mm))
         undo.pop_all()
@@ -83,20 +81,11 @@ def write_contact(context, hand, parts, job, measure):
 
 
 def _hide_correction(undo, hand):
-    """Switch off what an earlier contact hung behind the key; undone, it is as before and nothing newer is left."""
-    before = own.shown_modifiers(hand)
-    names_before = [modifier.name for modifier in before]
-
-    def restore():
-        for modifier in own.shown_modifiers(hand):
-            if modifier.name not in names_before:
-                correction.detach(hand, modifier)
-
-    undo.callback(restore)
-    for modifier in before:
-        undo.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
-        modifier.show_viewport = False
-    return before
+    """Switch off what an earlier contact hung behind the key."""
+    for modifier in own.shown_modifiers(hand):
+        if modifier.show_viewport:
+            undo.callback(setattr, modifier, "show_viewport", True)
+            modifier.show_viewport = False
 
 
 def write_hand(hand, fields, look):
