@@ -1,4 +1,4 @@
-"""Droppable derived state: prepared skins by content."""
+"""Droppable derived state: prepared skins and products by content."""
 
 import hashlib
 from collections import OrderedDict
@@ -7,6 +7,8 @@ import numpy as np
 
 _SKINS_KEPT = 4
 _skins = OrderedDict()
+_PRODUCTS_KEPT = 2
+_products = OrderedDict()
 
 
 def content_hash(*parts):
@@ -32,6 +34,16 @@ def skin(key, make):
     return _skins[key]
 
 
+def product(key, make):
+    """The prepared product of `key`, made by `make()` when it is not kept; a few are kept."""
+    if key not in _products:
+        _products[key] = make()
+        while len(_products) > _PRODUCTS_KEPT:
+            _products.popitem(last=False)
+    _products.move_to_end(key)
+    return _products[key]
+
+
 def drop(key):
     """Forget the skin of `key`: after a failure inside, it may not be whole."""
     _skins.pop(key, None)
@@ -40,3 +52,4 @@ def drop(key):
 def clear():
     """Drop everything."""
     _skins.clear()
+    _products.clear()

@@ -34,6 +34,7 @@ def fill(result, job, contact, written, notes):
     result.penetration_mm, result.complementarity = left["penetration_mm"], left["complementarity"]
     result.load_balance = left["load_balance"]
     result.write_error_mm = written.error_mm
+    _add_shown(result, written.shown, origin)
     result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
     result.direction = _finite(np.asarray(contact.direction).tolist())
     result.input_hash = job.input_hash
@@ -77,6 +78,12 @@ def as_dict(result):
         "max_penetration_before_mm": result.depth_mm,
         "penetration_after_mm": result.penetration_mm,
         "write_back_error_mm": result.write_error_mm,
+        "shown_penetration_mm": result.shown_penetration_mm,
+        "shown_between_mm": result.shown_between_mm,
+        "shown_place_mm": list(result.shown_place_mm),
+        "shown_vertex": result.shown_vertex,
+        "shown_corrected_vertices": result.shown_corrected,
+        "shown_corrected_by": result.shown_blame,
         "complementarity": result.complementarity,
         "load_balance": result.load_balance,
         "over_threshold_mm2": result.over_mm2,
@@ -134,6 +141,22 @@ def _add_regions(result, job, contact):
         total.name, total.force_n, total.area_mm2 = name, sum(force), sum(area)
         total.peak_kpa, total.depth_mm = max(peak), max(depth)
         total.mean_kpa = total.force_n / total.area_mm2 * KPA_PER_MPA if total.area_mm2 > 0.0 else 0.0
+
+
+def _add_shown(result, shown, origin):
+    """The certificate of the shown surface; Live writes none, and its -1 says that nothing was measured."""
+    result.shown_penetration_mm = result.shown_between_mm = -1.0
+    result.shown_vertex, result.shown_corrected, result.shown_blame = -1, 0, ""
+    result.shown_place_mm = (0.0, 0.0, 0.0)
+    if shown is None:
+        return
+    found = shown.found
+    result.shown_penetration_mm, result.shown_between_mm = found.depth_mm, found.between_mm
+    result.shown_vertex, result.shown_corrected = found.vertex, shown.moved
+    if found.vertex >= 0:
+        place = found.place_mm if found.depth_mm >= found.between_mm else found.between_place_mm
+        result.shown_place_mm = _sum(place, origin)
+    result.shown_blame = ", ".join(name for name, _ in shown.suspects) if shown.moved else ""
 
 
 def _add_stages(result, job, contact):

@@ -1,8 +1,12 @@
 """A computation in steps: a generator that reads and writes the scene, and yields what any thread may compute.
 
-Each thing yielded is `work(cancel, progress)`; its value is sent back. What the generator returns is the outcome.
+Each thing yielded is `work(cancel, progress)`, whose value is sent back, or `PAUSE`, where the window may have a turn:
+no stretch between two of them should last longer than a fifth of a second. What the generator returns is the outcome.
 Knows nothing of threads and buttons.
 """
+
+PAUSE = None
+"""Yielded where the scene is whole enough to be drawn, and nothing is to be computed."""
 
 
 def at_once(steps):
@@ -20,6 +24,8 @@ def hand_back(steps, work):
 
     Raises `StopIteration` with the outcome when there is none.
     """
+    if work is PAUSE:
+        return steps.send(None)
     try:
         value = work(None, None)
     except BaseException as error:

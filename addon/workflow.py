@@ -1,18 +1,18 @@
 """The order of a press: read, call the library, write back. Knows nothing of buttons and layout."""
 
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
-from . import cache, comfort, effect_settings, effects, names, native, sentences, status
+from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
 from .scene import checks, own, read, sizes, state, units, write
 from .scene import parts as parts_of
 from .settings import MATERIAL_NUMBERS
-from .steps import at_once
+from .steps import PAUSE, at_once
 
 
 @dataclass
@@ -34,18 +34,27 @@ class Job:
     seconds: dict = field(default_factory=dict)
     thickness_mm: np.ndarray | None = None
     """(n), set by `compute`."""
+    product: object = None
+    """The native module's product, set by `compute`."""
+    taken: ExitStack | None = None
+    """What puts Thenar's earlier output back."""
 
 
-def prepare(context):
-    """Read the scene's hand and product into a `Job`. Raises `Refusal`; the scene stays as it is."""
+def prepare(context, taken):
+    """Read the scene's hand and product into a `Job`. Raises `Refusal`.
+
+    Thenar's own output stays out of the scene until the stack `taken` is closed, or a contact is written: putting it
+    back in between would have a subdivided hand evaluated twice more.
+    """
     started = time.perf_counter()
     hand, parts = check(context)
     if own.bake_modifiers(hand):
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then solve")
     if context.scene.thenar.live:
         raise checks.Refusal(f"Live keeps the contact of '{hand.name}' up to date; switch it off first")
+    own.take_out(context, hand, parts, taken)
     job = read_job(context, hand, parts)
-    job.state_hash = state_hash(context)
+    job.taken, job.state_hash = taken, state_hash(context)
     job.seconds["read"] = time.perf_counter() - started
     return job
 
@@ -167,9 +176,12 @@ def _skin_key(job):
 def _press(job, skin, cancel, progress):
     hand, product = job.reading.hand, job.reading.product
     started = time.perf_counter()
+    job.product = cache.product(
+        cache.content_hash(product.vertices_mm, product.triangles),
+        lambda: native.module.Product(product.vertices_mm, product.triangles),
+    )
     contact = skin.press(
-        product.vertices_mm,
-        product.triangles,
+        job.product,
         posed_vertices_mm=hand.posed_mm,
         force_n=job.force_n,
         direction=None if job.direction is None else np.array(job.direction, dtype=np.float64),
@@ -182,7 +194,7 @@ def _press(job, skin, cancel, progress):
 
 
 def finish(context, job, contact):
-    """Write the contact back and keep its numbers in the scene. Returns the scene's result.
+    """Write the contact back, check what is shown, and keep its numbers; steps that return the scene's result.
 
     Raises `Refusal` if the scene changed meanwhile; on any failure the scene is as before.
     """
@@ -192,9 +204,15 @@ def finish(context, job, contact):
         raise checks.Refusal("hand or product were changed while solving; solve again")
     if job.state_hash != state_hash(context):
         raise checks.Refusal(f"'{hand.name}', its product or a setting was changed while solving; solve again")
+    yield PAUSE
     started = time.perf_counter()
     fields = fields_of(contact, job)
-    written = write.write_contact(context, hand, parts, job.reading, fields)
+
+    def measure(surface, left_mm):
+        return partial(certificate.measure, surface, left_mm, (job.product, fields.offset_mm))
+
+    written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
+    job.taken.pop_all()
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
@@ -206,9 +224,10 @@ def finish(context, job, contact):
 
 def steps(context):
     """One press as the steps of a computation. Returns the scene's result."""
-    job = prepare(context)
-    contact = yield partial(compute, job)
-    return finish(context, job, contact)
+    with ExitStack() as taken:
+        job = prepare(context, taken)
+        contact = yield partial(compute, job)
+        return (yield from finish(context, job, contact))
 
 
 def solve(context):

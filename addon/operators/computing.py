@@ -1,6 +1,7 @@
 """The base of operators that compute beside the window: one modal loop, with progress and Esc, for all of them."""
 
 import atexit
+import time
 from dataclasses import dataclass
 
 import bpy
@@ -9,6 +10,8 @@ from bpy.app.handlers import persistent
 from .. import steps
 from . import running
 
+TURN_S = 0.1
+"""How long steps that only pause go on before the window has its turn."""
 _under_way = {}
 """Steps -> `_Run` of every computation that a button started."""
 _GOES_ON = object()
@@ -19,7 +22,7 @@ class _Run:
     """A computation that a button started."""
 
     timer: object
-    worker: running.Worker
+    worker: running.Worker | running.Turn
 
 
 class Computing:
@@ -40,10 +43,10 @@ class Computing:
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._steps = self.steps(context)
-        work = running.attempt(self, next, self._steps)
-        if work is None:
+        worker = running.attempt(self, self._begin)
+        if worker is None:
             return {"CANCELLED"}
-        self._start(context, work)
+        _under_way[self._steps] = _Run(running.begin(context, self), worker)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
@@ -73,18 +76,19 @@ class Computing:
         """Stop the computation; also called by Blender when the window goes."""
         _stop(context, self._steps)
 
-    def _start(self, context, work):
-        """Hand the first work to a thread, and tick."""
-        _under_way[self._steps] = _Run(running.begin(context, self), running.Worker(work))
+    def _begin(self):
+        return running.start(next(self._steps))
 
     def _advance(self):
-        """Go on with the worker's value. Returns `_GOES_ON`, or the outcome."""
-        run = _under_way[self._steps]
+        """Go on with the worker's value, and over pauses while the turn lasts. Returns `_GOES_ON`, or the outcome."""
+        run, ends = _under_way[self._steps], time.perf_counter() + TURN_S
         try:
-            run.worker = running.Worker(run.worker.hand_back(self._steps))
+            while True:
+                run.worker = running.start(run.worker.hand_back(self._steps))
+                if not run.worker.is_pause or time.perf_counter() > ends:
+                    return _GOES_ON
         except StopIteration as end:
             return end.value
-        return _GOES_ON
 
     def _end(self, context, outcome):
         return {"CANCELLED"} if outcome is None else self._report(context, outcome)

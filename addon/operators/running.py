@@ -6,6 +6,7 @@ import weakref
 
 from .. import native, status
 from ..scene.checks import Refusal
+from ..steps import PAUSE
 
 TICK_S = 0.05
 STOP_S = 0.2
@@ -26,8 +27,32 @@ _NAVIGATION = {
 _workers = weakref.WeakSet()
 
 
+class Turn:
+    """Nothing to compute: the steps go on after the window had its turn."""
+
+    is_pause = True
+
+    def is_done(self):
+        """Always."""
+        return True
+
+    def hand_back(self, steps):
+        """Let `steps` go on. Returns their next work; raises what they raise."""
+        return steps.send(None)
+
+    def stop(self):
+        """Nothing runs."""
+
+
+def start(work):
+    """What carries `work` out: a `Worker`, or a `Turn` for `PAUSE`."""
+    return Turn() if work is PAUSE else Worker(work)
+
+
 class Worker:
     """One piece of work in a daemon thread: `work(cancel, progress)`; `stop_workers` knows it."""
+
+    is_pause = False
 
     def __init__(self, work):
         self._cancel = threading.Event()

@@ -3,6 +3,7 @@
 A study is compared with its own skin; where that is the scene's hand, its places and residuals are shown on it.
 """
 
+from contextlib import ExitStack
 from functools import partial
 
 import numpy as np
@@ -71,13 +72,14 @@ def _overlap(recording):
 def _still(context, item):
     """Solve, compare one frame with the contact, and write residuals on hand and product."""
     seat = seat_of(context)
-    job = workflow.prepare(context)
-    seat = laying.Seat(seat.axes, job.reading.product.vertices_mm)
-    told = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
-    contact = yield partial(workflow.compute, job)
-    by_cell = _compare_print if item.kind == settings.PRINT else _compare
-    comparison, mat, residual = yield partial(by_cell, job, contact, told)
-    workflow.finish(context, job, contact)
+    with ExitStack() as taken:
+        job = workflow.prepare(context, taken)
+        seat = laying.Seat(seat.axes, job.reading.product.vertices_mm)
+        told = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
+        contact = yield partial(workflow.compute, job)
+        by_cell = _compare_print if item.kind == settings.PRINT else _compare
+        comparison, mat, residual = yield partial(by_cell, job, contact, told)
+        yield from workflow.finish(context, job, contact)
     _write(context, job, (comparison, mat, residual))
     return comparison
 

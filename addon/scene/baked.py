@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, moving, own, units
+from . import attributes, colors, correction, moving, own, units
 from .checks import Refusal
 
 DEFORMERS = {
@@ -58,6 +58,7 @@ def publish(hand, stem, first_frame, frames):
     _replace(npz, lambda file: np.savez_compressed(file, **_tables(first_frame, frames)))
     for modifier in own.bake_modifiers(hand):
         hand.modifiers.remove(modifier)
+    correction.remove(hand)
     index = place_in_stack(hand)
     cache = hand.modifiers.new(names.BAKE_MODIFIER, "MESH_CACHE")
     cache.cache_format, cache.filepath = "PC2", bpy.path.relpath(str(pc2))

@@ -9,11 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import names
+from ..steps import PAUSE
 from . import mesh
 from .own import contact_key
 
-CORRECTIONS = 40
-"""Most corrections; nine usual stacks need at most three, a Corrective Smooth over a coarse mesh thirty."""
+CORRECTIONS = 12
+"""Most corrections; nine usual stacks need at most three. What a key cannot reach is left to `correction`."""
+SLOW = 0.8
+"""A correction that leaves more than this share of the error is the last."""
 TOLERANCE = 5e-4
 """Error over the largest displacement at which corrections stop."""
 WORST_CONDITION = 1e4
@@ -74,10 +77,11 @@ def put_points(hand, key, points):
     hand.data.update()
 
 
-def fit_key(context, hand, key, wanted):
+def fit_steps(context, hand, key, wanted):
     """Write the key so that the evaluated mesh moves by `wanted` (n, 3), object space, Blender units.
 
-    Returns a `KeyReport`. The key's value is respected. Nothing else may deform the hand by this key's own output.
+    Steps as in `addon/steps.py` that return a `KeyReport`. The key's value is respected. Nothing else may deform the
+    hand by this key's own output.
     """
     base = key_points(hand.data.shape_keys.reference_key)
     count, largest = len(base), float(np.abs(wanted).max(initial=0.0))
@@ -92,12 +96,13 @@ def fit_key(context, hand, key, wanted):
         return KeyReport(0.0, 0, 0)
     active = np.abs(wanted).max(axis=1) > 1e-6 * largest
     fit = _Fit(moved, start, wanted, active, largest)
-    offsets, error, corrections = fit.correct(wanted.copy(), np.eye(3)[None].repeat(active.sum(), 0), 0)
+    yield PAUSE
+    offsets, error, corrections = yield from fit.correct(wanted.copy(), np.eye(3)[None].repeat(active.sum(), 0), 0)
     solvable = np.ones(int(active.sum()), bool)
     if error > TOLERANCE:
-        jacobian, solvable = _jacobian(moved, base, active)
+        jacobian, solvable = yield from _jacobian(moved, base, active)
         seed = np.zeros_like(base)
-        offsets, error, corrections = fit.correct(seed, jacobian, CORRECTIONS, solvable)
+        offsets, error, corrections = yield from fit.correct(seed, jacobian, CORRECTIONS, solvable)
     put_points(hand, key, base + offsets)
     context.view_layer.update()
     return KeyReport(error * largest, corrections, int((~solvable).sum()))
@@ -109,7 +114,10 @@ def _jacobian(moved, base, active):
     for axis in range(3):
         shift = np.zeros(3)
         shift[axis] = step
-        jacobian[:, :, axis] = (moved(shift)[active] - moved(-shift)[active]) / (2.0 * step)
+        ahead = moved(shift)[active]
+        yield PAUSE
+        jacobian[:, :, axis] = (ahead - moved(-shift)[active]) / (2.0 * step)
+        yield PAUSE
     solvable = np.isfinite(jacobian).all(axis=(1, 2))
     solvable[solvable] = np.linalg.cond(jacobian[solvable]) < WORST_CONDITION
     return jacobian, solvable
@@ -124,14 +132,16 @@ class _Fit:
 
     def correct(self, offsets, jacobian, corrections, solvable=slice(None)):
         """Offsets (n, 3), relative error and corrections used, from `offsets` on."""
-        best = None
+        best, before = None, np.inf
         rows = np.flatnonzero(self.active)[solvable]
         for step in range(corrections + 1):
             residual = self.wanted - (self.moved(offsets) - self.start)
             error = float(np.abs(residual).max()) / self.largest
             if best is None or error < best[1]:
                 best = (offsets.copy(), error, step)
-            if error < TOLERANCE or step == corrections:
+            yield PAUSE
+            if error < TOLERANCE or step == corrections or error > SLOW * before:
                 break
+            before = error
             offsets[rows] += np.linalg.solve(jacobian[solvable], residual[rows][..., None])[..., 0]
         return best

@@ -7,6 +7,8 @@ import numpy as np
 from .checks import Refusal
 
 _ID = ".thenar_vertex"
+_APPENDING = {"ARMATURE", "LATTICE", "CORRECTIVE_SMOOTH", "SMOOTH", "SUBSURF"}
+"""Modifiers that are known to leave the vertices there are, in order, and to put new ones behind them."""
 
 
 def positions(mesh):
@@ -33,10 +35,11 @@ def evaluated_mesh(obj, depsgraph):
     `to_mesh` is taken where Blender may keep the subdivision on the graphics card, and for what is not a mesh.
     """
     evaluated = obj.evaluated_get(depsgraph)
-    if obj.type == "MESH" and not any(modifier.type == "SUBSURF" for modifier in obj.modifiers):
+    subdivides = any(modifier.type == "SUBSURF" and modifier.show_viewport for modifier in obj.modifiers)
+    if obj.type == "MESH" and not subdivides:
         yield evaluated.data
         return
-    mesh = evaluated.to_mesh(preserve_all_data_layers=True, depsgraph=depsgraph)
+    mesh = evaluated.to_mesh()
     try:
         yield mesh
     finally:
@@ -52,6 +55,8 @@ def evaluated_positions(obj, depsgraph, count):
 def keeps_vertices(context, obj):
     """Whether the first vertices of the evaluated mesh are those of the base mesh, in order."""
     base = obj.data
+    if all(modifier.type in _APPENDING for modifier in obj.modifiers if modifier.show_viewport):
+        return True
     with evaluated_mesh(obj, context.evaluated_depsgraph_get()) as mesh:
         if _same_topology(base, mesh):
             return True

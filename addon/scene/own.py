@@ -24,7 +24,7 @@ def live_modifier(obj):
 def played_modifiers(obj):
     """All modifiers of Thenar's on this hand."""
     live = live_modifier(obj)
-    return [*bake_modifiers(obj), *([live] if live is not None else [])]
+    return [*bake_modifiers(obj), *shown_modifiers(obj), *([live] if live is not None else [])]
 
 
 def roots(parts):
@@ -33,24 +33,48 @@ def roots(parts):
     return [part for part in parts if not any(parent in chosen for parent in _parents(part))]
 
 
+def shown_modifiers(obj):
+    """The modifiers that bring the shown surface to the contact, as far as its key does not."""
+    return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.SHOWN_MODIFIER)]
+
+
 @contextmanager
 def without_own_output(context, hand, parts):
     """The scene as if Thenar had never run; yields the evaluated depsgraph, and restores on leaving."""
     with ExitStack() as restore:
-        restore.callback(context.view_layer.update)
-        key = contact_key(hand)
-        if key is not None and not key.mute:
-            restore.callback(setattr, key, "mute", False)
-            key.mute = True
-        for modifier in played_modifiers(hand):
-            restore.callback(setattr, modifier, "show_viewport", modifier.show_viewport)
-            modifier.show_viewport = False
-        for part in parts:
-            if part.thenar.is_moved:
-                restore.callback(setattr, part, "delta_location", part.delta_location.copy())
-                part.delta_location = part.thenar.home
-        context.view_layer.update()
+        take_out(context, hand, parts, restore)
         yield context.evaluated_depsgraph_get()
+
+
+def take_out(context, hand, parts, restore):
+    """Take Thenar's own output out of the scene; the stack `restore` gets what puts it back."""
+    restore.callback(context.view_layer.update)
+    key = contact_key(hand)
+    if key is not None and not key.mute:
+        restore.callback(setattr, key, "mute", False)
+        key.mute = True
+    for modifier in played_modifiers(hand):
+        if modifier.show_viewport:  # to set it anew, even to the same, has Blender evaluate the hand
+            restore.callback(setattr, modifier, "show_viewport", True)
+            modifier.show_viewport = False
+    for part in parts:
+        if part.thenar.is_moved:
+            restore.callback(setattr, part, "delta_location", part.delta_location.copy())
+            part.delta_location = part.thenar.home
+    context.view_layer.update()
+
+
+@contextmanager
+def without_types(hand, types):
+    """The hand without its modifiers of these types."""
+    shown = [modifier for modifier in hand.modifiers if modifier.type in types and modifier.show_viewport]
+    for modifier in shown:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in shown:
+            modifier.show_viewport = True
 
 
 @contextmanager

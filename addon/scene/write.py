@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import attributes, colors, copies, key, moving, own, units
+from ..steps import PAUSE
+from . import attributes, colors, copies, correction, key, moving, own, shown, units
 
 NO_BONE_MM = 1000.0
 """What stands for tissue without bone in the thickness attribute: the thickest that the library admits."""
@@ -33,30 +34,58 @@ class Fields:
 
 @dataclass(frozen=True)
 class WriteReport:
-    """Largest error of the written displacement, mm, measured; corrections it took; notes for the user."""
+    """Largest error of the written displacement, mm, measured; corrections it took; notes for the user.
+
+    `shown` is the certificate of the shown surface (`shown.Shown`), where one was asked for.
+    """
 
     error_mm: float
     corrections: int
     notes: tuple
+    shown: object = None
 
 
-def write_contact(context, hand, parts, reading, fields):
-    """Shape key, attributes and the product's place. Returns a `WriteReport`; on any failure the scene is as before."""
+def write_contact(context, hand, parts, job, measure):
+    """Shape key, attributes and the product's place, as steps that return a `WriteReport`.
+
+    `job`: what was read and the `Fields`; `measure(surface, left_mm)`: work that gives a `certificate.Found`.
+    On any failure, and where the steps are closed, the scene is as before.
+    """
+    reading, fields = job
     skin, look = reading.hand, context.scene.thenar
     with ExitStack() as undo:
         undo.callback(context.view_layer.update)
         _keep_key(undo, hand)
-        undo.callback(attributes.snapshot(hand.data, names.HAND_ATTRIBUTES))
+        undo.callback(attributes.snapshot(hand.data, (*names.HAND_ATTRIBUTES, names.SHOWN_OFFSET, names.SHOWN_SKIN)))
+        _hide_correction(undo, hand)
         moving.move_parts(context, undo, parts, fields.offset_mm / skin.scale)
         contact = key.ensure_key(hand)
         wanted = units.vectors_to_local(fields.displacement_mm, skin.matrix, skin.scale)
-        report = key.fit_key(context, hand, contact, wanted)
+        with own.without_types(hand, shown.ADDING):
+            report = yield from key.fit_steps(context, hand, contact, wanted)
         write_hand(hand, fields, look)
+        shown.mark_skin(hand, fields.regions)
+        yield PAUSE
         for record in reading.product.parts:
             _write_part(context, undo, record, reading, fields)
+            yield PAUSE
+        seen = yield from shown.certify(context, hand, reading, fields.displacement_mm, (measure, undo))
+        if seen.moved:
+            correction.tidy()
+        else:
+            correction.remove(hand)
         context.view_layer.update()
+        told = (*_notes(reading.product), *shown.notes(hand, seen, skin.origin_mm))
         undo.pop_all()
-    return WriteReport(_error_mm(report.error, skin), report.corrections, tuple(_notes(hand, reading.product, report)))
+    return WriteReport(seen.error_mm, report.corrections, told, seen)
+
+
+def _hide_correction(undo, hand):
+    """Switch off what an earlier contact hung behind the key."""
+    for modifier in own.shown_modifiers(hand):
+        if modifier.show_viewport:
+            undo.callback(setattr, modifier, "show_viewport", True)
+            modifier.show_viewport = False
 
 
 def write_hand(hand, fields, look):
@@ -115,13 +144,7 @@ def _write_part(context, undo, record, reading, fields):
     part.data.update()
 
 
-def _error_mm(error, reading):
-    return error * float(np.linalg.norm(reading.matrix[:3, :3], axis=0).max()) * reading.scale
-
-
-def _notes(hand, product, report):
-    if report.unsolvable:
-        yield f"{report.unsolvable} vertices of '{hand.name}' cannot follow the contact (a bone scaled to zero?)"
+def _notes(product):
     for record in product.parts:
         if record.reason:
             yield f"a copy of '{record.name}' in '{names.RESULTS_COLLECTION}' carries the pressure: {record.reason}"
@@ -131,6 +154,7 @@ def clear(context, hand, parts):
     """Remove Thenar's key, attributes, copies and bake, and put the product back."""
     for modifier in own.played_modifiers(hand):
         hand.modifiers.remove(modifier)
+    correction.remove(hand)
     hand.thenar.bake_path = ""
     key.remove_key(hand)
     attributes.remove(hand.data, (*names.HAND_ATTRIBUTES, names.LIVE_OFFSET))
@@ -155,6 +179,7 @@ def apply(context, hand, parts):
     for block in blocks:
         if block != contact:
             key.put_points(hand, block, key.key_points(block) + offsets)
+    correction.give_up(hand)
     key.remove_key(hand)
     hand.data.attributes["position"].data.foreach_set("vector", (base + offsets).astype(np.float32).ravel())
     for part in parts:

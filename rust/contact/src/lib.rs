@@ -24,6 +24,7 @@ mod linearize;
 mod live;
 mod material;
 mod memory;
+mod merged;
 mod paper;
 mod press;
 mod remarks;

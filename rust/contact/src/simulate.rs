@@ -140,6 +140,7 @@ impl Skin {
         control.step("fields", 0.0)?;
         let started = Instant::now();
         let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
+        crate::merged::put_out(self, press, direction * offset, &mut contact);
         add_time(&mut seconds, "fields", started);
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);

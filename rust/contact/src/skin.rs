@@ -79,7 +79,8 @@ impl Skin {
         let spacing = median_edge_length(&welded.mesh);
         if welded.merged() > 0 {
             warnings.push(format!(
-                "the hand: {} vertices lie on another one and move with it; merge them by distance to be rid of this",
+                "the hand: {} vertices are nearer to another one than a quarter of the edges around them and bear nothing of \
+                 their own; merge them by distance to be rid of this",
                 welded.merged()
             ));
         }

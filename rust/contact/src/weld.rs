@@ -1,4 +1,4 @@
-//! Vertices that lie on one another, as at the seams of unwelded meshes, made one.
+//! Vertices that lie on one another, as at the seams of unwelded meshes, or all but so, made one.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -17,6 +17,8 @@ pub struct Welded {
     pub source: Vec<u32>,
     /// Welded vertex of each original vertex.
     pub welded: Vec<u32>,
+    /// Positions of the mesh as given, mm; empty where nothing was merged.
+    pub given: Vec<Vec3>,
 }
 
 impl Welded {
@@ -41,6 +43,7 @@ impl Welded {
                 mesh: mesh.clone(),
                 source,
                 welded,
+                given: Vec::new(),
             });
         }
         let kept = source.iter().map(|&i| positions[i as usize]).collect();
@@ -55,6 +58,7 @@ impl Welded {
             mesh: Mesh::new(kept, triangles)?,
             source,
             welded,
+            given: positions.to_vec(),
         })
     }
 

@@ -65,6 +65,12 @@ impl Product {
         self.0.warnings().to_vec()
     }
 
+    /// Whether the surface has no holes, so that it has an inside everywhere.
+    #[getter]
+    fn is_closed(&self) -> bool {
+        self.0.is_closed()
+    }
+
     #[getter]
     fn vertex_count(&self) -> usize {
         self.0.mesh().positions().len()

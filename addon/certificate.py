@@ -1,0 +1,169 @@
+"""How deep the shown skin lies in the product, where, and what would put it out. Knows nothing of Blender.
+
+Of a flat sheet nothing is inside: there, skin that has the sheet close beneath it has come through.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+TOLERANCE_MM = 0.02
+"""How deep shown skin may lie in the product without a word."""
+BETWEEN_MM = 0.05
+"""The same between vertices, where flat triangles cut into round products."""
+_REACH_MM = 4.0
+"""Distances beyond this are not asked for."""
+_THROUGH_MM = 0.5
+"""How far skin is looked for behind a sheet."""
+_BENEATH = 0.7
+"""Least cosine between the skin's normal and the way back to a sheet."""
+_CHUNK = 20_000
+_ROUNDS = 12
+"""How often added vertices take the mean of their neighbours."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The shown skin: `points_mm` (m, 3) about the hand, `triangles` (t, 3), and which vertices `counts` (m,) as skin.
+
+    The first `base_count` points are the vertices of the hand's own mesh.
+    """
+
+    points_mm: np.ndarray
+    triangles: np.ndarray
+    counts: np.ndarray
+    base_count: int
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was measured. `offsets_mm` (m, 3) bring every vertex to where it was measured, and the added ones out.
+
+    `depth_mm` at vertices and `between_mm` at mid points of edges and centres of triangles, with their places (3);
+    `vertex` is the nearest one of the hand's own mesh, -1 where nothing is inside.
+    """
+
+    depth_mm: float
+    place_mm: np.ndarray
+    vertex: int
+    between_mm: float
+    between_place_mm: np.ndarray
+    offsets_mm: np.ndarray
+
+
+def measure(surface, left_mm, place, cancel=None, progress=None):
+    """Measure the shown skin against a product. Returns a `Found`.
+
+    `place`: the prepared product (`thenar.Product`), and how far it moved (3), mm.
+    `left_mm` (n, 3): what the hand's own vertices still have to go, or None; vertices that modifiers added go along.
+    """
+    product, offset_mm = place
+    offsets = np.zeros_like(surface.points_mm) if left_mm is None else spread(surface, left_mm)
+    points = surface.points_mm + offsets - offset_mm
+    held = np.zeros(len(points), bool)
+    held[surface.triangles.ravel()] = True  # loose vertices show nothing
+    rows = np.flatnonzero(held & surface.counts)
+    triangles = surface.triangles[surface.counts[surface.triangles].all(axis=1)]
+    asked = _Asked(product, cancel, progress)
+    normals = _normals(points, surface.triangles)
+    gap, closest = asked.at(points[rows], normals[rows])
+    inside = gap < 0.0
+    added = inside & (rows >= surface.base_count)
+    offsets[rows[added]] += closest[added] - points[rows[added]]
+    near = np.full(len(points), np.inf)
+    near[rows] = gap
+    samples, faces = _between(points, triangles, near)
+    between, _ = asked.at(samples, _unit(_crosses(samples_of=points, triangles=faces)))
+    worst, deepest = _deepest(gap), _deepest(between)
+    place = points[rows[worst]] + offset_mm if worst >= 0 else np.zeros(3)
+    there = samples[deepest] + offset_mm if deepest >= 0 else np.zeros(3)
+    depth = max(-gap[worst], 0.0) if worst >= 0 else 0.0
+    below = max(-between[deepest], 0.0) if deepest >= 0 else 0.0
+    return Found(
+        depth_mm=float(depth),
+        place_mm=place,
+        vertex=_nearest(surface, place if depth >= below else there) if max(depth, below) > 0.0 else -1,
+        between_mm=float(below),
+        between_place_mm=there,
+        offsets_mm=offsets,
+    )
+
+
+def spread(surface, left_mm):
+    """Offsets (m, 3) of all vertices from those (n, 3) of the hand's own: again and again their neighbours' mean."""
+    count, total = surface.base_count, len(surface.points_mm)
+    offsets = np.zeros((total, 3))
+    offsets[:count] = left_mm
+    if total == count:
+        return offsets
+    ends = np.concatenate([surface.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    ends = ends[ends[:, 0] >= count]
+    degree = np.maximum(np.bincount(ends[:, 0], minlength=total), 1)[count:]
+    for _ in range(_ROUNDS):
+        for axis in range(3):
+            sums = np.bincount(ends[:, 0], offsets[ends[:, 1], axis], minlength=total)
+            offsets[count:, axis] = sums[count:] / degree
+    return offsets
+
+
+class _Asked:
+    """Signed distances to a product, in pieces between which Esc is heard."""
+
+    def __init__(self, product, cancel, progress):
+        self.product = product
+        self.hooks = {"cancel": cancel, "progress": None}
+        if progress is not None:
+            progress("check", 0.0)
+
+    def at(self, points, normals):
+        """Gap (n,), mm, infinite where far, and the nearest point of the product (n, 3)."""
+        gap, closest = np.full(len(points), np.inf), np.full((len(points), 3), np.nan)
+        for first in range(0, len(points), _CHUNK):
+            piece = slice(first, first + _CHUNK)
+            found = self.product.gap_mm(points[piece], cut_off_mm=_REACH_MM, **self.hooks)
+            gap[piece], closest[piece] = found["gap_mm"], found["closest_mm"]
+        if self.product.is_closed:
+            return gap, closest
+        away = points - closest
+        beneath = np.einsum("ij,ij->i", away, normals)
+        with np.errstate(invalid="ignore"):
+            through = (gap > 0.0) & (gap < _THROUGH_MM) & (beneath > _BENEATH * gap)
+        gap[through] *= -1.0
+        return gap, closest
+
+
+def _between(points, triangles, gap):
+    """Mid points of edges and centres of the triangles near contact, and the triangle (n, 3) that each belongs to."""
+    corners = points[triangles]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    faces = triangles[gap[triangles].min(axis=1, initial=np.inf) < longest]
+    a, b, c = (points[faces[:, corner]] for corner in range(3))
+    samples = np.concatenate([(a + b) / 2, (b + c) / 2, (c + a) / 2, (a + b + c) / 3])
+    return samples, np.tile(faces, (4, 1))
+
+
+def _crosses(samples_of, triangles):
+    a, b, c = (samples_of[triangles[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
+
+
+def _unit(vectors):
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
+
+
+def _normals(points, triangles):
+    crosses, sums = _crosses(points, triangles), np.empty_like(points)
+    for axis in range(3):
+        weights = np.repeat(crosses[:, axis], 3)
+        sums[:, axis] = np.bincount(triangles.ravel(), weights, minlength=len(points))
+    return _unit(sums)
+
+
+def _deepest(gap):
+    return int(gap.argmin()) if len(gap) and np.isfinite(gap.min()) else -1
+
+
+def _nearest(surface, place_mm):
+    away = surface.points_mm[: surface.base_count] - place_mm
+    return int(np.einsum("ij,ij->i", away, away).argmin())
