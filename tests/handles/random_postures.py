@@ -55,13 +55,17 @@ class HandArrays:
 
 @dataclass(frozen=True)
 class Posture:
-    """A hand of one `percentile` posed (n, 3), a product in the world, and how far it went on after first touch."""
+    """A hand of one `percentile` posed (n, 3), a product in the world, and how far it went on after first touch.
+
+    `lean`: the unit way back out of the hand.
+    """
 
     seed: int
     percentile: float
     posed: np.ndarray
     product: random_products.Made
     vertices: np.ndarray
+    lean: np.ndarray
     travel_mm: float
     overlap_mm: float
     draws: int
@@ -125,7 +129,7 @@ def draw(seed):
     rng = np.random.default_rng(seed)
     percentile = PERCENTILES[seed // len(random_products.KINDS) % len(PERCENTILES)]
     hand = hand_of(percentile)
-    kind = random_products.KINDS[seed % len(random_products.KINDS)]
+    kind = random_products.kind_of(seed)
     for attempt in range(1, TRIES + 1):
         if attempt % 20 == 1:
             posed = bent(hand.made, rng)
@@ -134,10 +138,10 @@ def draw(seed):
         laid = _lay(hand, (posed, normals), product, rng)
         if laid is None:
             continue
-        vertices, travel = laid
+        vertices, lean, travel = laid
         overlap = overlap_of(hand, posed, vertices, product)
         if LEAST_MM <= overlap <= MOST_MM:
-            return Posture(seed, percentile, posed, product, vertices, travel, overlap, attempt)
+            return Posture(seed, percentile, posed, product, vertices, lean, travel, overlap, attempt)
     raise RuntimeError(f"no posture of seed {seed} in {TRIES} draws")
 
 
@@ -159,7 +163,7 @@ def under_skin(hand, positions, vertices, triangles):
 
 
 def _lay(hand, shape, product, rng):
-    """The product at a random place of the skin, come from outside: (its vertices, travel after touch), or None."""
+    """The product at a random place of the skin, come from outside: (its vertices, way back, travel after touch)."""
     posed, normals = shape
     at = rng.choice(np.flatnonzero(hand.is_skin))
     lean = normals[at] + 0.5 * rng.normal(size=3)
@@ -180,7 +184,7 @@ def _lay(hand, shape, product, rng):
         far -= distance[nearest]
     if distance[nearest] >= 0.02 or not _is_skin(hand, nearest):
         return None
-    return product.vertices @ way.T + base + (far - travel) * lean, travel
+    return product.vertices @ way.T + base + (far - travel) * lean, lean, travel
 
 
 def _is_skin(hand, index):
@@ -212,7 +216,6 @@ def outward_normals(positions, triangles):
 def press(posture):
     """What the module makes of it, as one row: refused, or numbers with the skin measured anew."""
     row = {
-        "seed": posture.seed,
         "kind": posture.product.kind,
         "percentile": posture.percentile,
         "closed": posture.product.is_closed,

@@ -23,6 +23,11 @@ class Made:
     sizes: dict = field(default_factory=dict)
 
 
+def kind_of(seed):
+    """The kind of product that a seed draws: one after the other."""
+    return KINDS[seed % len(KINDS)]
+
+
 def draw(kind, rng):
     """A product of that kind with sizes of things that hands meet."""
     return DRAWN[kind](rng)
