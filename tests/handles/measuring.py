@@ -183,6 +183,19 @@ def sampled(vertices, triangles, spacing_mm, box):
     return points[np.unique(cells, axis=0, return_index=True)[1]]
 
 
+def rims(vertices, triangles):
+    """Ends (k, 2) of the edges that bound the surface or are sharper than about 66 degrees."""
+    a, b, c = (vertices[triangles[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    sides = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, index, uses = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
+    total = np.zeros((len(edges), 3))
+    np.add.at(total, index.reshape(-1), np.tile(normals, (3, 1)))
+    cosine = 0.5 * np.einsum("ij,ij->i", total, total) - 1.0
+    return edges[(uses != 2) | (cosine < 0.4)]
+
+
 def sunk(samples, hand, triangles, is_skin, within_mm=12.0):
     """How deep points of a product lie under the skin of a closed hand (n,), >= 0; 0 where the nearest is no skin.
 

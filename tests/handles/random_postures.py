@@ -19,9 +19,9 @@ PERCENTILES = (1.0, 5.0, 50.0, 95.0, 99.0)
 SPARE_MM = 3.0
 LEFT_MM = 0.05
 PEAK_MPA = 0.6
-THROUGH_MM = 1.5
-"""A product deeper than this under the skin that was written went through it: skin is 2.5 mm from vertex to vertex, and
-between them an edge or a round of 2 mm may sink by 1 mm."""
+THROUGH_MM, RIM_MM, THROUGH_RIM_MM = 1.5, 3.0, 4.0
+"""A product deeper than this under the written skin went through it. Within 3 mm of a rim or sharp edge, skin whose
+vertices are 2.5 to 3 mm apart may span it: there only what is deeper than 4 mm is counted."""
 THIN = ("plate", "sheet", "fork", "wire", "tube")
 LEAST_MM, MOST_MM = 0.3, 8.0
 SECONDS = 30.0
@@ -152,14 +152,19 @@ def overlap_of(hand, posed, vertices, product):
         deepest = measuring.depths(posed[hand.is_skin], vertices, product.triangles).max()
     if deepest >= LEAST_MM:
         return float(deepest)
-    return max(float(deepest), under_skin(hand, posed, vertices, product.triangles))
+    return max(float(deepest), under_skin(hand, posed, vertices, product.triangles)[0])
 
 
 def under_skin(hand, positions, vertices, triangles):
-    """How deep the product lies under the skin of these `positions`, at most, mm."""
+    """How deep the product lies under the skin of these `positions`: at most, and at most off its rims, mm."""
     box = positions[hand.is_skin].min(axis=0), positions[hand.is_skin].max(axis=0)
     samples = measuring.sampled(vertices, triangles, 1.5, box)
-    return float(measuring.sunk(samples, positions, hand.made["triangles"], hand.is_skin).max(initial=0.0))
+    under = measuring.sunk(samples, positions, hand.made["triangles"], hand.is_skin)
+    deep, rims = np.flatnonzero(under > THROUGH_MM), measuring.rims(vertices, triangles)
+    if len(deep) == 0 or len(rims) == 0:
+        return float(under.max(initial=0.0)), float(under.max(initial=0.0))
+    off = measuring.distances(samples[deep], vertices, rims[:, [0, 1, 1]])[0] > RIM_MM
+    return float(under.max()), float(under[deep[off]].max(initial=0.0))
 
 
 def _lay(hand, shape, product, rng):
@@ -249,10 +254,16 @@ def measured(posture, displacement):
     left = 0.0
     if posture.product.is_closed and np.isfinite(after).all():
         left = measuring.depths(after[hand.is_skin], posture.vertices, posture.product.triangles).max()
-    under = 0.0
+    under, through = 0.0, 0.0
     if posture.product.kind in THIN and moved.max() < 50.0:
-        under = under_skin(hand, after, posture.vertices, posture.product.triangles)
-    return {"moved_mm": float(moved.max()), "at": int(moved.argmax()), "left_mm": float(left), "under_mm": under}
+        under, through = under_skin(hand, after, posture.vertices, posture.product.triangles)
+    return {
+        "moved_mm": float(moved.max()),
+        "at": int(moved.argmax()),
+        "left_mm": float(left),
+        "under_mm": under,
+        "through_mm": through,
+    }
 
 
 def told(contact):
@@ -284,7 +295,7 @@ def faults(row):
         wrong.append("peak")
     if not row["converged"]:
         wrong.append("not converged")
-    if row["under_mm"] > THROUGH_MM and grade_of(row) != "read this":
+    if (row["through_mm"] > THROUGH_MM or row["under_mm"] > THROUGH_RIM_MM) and grade_of(row) != "read this":
         wrong.append("through")
     return wrong
 
