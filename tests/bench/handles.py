@@ -34,10 +34,14 @@ def main():
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--out", type=Path, default=TESTS.parent / "target/handles.jsonl", help="a row a case")
     parser.add_argument("--anew", action="store_true", help="grasp cases that the file holds once more")
+    parser.add_argument("--dump", type=Path, help="a folder for the arrays of every press, for the module alone")
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.child:
-        return child(asked.out)
+        return child(asked.out, os.environ.get("THENAR_DUMP", ""))
+    if asked.dump:
+        asked.dump.mkdir(parents=True, exist_ok=True)
+        os.environ["THENAR_DUMP"] = str(asked.dump)
     if asked.anew:
         asked.out.unlink(missing_ok=True)
     cases = [case_name(*case) for case in product(asked.percentiles, asked.starts, asked.handles)]
@@ -50,14 +54,15 @@ def case_name(percentile, start, handle):
     return f"{percentile}, {start}, {handle}"
 
 
-def child(out):
+def child(out, dump):
     """Runs cases in one Blender process; it ends at once, since bpy may hang at exit with the add-on registered."""
     from bench import searching
     from handles import grasping, shapes
 
     def one(case):
         percentile, start, handle = case.split(", ")
-        row = grasping.grasp(shapes.SHAPES[handle](), float(percentile), start)
+        path = Path(dump) / f"{handle}_{percentile}_{start}.npz".replace(" ", "_") if dump else None
+        row = grasping.grasp(shapes.SHAPES[handle](), float(percentile), start, path)
         return {"handle": handle, "percentile": int(percentile), "start": start} | row
 
     grasping.register()
@@ -103,7 +108,7 @@ def _sentence(row):
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(TESTS))
+    sys.path[0] = str(TESTS)
     from bench.searching import ONE_THREAD
 
     if any(os.environ.get(name) != value for name, value in ONE_THREAD.items()):

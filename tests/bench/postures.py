@@ -106,7 +106,7 @@ def report(rows):
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(TESTS))
+    sys.path[0] = str(TESTS)
     from bench.searching import ONE_THREAD
 
     if any(os.environ.get(name) != value for name, value in ONE_THREAD.items()):

@@ -3,15 +3,17 @@
 Depths and displacements come from the evaluated meshes, measured by `measuring` and not by the library.
 """
 
+import json
 import time
 from math import radians
 
 import bpy
 import numpy as np
 import thenar_blender
-from mathutils import Euler
-
+import thenar_blender.workflow
 from handles import measuring
+from mathutils import Euler
+from scipy.spatial import cKDTree
 
 SPARE_MM = 3.0
 LEFT_MM = 0.05
@@ -27,8 +29,11 @@ STARTS = {
 """Turns of the product before the grasp, degrees about x, y, z."""
 
 
-def grasp(mesh, percentile, start):
-    """Grasps the mesh (vertices mm, triangles), turned by the start. Returns a row: refused at a step, or numbers."""
+def grasp(mesh, percentile, start, dump=None):
+    """Grasps the mesh (vertices mm, triangles), turned by the start. Returns a row: refused at a step, or numbers.
+
+    `dump`: a path for the arrays that Solve hands to the module, as .npz.
+    """
     bpy.ops.wm.read_homefile(use_empty=True)
     product = _add(mesh, STARTS[start])
     settings, row = bpy.context.scene.thenar, {}
@@ -41,12 +46,31 @@ def grasp(mesh, percentile, start):
             elif step == "fit":
                 bpy.ops.thenar.fit_grasp()
                 before = seen(settings.hand)[0]
+                if dump:
+                    save(dump)
             else:
                 bpy.ops.thenar.solve()
         except RuntimeError as error:
             return row | {"refused": step, "text": str(error).strip().splitlines()[0][:300]}
         row[f"{step}_s"] = round(time.monotonic() - started, 2)
     return row | measured(settings.hand, before, product) | told(settings.result)
+
+
+def save(path):
+    """What Solve would press now, as arrays: hand at rest, materials, `posed`, `product_vertices`, `_triangles`."""
+    job = thenar_blender.workflow.prepare(bpy.context)
+    hand, product = job.reading.hand, job.reading.product
+    np.savez_compressed(
+        path,
+        vertices=hand.rest_mm,
+        triangles=hand.triangles,
+        regions=hand.regions,
+        materials=json.dumps([dict(numbers) for numbers in job.materials]),
+        region_names=json.dumps(list(job.region_names)),
+        posed=hand.posed_mm,
+        product_vertices=product.vertices_mm,
+        product_triangles=product.triangles,
+    )
 
 
 def register():
@@ -89,8 +113,12 @@ def compared(shown, vertices, faces):
     depth[shown.skin] = measuring.depths(shown.before[shown.skin], vertices, faces)
     left = measuring.depths(shown.after[shown.skin], vertices, faces).max(initial=0.0)
     patches = patches_of(shown.triangles, (moved > 0.3) | (depth > 0.0))
+    plain = float(depth.max())
+    if any(moved[patch].max() > depth[patch].max() + SPARE_MM for patch in patches):
+        depth = np.maximum(depth, covered(shown, vertices, faces))
     beyond = [moved[patch].max() - depth[patch].max() for patch in patches]
     return {
+        "plain_mm": plain,
         "moved_mm": float(moved.max()),
         "at": int(moved.argmax()),
         "deepest_mm": float(depth.max()),
@@ -98,6 +126,16 @@ def compared(shown, vertices, faces):
         "beyond_mm": float(max(beyond, default=0.0)),
         "left_mm": float(left),
     }
+
+
+def covered(shown, vertices, faces):
+    """How deep the product lay under each vertex's skin before (n,): what came through a thin wall is not in it."""
+    samples = measuring.sampled(vertices, faces, 1.5, (shown.before.min(axis=0), shown.before.max(axis=0)))
+    under = measuring.sunk(samples, shown.before, shown.triangles, shown.skin)
+    deep, out = np.flatnonzero(under > 0.0), np.zeros(len(shown.before))
+    if len(deep):
+        np.maximum.at(out, cKDTree(shown.before).query(samples[deep])[1], under[deep])
+    return out
 
 
 def patches_of(triangles, chosen):
