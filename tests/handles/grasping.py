@@ -130,7 +130,7 @@ def compared(shown, vertices, faces):
 
 def covered(shown, vertices, faces):
     """How deep the product lay under each vertex's skin before (n,): what came through a thin wall is not in it."""
-    samples = measuring.sampled(vertices, faces, 1.5, (shown.before.min(axis=0), shown.before.max(axis=0)))
+    samples = measuring.sampled(vertices, faces, 2.5, (shown.before.min(axis=0), shown.before.max(axis=0)))
     under = measuring.sunk(samples, shown.before, shown.triangles, shown.skin)
     deep, out = np.flatnonzero(under > 0.0), np.zeros(len(shown.before))
     if len(deep):
