@@ -1,0 +1,116 @@
+"""Twelve handles, hands of five sizes and six starts through Make Hand, Grasp, Solve; what is shown is measured apart.
+
+    BLENDER_USER_RESOURCES=target/test-blender/venv target/venv/bin/python tests/bench/handles.py
+        [--handles tube "door knob"] [--percentiles 1 50] [--starts made turned] [--workers N] [--out FILE.jsonl]
+
+Goes on where it was cut: cases that have a row in the file are kept (--anew: all again). Exit code 1 if a result is
+unsound or more than 5 % are refused.
+"""
+
+import argparse
+import json
+import os
+import sys
+from collections import Counter
+from itertools import product
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+MOST_REFUSED = 0.05
+PERCENTILES = (1, 5, 50, 95, 99)
+STARTS = ("made", "turned", "over", "tilted", "leaned", "lying")
+FAULTS = ("spike", "inside", "peak", "died")
+
+
+def main():
+    """Runs what was asked for. Returns the exit code."""
+    from bench import searching
+    from handles import shapes
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--handles", nargs="+", default=list(shapes.SHAPES), choices=list(shapes.SHAPES))
+    parser.add_argument("--percentiles", nargs="+", type=int, default=list(PERCENTILES))
+    parser.add_argument("--starts", nargs="+", default=list(STARTS), choices=STARTS)
+    parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--out", type=Path, default=TESTS.parent / "target/handles.jsonl", help="a row a case")
+    parser.add_argument("--anew", action="store_true", help="grasp cases that the file holds once more")
+    parser.add_argument("--dump", type=Path, help="a folder for the arrays of every press, for the module alone")
+    parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
+    asked = parser.parse_args()
+    if asked.child:
+        return child(asked.out, os.environ.get("THENAR_DUMP", ""))
+    if asked.dump:
+        asked.dump.mkdir(parents=True, exist_ok=True)
+        os.environ["THENAR_DUMP"] = str(asked.dump)
+    if asked.anew:
+        asked.out.unlink(missing_ok=True)
+    cases = [case_name(*case) for case in product(asked.percentiles, asked.starts, asked.handles)]
+    rows = searching.search(__file__, cases, asked.out, asked.workers)
+    return report({case: rows[case] for case in cases})
+
+
+def case_name(percentile, start, handle):
+    """A case as one text: "50, made, tube"."""
+    return f"{percentile}, {start}, {handle}"
+
+
+def child(out, dump):
+    """Runs cases in one Blender process; it ends at once, since bpy may hang at exit with the add-on registered."""
+    from bench import searching
+    from handles import grasping, shapes
+
+    def one(case):
+        percentile, start, handle = case.split(", ")
+        path = Path(dump) / f"{handle}_{percentile}_{start}.npz".replace(" ", "_") if dump else None
+        row = grasping.grasp(shapes.SHAPES[handle](), float(percentile), start, path)
+        return {"handle": handle, "percentile": int(percentile), "start": start} | row
+
+    grasping.register()
+    searching.run(json.load(sys.stdin), out, one)
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def report(rows):
+    """A row a case, then rates by handle, size and start. Returns the exit code."""
+    from handles import grasping
+
+    wrong = {case: grasping.faults(row) for case, row in rows.items()}
+    for case, row in rows.items():
+        print(f"{case:<28} {_sentence(row)} {', '.join(wrong[case]).upper()}")
+    print(f"\n{'':<18}{'cases':>7}{'refused':>9}{'unsound':>9}" + "".join(f"{name:>9}" for name in FAULTS))
+    names = {part: None for k in (2, 0, 1) for part in (case.split(", ")[k] for case in rows)}
+    for name in [*names, "all"]:
+        chosen = [case for case in rows if name == "all" or name in case.split(", ")]
+        count = Counter(fault for case in chosen for fault in wrong[case])
+        refused = sum(grasping.is_refused(rows[case]) for case in chosen)
+        unsound = sum(bool(wrong[case]) for case in chosen)
+        print(f"{name:<18}{len(chosen):>7}{refused:>9}{unsound:>9}" + "".join(f"{count[name]:>9}" for name in FAULTS))
+    texts = Counter(f"{row['refused']}: {row['text'][:140]}" for row in rows.values() if "refused" in row)
+    for text, number in texts.most_common(12):
+        print(f"refused {number} at {text}")
+    print("grades:", dict(Counter(row["grade"] for row in rows.values() if row.get("grade"))) or "none told")
+    refused, unsound = sum(map(grasping.is_refused, rows.values())), sum(bool(faults) for faults in wrong.values())
+    print(f"unsound {unsound}/{len(rows)}, refused {refused}/{len(rows)}")
+    return 1 if unsound or refused > MOST_REFUSED * len(rows) else 0
+
+
+def _sentence(row):
+    if "died" in row:
+        return f"died: {row['died']}"
+    if "refused" in row:
+        return f"refused at {row['refused']}: {row['text'][:110]}"
+    return (
+        f"{row['force_n']:7.1f} N {row['area_mm2'] / 100:6.1f} cm2, peak {row['peak_kpa']:7.0f}, patch "
+        f"{row['patch_peak_kpa']:6.0f} kPa; moved {row['moved_mm']:6.2f} of {row['deepest_mm']:5.2f} mm, in a patch "
+        f"beyond {row['beyond_mm']:6.2f}, left {row['left_mm']:.3f} mm {row['grade']}"
+    )
+
+
+if __name__ == "__main__":
+    sys.path[0] = str(TESTS)
+    from bench.searching import ONE_THREAD
+
+    if any(os.environ.get(name) != value for name, value in ONE_THREAD.items()):
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **ONE_THREAD})
+    sys.exit(main())
