@@ -24,7 +24,7 @@ def live_modifier(obj):
 def played_modifiers(obj):
     """All modifiers of Thenar's on this hand."""
     live = live_modifier(obj)
-    return [*bake_modifiers(obj), *shown_modifiers(obj), *([live] if live is not None else [])]
+    return [*bake_modifiers(obj), *([live] if live is not None else [])]
 
 
 def roots(parts):
@@ -53,7 +53,7 @@ def take_out(context, hand, parts, restore):
     if key is not None and not key.mute:
         restore.callback(setattr, key, "mute", False)
         key.mute = True
-    for modifier in played_modifiers(hand):
+    for modifier in (*played_modifiers(hand), *shown_modifiers(hand)):
         if modifier.show_viewport:  # to set it anew, even to the same, has Blender evaluate the hand
             restore.callback(setattr, modifier, "show_viewport", True)
             modifier.show_viewport = False
