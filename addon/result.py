@@ -5,7 +5,7 @@ from math import isfinite
 
 import numpy as np
 
-from . import names
+from . import grades, names, sentences
 from .scene.units import KPA_PER_MPA
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")
@@ -35,6 +35,7 @@ def fill(result, job, contact, written, notes):
     result.load_balance = left["load_balance"]
     result.write_error_mm = written.error_mm
     _add_shown(result, written.shown, origin)
+    _add_grade(result, job, contact)
     result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
     result.direction = _finite(np.asarray(contact.direction).tolist())
     result.input_hash = job.input_hash
@@ -52,6 +53,8 @@ def clear(result):
     _clear_rows(result)
     result.is_valid = False
     result.input_hash = result.state_hash = result.comfort = result.comfort_source = ""
+    result.grade = result.reason = result.reason_kind = ""
+    result.reason_vertex = -1
 
 
 def as_dict(result):
@@ -59,6 +62,8 @@ def as_dict(result):
     rows = [_row_dict(row) for row in result.regions]
     return {
         "schema": result.schema,
+        "grade": result.grade,
+        "reason": result.reason,
         "hand": result.hand_name,
         "product": result.product_name,
         "model": result.model,
@@ -157,6 +162,13 @@ def _add_shown(result, shown, origin):
         place = found.place_mm if found.depth_mm >= found.between_mm else found.between_place_mm
         result.shown_place_mm = _sum(place, origin)
     result.shown_blame = ", ".join(name for name, _ in shown.suspects) if shown.moved else ""
+
+
+def _add_grade(result, job, contact):
+    shown_mm, vertex = result.shown_penetration_mm, result.shown_vertex
+    found = grades.judge(contact, shown_mm, vertex, lambda text: sentences.named(text, job))
+    result.grade, result.reason = found.grade, found.reason
+    result.reason_kind, result.reason_vertex = found.kind, found.vertex
 
 
 def _add_stages(result, job, contact):

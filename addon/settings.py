@@ -196,11 +196,22 @@ class ThenarResult(bpy.types.PropertyGroup):
     input_hash: StringProperty()
     state_hash: StringProperty()
     made_with: StringProperty()
+    grade: StringProperty()
+    reason: StringProperty()
+    reason_kind: StringProperty()
+    reason_vertex: IntProperty(default=-1)
     regions: CollectionProperty(type=ThenarRegionResult)
     region_index: IntProperty()
     fingers: CollectionProperty(type=ThenarRegionResult)
     stages: CollectionProperty(type=ThenarStage)
     warnings: CollectionProperty(type=ThenarText)
+
+
+class ThenarRefusal(bpy.types.PropertyGroup):
+    """Why the last press gave no result, and at which vertices of the hand, as numbers with commas between."""
+
+    text: StringProperty()
+    vertices: StringProperty()
 
 
 class ThenarSlot(bpy.types.PropertyGroup):
@@ -316,6 +327,7 @@ class ThenarScene(bpy.types.PropertyGroup):
     maps: PointerProperty(type=map_settings.ThenarMaps)
     comfort: PointerProperty(type=comfort_settings.ThenarComfort)
     preset_before: StringProperty()
+    refusal: PointerProperty(type=ThenarRefusal)
     result: PointerProperty(type=ThenarResult)
 
 
@@ -329,6 +341,7 @@ CLASSES = (
     ThenarStage,
     ThenarText,
     ThenarResult,
+    ThenarRefusal,
     ThenarSlot,
     ThenarObject,
     ThenarScene,

@@ -153,7 +153,9 @@ def telling(job, cancel=None):
     except native.error_types() as error:
         if cancel is None or not cancel.is_set():
             cache.drop(_skin_key(job))
-        raise type(error)(sentences.named(str(error), job)) from None
+        named = type(error)(sentences.named(str(error), job))
+        named.vertices = list(getattr(error, "vertices", ()))
+        raise named from None
 
 
 def prepared(job, cancel=None, progress=None):

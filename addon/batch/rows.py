@@ -32,6 +32,8 @@ def row(case, case_hash, answer):
         "name": case["name"],
         "status": status,
         "message": error,
+        "grade": summary.get("grade", ""),
+        "reason": summary.get("reason", ""),
         **settings,
         **numbers,
         "warnings": "; ".join(summary.get("warnings", ())),

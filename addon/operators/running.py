@@ -154,11 +154,17 @@ def _areas(context):
 
 
 def attempt(operator, action, *arguments):
-    """Run `action`; what the user can mend is reported as one sentence. Returns its value, or None after a report."""
+    """Run `action`; what the user can mend is reported as one sentence. Returns its value, or None after a report.
+
+    An operator with `refused(error)` is told.
+    """
     try:
         return action(*arguments)
     except (Refusal, *native.error_types()) as error:
         operator.report({"ERROR"}, sentence(error))
+        refused = getattr(operator, "refused", None)
+        if refused is not None:
+            refused(error)
         return None
 
 

@@ -1,9 +1,10 @@
-"""The operator that presses the hand against the product."""
+"""The operators that press the hand against the product, and that show where that failed."""
 
 import bpy
 
-from .. import workflow
-from . import computing, display, polling, running
+from .. import grades, workflow
+from ..scene import regions
+from . import computing, display, polling, running, selecting
 
 
 class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
@@ -19,20 +20,89 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
         return polling.can_compute(cls, context)
 
     def steps(self, context):
+        forget_refusal(context)
         return workflow.steps(context)
 
+    def refused(self, error):
+        """Keep why there is no result, and select where the skin does not fit; the scene is as before otherwise."""
+        vertices = getattr(error, "vertices", ())
+        hand, refusal = bpy.context.scene.thenar.hand, bpy.context.scene.thenar.refusal
+        if not vertices or hand is None:
+            return
+        refusal.text = running.sentence(error)
+        refusal.vertices = ",".join(map(str, vertices))
+        if hand.mode == "OBJECT":
+            regions.select_only(hand.data, vertices)
+        running.redraw(bpy.context)
+
     def _report(self, context, result):
+        """The last message is the one that is seen: the gravest."""
         display.refresh(context)
         for text in result.warnings:
             self.report({"WARNING"}, running.sentence(text.name))
-        if result.area_mm2 == 0.0:
-            self.report({"WARNING"}, f"'{result.hand_name}' does not touch '{result.product_name}'; nothing is pressed")
-        self.report(
-            {"INFO"},
+        numbers = (
             f"{result.force_n:.1f} N on {result.area_mm2 / 100:.1f} cm², peak {result.peak_kpa:.0f} kPa, "
-            f"mean {result.mean_kpa:.0f} kPa",
+            f"mean {result.mean_kpa:.0f} kPa"
         )
+        if result.grade == grades.GOOD:
+            self.report({"INFO"}, numbers)
+        else:
+            self.report({"WARNING"}, f"{grades.title(result.grade)}: {result.reason} ({numbers})")
         return {"FINISHED"}
 
 
-CLASSES = (THENAR_OT_solve,)
+class THENAR_OT_show_place(bpy.types.Operator):
+    """Show where on the hand the press failed, or what its grade is about"""
+
+    bl_idname = "thenar.show_place"
+    bl_label = "Show the Place"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        settings = context.scene.thenar
+        return settings.hand is not None and bool(_place(settings))
+
+    def execute(self, context):
+        settings = context.scene.thenar
+        selecting.select(context, settings.hand, _place(settings))
+        return {"FINISHED"}
+
+
+class THENAR_OT_grasp_lighter(bpy.types.Operator):
+    """Close the hand on the product more lightly, and press again"""
+
+    bl_idname = "thenar.grasp_lighter"
+    bl_label = "Grasp Lighter and Solve"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return polling.can_compute(cls, context) and bpy.ops.thenar.fit_grasp.poll()
+
+    def execute(self, context):
+        try:
+            bpy.ops.thenar.fit_grasp(strength="LIGHT", place="KEEP")
+            bpy.ops.thenar.solve()
+        except RuntimeError as error:  # what those operators report
+            self.report({"ERROR"}, str(error).strip().removeprefix("Error: "))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+def forget_refusal(context):
+    """No press has failed."""
+    refusal = context.scene.thenar.refusal
+    refusal.text = refusal.vertices = ""
+
+
+def _place(settings):
+    """The vertices to look at: of the last failure, else of the result's reason."""
+    told, count = settings.refusal.vertices, 0
+    if settings.hand is not None and settings.hand.type == "MESH":
+        count = len(settings.hand.data.vertices)
+    vertices = [int(each) for each in told.split(",")] if told else [settings.result.reason_vertex]
+    return [vertex for vertex in vertices if 0 <= vertex < count]
+
+
+CLASSES = (THENAR_OT_solve, THENAR_OT_show_place, THENAR_OT_grasp_lighter)

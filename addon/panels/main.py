@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, maps, names, status
+from .. import effect_settings, grades, maps, names, status
 from ..scene import sizes
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
@@ -96,8 +96,14 @@ def _draw_state(layout, context):
         row = column.row()
         row.alert = True
         row.label(text="Out of date: the scene changed", icon="ERROR")
+    elif settings.result.grade in {"", grades.GOOD}:
+        column.label(text="Result up to date: good", icon="CHECKMARK")
     else:
-        column.label(text="Result up to date", icon="CHECKMARK")
+        row = column.row()
+        row.alert = settings.result.grade == grades.DO_NOT
+        icon = "CANCEL" if row.alert else "ERROR"
+        row.label(text=f"Result up to date: {settings.result.grade}", icon=icon)
+    _draw_refusal(layout, context, settings.refusal)
 
 
 def _draw_sizes(layout, context):
@@ -118,6 +124,18 @@ def _draw_sizes(layout, context):
         size = sizes.length(factor * measured.product_mm)
         box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {size}").factor = factor
     box.operator("thenar.accept_size", text=f"It is {sizes.length(measured.product_mm)} long")
+
+
+def _draw_refusal(layout, context, refusal):
+    """Why the last press gave no result, with what mends it."""
+    if not refusal.text:
+        return
+    box = layout.box()
+    text.alert(box, context, refusal.text)
+    row = box.row(align=True)
+    row.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
+    if bpy.ops.thenar.fit_grasp.poll():
+        row.operator("thenar.grasp_lighter", text="Grasp Lighter", icon="HAND")
 
 
 def _draw_force(layout, settings):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import maps, status
+from .. import grades, maps, status
 from . import text
 from .lists import SHARE, columns
 from .main import Physics, Tab
@@ -26,6 +26,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
                 layout.label(text="Solve to see forces and pressures", icon="INFO")
             draw_maps(layout, context.scene.thenar)
             return
+        _draw_grade(layout, context, result)
         box = layout.box().column(align=True)
         _pair(box, "Force", f"{result.force_n:.1f} N")
         _pair(box, "Contact area", f"{result.area_mm2 / 100:.2f} cm²")
@@ -40,6 +41,21 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
             _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")
             _pair(box, "Skin that slips", f"{result.slipping:.0%} of the area")
         draw_maps(layout, context.scene.thenar)
+
+
+def _draw_grade(layout, context, result):
+    """The grade before any number, with its reason and where that is."""
+    if not result.grade:
+        return
+    box = layout.box()
+    box.alert = result.grade == grades.DO_NOT
+    icon = {grades.GOOD: "CHECKMARK", grades.READ: "ERROR"}.get(result.grade, "CANCEL")
+    box.label(text=grades.title(result.grade), icon=icon)
+    if not result.reason:
+        return
+    text.paragraph(box, context, result.reason)
+    if result.reason_vertex >= 0:
+        box.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
 
 
 def draw_maps(layout, settings):

@@ -29,7 +29,7 @@ class MaterialError(ThenarError):
     """A material number is not admissible, or a region has no material."""
 
 class SolveError(ThenarError):
-    """A press was asked for something it cannot do, or was not solved; `vertices` are those of the hand where it failed."""
+    """A press was asked for something it cannot do, or was not solved; `vertices` of the hand say where."""
 
     vertices: list[int]
 

@@ -12,7 +12,6 @@ from functools import lru_cache
 
 import numpy as np
 import thenar
-
 from handles import measuring, random_products
 
 PERCENTILES = (1.0, 5.0, 50.0, 95.0, 99.0)

@@ -5,7 +5,6 @@ face that nobody sees; some are coarse as CAD exports, some dense as sculpts.
 """
 
 import numpy as np
-
 from handles.random_products import block, joined, outward, revolved, swept
 
 AXIS = np.array([0.0, 1.0, 0.0])

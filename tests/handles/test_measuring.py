@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from handles import measuring, random_products, shapes
 
 

@@ -31,13 +31,19 @@ pub fn summarize(
         .map(|(f, g)| (*f, g))
         .collect();
     let (product_pressure, product_force) = product_pressure(product, &touches, skin.spacing);
-    let normal_force: f64 = touches.iter().map(|t| t.0).sum();
+    let normal_force: f64 = 0.0 + touches.iter().map(|t| t.0).sum::<f64>();
     let shift = direction * offset;
     let total_force: Vec3 = touches.iter().map(|(f, g)| -g.normal * *f).sum();
     let (shear_force, shear_moment) = shear_load(pressed, shift);
     let moment = |(f, g): &(f64, &Gap)| (g.closest + shift).cross(&(-g.normal * *f));
     let center: Vec3 = touches.iter().map(|(f, g)| (g.closest + shift) * *f).sum();
-    let contact_area: f64 = fields.contact_area.iter().filter(|a| **a > 0.0).sum();
+    // A sum of nothing is -0.
+    let contact_area: f64 = 0.0
+        + fields
+            .contact_area
+            .iter()
+            .filter(|a| **a > 0.0)
+            .sum::<f64>();
     let peak_pressure = fields.pressure.iter().filter(|p| **p > 0.0);
     let peak_pressure = peak_pressure.fold(0.0, |most, p| f64::max(most, *p));
     let patch_peak = fields.patch_peak(skin, posed);
