@@ -19,7 +19,7 @@ TESTS = Path(__file__).resolve().parents[1]
 MOST_REFUSED = 0.05
 PERCENTILES = (1, 5, 50, 95, 99)
 STARTS = ("made", "turned", "over", "tilted", "leaned", "lying")
-FAULTS = ("spike", "inside", "peak", "died")
+FAULTS = ("spike", "patch", "inside", "peak", "died")
 
 
 def main():

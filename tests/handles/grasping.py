@@ -183,8 +183,10 @@ def faults(row):
     if is_refused(row):
         return []
     wrong = []
-    if not (row["moved_mm"] <= row["deepest_mm"] + SPARE_MM and row["beyond_mm"] <= SPARE_MM):
+    if not row["moved_mm"] <= row["deepest_mm"] + SPARE_MM:
         wrong.append("spike")
+    if not row["beyond_mm"] <= SPARE_MM:
+        wrong.append("patch")
     if not row["left_mm"] <= LEFT_MM:
         wrong.append("inside")
     if not row["peak_kpa"] <= PEAK_KPA:

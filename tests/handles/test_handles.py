@@ -104,4 +104,4 @@ def test_a_second_patch_may_not_hide_behind_a_deep_one():
     )
     row = grasping.compared(shown, vertices * [4.0, 1.0, 1.0], faces)
     assert row["moved_mm"] <= row["deepest_mm"] + grasping.SPARE_MM
-    assert row["patches"] == 2 and "spike" in grasping.faults(row | {"peak_kpa": 100.0})
+    assert row["patches"] == 2 and "patch" in grasping.faults(row | {"peak_kpa": 100.0})
