@@ -35,8 +35,11 @@ def select_only(mesh, vertices):
     chosen = np.zeros(len(mesh.vertices), bool)
     chosen[vertices] = True
     mesh.vertices.foreach_set("select", chosen)
-    mesh.edges.foreach_set("select", np.zeros(len(mesh.edges), bool))
-    mesh.polygons.foreach_set("select", np.zeros(len(mesh.polygons), bool))
+    for name in (".select_edge", ".select_poly"):
+        # Not by `edges.foreach_set`: it crashes on a mesh that was never in Edit Mode (Blender 5.0).
+        layer = mesh.attributes.get(name)
+        if layer is not None:
+            layer.data.foreach_set("value", np.zeros(len(layer.data), bool))
 
 
 def group_weights(context, hand, group_names):
