@@ -43,10 +43,10 @@ class Computing:
         if bpy.app.background or context.window is None:
             return self.execute(context)
         self._steps = self.steps(context)
-        worker = running.attempt(self, self._begin)
-        if worker is None:
+        begun = running.attempt(self, self._begin)
+        if begun is None:
             return {"CANCELLED"}
-        _under_way[self._steps] = _Run(running.begin(context, self), worker)
+        self._start(context, *begun)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
@@ -76,8 +76,13 @@ class Computing:
         """Stop the computation; also called by Blender when the window goes."""
         _stop(context, self._steps)
 
+    def _start(self, context, work):
+        """Hand the first work to a thread, and tick."""
+        _under_way[self._steps] = _Run(running.begin(context, self), running.start(work))
+
     def _begin(self):
-        return running.start(next(self._steps))
+        """The first work, which may be `PAUSE`, in a tuple."""
+        return (next(self._steps),)
 
     def _advance(self):
         """Go on with the worker's value, and over pauses while the turn lasts. Returns `_GOES_ON`, or the outcome."""

@@ -17,6 +17,8 @@ SHORT = 1.0 / 50.0
 """Products shorter than this share of the hand are asked about: 4 mm for a whole hand, less for a patch of skin."""
 USUAL_MM = (10.0, 1000.0)
 """Longest side of what a hand holds or presses, to which a factor must bring it."""
+FEW = 16
+"""Parts that are measured at every redraw."""
 _KEPT = 20.0
 """A size is kept for so many times what measuring it took: a redraw of many parts must stay cheap."""
 _kept = {}
@@ -49,7 +51,9 @@ def measure(scene, hand, parts):
 
 
 def glance(scene, hand, parts):
-    """The same for a panel: kept a moment where measuring takes long."""
+    """The same for a panel: kept a moment where there are many parts."""
+    if len(parts) <= FEW:
+        return measure(scene, hand, parts)
     until, key, sizes = _kept.get(scene.name, (0.0, None, None))
     began = time.monotonic()
     wanted = hand.name, len(parts), parts[0].name
