@@ -208,7 +208,8 @@ impl fmt::Display for Warning {
                 "the product lies inside the hand and touches no skin: move it out",
             ),
             Warning::NoContact => f.write_str(
-                "no skin touches the product: there is no pressure; move them together or ask for a force",
+                "no skin touches the product: there is no pressure; move them together or ask for a force (a product finer than the \
+                 hand's vertex spacing may lie between vertices: refine the hand there)",
             ),
             Warning::CoarseProduct { longest, spacing } => write!(
                 f,

@@ -4,6 +4,7 @@ use crate::arrays::{Argument, column, owned_rows, triple, zeros};
 use crate::contact_records as records;
 use crate::record::Once;
 use pyo3::prelude::*;
+use pyo3::types::{PyList, PyString};
 use std::mem::take;
 use std::sync::Arc;
 use thenar_contact::{Convergence, Grade, RegionResult, Residual, Shear, Warning};
@@ -42,9 +43,10 @@ pub struct Contact {
     friction: Once<Option<Shear>>,
     residual: Once<Residual>,
     convergence: Once<Convergence>,
-    warnings: Vec<Warning>,
-    grade: Grade,
-    reason: Option<String>,
+    warnings: Once<Vec<String>>,
+    remarks: Once<Vec<Warning>>,
+    grade: Once<Grade>,
+    reason: Once<Option<String>>,
     seconds: Once<Vec<(&'static str, f64)>>,
 }
 
@@ -82,9 +84,10 @@ impl Contact {
             is_sticking: Once::new(shear.as_mut().map(|shear| take(&mut shear.is_sticking))),
             residual: Once::new(result.residual),
             convergence: Once::new(result.convergence),
-            grade,
-            reason,
-            warnings: result.warnings,
+            grade: Once::new(grade),
+            reason: Once::new(reason),
+            warnings: Once::new(result.warnings.iter().map(Warning::to_string).collect()),
+            remarks: Once::new(result.warnings),
             seconds: Once::new(result.seconds),
             friction: Once::new(shear),
             region_names,
@@ -301,26 +304,30 @@ impl Contact {
 
     /// Sentences for the user.
     #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.warnings.iter().map(Warning::to_string).collect()
+    fn warnings(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.warnings
+            .get(py, |texts| Ok(PyList::new(py, texts)?.into_any().unbind()))
     }
 
     /// How far the result may be used: "good", "read this" or "do not use".
     #[getter]
-    fn grade(&self) -> &'static str {
-        self.grade.name()
+    fn grade(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let text = |grade: Grade| Ok(PyString::new(py, grade.name()).into_any().unbind());
+        self.grade.get(py, text)
     }
 
     /// The gravest of the warnings; None where the grade is "good".
     #[getter]
-    fn reason(&self) -> Option<&str> {
-        self.reason.as_deref()
+    fn reason(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.reason
+            .get(py, |text| Ok(text.into_pyobject(py)?.unbind()))
     }
 
     /// A record per warning: kind, grade, text, and vertex, None where it is about none.
     #[getter]
     fn remarks(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        records::remarks(py, &self.warnings)
+        self.remarks
+            .get(py, |warnings| records::remarks(py, &warnings))
     }
 
     /// A record of wall time by stage, s.
