@@ -225,6 +225,12 @@ class ThenarObject(bpy.types.PropertyGroup):
     bake: PointerProperty(type=bake_settings.ThenarBake)
 
 
+class ThenarMesh(bpy.types.PropertyGroup):
+    """`mesh.thenar`: the names of attributes and shape keys that Thenar made, one a line."""
+
+    owned: StringProperty()
+
+
 def _is_mesh(_self, obj):
     return obj.type == "MESH"
 
@@ -325,6 +331,7 @@ CLASSES = (
     ThenarResult,
     ThenarSlot,
     ThenarObject,
+    ThenarMesh,
     ThenarScene,
 )
 
@@ -334,12 +341,14 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.thenar = PointerProperty(type=ThenarObject)
+    bpy.types.Mesh.thenar = PointerProperty(type=ThenarMesh)
     bpy.types.Scene.thenar = PointerProperty(type=ThenarScene)
 
 
 def unregister():
     """Take the properties off again."""
     del bpy.types.Scene.thenar
+    del bpy.types.Mesh.thenar
     del bpy.types.Object.thenar
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -75,7 +75,8 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<String> {
 fn size(posed: &Mesh) -> Option<String> {
     let mut low = Vec3::repeat(f64::INFINITY);
     let mut high = Vec3::repeat(f64::NEG_INFINITY);
-    for p in posed.positions() {
+    for &vertex in posed.triangles().iter().flatten() {
+        let p = &posed.positions()[vertex as usize];
         (low, high) = (low.inf(p), high.sup(p));
     }
     let size = (high - low).max();

@@ -1,6 +1,6 @@
 //! Makes a product's mesh face outward, and finds out how inside and outside can be told on it.
 
-use crate::audit::{audit_of, find, join, signed_volume};
+use crate::audit::{audit_of, find, join, middle, signed_volume};
 use crate::edges::{Side, joins, sides};
 use crate::mesh::{Mesh, Standing, Vec3, standings};
 use crate::winding::solid_angle;
@@ -183,11 +183,12 @@ fn parts(mesh: &Mesh, all: &[Side]) -> Vec<Part> {
         members[find(&mut root, t) as usize].push(t as usize);
     }
     members.retain(|m| !m.is_empty());
+    let middle = middle(mesh);
     let describe = |mut triangles: Vec<usize>| {
         triangles.sort_unstable();
         let corners = || triangles.iter().flat_map(|&t| mesh.corners(t));
         Part {
-            volume: signed_volume(mesh, triangles.iter().copied()),
+            volume: signed_volume(mesh, &middle, triangles.iter().copied()),
             is_closed: triangles.iter().all(|&t| is_closed[t]),
             low: corners().fold(Vec3::repeat(f64::INFINITY), |m, p| m.inf(&p)),
             high: corners().fold(Vec3::repeat(f64::NEG_INFINITY), |m, p| m.sup(&p)),
