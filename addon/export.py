@@ -10,7 +10,7 @@ import numpy as np
 
 from . import names, workflow
 from . import result as results
-from .scene import attributes, baked, copies, mesh, units
+from .scene import attributes, baked, copies, mesh, owned, units
 from .scene.checks import Refusal
 
 _SCENE = {".glb", ".gltf", ".usd", ".usda", ".usdc", ".usdz"}
@@ -80,7 +80,7 @@ def product_tables(context):
     """(part's name, columns) of every product part, from the part itself or the copy that carries its pressure."""
     for part in workflow.product_parts(context.scene.thenar):
         carrier = copies.find_copy(part.name) or part
-        if carrier.type != "MESH" or names.PRESSURE_KPA not in carrier.data.attributes:
+        if carrier.type != "MESH" or not owned.is_own(carrier.data, names.PRESSURE_KPA):
             continue
         pressure = attributes.read(carrier.data, names.PRESSURE_KPA)
         places = _world_mm(context, carrier, len(pressure))

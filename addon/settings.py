@@ -242,6 +242,12 @@ class ThenarObject(bpy.types.PropertyGroup):
     bake: PointerProperty(type=bake_settings.ThenarBake)
 
 
+class ThenarMesh(bpy.types.PropertyGroup):
+    """`mesh.thenar`: the names of attributes and shape keys that Thenar made, one a line."""
+
+    owned: StringProperty()
+
+
 def _is_mesh(_self, obj):
     return obj.type == "MESH"
 
@@ -344,6 +350,7 @@ CLASSES = (
     ThenarRefusal,
     ThenarSlot,
     ThenarObject,
+    ThenarMesh,
     ThenarScene,
 )
 
@@ -353,12 +360,14 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     bpy.types.Object.thenar = PointerProperty(type=ThenarObject)
+    bpy.types.Mesh.thenar = PointerProperty(type=ThenarMesh)
     bpy.types.Scene.thenar = PointerProperty(type=ThenarScene)
 
 
 def unregister():
     """Take the properties off again."""
     del bpy.types.Scene.thenar
+    del bpy.types.Mesh.thenar
     del bpy.types.Object.thenar
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

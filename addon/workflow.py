@@ -9,7 +9,7 @@ import numpy as np
 
 from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
-from .scene import checks, own, read, sizes, state, units, write
+from .scene import checks, own, owned, read, sizes, state, units, write
 from .scene import parts as parts_of
 from .settings import MATERIAL_NUMBERS
 from .steps import PAUSE, at_once
@@ -71,6 +71,7 @@ def check(context):
     hand, parts = settings.hand, product_parts(settings)
     checks.check_hand(context, hand)
     checks.check_product(context, parts, hand)
+    owned.check_names(hand)
     sizes.check_product_size(context, hand, parts)
     return hand, parts
 
@@ -341,7 +342,7 @@ def has_output(context):
     hand = settings.hand
     if hand is None or hand.type != "MESH":
         return False
-    carried = own.contact_key(hand) is not None or names.PRESSURE_KPA in hand.data.attributes
+    carried = own.contact_key(hand) is not None or owned.is_own(hand.data, names.PRESSURE_KPA)
     return carried or settings.result.is_valid or bool(own.played_modifiers(hand))
 
 

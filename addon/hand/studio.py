@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..scene import attributes
 from ..scene.units import mm_per_unit
 from .shader import Tree
 
@@ -30,7 +29,9 @@ def add_mesh(context, name, shape, material):
 
 def forget_selection(mesh):
     """Select nothing: Blender leaves the edges it finds selected by chance, and files shall hold the same each time."""
-    attributes.remove(mesh, (".select_vert", ".select_edge", ".select_poly"))
+    for name in (".select_vert", ".select_edge", ".select_poly"):
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
 
 
 def set_units(scene):

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import comfort, map_settings, maps, names, tissue, workflow
-from ..scene import attributes, colors, copies, shading
+from ..scene import attributes, colors, copies, owned, shading
 from ..views import compositor
 from . import polling, running
 
@@ -19,7 +19,7 @@ def shown_objects(context, attribute=names.PRESSURE_KPA):
             found.append((copy, False))
         elif part.type == "MESH":
             found.append((part, False))
-    return [(obj, is_skin) for obj, is_skin in found if attribute in obj.data.attributes]
+    return [(obj, is_skin) for obj, is_skin in found if owned.is_own(obj.data, attribute)]
 
 
 def refresh(context):

@@ -2,19 +2,22 @@
 
 import numpy as np
 
+from . import owned
+
 _FIELD = {"FLOAT": "value", "INT": "value", "FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color"}
 _WIDTH = {"FLOAT": 1, "INT": 1, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
 
 
 def write(mesh, name, kind, values):
-    """Write point attribute `name` of `kind`; one of that name but another kind is replaced."""
+    """Write point attribute `name` of `kind`; where there is one, it is Thenar's, see `owned`."""
     attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != kind):
+    if attribute is not None and attribute.data_type != kind and owned.is_marked(mesh, name):
         mesh.attributes.remove(attribute)
         attribute = None
     if attribute is None:
         mesh.attributes.new(name, kind, "POINT")
         attribute = mesh.attributes[name]
+        owned.mark(mesh, name)
     dtype = np.int32 if kind == "INT" else np.float32
     attribute.data.foreach_set(_FIELD[kind], np.ascontiguousarray(values, dtype).ravel())
 
@@ -40,11 +43,10 @@ def read(mesh, name):
 
 
 def remove(mesh, attribute_names):
-    """Remove the attributes of these names where they exist."""
-    for name in attribute_names:
-        attribute = mesh.attributes.get(name)
-        if attribute is not None:
-            mesh.attributes.remove(attribute)
+    """Remove the attributes of these names where they exist and are Thenar's."""
+    for name in [name for name in attribute_names if owned.is_own(mesh, name)]:
+        mesh.attributes.remove(mesh.attributes[name])
+        owned.unmark(mesh, name)
 
 
 def snapshot(mesh, attribute_names):

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import names
 from ..steps import PAUSE
-from . import mesh
+from . import mesh, owned
 from .own import contact_key
 
 CORRECTIONS = 12
@@ -41,6 +41,7 @@ def ensure_key(hand):
     key = contact_key(hand)
     if key is None:
         key = hand.shape_key_add(name=names.SHAPE_KEY, from_mix=False)
+        owned.mark(hand.data, names.SHAPE_KEY)
         hand.active_shape_key_index = index
     key.relative_key = hand.data.shape_keys.reference_key
     key.value = 1.0
@@ -56,6 +57,7 @@ def remove_key(hand):
     active = hand.active_shape_key
     name = active.name if active is not None else ""
     hand.shape_key_remove(key)
+    owned.unmark(hand.data, names.SHAPE_KEY)
     blocks = hand.data.shape_keys.key_blocks
     if len(blocks) == 1 and hand.thenar.made_basis:
         hand.shape_key_remove(blocks[0])

@@ -71,12 +71,40 @@ def require_vertices(context, obj):
     """Refuse a hand whose modifiers reorder or remove vertices. Raises `Refusal`."""
     if keeps_vertices(context, obj):
         return
-    suspects = [modifier.name for modifier in obj.modifiers if modifier.show_viewport and modifier.type != "ARMATURE"]
-    listed = ", ".join(f"'{name}'" for name in suspects) or "a modifier"
+    guilty = _changers(context, obj)
+    listed = ", ".join(f"'{name}'" for name in guilty) or "a modifier"
+    change, them = ("change", "them") if len(guilty) > 1 else ("changes", "it")
     raise Refusal(
-        f"{listed} on '{obj.name}' changes which vertices there are, so results cannot be written back; "
-        "apply it or switch it off in the viewport"
+        f"{listed} on '{obj.name}' {change} which vertices there are, so results cannot be written back; "
+        f"apply {them} or switch {them} off in the viewport"
     )
+
+
+def _changers(context, obj):
+    """Names of the modifiers that change which vertices there are: each by itself, or else the first after others."""
+    shown = [modifier for modifier in obj.modifiers if modifier.show_viewport]
+
+    def breaks(active):
+        for modifier in shown:
+            modifier.show_viewport = modifier in active
+        context.view_layer.update()
+        return not keeps_vertices(context, obj)
+
+    try:
+        alone = [modifier.name for modifier in shown if breaks([modifier])]
+        prefixes = (shown[: count + 1] for count in range(len(shown)))
+        return alone or [prefix[-1].name for prefix in prefixes if breaks(prefix)][:1]
+    finally:
+        for modifier in shown:
+            modifier.show_viewport = True
+        context.view_layer.update()
+
+
+def is_used(faces, count):
+    """Whether each of `count` vertices is a corner of one of the triangles `faces`."""
+    used = np.zeros(count, bool)
+    used[faces] = True
+    return used
 
 
 def _same_topology(base, mesh):

@@ -3,12 +3,13 @@
 from contextlib import ExitStack, contextmanager
 
 from .. import names
+from . import owned
 
 
 def contact_key(obj):
     """The contact's shape key of a hand, or None."""
     keys = obj.data.shape_keys if obj.type == "MESH" else None
-    return keys.key_blocks.get(names.SHAPE_KEY) if keys is not None else None
+    return keys.key_blocks.get(names.SHAPE_KEY) if keys is not None and owned.is_own_key(obj.data) else None
 
 
 def bake_modifiers(obj):

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import checks, mesh, regions, units
+from .. import names
+from . import checks, mesh, owned, regions, units
 
 
 @dataclass(frozen=True)
@@ -65,11 +66,12 @@ def read_hand(context, hand, group_names):
     checks.check_finite(rest, hand.name, "hand")
     checks.check_finite(posed, hand.name, "posed hand")
     matrix, scale = units.world_from_local(hand), units.mm_per_unit(context.scene)
-    far = units.to_world_mm(posed, matrix, scale, np.zeros(3))
+    triangles = mesh.triangles(hand.data)
+    skin = mesh.is_used(triangles, count)
+    far = units.to_world_mm(posed[skin], matrix, scale, np.zeros(3))
     origin = 0.5 * (far.min(axis=0) + far.max(axis=0))
     posed_mm = units.to_world_mm(posed, matrix, scale, origin)
-    checks.check_size(posed_mm, hand.name, context.scene)
-    triangles = mesh.triangles(hand.data)
+    checks.check_size(posed_mm[skin], hand.name, context.scene)
     if units.is_mirrored(matrix):
         triangles = triangles[:, ::-1].copy()
     return HandReading(
@@ -169,6 +171,9 @@ def _carry_problem(context, part, pieces):
         return "it is linked from a library"
     if part.data.users - part.data.use_fake_user > 1:
         return "several objects share its mesh"
+    foreign = owned.foreign(part.data, names.PRODUCT_ATTRIBUTES)
+    if foreign is not None:
+        return f"its attribute '{foreign.name}' is not Thenar's"
     if not mesh.keeps_vertices(context, part):
         return "its modifiers change which vertices there are"
     return ""

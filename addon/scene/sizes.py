@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import checks, own, units
+from . import checks, mesh, own, units
 
 FACTORS = (1e-3, 1e-2, 1e-1, 0.0254, 1.0 / 0.0254, 10.0, 100.0, 1000.0)
 """What a file in one unit is off by when it is read in another: mm, cm, dm and inches as m, and the other way."""
@@ -38,16 +38,8 @@ class Sizes:
 
 def measure(scene, hand, parts):
     """Sizes by the bounding boxes as last evaluated, and factors where the product's is not believed."""
-    scale = units.mm_per_unit(scene)
-    sides = np.sort(np.ptp(_corners(parts), axis=0)) * scale
-    hand_mm, product_mm = float(np.ptp(_corners([hand]), axis=0).max() * scale), float(sides[-1])
-    too_long = product_mm > LONG_MM and sides[0] > THICK_MM
-    is_doubtful = (too_long or product_mm < SHORT * hand_mm) and not _is_accepted(scene, product_mm)
-    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault, which is told later
-    low, high = USUAL_MM
-    usual = [factor for factor in FACTORS if low <= factor * product_mm <= high] if is_doubtful else []
-    nearness = sorted(usual, key=lambda factor: abs(np.log(factor * product_mm / 150.0)))
-    return Sizes(hand_mm, product_mm, tuple(nearness))
+    sizes = _measured(scene, hand, parts)
+    return _measured(scene, hand, parts, without_loose=True) if sizes.factors else sizes
 
 
 def glance(scene, hand, parts):
@@ -120,6 +112,21 @@ def length(mm):
     return f"{mm / 1000:.4g} m" if mm >= 1000.0 else f"{mm:.3g} mm"
 
 
+def _measured(scene, hand, parts, without_loose=False):
+    """By boxes, or by the vertices of faces where a mesh has others: they take longer, and change the size rarely."""
+    scale = units.mm_per_unit(scene)
+    sides = np.sort(np.ptp(_corners(parts, without_loose), axis=0)) * scale
+    hand_mm = float(np.ptp(_corners([hand], without_loose), axis=0).max() * scale)
+    product_mm = float(sides[-1])
+    too_long = product_mm > LONG_MM and sides[0] > THICK_MM
+    is_doubtful = (too_long or product_mm < SHORT * hand_mm) and not _is_accepted(scene, product_mm)
+    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault, which is told later
+    low, high = USUAL_MM
+    usual = [factor for factor in FACTORS if low <= factor * product_mm <= high] if is_doubtful else []
+    nearness = sorted(usual, key=lambda factor: abs(np.log(factor * product_mm / 150.0)))
+    return Sizes(hand_mm, product_mm, tuple(nearness))
+
+
 def _scaled(part, roots, factor):
     """The part's world matrix after the scaling."""
     matrix = part.matrix_world.copy()
@@ -134,7 +141,7 @@ def _is_accepted(scene, product_mm):
     return abs(product_mm - scene.thenar.accepted_mm) < 0.01 * product_mm
 
 
-def _corners(objects):
+def _corners(objects, without_loose=False):
     """World corners (k, 3) of the objects' boxes, Blender units; of what an empty instances in its stead."""
     boxes = []
     for obj in objects:
@@ -144,10 +151,16 @@ def _corners(objects):
             inside = [_box(member) - offset for member in obj.instance_collection.all_objects]
             boxes += [box @ matrix[:3, :3].T + matrix[:3, 3] for box in inside]
         else:
-            boxes.append(_box(obj))
+            boxes.append(_box(obj, without_loose))
     return np.concatenate(boxes) if boxes else np.zeros((1, 3))
 
 
-def _box(obj):
+def _box(obj, without_loose=False):
     matrix = np.array(obj.matrix_world)
-    return np.array(obj.bound_box) @ matrix[:3, :3].T + matrix[:3, 3]
+    box = np.array(obj.bound_box)
+    if without_loose and obj.type == "MESH" and len(obj.data.polygons):
+        points, used = mesh.positions(obj.data), np.zeros(len(obj.data.loops), np.int32)
+        obj.data.loops.foreach_get("vertex_index", used)
+        if not mesh.is_used(used, len(points)).all():
+            box = points[used]  # as modelled: boxes know nothing of loose vertices
+    return box @ matrix[:3, :3].T + matrix[:3, 3]

@@ -114,7 +114,8 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
 fn size(posed: &Mesh) -> Option<Warning> {
     let mut low = Vec3::repeat(f64::INFINITY);
     let mut high = Vec3::repeat(f64::NEG_INFINITY);
-    for p in posed.positions() {
+    for &vertex in posed.triangles().iter().flatten() {
+        let p = &posed.positions()[vertex as usize];
         (low, high) = (low.inf(p), high.sup(p));
     }
     let extent = (high - low).max();

@@ -85,8 +85,15 @@ pub fn detect(
         normals: &normals,
         triangles: posed.triangles(),
     };
-    let gaps = product.gaps_after(&mut seen.readings, &facing, limits());
-    let distances = seen.readings.distances().to_vec();
+    let mut gaps = product.gaps_after(&mut seen.readings, &facing, limits());
+    let mut distances = seen.readings.distances().to_vec();
+    // Vertices without a triangle are no skin, wherever they lie.
+    for (vertex, area) in skin.rest_area.iter().enumerate() {
+        if *area == 0.0 {
+            Arc::make_mut(&mut gaps)[vertex] = None;
+            distances[vertex] = f64::INFINITY;
+        }
+    }
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let (region, depth) = (skin.sites.region[site], -distances[vertex as usize]);

@@ -100,12 +100,7 @@ pub(crate) fn audit_of(
             Standing::Flat | Standing::Collapsed => audit.degenerate_triangles += 1,
         }
     }
-    let mut is_used = vec![false; mesh.positions().len()];
-    mesh.triangles()
-        .iter()
-        .flatten()
-        .for_each(|&i| is_used[i as usize] = true);
-    audit.isolated_vertices = is_used.iter().filter(|used| !**used).count();
+    audit.isolated_vertices = used(mesh).iter().filter(|used| !**used).count();
     for group in all.chunk_by(|a, b| a.edge == b.edge) {
         match group {
             [_] => audit.boundary_edges += 1,
@@ -144,18 +139,38 @@ fn parts_by_vertex(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize)
     (part, count as usize)
 }
 
+/// Middle of the vertices that have a triangle; loose ones would turn the sign of an open mesh's volume.
+fn middle(mesh: &Mesh) -> Vec3 {
+    let is_used = used(mesh);
+    let counted = || {
+        mesh.positions()
+            .iter()
+            .zip(&is_used)
+            .filter(|(_, used)| **used)
+    };
+    counted().map(|(p, _)| p).sum::<Vec3>() / counted().count() as f64
+}
+
 /// Volume enclosed by the given triangles, mm3: the sum of their cones.
 pub(crate) fn signed_volume(mesh: &Mesh, triangles: impl Iterator<Item = usize>) -> f64 {
     triangles.map(cone_volumes(mesh)).sum()
 }
 
-/// Volume of the cone over each triangle, mm3, about the middle of the mesh so that far meshes keep their digits.
+/// Volume of the cone over each triangle, mm3, about the [`middle`] of the mesh so that far meshes keep their digits.
 pub(crate) fn cone_volumes(mesh: &Mesh) -> impl Fn(usize) -> f64 + '_ {
-    let middle = mesh.positions().iter().sum::<Vec3>() / mesh.positions().len() as f64;
+    let middle = middle(mesh);
     move |t| {
         let [a, b, c] = mesh.corners(t).map(|p| p - middle);
         a.dot(&b.cross(&c)) / 6.0
     }
+}
+
+/// Whether a triangle names each vertex.
+fn used(mesh: &Mesh) -> Vec<bool> {
+    let mut is_used = vec![false; mesh.positions().len()];
+    let corners = mesh.triangles().iter().flatten();
+    corners.for_each(|&i| is_used[i as usize] = true);
+    is_used
 }
 
 fn parts(mesh: &Mesh, triangles: &[[u32; 3]], standing: &[Standing]) -> usize {
