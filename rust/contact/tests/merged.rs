@@ -4,7 +4,7 @@
 mod scenes;
 
 use scenes::{lattice, material};
-use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start};
+use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start, Unsolved};
 use thenar_surface::{Mesh, Product, Vec3};
 
 /// Radius of the ball that presses, mm, how deep, and the spacing of the skin.
@@ -93,6 +93,7 @@ fn pressed(mesh: &Mesh, posed: Option<&[Vec3]>, shift: Vec3) -> Contact {
         force: None,
         drag: None,
         start: Start::Fresh,
+        unsolved: Unsolved::Refuse,
     };
     skin.press(&press, &Control::none()).unwrap()
 }
