@@ -255,3 +255,87 @@ fn files_that_are_not_there_or_of_another_kind_are_named() {
         "/tmp: not a mesh format that is known (no ending); save it as .obj, .ply or .stl"
     );
 }
+
+/// A ring of corners about the middle whose radius jumps: concave at random, never crossing itself; the sheet is bent a little.
+fn star(count: usize, seed: u64, bend: f64) -> Vec<[f64; 3]> {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..count)
+        .map(|k| {
+            let (s, c) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+            let r = 0.2 + 3.0 * random();
+            [r * c, r * s, bend * random()]
+        })
+        .collect()
+}
+
+fn obj_of(corners: &[[f64; 3]]) -> String {
+    let mut text = String::new();
+    corners
+        .iter()
+        .for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+    text += "f";
+    (1..=corners.len()).for_each(|k| text += &format!(" {k}"));
+    text + "\n"
+}
+
+/// Twice the area of a ring of corners seen from above.
+fn doubled_area(ring: &[[f64; 3]]) -> f64 {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter()
+        .zip(next)
+        .map(|(a, b)| a[0] * b[1] - b[0] * a[1])
+        .sum()
+}
+
+#[test]
+fn concave_faces_are_covered_once_and_keep_their_sides() {
+    for seed in 0..400 {
+        let count = 4 + (seed as usize % 14);
+        let mut corners = star(count, seed + 1, if seed % 2 == 0 { 0.0 } else { 0.05 });
+        if seed % 3 == 0 {
+            // A corner on a straight side, which a neighbor shares.
+            let [a, b] = [corners[0], corners[1]];
+            corners.insert(1, [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0));
+        }
+        let mesh = obj(&obj_of(&corners)).unwrap();
+        assert_eq!(mesh.triangles.len(), corners.len() - 2, "{corners:?}");
+        // As many triangles as there must be, all turned as the face is, whose areas add up to its own: nothing is covered twice.
+        let areas = mesh
+            .triangles
+            .iter()
+            .map(|t| doubled_area(&t.map(|k| corners[k as usize])));
+        let (sum, least) = areas.fold((0.0, f64::MAX), |(sum, least), a| (sum + a, a.min(least)));
+        assert!(
+            (sum - doubled_area(&corners)).abs() < 1e-9 && least > -1e-9,
+            "{corners:?}: {sum}, {least}"
+        );
+        for k in 0..corners.len() as u32 {
+            let side = [k, (k + 1) % corners.len() as u32];
+            let holds = |t: &&[u32; 3]| (0..3).any(|s| [t[s], t[(s + 1) % 3]] == side);
+            assert_eq!(
+                mesh.triangles.iter().filter(holds).count(),
+                1,
+                "{side:?} of {corners:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn concave_faces_of_ply_are_those_of_obj() {
+    let corners = star(9, 5, 0.0);
+    let mut text = "ply\nformat ascii 1.0\nelement vertex 9\nproperty double x\nproperty double y\nproperty double z\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        .to_owned();
+    corners
+        .iter()
+        .for_each(|[x, y, z]| text += &format!("{x} {y} {z}\n"));
+    text += "9 0 1 2 3 4 5 6 7 8\n";
+    assert_eq!(ply(text.as_bytes()), obj(&obj_of(&corners)));
+}

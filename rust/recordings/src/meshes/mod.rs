@@ -5,6 +5,7 @@ mod obj;
 mod ply;
 mod ply_header;
 mod ply_values;
+mod polygons;
 mod stl;
 mod weld;
 
@@ -21,7 +22,7 @@ pub const LARGEST_FILE: u64 = 2 << 30;
 pub struct MeshFile {
     /// Vertex positions, finite. Equal corners of an STL are one vertex, in order of first appearance.
     pub positions: Vec<Vector3<f64>>,
-    /// Triangles as vertex numbers from 0, all in range; larger faces are cut into fans.
+    /// Triangles as vertex numbers from 0, all in range; larger faces are cut, concave ones too.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -184,13 +185,4 @@ fn position<'a>(
         })?;
     }
     Ok(position)
-}
-
-impl MeshFile {
-    /// Adds a face of any number of corners as a fan around its first corner.
-    fn push_face(&mut self, corners: &[u32]) {
-        for pair in corners[1..].windows(2) {
-            self.triangles.push([corners[0], pair[0], pair[1]]);
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! Wavefront OBJ: `v` and `f` lines; everything else (normals, groups, materials, curves) is passed over.
 
+use super::polygons::{Faces, cut};
 use super::{Charted, MeshFile, filled, position};
 use crate::fault::{Fault, number, shown, words};
 use std::borrow::Cow;
@@ -8,7 +9,13 @@ const AGAIN: &str = "export the mesh again";
 
 /// Vertices with or without weight or colours; faces of three or more corners, with negative or positive indices.
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    Ok(faces(bytes)?.0)
+}
+
+/// The mesh, and its faces as they stand in the file.
+fn faces(bytes: &[u8]) -> Result<(MeshFile, Faces), Fault> {
     let mut mesh = MeshFile::default();
+    let mut faces = Faces::default();
     let mut corners = Vec::new();
     let mut farthest = (0, 0);
     for (line, text) in lines(bytes) {
@@ -34,13 +41,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
                 }
                 let last = corners.iter().copied().max().unwrap_or(0);
                 farthest = farthest.max((last, line));
-                mesh.push_face(&corners);
+                faces.push(&corners);
             }
             _ => {}
         }
     }
     let (last, line) = farthest;
-    if !mesh.triangles.is_empty() && last as usize >= mesh.positions.len() {
+    if line > 0 && last as usize >= mesh.positions.len() {
         let problem = format!(
             "a face uses vertex {}, the file has {}",
             u64::from(last) + 1,
@@ -48,12 +55,15 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         );
         return Err(Fault::line(line, problem, AGAIN));
     }
-    Ok(mesh)
+    mesh.triangles = faces.triangles(&mesh.positions);
+    Ok((mesh, faces))
 }
 
 /// The same with the texture coordinates (`vt`) of every corner.
 pub(super) fn parse_charts(bytes: &[u8]) -> Result<Charted, Fault> {
-    let mesh = filled(parse(bytes)?)?;
+    let (mesh, faces) = faces(bytes)?;
+    let mesh = filled(mesh)?;
+    let mut faces = faces.iter();
     let (mut coordinates, mut charts) = (Vec::<[f64; 2]>::new(), Vec::new());
     for (line, text) in lines(bytes) {
         let mut words = words(&text);
@@ -84,9 +94,9 @@ pub(super) fn parse_charts(bytes: &[u8]) -> Result<Charted, Fault> {
                     })
                 };
                 let corners: Vec<[f64; 2]> = words.map(corner).collect::<Result<_, _>>()?;
-                for pair in corners[1..].windows(2) {
-                    charts.push([corners[0], pair[0], pair[1]]);
-                }
+                let face = faces.next().unwrap_or_default();
+                let triangles = cut(face, &mesh.positions).into_iter();
+                charts.extend(triangles.map(|triangle| triangle.map(|k| corners[k])));
             }
             _ => {}
         }

@@ -3,6 +3,7 @@
 use super::MeshFile;
 use super::ply_header::{self, Element};
 use super::ply_values::Values;
+use super::polygons::Faces;
 use crate::fault::{Fault, shown};
 use nalgebra::Vector3;
 
@@ -13,6 +14,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
     let header = ply_header::parse(bytes)?;
     let mut values = Values::new(bytes, &header);
     let mut mesh = MeshFile::default();
+    let mut faces = Faces::default();
     for element in &header.elements {
         let smallest = element.properties.len();
         if element
@@ -33,7 +35,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         }
         match element.name.as_slice() {
             b"vertex" => read_vertices(element, &mut values, &mut mesh)?,
-            b"face" => read_faces(element, &mut values, &mut mesh)?,
+            b"face" => read_faces(element, &mut values, &mut faces)?,
             b"tristrips" => {
                 let problem = "triangle strips are not read".into();
                 return Err(Fault::line(element.line, problem, "export faces instead"));
@@ -42,6 +44,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         }
     }
     let vertices = mesh.positions.len();
+    mesh.triangles = faces.triangles(&mesh.positions);
     if let Some(number) = mesh
         .triangles
         .iter()
@@ -95,7 +98,7 @@ fn read_vertices(element: &Element, values: &mut Values, mesh: &mut MeshFile) ->
     Ok(())
 }
 
-fn read_faces(element: &Element, values: &mut Values, mesh: &mut MeshFile) -> Result<(), Fault> {
+fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Result<(), Fault> {
     let is_corners = |name: &[u8]| name == b"vertex_indices" || name == b"vertex_index";
     if !element
         .properties
@@ -127,7 +130,7 @@ fn read_faces(element: &Element, values: &mut Values, mesh: &mut MeshFile) -> Re
                 let problem = format!("a face with {} corners, expected 3 or more", corners.len());
                 return Err(values.fault(problem, "delete loose edges and export again"));
             }
-            mesh.push_face(&corners);
+            faces.push(&corners);
         }
     }
     Ok(())
