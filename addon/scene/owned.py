@@ -10,6 +10,7 @@ KINDS = {
     names.REGION: "INT",
     names.DISPLACEMENT_MM: "FLOAT_VECTOR",
     names.LIVE_OFFSET: "FLOAT_VECTOR",
+    names.SHOWN_OFFSET: "FLOAT_VECTOR",
     names.COLOR: "FLOAT_COLOR",
     names.MAP_COLOR: "FLOAT_COLOR",
 }

@@ -1,6 +1,6 @@
 """Solve, cancel and quit, over and over: counts processes that crash or hang, and memory that grows.
 
-    python tests/bench/cycles.py 10000
+    python tests/bench/quit_cycles.py 10000
 
 Every cycle is a process of its own, forked from one that has only imported the library: it presses to the end, cancels
 a press, and ends in one of four ways while a third one runs in a daemon thread. Besides, one process presses and
