@@ -61,6 +61,10 @@ fn press(
         .map(|file| scaled(file, arguments))
         .transpose()?;
     control.check()?;
+    let notes = [(&arguments.hand, &hand), (&arguments.product, &product)].map(|(file, read)| {
+        let say = |note: &String| format!("{}: {note}", file.display());
+        read.notes.iter().map(say).collect::<Vec<String>>()
+    });
     let product = mesh(product, &arguments.product)?;
     let product = Product::new(product).map_err(|error| named(&arguments.product, &error))?;
     let input = SkinInput {
@@ -70,6 +74,7 @@ fn press(
         model,
     };
     let mut skin = Skin::prepare_named(input, regions.names.clone(), control)?;
+    notes.concat().into_iter().for_each(|note| skin.note(note));
     if arguments.materials.is_none() {
         skin.note(model.preset_note());
     }

@@ -47,6 +47,7 @@ fn scanned(height: &dyn Fn(f64, f64) -> f64, seed: u64) -> MeshFile {
     MeshFile {
         positions,
         triangles: Vec::new(),
+        notes: Vec::new(),
     }
 }
 
@@ -301,6 +302,7 @@ fn a_scan_without_a_depth_or_off_the_skin_says_so() {
             .map(|k| Vec3::new(500.0 + f64::from(k), 0.0, 0.0))
             .collect(),
         triangles: Vec::new(),
+        notes: Vec::new(),
     };
     add_scan(&mut study, ("far", "b"), far, 0.0);
     let fit = thenar_diagnosis::Fitting::new(&study, &Control::none()).unwrap();

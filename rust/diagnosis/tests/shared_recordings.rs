@@ -62,6 +62,7 @@ fn paraboloid(radius: f64, extent: f64) -> MeshFile {
     MeshFile {
         positions,
         triangles,
+        notes: Vec::new(),
     }
 }
 

@@ -235,6 +235,46 @@ fn stl_faults_name_file_place_and_remedy() {
     );
 }
 
+/// Whole triangles are read whatever the header counts; a byte order mark does not make text binary.
+#[test]
+fn stl_with_a_wrong_count_or_bytes_behind_is_read_with_a_note() {
+    let whole = binary_stl(&square());
+    let counted = |count: u32| {
+        let mut bytes = whole.clone();
+        bytes[80..84].copy_from_slice(&count.to_le_bytes());
+        stl(&bytes)
+    };
+    for count in [0, u32::MAX] {
+        let mesh = counted(count).unwrap();
+        assert_eq!(mesh.triangles, square().triangles);
+        assert!(
+            mesh.notes[0].contains(&format!("counts {count} triangles")),
+            "{:?}",
+            mesh.notes
+        );
+    }
+    assert!(
+        counted(3)
+            .unwrap_err()
+            .contains("counts 3 triangles, the file has room for 2")
+    );
+    let mesh = stl(&[&whole[..], b"colours"].concat()).unwrap();
+    assert_eq!(mesh.triangles, square().triangles);
+    assert!(
+        mesh.notes[0].starts_with("7 bytes behind"),
+        "{:?}",
+        mesh.notes
+    );
+    let (head, facets) = whole.split_at(84);
+    let fat = facets
+        .chunks(50)
+        .flat_map(|facet| [&facet[..48], &4u16.to_le_bytes()[..], b"rgba"].concat());
+    let fat = stl(&[head, &fat.collect::<Vec<u8>>()].concat());
+    assert_eq!(fat, Ok(square()));
+    let marked = [b"\xef\xbb\xbf", ascii_stl(&square()).as_bytes()].concat();
+    assert_eq!(stl(&marked), Ok(square()));
+}
+
 #[test]
 fn files_that_are_not_there_or_of_another_kind_are_named() {
     let message = read(Path::new("/nowhere/hand.obj"))

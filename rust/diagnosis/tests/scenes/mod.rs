@@ -60,6 +60,7 @@ pub fn pad(radius: f64, extent: f64, spacing: f64) -> MeshFile {
     MeshFile {
         positions,
         triangles,
+        notes: Vec::new(),
     }
 }
 

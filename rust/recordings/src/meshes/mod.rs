@@ -24,6 +24,8 @@ pub struct MeshFile {
     pub positions: Vec<Vector3<f64>>,
     /// Triangles as vertex numbers from 0, all in range; larger faces are cut, concave ones too.
     pub triangles: Vec<[u32; 3]>,
+    /// What was odd about the file and how it was read, one sentence each.
+    pub notes: Vec<String>,
 }
 
 /// The mesh formats that can be read.

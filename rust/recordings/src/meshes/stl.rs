@@ -9,47 +9,82 @@ const HEADER: usize = 84;
 const FACET: usize = 50;
 const AGAIN: &str = "export the mesh again";
 
-/// Binary if the length fits the count in the header, else ASCII if it begins with `solid`.
+/// What exporters write in place of a count that they do not know.
+const NO_COUNT: [usize; 2] = [0, u32::MAX as usize];
+/// So many bytes without a zero are text.
+const TEXT: usize = 1024;
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Binary if the length fits the count in the header, else ASCII if it begins with `solid`, else binary by the length where the count is one
+/// that says nothing, or where more bytes follow than it needs.
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
+    let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     let declared = bytes
         .get(80..HEADER)
         .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
-    let fits = declared.is_some_and(|count| {
-        count
-            .checked_mul(FACET)
-            .and_then(|size| size.checked_add(HEADER))
-            == Some(bytes.len())
-    });
-    if fits {
-        return binary(bytes);
+    if declared.is_some_and(|count| length(count, FACET) == Some(bytes.len())) {
+        return binary(&bytes[HEADER..], FACET);
     }
-    if bytes
-        .trim_ascii_start()
-        .get(..5)
-        .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
-    {
+    let first = bytes.trim_ascii_start().get(..5);
+    let is_solid = first.is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    // Binary files may begin with that word too.
+    let is_text = !bytes[..bytes.len().min(TEXT)].contains(&0);
+    if is_solid && (is_text || bytes.len() < HEADER + FACET) {
         return ascii(bytes);
     }
     let Some(count) = declared else {
         let problem = format!("{} bytes are too few for an STL file", bytes.len());
         return Err(Fault::at(Place::Byte(bytes.len()), problem, AGAIN));
     };
-    let whole = (bytes.len() - HEADER) / FACET;
-    let problem = format!("the header counts {count} triangles, the file has room for {whole}");
-    Err(Fault::at(
-        Place::Byte(80),
-        problem,
-        "the file is cut short or not an STL; export it again",
-    ))
+    let (facets, left) = (
+        (bytes.len() - HEADER) / FACET,
+        (bytes.len() - HEADER) % FACET,
+    );
+    if NO_COUNT.contains(&count) && facets > 0 {
+        let note = format!(
+            "the STL's header counts {count} triangles; all {facets} that the file has room for are read"
+        );
+        return noted(binary(&bytes[HEADER..bytes.len() - left], FACET)?, note);
+    }
+    // Attribute bytes behind each facet, as many as its last two bytes say.
+    let payload = bytes.get(HEADER + 48..HEADER + FACET);
+    let stride = FACET + payload.map_or(0, |size| u16::from_le_bytes([size[0], size[1]]) as usize);
+    if stride > FACET && length(count, stride) == Some(bytes.len()) {
+        return binary(&bytes[HEADER..], stride);
+    }
+    match length(count, FACET) {
+        Some(needed) if needed < bytes.len() => {
+            let note = format!(
+                "{} bytes behind the STL's {count} triangles are passed over",
+                bytes.len() - needed
+            );
+            noted(binary(&bytes[HEADER..needed], FACET)?, note)
+        }
+        _ => Err(Fault::at(
+            Place::Byte(80),
+            format!("the header counts {count} triangles, the file has room for {facets}"),
+            "the file is cut short or not an STL; export it again",
+        )),
+    }
 }
 
-fn binary(bytes: &[u8]) -> Result<MeshFile, Fault> {
+/// Length of a file of so many facets of `stride` bytes, if a file can be so long.
+fn length(facets: usize, stride: usize) -> Option<usize> {
+    facets.checked_mul(stride)?.checked_add(HEADER)
+}
+
+fn noted(mesh: MeshFile, note: String) -> Result<MeshFile, Fault> {
+    Ok(MeshFile {
+        notes: vec![note],
+        ..mesh
+    })
+}
+
+/// Facets of `stride` bytes each, which begin behind the header.
+fn binary(bytes: &[u8], stride: usize) -> Result<MeshFile, Fault> {
     let mut weld = Weld::default();
-    let mut triangles = Vec::with_capacity((bytes.len() - HEADER) / FACET);
-    for (facet, start) in bytes[HEADER..]
-        .chunks_exact(FACET)
-        .zip((HEADER..).step_by(FACET))
-    {
+    let mut triangles = Vec::with_capacity(bytes.len() / stride);
+    for (facet, start) in bytes.chunks_exact(stride).zip((HEADER..).step_by(stride)) {
         let mut triangle = [0; 3];
         for (corner, number) in triangle.iter_mut().enumerate() {
             let offset = 12 + 12 * corner;
@@ -78,6 +113,7 @@ fn binary(bytes: &[u8]) -> Result<MeshFile, Fault> {
     Ok(MeshFile {
         positions: weld.positions,
         triangles,
+        notes: Vec::new(),
     })
 }
 
@@ -134,6 +170,7 @@ fn ascii(bytes: &[u8]) -> Result<MeshFile, Fault> {
     Ok(MeshFile {
         positions: weld.positions,
         triangles,
+        notes: Vec::new(),
     })
 }
 

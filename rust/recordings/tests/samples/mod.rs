@@ -17,6 +17,7 @@ pub fn square() -> MeshFile {
     MeshFile {
         positions: SQUARE.map(Vector3::from).to_vec(),
         triangles: HALVES.to_vec(),
+        notes: Vec::new(),
     }
 }
 
