@@ -221,3 +221,28 @@ def test_loose_vertices_and_bare_parts_do_not_count():
     result = stage.solve()
     assert (stage.evaluated(product)[:, 2].max() - stage.evaluated(hand)[:, 2]).max() > 1.0
     assert result.shown_penetration_mm < 0.02
+
+
+def test_a_bake_takes_off_what_an_earlier_contact_left(tmp_path):
+    hand, _ = ball_on_rod(fineness=3)
+    subdivision(hand)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    stage.solve()
+    assert "Thenar Shown" in hand.modifiers
+    bpy.ops.thenar.bake(frame_start=1, frame_end=2)
+    assert "Thenar Shown" not in hand.modifiers and "thenar_shown_offset" not in hand.data.attributes
+
+
+def test_a_duplicated_hand_keeps_its_own_surface():
+    hand, product = ball_on_rod(fineness=3)
+    subdivision(hand)
+    stage.solve()
+    twin = hand.copy()
+    twin.data = hand.data.copy()
+    bpy.context.scene.collection.objects.link(twin)
+    shape = stage.evaluated(twin)
+    product.location.z += 0.3 * stage.MM
+    stage.solve()
+    assert np.array_equal(stage.evaluated(twin), shape)
+    bpy.ops.thenar.clear()
+    assert np.array_equal(stage.evaluated(twin), shape)
