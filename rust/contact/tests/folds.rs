@@ -12,35 +12,13 @@ const HALF: f64 = 1.2;
 
 /// A web of skin as between two fingers: a flat pouch of 2.4 mm, its upper side facing +z, its lower side facing -z.
 fn web() -> Mesh {
-    let (rings, sectors) = (24u32, 48u32);
-    let (half_x, half_y) = (16.0, 11.0);
-    let mut positions = vec![Vec3::new(0.0, 0.0, HALF)];
-    for ring in 1..rings {
-        let polar = std::f64::consts::PI * f64::from(ring) / f64::from(rings);
-        for sector in 0..sectors {
-            let angle = std::f64::consts::TAU * f64::from(sector) / f64::from(sectors);
-            let out = polar.sin();
-            positions.push(Vec3::new(
-                half_x * out * angle.cos(),
-                half_y * out * angle.sin(),
-                HALF * polar.cos(),
-            ));
-        }
-    }
-    let last = positions.len() as u32;
-    positions.push(Vec3::new(0.0, 0.0, -HALF));
-    let at = |ring: u32, sector: u32| 1 + (ring - 1) * sectors + sector % sectors;
-    let mut triangles = Vec::new();
-    for s in 0..sectors {
-        triangles.push([0, at(1, s), at(1, s + 1)]);
-        for ring in 1..rings - 1 {
-            let (a, b) = (at(ring, s), at(ring, s + 1));
-            let (c, d) = (at(ring + 1, s), at(ring + 1, s + 1));
-            triangles.extend([[a, c, d], [a, d, b]]);
-        }
-        triangles.push([last, at(rings - 1, s + 1), at(rings - 1, s)]);
-    }
-    Mesh::new(positions, triangles).unwrap()
+    round(24, 48, |polar, angle| {
+        Vec3::new(
+            16.0 * polar.sin() * angle.cos(),
+            11.0 * polar.sin() * angle.sin(),
+            HALF * polar.cos(),
+        )
+    })
 }
 
 /// A bar along y of elliptic section whose lowest line lies at z = `height`: `tall` mm from there to its far wall.
@@ -82,20 +60,7 @@ fn bar(height: f64, tall: f64) -> Product {
 }
 
 fn pressed(height: f64, tall: f64) -> Contact {
-    let soft = Material {
-        g0_mpa: 0.01,
-        g_lim_mpa: 0.02,
-        thickness_mm: 7.0,
-        ..Material::finger()
-    };
-    let input = SkinInput {
-        mesh: web(),
-        regions: Vec::new(),
-        materials: vec![soft],
-        model: Model::Layer,
-    };
-    let mut skin = Skin::prepare(input, &thenar_contact::Control::none()).unwrap();
-    press(&mut skin, &bar(height, tall))
+    press(&mut soft_skin(web()), &bar(height, tall))
 }
 
 /// The web dips wholly into the bar: its lower side lies inside too, turned away from the wall it came through.
