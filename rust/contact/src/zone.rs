@@ -95,21 +95,25 @@ pub fn detect(
         }
     }
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
+    let mut deepest = (0.0, 0);
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let (region, depth) = (skin.sites.region[site], -distances[vertex as usize]);
         if region < 0 {
             continue;
         }
-        if depth > MOST_DEPTH {
-            let vertex = skin.welded.source[vertex as usize] as usize;
-            return Err(ContactError::Swallowed {
-                vertex,
-                depth_mm: depth,
-                limit_mm: MOST_DEPTH,
-            });
+        if depth > deepest.0 {
+            deepest = (depth, vertex);
         }
         let most = &mut max_penetration[region as usize];
         *most = most.max(depth);
+    }
+    let (depth_mm, vertex) = deepest;
+    if depth_mm > MOST_DEPTH {
+        return Err(ContactError::Swallowed {
+            vertex: skin.welded.source[vertex as usize] as usize,
+            depth_mm,
+            limit_mm: MOST_DEPTH,
+        });
     }
     Ok(Detection {
         positions,
