@@ -46,7 +46,7 @@ for _ in range(3):
 inside.wait()
 time.sleep({delay})
 """
-SOONEST, LATEST = 0.0, 0.06
+SOONEST, LATEST, ENDINGS = 0.0, 0.06, 6
 
 
 def run(script):
@@ -68,8 +68,8 @@ def test_a_process_ends_while_a_thread_presses(ending, code, said):
 
 
 def test_a_process_ends_wherever_its_threads_are():
-    for number in range(15):
-        done, _ = run(MANY.format(delay=SOONEST + (LATEST - SOONEST) * number / 14))
+    for number in range(ENDINGS):
+        done, _ = run(MANY.format(delay=SOONEST + (LATEST - SOONEST) * number / (ENDINGS - 1)))
         assert done.returncode == 0, done.stderr
 
 

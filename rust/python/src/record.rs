@@ -1,5 +1,6 @@
 //! A record: a dict whose entries are attributes too; and what is made when it is first asked for.
 
+use crate::ending;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -59,6 +60,8 @@ impl<S> Once<S> {
         py: Python<'_>,
         make: impl FnOnce(S) -> PyResult<Py<PyAny>>,
     ) -> PyResult<Py<PyAny>> {
+        // Making objects may run Python's garbage collection, and with it Python code, in which a thread may be ended.
+        let _inside = ending::enter()?;
         let made = self.made.get_or_try_init(py, || {
             let mut source = self.source.lock().unwrap_or_else(PoisonError::into_inner);
             // Gone only where making failed before, which takes a lack of memory.
