@@ -272,6 +272,9 @@ fn sink(
         let agreed: Vec<bool> = open.iter().map(agrees).collect();
         let mut agreed = agreed.into_iter();
         open.retain(|_| agreed.next() == Some(true));
+        if open.is_empty() {
+            return false;
+        }
         let ways = open.iter().map(|(c, reading)| {
             let from = skin.points[c.at as usize];
             (from, reading.closest)
