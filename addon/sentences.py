@@ -24,8 +24,8 @@ def remarks(contact, job):
 def _namer(hand_name, part_names, region_names):
     """What does this for one hand and product: it remembers sentences without looking at all these names each time."""
     objects = {"hand": hand_name, "product": ", ".join(part_names)}
-    told = "|".join(re.escape(f"'{name}'") for name in sorted(region_names, key=len, reverse=True))
-    places = re.compile(rf"{told}|{_PLACES}" if told else _PLACES)
+    by_name = "|".join(re.escape(f"'{name}'") for name in sorted(region_names, key=len, reverse=True))
+    places = re.compile(rf"{by_name}|{_PLACES}" if by_name else _PLACES)
     return lru_cache(maxsize=SENTENCES_KEPT)(partial(_named, places=places, names=(objects, region_names)))
 
 

@@ -156,7 +156,7 @@ def _areas(context):
 def attempt(operator, action, *arguments):
     """Run `action`; what the user can mend is reported as one sentence. Returns its value, or None after a report.
 
-    An operator with `refused(error)` is told.
+    The operator's `refused(error)`, if it has one, is called.
     """
     try:
         return action(*arguments)

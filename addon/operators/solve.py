@@ -98,10 +98,10 @@ def forget_refusal(context):
 
 def _place(settings):
     """The vertices to look at: of the last failure, else of the result's reason."""
-    told, count = settings.refusal.vertices, 0
+    failed, count = settings.refusal.vertices, 0
     if settings.hand is not None and settings.hand.type == "MESH":
         count = len(settings.hand.data.vertices)
-    vertices = [int(each) for each in told.split(",")] if told else [settings.result.reason_vertex]
+    vertices = [int(each) for each in failed.split(",")] if failed else [settings.result.reason_vertex]
     return [vertex for vertex in vertices if 0 <= vertex < count]
 
 

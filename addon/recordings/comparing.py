@@ -75,10 +75,10 @@ def _still(context, item):
     with ExitStack() as taken:
         job = workflow.prepare(context, taken)
         seat = laying.Seat(seat.axes, job.reading.product.vertices_mm)
-        told = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
+        request = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
         contact = yield partial(workflow.compute, job)
         by_cell = _compare_print if item.kind == settings.PRINT else _compare
-        comparison, mat, residual = yield partial(by_cell, job, contact, told)
+        comparison, mat, residual = yield partial(by_cell, job, contact, request)
         yield from workflow.finish(context, job, contact)
     _write(context, job, (comparison, mat, residual))
     return comparison

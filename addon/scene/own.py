@@ -55,7 +55,7 @@ def take_out(context, hand, parts, restore):
         restore.callback(setattr, key, "mute", False)
         key.mute = True
     for modifier in (*played_modifiers(hand), *shown_modifiers(hand)):
-        if modifier.show_viewport:  # to set it anew, even to the same, has Blender evaluate the hand
+        if modifier.show_viewport:  # setting it again, even to the same value, makes Blender evaluate the hand
             restore.callback(setattr, modifier, "show_viewport", True)
             modifier.show_viewport = False
     for part in parts:

@@ -64,7 +64,7 @@ def check_product_size(context, hand, parts):
         return
     factor = sizes.factors[0]
     raise checks.Refusal(
-        f"the product '{parts[0].name}' is {length(sizes.product_mm)} long beside a hand of {length(sizes.hand_mm)}, "
+        f"the product '{parts[0].name}' is {length(sizes.product_mm)} long, the hand {length(sizes.hand_mm)}, "
         f"as if its file were read in the wrong unit; scale it by {factor:.4g} to {length(factor * sizes.product_mm)}, "
         "or accept its size, in the Thenar panel"
     )
@@ -120,7 +120,7 @@ def _measured(scene, hand, parts, without_loose=False):
     product_mm = float(sides[-1])
     too_long = product_mm > LONG_MM and sides[0] > THICK_MM
     is_doubtful = (too_long or product_mm < SHORT * hand_mm) and not _is_accepted(scene, product_mm)
-    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault, which is told later
+    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault: reported later
     low, high = USUAL_MM
     usual = [factor for factor in FACTORS if low <= factor * product_mm <= high] if is_doubtful else []
     nearness = sorted(usual, key=lambda factor: abs(np.log(factor * product_mm / 150.0)))

@@ -75,9 +75,9 @@ def write_contact(context, hand, parts, job, measure):
         else:
             correction.remove(hand)
         context.view_layer.update()
-        told = (*_notes(reading.product), *shown.notes(hand, seen, skin.origin_mm))
+        notes = (*_notes(reading.product), *shown.notes(hand, seen, skin.origin_mm))
         undo.pop_all()
-    return WriteReport(seen.error_mm, report.corrections, told, seen)
+    return WriteReport(seen.error_mm, report.corrections, notes, seen)
 
 
 def _hide_correction(undo, hand):

@@ -3,7 +3,7 @@
     BLENDER_USER_RESOURCES=target/test-blender/venv target/venv/bin/python tests/bench/handles.py
         [--handles tube "door knob"] [--percentiles 1 50] [--starts made turned] [--workers N] [--out FILE.jsonl]
 
-Goes on where it was cut: cases that have a row in the file are kept (--anew: all again). Exit code 1 if a result is
+Goes on where it was cut: cases that have a row in the file are kept (--again: none is). Exit code 1 if a result is
 unsound or more than 5 % are refused.
 """
 
@@ -33,7 +33,7 @@ def main():
     parser.add_argument("--starts", nargs="+", default=list(STARTS), choices=STARTS)
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--out", type=Path, default=TESTS.parent / "target/handles.jsonl", help="a row a case")
-    parser.add_argument("--anew", action="store_true", help="grasp cases that the file holds once more")
+    parser.add_argument("--again", action="store_true", help="grasp cases that the file holds once more")
     parser.add_argument("--dump", type=Path, help="a folder for the arrays of every press, for the module alone")
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
@@ -42,7 +42,7 @@ def main():
     if asked.dump:
         asked.dump.mkdir(parents=True, exist_ok=True)
         os.environ["THENAR_DUMP"] = str(asked.dump)
-    if asked.anew:
+    if asked.again:
         asked.out.unlink(missing_ok=True)
     cases = [case_name(*case) for case in product(asked.percentiles, asked.starts, asked.handles)]
     rows = searching.search(__file__, cases, asked.out, asked.workers)
@@ -89,7 +89,7 @@ def report(rows):
     texts = Counter(f"{row['refused']}: {row['text'][:140]}" for row in rows.values() if "refused" in row)
     for text, number in texts.most_common(12):
         print(f"refused {number} at {text}")
-    print("grades:", dict(Counter(row["grade"] for row in rows.values() if row.get("grade"))) or "none told")
+    print("grades:", dict(Counter(row["grade"] for row in rows.values() if row.get("grade"))) or "none reported")
     refused, unsound = sum(map(grasping.is_refused, rows.values())), sum(bool(faults) for faults in wrong.values())
     print(f"unsound {unsound}/{len(rows)}, refused {refused}/{len(rows)}")
     return 1 if unsound or refused > MOST_REFUSED * len(rows) else 0

@@ -3,7 +3,7 @@
     target/venv/bin/python tests/bench/postures.py [--count 2000] [--first 0] [--out target/postures.jsonl]
     target/venv/bin/python tests/bench/postures.py --case SEED [--dump FILE.npz]
 
-Goes on where it was cut: seeds that have a row in the file are kept (--anew: all again). Exit code 1 if a case is
+Goes on where it was cut: seeds that have a row in the file are kept (--again: none is). Exit code 1 if a case is
 unsound or more than 3 % are refused.
 """
 
@@ -29,8 +29,8 @@ def main():
     parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--out", type=Path, default=TESTS.parent / "target/postures.jsonl", help="a row a case")
-    parser.add_argument("--anew", action="store_true", help="press seeds that the file holds once more")
-    parser.add_argument("--case", type=int, help="this seed alone, told in full")
+    parser.add_argument("--again", action="store_true", help="press seeds that the file holds once more")
+    parser.add_argument("--case", type=int, help="this seed alone, printed in full")
     parser.add_argument("--dump", type=Path, help="with --case: the arrays of the press, as .npz")
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
     asked = parser.parse_args()
@@ -39,7 +39,7 @@ def main():
     if asked.child:
         searching.run(json.load(sys.stdin), asked.out, lambda seed: random_postures.press(random_postures.draw(seed)))
         return 0
-    if asked.anew:
+    if asked.again:
         asked.out.unlink(missing_ok=True)
     seeds = range(asked.first, asked.first + asked.count)
     rows = searching.search(__file__, seeds, asked.out, asked.workers)
@@ -47,7 +47,7 @@ def main():
 
 
 def one_case(seed, dump):
-    """One seed, told in full; its arrays in `dump`, for a press by the module alone."""
+    """One seed, printed in full; its arrays in `dump`, for a press by the module alone."""
     from handles import random_postures
 
     posture = random_postures.draw(seed)
@@ -96,7 +96,7 @@ def report(rows):
         f"{draws} draws for {len(rows)} postures; a press: median {times[len(times) // 2]:.3f}, most {times[-1]:.2f} s"
     )
     grades = Counter(row["grade"] for row in rows if row.get("grade"))
-    print("grades:", dict(grades) or "none told")
+    print("grades:", dict(grades) or "none reported")
     refused = sum(map(random_postures.is_refused, rows))
     unsound = sum(bool(faults) for faults in wrong.values())
     print(

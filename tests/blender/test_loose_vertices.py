@@ -1,4 +1,4 @@
-"""Vertices without a face are no skin and no product; and which modifier is at fault when vertices cannot be told."""
+"""Vertices without a face are no skin and no product; the refusal names the modifier that reorders vertices."""
 
 import bpy
 import numpy as np
@@ -60,7 +60,7 @@ MODIFIERS = {
     "REMESH": True,
     "MASK": True,
 }
-"""Modifier -> whether the vertices of the mesh can no longer be told after it."""
+"""Modifier -> whether the vertices of the mesh can no longer be identified after it."""
 
 
 def added(kind, hand):

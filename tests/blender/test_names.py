@@ -67,8 +67,8 @@ def test_objects_of_that_name_are_solved_shown_and_cleared(name, tmp_path):
     assert bpy.ops.thenar.show_pressure() == {"FINISHED"}
     assert stage.solve().regions[0].name == group.name
     assert bpy.ops.thenar.export(filepath=str(tmp_path / "out.csv")) == {"FINISHED"}
-    told = json.loads(json.dumps(as_dict(bpy.context.scene.thenar.result)))
-    assert told["hand"] == hand.name and told["product"] == f"{product.name}, {bar.name}"
+    summary = json.loads(json.dumps(as_dict(bpy.context.scene.thenar.result)))
+    assert summary["hand"] == hand.name and summary["product"] == f"{product.name}, {bar.name}"
     bpy.ops.thenar.clear()
     left = {block for block in data_blocks() - before if block[0] != "node_groups"}
     assert not left

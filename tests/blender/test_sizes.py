@@ -71,7 +71,7 @@ def test_a_file_read_in_the_wrong_unit_is_refused_and_the_button_mends_it(sides,
     assert nearest * off == pytest.approx(1.0, rel=1e-6), "the true factor is among those offered"
     assert bpy.ops.thenar.scale_product(factor=nearest) == {"FINISHED"}
     assert longest_mm(product) == pytest.approx(max(sides), rel=1e-5)
-    assert "long beside" not in message_of_solve()
+    assert "long, the hand" not in message_of_solve()
 
 
 def message_of_solve():
@@ -100,7 +100,7 @@ def message_of_solve():
 )
 def test_what_is_really_large_or_small_passes(what, sides, hand_mm):
     chosen(block("Product", sides, (0, 0, -sides[2] / 2 - 0.45 * hand_mm[2])), hand_mm=hand_mm)
-    assert "long beside" not in message_of_solve()
+    assert "long, the hand" not in message_of_solve()
 
 
 def test_a_size_that_is_accepted_is_not_asked_about_until_it_changes():
@@ -109,7 +109,7 @@ def test_a_size_that_is_accepted_is_not_asked_about_until_it_changes():
     chosen(product)
     assert "12 m long" in refusal()
     assert bpy.ops.thenar.accept_size() == {"FINISHED"}
-    assert "long beside" not in message_of_solve()
+    assert "long, the hand" not in message_of_solve()
     product.scale = (3, 3, 3)
     bpy.context.view_layer.update()
     assert "36 m long" in refusal()

@@ -1,4 +1,4 @@
-"""A press goes on in short steps beside the window; ended between any two of them, the scene is as before."""
+"""A press runs in short steps in the window's thread; stopped between any two, it leaves the scene unchanged."""
 
 import bpy
 import numpy as np

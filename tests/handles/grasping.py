@@ -53,7 +53,7 @@ def grasp(mesh, percentile, start, dump=None):
         except RuntimeError as error:
             return row | {"refused": step, "text": str(error).strip().splitlines()[0][:300]}
         row[f"{step}_s"] = round(time.monotonic() - started, 2)
-    return row | measured(settings.hand, before, product) | told(settings.result)
+    return row | measured(settings.hand, before, product) | claimed(settings.result)
 
 
 def save(path):
@@ -162,14 +162,14 @@ def is_skin(hand):
     return np.array([any(group.group in listed for group in vertex.groups) for vertex in hand.data.vertices])
 
 
-def told(result):
+def claimed(result):
     """What the add-on says of its result."""
     return {
         "force_n": result.force_n,
         "area_mm2": result.area_mm2,
         "peak_kpa": result.peak_kpa,
         "patch_peak_kpa": result.patch_peak_kpa,
-        "told_left_mm": result.penetration_mm,
+        "claimed_left_mm": result.penetration_mm,
         "grade": str(getattr(result, "grade", "")),
         "valid": bool(result.is_valid),
         "warnings": [text.name for text in result.warnings],

@@ -218,7 +218,7 @@ def outward_normals(positions, triangles):
 
 
 def press(posture):
-    """What the module makes of it, as one row: refused, or numbers with the skin measured anew."""
+    """What the module makes of it, as one row: refused, or numbers with the skin measured independently."""
     row = {
         "kind": posture.product.kind,
         "percentile": posture.percentile,
@@ -242,7 +242,7 @@ def press(posture):
     except MODULE_ERRORS as error:
         return row | {"refused": f"{type(error).__name__}: {error}", "seconds": time.process_time() - started}
     row["seconds"] = time.process_time() - started
-    return row | measured(posture, np.asarray(contact.displacement_mm)) | told(contact)
+    return row | measured(posture, np.asarray(contact.displacement_mm)) | claimed(contact)
 
 
 def measured(posture, displacement):
@@ -265,7 +265,7 @@ def measured(posture, displacement):
     }
 
 
-def told(contact):
+def claimed(contact):
     """What the module says of its own result."""
     return {
         "force_n": float(np.asarray(contact.force_n).sum()),
@@ -273,7 +273,7 @@ def told(contact):
         "touching": int(np.asarray(contact.in_contact).sum()),
         "converged": bool(contact.convergence["has_converged"]),
         "passes": int(contact.convergence["passes"]),
-        "told_left_mm": float(contact.residual["penetration_mm"]),
+        "claimed_left_mm": float(contact.residual["penetration_mm"]),
         "grade": str(getattr(contact, "grade", "")),
         "warnings": list(contact.warnings),
     }

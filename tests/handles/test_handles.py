@@ -75,8 +75,8 @@ def ball_on_block():
 )
 def test_planted_faults_are_seen(lift_mm, sink_mm, wanted):
     before, after, triangles, (vertices, faces) = ball_on_block()
-    lowest, beside = before[:, 2].argmin(), np.abs(before[:, 2] - 6.0).argmin()
-    after[beside] += [0.0, 0.0, lift_mm]
+    lowest, raised = before[:, 2].argmin(), np.abs(before[:, 2] - 6.0).argmin()
+    after[raised] += [0.0, 0.0, lift_mm]
     after[lowest] -= [0.0, 0.0, sink_mm]
     skin = np.ones(len(before), bool)
     row = grasping.compared(grasping.Shown(before, after, triangles, skin), vertices, faces)

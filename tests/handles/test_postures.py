@@ -66,7 +66,7 @@ def test_planted_faults_are_seen(planted, fault):
         posture.vertices, posture.product.triangles, posed_vertices_mm=posture.posed
     )
     moves = np.array(contact.displacement_mm)
-    row = random_postures.measured(posture, moves) | random_postures.told(contact)
+    row = random_postures.measured(posture, moves) | random_postures.claimed(contact)
     row |= {"travel_mm": posture.travel_mm, "overlap_mm": posture.overlap_mm}
     assert random_postures.faults(row) == []
     pressed = np.flatnonzero(np.asarray(contact.in_contact) & hand.is_skin)[0]

@@ -1,4 +1,4 @@
-"""A process that ends while other threads are inside the library ends as it was told: no crash, no waiting."""
+"""A process that ends while other threads are inside the library ends as requested: no crash, no waiting."""
 
 import subprocess
 import sys

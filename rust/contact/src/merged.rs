@@ -1,11 +1,13 @@
 //! Merged vertices in the written result: each is measured where it is written, and put out of the product.
 //!
-//! The one that stands for them was solved; they lie beside it, so that its displacement may leave them inside.
+//! The vertex that represents them was solved; they lie next to it, so its displacement may leave them inside.
 
 use thenar_surface::Vec3;
 
 use crate::press::{Contact, Press};
+use crate::remarks::MOST_PENETRATION;
 use crate::skin::Skin;
+use crate::warning::{Grade, Warning};
 use crate::zone::limits;
 
 /// Depth up to which a merged vertex stays where the other one's displacement brings it, mm: seams stay closed.
@@ -37,6 +39,10 @@ pub fn put_out(skin: &Skin, press: &Press<'_>, shift: Vec3, contact: &mut Contac
         }
         let left = out(contact.displacement[vertex]).map_or(0.0, |way| way.norm());
         contact.residual.penetration_mm = contact.residual.penetration_mm.max(left);
+    }
+    let depth = contact.residual.penetration_mm;
+    if depth > MOST_PENETRATION && contact.grade() != Grade::DoNotUse {
+        contact.warnings.push(Warning::Penetration { depth });
     }
 }
 

@@ -15,8 +15,8 @@ const COARSE_RATIO: f64 = 4.0;
 /// Sizes outside these are no hand in millimeters.
 const CREDIBLE_SIZE: (f64, f64) = (2.0, 2000.0);
 /// Penetration of the written skin that spoils a result, mm.
-const MOST_PENETRATION: f64 = 0.05;
-/// Way beyond the deepest overlap that pressed skin may move, mm: beside a contact skin is carried along, by no more than it bulges.
+pub(crate) const MOST_PENETRATION: f64 = 0.05;
+/// Way beyond the deepest overlap that pressed skin may move, mm: next to a contact, skin is carried along by no more than it bulges.
 const MOST_BEYOND: f64 = 3.0;
 /// Pressure over a sensel that only an edge causes, MPa: pain begins at 0.3 to 0.7 MPa on a palm.
 const MOST_PATCH: f64 = 1.0;

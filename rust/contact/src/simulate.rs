@@ -12,6 +12,7 @@ use crate::interface::attraction::{Attraction, Clinging, MOST_SOLVES, Pull, stea
 use crate::interface::friction::{self, Grasp, Sheared};
 use crate::linearize::{Setting, Solved, solve};
 use crate::memory::{Last, Trail};
+use crate::merged::put_out;
 use crate::press::{Contact, Press, Start, Unsolved};
 use crate::skin::Skin;
 use crate::solve::Accuracy;
@@ -140,7 +141,7 @@ impl Skin {
         control.step("fields", 0.0)?;
         let started = Instant::now();
         let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
-        crate::merged::put_out(self, press, direction * offset, &mut contact);
+        put_out(self, press, direction * offset, &mut contact);
         add_time(&mut seconds, "fields", started);
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);

@@ -1,4 +1,4 @@
-//! The grade of a result: what is out of range is told, what means nothing is never good.
+//! The grade of a result: out-of-range results are flagged, meaningless ones are never good.
 #![allow(clippy::unwrap_used)]
 
 mod scenes;

@@ -1,4 +1,4 @@
-//! Vertices that the library merges are written outside the product too, and what is left of them is told.
+//! Vertices that the library merges are written outside the product too, and their remaining penetration is reported.
 #![allow(clippy::unwrap_used)]
 
 mod scenes;

@@ -12,7 +12,7 @@ const SAME_ANGLE: f64 = 1e-6;
 /// What a triangle of such a surface is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Verdict {
-    /// It is not of such a surface, or its rooms could not be told.
+    /// It is not of such a surface, or its rooms could not be identified.
     Unknown,
     /// Solid of this body is on one side.
     Bounds { body: u32, is_inward: bool },
@@ -38,7 +38,7 @@ struct Room {
     volume: f64,
     area: f64,
     shows_backs: bool,
-    is_beside_outside: bool,
+    borders_outside: bool,
 }
 
 /// Verdicts on all triangles. `all` are the sides of those that join, and `before` holds them with their vertices welded.
@@ -116,7 +116,7 @@ impl Plan<'_> {
                     volume: 0.0,
                     area: 0.0,
                     shows_backs: false,
-                    is_beside_outside: false,
+                    borders_outside: false,
                 });
                 room.volume += sign * cones(t as usize);
                 room.area += area;
@@ -133,27 +133,26 @@ impl Plan<'_> {
                     let room = find(&mut self.rooms, side) as usize;
                     rooms[room]
                         .iter_mut()
-                        .for_each(|r: &mut Room| r.is_beside_outside = true);
+                        .for_each(|r: &mut Room| r.borders_outside = true);
                 }
             }
         }
         // Pieces whose rooms do not add up, as where they pass through themselves, are left as they are.
-        let mut is_told = vec![true; self.piece.len()];
+        let mut is_certain = vec![true; self.piece.len()];
         for &t in &members {
             let piece = find(&mut self.piece, t) as usize;
             for side in [front(t), back(t)] {
                 let room = find(&mut self.rooms, side);
                 let volume = rooms[room as usize].map_or(0.0, |r| r.volume + thin * r.area);
-                is_told[piece] &= room == outside[piece] || volume >= 0.0;
+                is_certain[piece] &= room == outside[piece] || volume >= 0.0;
             }
             let around = rooms[outside[piece] as usize];
-            is_told[piece] &= around.is_some_and(|r| r.volume < -thin * r.area);
+            is_certain[piece] &= around.is_some_and(|r| r.volume < -thin * r.area);
         }
         let is_solid = |plan: &mut Self, t: u32, side: u32| {
             let room = rooms[find(&mut plan.rooms, side) as usize];
-            let is_cavity = room.is_some_and(|r| {
-                !r.shows_backs && !r.is_beside_outside && r.volume > thin * r.area
-            });
+            let is_cavity = room
+                .is_some_and(|r| !r.shows_backs && !r.borders_outside && r.volume > thin * r.area);
             !is_outside(plan, t, side) && !is_cavity
         };
         let mut body: Vec<u32> = (0..self.rooms.len() as u32).collect();
@@ -167,7 +166,7 @@ impl Plan<'_> {
             both.push(solid);
         }
         for (&t, [ahead, behind]) in members.iter().zip(both) {
-            if !is_told[find(&mut self.piece, t) as usize] {
+            if !is_certain[find(&mut self.piece, t) as usize] {
                 continue;
             }
             let side = if ahead { front(t) } else { back(t) };

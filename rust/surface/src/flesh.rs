@@ -8,7 +8,7 @@ use crate::mesh::{Vec3, is_flat};
 use crate::nearest::Pending;
 use crate::tree::{Source, Tree};
 
-/// How far behind a point flesh is sought to tell it from air, mm: more than half a hand's thickness (tests pass from 15 to 200).
+/// How far behind a point flesh is sought to tell it from air, mm: more than half a hand's thickness.
 const THICKEST: f64 = 40.0;
 
 /// The skin's triangles, for rays through the flesh.

@@ -35,7 +35,6 @@ const SAME_WAY: f64 = 0.5;
 const STEEPEST: f64 = 1.1;
 
 /// Depth to which a point outside, all of whose neighbors are outside as well, may have come through, mm: what skin yields before bone.
-/// Tests pass from 2 to 10.
 const THROUGH: f64 = 6.0;
 
 /// Settled neighbors needed, so that no vertex is judged by one other alone.

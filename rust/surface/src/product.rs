@@ -65,7 +65,7 @@ pub struct Product {
     interior: Option<Interior>,
     /// Whether some part is not a sheet.
     has_body: bool,
-    /// The winding number of sheets, where they stand beside bodies.
+    /// The winding number of sheets, where the product has bodies too.
     sheets: Option<Winding>,
     vertex_areas: Vec<f64>,
     warnings: Vec<String>,
@@ -198,7 +198,7 @@ impl Product {
     /// normals with which they met it (outward from the skin, unit, zero or missing where none is known).
     ///
     /// `hints` (n), indices into the triangles of [`Product::mesh`] to begin with, which only saves time; others, such as `u32::MAX`, and
-    /// missing ones stand for none. Points outside that have come through a thin wall are told from others by their neighbors.
+    /// missing ones stand for none. Points outside that have come through a thin wall are recognized by their neighbors.
     pub fn gaps_along(
         &self,
         points: &[Vec3],

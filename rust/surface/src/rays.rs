@@ -4,8 +4,8 @@ use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::tree::{Child, Face, Node, Tree};
 
-/// Part of a face's size by which a ray may pass beside it: one through an edge must not slip between its two faces. Who asks has to bear
-/// that such a ray crosses both.
+/// Part of a face's size by which a ray may miss it: a ray through an edge must not slip between its two faces. Callers must accept that
+/// such a ray crosses both.
 const ON_EDGE: f64 = 1e-9;
 
 impl Tree {

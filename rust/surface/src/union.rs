@@ -28,7 +28,7 @@ struct Parts<'a> {
     winding: Winding,
     part_of: Vec<u32>,
     /// By part, the parts whose boxes meet its own.
-    beside: Vec<Vec<u32>>,
+    adjacent: Vec<Vec<u32>>,
 }
 
 /// The faces that bound the union of all parts, those that lie partly within another part cut; `None` if all do as they are.
@@ -39,8 +39,8 @@ pub(crate) fn boundary(
     tree: &Tree,
     sources: &[Source],
 ) -> Option<Vec<Source>> {
-    let beside = beside(&oriented.parts, oriented.thin);
-    if beside.iter().all(Vec::is_empty) {
+    let adjacent = adjacent(&oriented.parts, oriented.thin);
+    if adjacent.iter().all(Vec::is_empty) {
         return None;
     }
     let mut part_of = vec![u32::MAX; oriented.welded.len()];
@@ -53,7 +53,7 @@ pub(crate) fn boundary(
         tree,
         winding,
         part_of,
-        beside,
+        adjacent,
     };
     let meets: Vec<Vec<u32>> = sources.par_iter().map(|s| parts.meets(s)).collect();
     let is_bare = parts.bare(sources, &meets);
@@ -75,10 +75,10 @@ pub(crate) fn boundary(
 }
 
 /// By part, the parts whose boxes meet its own, by a sweep along x.
-fn beside(parts: &[Part], thin: f64) -> Vec<Vec<u32>> {
+fn adjacent(parts: &[Part], thin: f64) -> Vec<Vec<u32>> {
     let mut order: Vec<usize> = (0..parts.len()).collect();
     order.sort_by(|&a, &b| parts[a].low.x.total_cmp(&parts[b].low.x));
-    let mut beside = vec![Vec::new(); parts.len()];
+    let mut adjacent = vec![Vec::new(); parts.len()];
     for (i, &a) in order.iter().enumerate() {
         for &b in &order[i + 1..] {
             if parts[b].low.x > parts[a].high.x + thin {
@@ -89,12 +89,12 @@ fn beside(parts: &[Part], thin: f64) -> Vec<Vec<u32>> {
                 [parts[b].low, parts[b].high],
                 thin,
             ) {
-                beside[a].push(b as u32);
-                beside[b].push(a as u32);
+                adjacent[a].push(b as u32);
+                adjacent[b].push(a as u32);
             }
         }
     }
-    beside
+    adjacent
 }
 
 fn boxes_meet(a: [Vec3; 2], b: [Vec3; 2], thin: f64) -> bool {
@@ -126,7 +126,7 @@ impl Parts<'_> {
             let part = &self.oriented.parts[*p as usize];
             boxes_meet([low, high], [part.low, part.high], thin)
         };
-        if own == u32::MAX || !self.beside[own as usize].iter().any(is_near) {
+        if own == u32::MAX || !self.adjacent[own as usize].iter().any(is_near) {
             return Vec::new();
         }
         let wide = [low - Vec3::repeat(thin), high + Vec3::repeat(thin), low];
@@ -157,11 +157,11 @@ impl Parts<'_> {
             }
         }
         let mut known: Vec<Option<bool>> = vec![None; root.len()];
-        let mut told = Vec::with_capacity(sources.len());
+        let mut sorted = Vec::with_capacity(sources.len());
         for (source, meets) in sources.iter().zip(meets) {
             let own = self.part_of[source.id as usize];
-            let is_alone = own == u32::MAX || self.beside[own as usize].is_empty();
-            told.push(if is_alone {
+            let is_alone = own == u32::MAX || self.adjacent[own as usize].is_empty();
+            sorted.push(if is_alone {
                 Some(true)
             } else if !meets.is_empty() {
                 None
@@ -170,7 +170,7 @@ impl Parts<'_> {
                 Some(*known[first].get_or_insert_with(|| self.is_bare(source, meets)))
             });
         }
-        told
+        sorted
     }
 
     /// Whether a face, or a piece of one, that nothing crosses is part of the union's boundary.
@@ -311,8 +311,8 @@ fn split(
         return;
     };
     let off: Vec<f64> = polygon.iter().map(|p| across.dot(&(p - from))).collect();
-    let is_beside = off.iter().all(|d| *d >= -slack) || off.iter().all(|d| *d <= slack);
-    if is_beside || !reaches(&polygon, &[*from, *to], normal, slack) {
+    let is_clear = off.iter().all(|d| *d >= -slack) || off.iter().all(|d| *d <= slack);
+    if is_clear || !reaches(&polygon, &[*from, *to], normal, slack) {
         pieces.push(polygon);
         return;
     }

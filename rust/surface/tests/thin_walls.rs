@@ -298,7 +298,7 @@ fn readings_kept_from_posture_to_posture_are_those_of_all_skin_bit_for_bit() {
                     },
                     limits,
                 );
-                let anew = product.gaps_of_skin(
+                let fresh = product.gaps_of_skin(
                     &PosedSkin {
                         points: skin.positions(),
                         normals: &normals,
@@ -306,9 +306,9 @@ fn readings_kept_from_posture_to_posture_are_those_of_all_skin_bit_for_bit() {
                     },
                     limits,
                 );
-                assert_eq!(*kept, anew, "product {seed}, frame {frame}, {cut_off_mm}");
+                assert_eq!(*kept, fresh, "product {seed}, frame {frame}, {cut_off_mm}");
                 let distance = |g: &Option<Gap>| g.map_or(f64::INFINITY, |g| g.distance);
-                let distances: Vec<f64> = anew.iter().map(distance).collect();
+                let distances: Vec<f64> = fresh.iter().map(distance).collect();
                 assert_eq!(readings.distances(), distances, "{seed}, {frame}");
                 let plain = |p: &Vec3| product.gap(*p, None, limits);
                 let pairs = kept.iter().zip(skin.positions().iter().map(plain));
