@@ -163,9 +163,10 @@ fn balance(pressed: &Pressed) -> Option<Warning> {
 fn runaway(skin: &Skin, pressed: &Pressed, figures: &Figures<'_>) -> Option<Warning> {
     let is_moved =
         pressed.shear.is_some() || pressed.recalled.is_some() || !pressed.clinging.pulls.is_empty();
-    let length = |(v, u): (usize, &Vec3)| (v, u.norm());
-    let moved = figures.displacement.iter().enumerate().map(length);
+    let squared = |(v, u): (usize, &Vec3)| (v, u.norm_squared());
+    let moved = figures.displacement.iter().enumerate().map(squared);
     let (vertex, moved) = moved.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let moved = moved.sqrt();
     let overlap = pressed.detection.deepest();
     (!is_moved && moved > overlap + MOST_BEYOND).then(|| Warning::Runaway {
         vertex: skin.welded.source[vertex] as usize,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, Vec3};
+use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, SkinSurface, Vec3};
 
 use crate::memory::Shape;
 use crate::skin::Skin;
@@ -83,7 +83,10 @@ pub fn detect(
     let facing = PosedSkin {
         points: &positions,
         normals: &normals,
-        triangles: posed.triangles(),
+        surface: Some(SkinSurface {
+            triangles: posed.triangles(),
+            adjacency: &skin.adjacency,
+        }),
     };
     let mut gaps = product.gaps_after(&mut seen.readings, &facing, limits());
     let mut distances = seen.readings.distances().to_vec();

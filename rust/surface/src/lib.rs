@@ -41,6 +41,6 @@ pub use mesh::{Mesh, MeshError, Vec3};
 pub use normals::{median_edge_length, renew_shape, vertex_areas, vertex_normals};
 pub use product::{Gap, GapLimits, Product};
 pub use readings::Readings;
-pub use sight::PosedSkin;
+pub use sight::{PosedSkin, SkinSurface};
 pub use skin_distance::SkinDistance;
 pub use triangle::{ClosestPoint, Feature, closest_point};

@@ -26,7 +26,7 @@ use crate::product::{Gap, GapLimits, Product, Side};
 use crate::sight::{PosedSkin, Sight, seen_and_away};
 use crate::tree::Face;
 use crate::triangle::ClosestPoint;
-use crate::vicinity::Vicinity;
+use crate::vicinity::{SAMPLES, Vicinity};
 
 /// Cosine from which two readings push the same way.
 const SAME_WAY: f64 = 0.5;
@@ -116,17 +116,17 @@ pub(crate) fn settle(
     candidates.iter().map(|c| (c.at, c.plain)).collect()
 }
 
-/// Median edge of the triangles at some points, mm; on a mesh whose triangles are slender, the nearest vertex says little of that.
+/// Median over some places of the mean edge at each, mm; on slender triangles the nearest vertex says little of the spacing.
 fn spacing(skin: &PosedSkin<'_>, places: &[u32]) -> Option<f64> {
-    let mut is_place = vec![false; skin.points.len()];
-    places.iter().for_each(|&i| is_place[i as usize] = true);
-    let there = skin
-        .triangles
-        .iter()
-        .filter(|triangle| triangle.iter().any(|&v| is_place[v as usize]));
-    let edge = |a: u32, b: u32| (skin.points[a as usize] - skin.points[b as usize]).norm();
-    let edges = there.flat_map(|&[a, b, c]| [edge(a, b), edge(b, c), edge(c, a)]);
-    let mut edges: Vec<f64> = edges.collect();
+    let adjacency = skin.surface?.adjacency;
+    let at_place = |&i: &u32| {
+        let around = adjacency.neighbors(i as usize);
+        let edge = |&j: &u32| (skin.points[j as usize] - skin.points[i as usize]).norm();
+        let sum: f64 = around.iter().map(edge).sum();
+        (!around.is_empty()).then(|| sum / around.len() as f64)
+    };
+    let some = places.iter().step_by(places.len().div_ceil(SAMPLES).max(1));
+    let mut edges: Vec<f64> = some.filter_map(at_place).collect();
     let middle = edges.len() / 2;
     (!edges.is_empty()).then(|| *edges.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
@@ -249,12 +249,12 @@ fn sink(
         .filter(|c| !is_settled[c.at as usize])
         .filter_map(|c| {
             let through = c.readings[0]?;
-            let is_near = -through.distance <= THROUGH && !skin.triangles.is_empty();
+            let is_near = -through.distance <= THROUGH && skin.surface.is_some();
             (c.is_within || is_near).then_some((c, through))
         })
         .collect();
     open.sort_unstable_by_key(|(c, _)| c.at);
-    if !skin.triangles.is_empty() {
+    if let Some(surface) = skin.surface {
         let agrees = |(c, reading): &(&Candidate, Gap)| {
             let (mut with, mut against) = (0, 0);
             for &j in &c.neighbors {
@@ -279,7 +279,7 @@ fn sink(
             (from, reading.closest)
         });
         let ways: Vec<(Vec3, Vec3)> = ways.collect();
-        let flesh = Flesh::new(skin.points, skin.triangles, &ways);
+        let flesh = Flesh::new(skin.points, surface.triangles, &ways);
         let reaches = each(&open, |(c, reading)| flesh.reaches(c.at, reading.closest));
         let mut reaches = reaches.into_iter();
         open.retain(|_| reaches.next() == Some(true));

@@ -1,5 +1,6 @@
 //! How the skin of a posture faces what it was measured to.
 
+use crate::adjacency::Adjacency;
 use crate::mesh::Vec3;
 use crate::product::{Gap, GapLimits};
 
@@ -14,17 +15,26 @@ pub struct PosedSkin<'a> {
     pub points: &'a [Vec3],
     /// Outward normals (n), unit, zero where there is none.
     pub normals: &'a [Vec3],
-    /// Triangles, turned outward; without them nothing is known of the flesh behind a vertex.
+    /// Without it nothing is known of the flesh behind a vertex.
+    pub surface: Option<SkinSurface<'a>>,
+}
+
+/// The surface of a skin.
+#[derive(Debug, Clone, Copy)]
+pub struct SkinSurface<'a> {
+    /// Turned outward.
     pub triangles: &'a [[u32; 3]],
+    /// Of those triangles.
+    pub adjacency: &'a Adjacency,
 }
 
 impl<'a> PosedSkin<'a> {
-    /// Points with normals, of a skin that is not known.
+    /// Points with normals, of a skin whose surface is not known.
     pub fn of_points(points: &'a [Vec3], normals: &'a [Vec3]) -> PosedSkin<'a> {
         PosedSkin {
             points,
             normals,
-            triangles: &[],
+            surface: None,
         }
     }
 }

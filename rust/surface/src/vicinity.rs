@@ -5,8 +5,11 @@ use crate::mesh::Vec3;
 /// Points this many typical spacings apart are neighbors: the second ring around a vertex. Tests pass from 1.6 to 4.
 const REACH: f64 = 2.5;
 
+/// The same in mean edges of the mesh, which are longer than the way to the nearest vertex.
+const REACH_OF_EDGES: f64 = 2.0;
+
 /// Points whose nearest neighbor is measured to find the typical spacing.
-const SAMPLES: usize = 64;
+pub(crate) const SAMPLES: usize = 64;
 
 /// Most cells of the grid for each point in it: what is found does not depend on it.
 const CELLS_PER_POINT: f64 = 4.0;
@@ -53,7 +56,7 @@ impl<'a> Vicinity<'a> {
             homes,
         };
         if let Some(spacing) = spacing {
-            vicinity.reach = REACH * spacing;
+            vicinity.reach = REACH_OF_EDGES * spacing;
             return vicinity;
         }
         let mut spacings: Vec<f64> = places

@@ -6,7 +6,7 @@ mod shapes;
 use proptest::prelude::*;
 use shapes::{Random, brute_distance, moved, sphere, v};
 use thenar_surface::{
-    Adjacency, Gap, GapLimits, Mesh, PosedSkin, Product, Readings, SkinDistance, Vec3,
+    Adjacency, Gap, GapLimits, Mesh, PosedSkin, Product, Readings, SkinDistance, SkinSurface, Vec3,
     closest_point, renew_shape, self_intersections, vertex_areas, vertex_normals,
 };
 
@@ -31,15 +31,23 @@ fn scene() -> (Mesh, Mesh) {
 }
 
 fn query(product: &Product, skin: &Mesh, limits: GapLimits) -> Vec<Option<Gap>> {
-    let (normals, triangles) = (vertex_normals(skin), skin.triangles());
-    product.gaps_of_skin(&posed(skin.positions(), &normals, triangles), limits)
+    let (normals, adjacency) = (vertex_normals(skin), Adjacency::new(skin));
+    let surface = (skin.triangles(), &adjacency);
+    product.gaps_of_skin(&posed(skin.positions(), &normals, surface), limits)
 }
 
-fn posed<'a>(points: &'a [Vec3], normals: &'a [Vec3], triangles: &'a [[u32; 3]]) -> PosedSkin<'a> {
+fn posed<'a>(
+    points: &'a [Vec3],
+    normals: &'a [Vec3],
+    (triangles, adjacency): (&'a [[u32; 3]], &'a Adjacency),
+) -> PosedSkin<'a> {
     PosedSkin {
         points,
         normals,
-        triangles,
+        surface: Some(SkinSurface {
+            triangles,
+            adjacency,
+        }),
     }
 }
 
@@ -241,7 +249,8 @@ proptest! {
 fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_bit_for_bit() {
     let (dented, skin) = scene();
     let other = Product::new(moved(&dented, |p| p * 1.02)).unwrap();
-    let triangles = skin.triangles().to_vec();
+    let adjacency = Adjacency::new(&skin);
+    let surface = (skin.triangles(), &adjacency);
     let products = [Product::new(dented).unwrap(), other];
     let mut random = Random(11);
     let (mut readings, mut positions) = (Readings::default(), skin.positions().to_vec());
@@ -262,11 +271,8 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
         assert_eq!(areas, vertex_areas(&moved), "{frame}");
         let product = &products[frame / 6 % 2];
         let limits = if frame % 12 < 9 { CUT } else { FULL };
-        let again = product.gaps_after(
-            &mut readings,
-            &posed(&positions, &normals, &triangles),
-            limits,
-        );
+        let again =
+            product.gaps_after(&mut readings, &posed(&positions, &normals, surface), limits);
         assert_eq!(*again, query(product, &moved, limits), "{frame}");
         let distance = |gap: &Option<Gap>| gap.map_or(f64::INFINITY, |gap| gap.distance);
         let distances: Vec<f64> = again.iter().map(distance).collect();
@@ -274,12 +280,11 @@ fn readings_normals_and_areas_of_skin_that_moves_in_part_are_those_of_all_of_it_
     }
     // Skin that lies where it lay and faces the other way.
     let turned: Vec<Vec3> = normals.iter().map(|n| -n).collect();
-    let before =
-        products[0].gaps_after(&mut readings, &posed(&positions, &normals, &triangles), CUT);
-    let again = products[0].gaps_after(&mut readings, &posed(&positions, &turned, &triangles), CUT);
+    let before = products[0].gaps_after(&mut readings, &posed(&positions, &normals, surface), CUT);
+    let again = products[0].gaps_after(&mut readings, &posed(&positions, &turned, surface), CUT);
     assert_eq!(
         *again,
-        products[0].gaps_of_skin(&posed(&positions, &turned, &triangles), CUT)
+        products[0].gaps_of_skin(&posed(&positions, &turned, surface), CUT)
     );
     assert_ne!(again, before, "which way skin faces matters here");
 }

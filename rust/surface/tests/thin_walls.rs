@@ -4,7 +4,10 @@
 mod shapes;
 
 use shapes::{Random, cuboid, moved, sphere, v};
-use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, Readings, Vec3, vertex_normals};
+use thenar_surface::{
+    Adjacency, Gap, GapLimits, Mesh, PosedSkin, Product, Readings, SkinSurface, Vec3,
+    vertex_normals,
+};
 
 const LIMITS: GapLimits = GapLimits {
     cut_off_mm: 8.0,
@@ -17,16 +20,20 @@ fn tip(depth: f64) -> Mesh {
     moved(&sphere(R, 16, 28), |p| p + v(0.3, 0.2, R - depth))
 }
 
-fn press(product: &Product, skin: &Mesh) -> Vec<Option<Gap>> {
-    let normals = vertex_normals(skin);
-    product.gaps_of_skin(
-        &PosedSkin {
-            points: skin.positions(),
-            normals: &normals,
+fn posed<'a>(skin: &'a Mesh, normals: &'a [Vec3], adjacency: &'a Adjacency) -> PosedSkin<'a> {
+    PosedSkin {
+        points: skin.positions(),
+        normals,
+        surface: Some(SkinSurface {
             triangles: skin.triangles(),
-        },
-        LIMITS,
-    )
+            adjacency,
+        }),
+    }
+}
+
+fn press(product: &Product, skin: &Mesh) -> Vec<Option<Gap>> {
+    let (normals, adjacency) = (vertex_normals(skin), Adjacency::new(skin));
+    product.gaps_of_skin(&posed(skin, &normals, &adjacency), LIMITS)
 }
 
 /// Largest error of the readings of the lower half against the depth below z = 0, and how many of the upper half read inside.
@@ -288,24 +295,10 @@ fn readings_kept_from_posture_to_posture_are_those_of_all_skin_bit_for_bit() {
             };
             let mut readings = Readings::default();
             for (frame, skin) in wandering(32, seed).iter().enumerate() {
-                let normals = vertex_normals(skin);
-                let kept = product.gaps_after(
-                    &mut readings,
-                    &PosedSkin {
-                        points: skin.positions(),
-                        normals: &normals,
-                        triangles: skin.triangles(),
-                    },
-                    limits,
-                );
-                let fresh = product.gaps_of_skin(
-                    &PosedSkin {
-                        points: skin.positions(),
-                        normals: &normals,
-                        triangles: skin.triangles(),
-                    },
-                    limits,
-                );
+                let (normals, adjacency) = (vertex_normals(skin), Adjacency::new(skin));
+                let posed = posed(skin, &normals, &adjacency);
+                let kept = product.gaps_after(&mut readings, &posed, limits);
+                let fresh = product.gaps_of_skin(&posed, limits);
                 assert_eq!(*kept, fresh, "product {seed}, frame {frame}, {cut_off_mm}");
                 let distance = |g: &Option<Gap>| g.map_or(f64::INFINITY, |g| g.distance);
                 let distances: Vec<f64> = fresh.iter().map(distance).collect();
