@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from . import following, native, workflow
-from .scene import baked, checks, moving, own, units
+from .scene import baked, checks, copies, moving, own, units
 
 
 @dataclass
@@ -87,6 +87,8 @@ def publish(context, bake):
     _sum_up(settings.hand.thenar.bake, bake)
     for part in workflow.product_parts(settings):
         moving.send_home(part)
+        if part.name in bake.done[0]["parts"]:
+            copies.remove_copy(part.name)  # frames are shown on the part itself
     context.scene.render.use_lock_interface = True
     settings.result.state_hash = ""
 

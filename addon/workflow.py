@@ -9,7 +9,7 @@ import numpy as np
 
 from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
-from .scene import checks, own, owned, read, sizes, state, units, write
+from .scene import checks, own, owned, read, refine, sizes, state, units, write
 from .scene import parts as parts_of
 from .settings import MATERIAL_NUMBERS
 from .steps import PAUSE, at_once
@@ -36,6 +36,8 @@ class Job:
     """(n), set by `compute`."""
     product: object = None
     """The native module's product, set by `compute`."""
+    refines_product: bool = False
+    """Whether `compute` refines a coarse product for its map."""
     taken: ExitStack | None = None
     """What puts Thenar's earlier output back."""
 
@@ -54,6 +56,7 @@ def prepare(context, taken):
         raise checks.Refusal(f"Live keeps the contact of '{hand.name}' up to date; switch it off first")
     own.take_out(context, hand, parts, taken)
     job = read_job(context, hand, parts)
+    job.refines_product = True
     job.taken, job.state_hash = taken, state_hash(context)
     job.seconds["read"] = time.perf_counter() - started
     return job
@@ -142,6 +145,9 @@ def compute(job, cancel=None, progress=None):
 
     `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
     """
+    if job.refines_product:
+        hand, product = job.reading.hand, job.reading.product
+        job.reading = read.Reading(hand, refine.refined(product, hand))
     with telling(job, cancel):
         return _press(job, prepared(job, cancel, progress), cancel, progress)
 

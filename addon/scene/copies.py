@@ -29,6 +29,8 @@ def write_copy(context, record, reading, offset_mm, pressure_mpa):
     world = (product.vertices_mm[record.first : last] + skin.origin_mm + offset_mm) / skin.scale
     inside = (product.triangles >= record.first).all(axis=1) & (product.triangles < last).all(axis=1)
     mesh = _mesh(copy_name(record.name), world, product.triangles[inside] - record.first)
+    if not record.reason:
+        _dress(mesh, bpy.data.objects[record.name])
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", units.kpa(pressure_mpa))
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(units.kpa(pressure_mpa), look, colors.BARE))
     copy = bpy.data.objects.new(copy_name(record.name), mesh)
@@ -60,6 +62,14 @@ def collection(context):
     if home.name not in context.scene.collection.children:
         context.scene.collection.children.link(home)
     return home
+
+
+def _dress(mesh, part):
+    """Give the copy the part's first material, and flat faces where the part has them."""
+    if part.material_slots:
+        mesh.materials.append(part.material_slots[0].material)
+    if len(part.data.polygons) and not part.data.polygons[0].use_smooth:
+        mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
 
 
 def _mesh(name, positions, triangles):

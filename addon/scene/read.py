@@ -32,6 +32,8 @@ class Part:
     count: int
     base_count: int
     reason: str = ""
+    refinement: object = None
+    """How a coarse part was refined (`refine.Refinement`), or None."""
 
 
 @dataclass(frozen=True)

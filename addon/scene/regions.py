@@ -39,7 +39,7 @@ def select_only(mesh, vertices):
         # Not by `edges.foreach_set`: it crashes on a mesh that was never in Edit Mode (Blender 5.0).
         layer = mesh.attributes.get(name)
         if layer is not None:
-            layer.data.foreach_set("value", np.zeros(len(layer.data), bool))
+            layer.data.foreach_set("value", [False] * len(layer.data))
 
 
 def group_weights(context, hand, group_names):

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import names
 from ..steps import PAUSE
-from . import attributes, colors, copies, correction, key, moving, own, shown, units
+from . import attributes, colors, copies, correction, key, moving, own, refine, shown, units
 
 NO_BONE_MM = 1000.0
 """What stands for tissue without bone in the thickness attribute: the thickest that the library admits."""
@@ -132,10 +132,15 @@ def _keep_key(undo, hand):
 def _write_part(context, undo, record, reading, fields):
     part, look = bpy.data.objects[record.name], context.scene.thenar
     pressure = fields.product_pressure_mpa[record.first : record.first + record.count]
-    if record.reason:
+    if record.reason or record.refinement is not None:
         copies.write_copy(context, record, reading, fields.offset_mm, pressure)
         undo.callback(copies.remove_copy, record.name)
+    else:
+        copies.remove_copy(record.name)
+    if record.reason:
         return
+    if record.refinement is not None:
+        pressure = refine.gathered(pressure, record.refinement)
     undo.callback(attributes.snapshot(part.data, names.PRODUCT_ATTRIBUTES))
     attributes.remove(part.data, names.RESIDUAL_ATTRIBUTES)
     carried = units.kpa(pressure[: len(part.data.vertices)])
@@ -148,6 +153,11 @@ def _notes(product):
     for record in product.parts:
         if record.reason:
             yield f"a copy of '{record.name}' in '{names.RESULTS_COLLECTION}' carries the pressure: {record.reason}"
+        elif record.refinement is not None:
+            yield (
+                f"a finer copy of '{record.name}' in '{names.RESULTS_COLLECTION}' shows the pressure: "
+                "its own triangles are long where it is touched"
+            )
 
 
 def clear(context, hand, parts):

@@ -58,7 +58,8 @@ def grasp(mesh, percentile, start, dump=None):
 
 def save(path):
     """What Solve would press now, as arrays: hand at rest, materials, `posed`, `product_vertices`, `_triangles`."""
-    job = thenar_blender.workflow.prepare(bpy.context)
+    workflow = thenar_blender.workflow
+    job = workflow.read_job(bpy.context, *workflow.check(bpy.context))
     hand, product = job.reading.hand, job.reading.product
     np.savez_compressed(
         path,
