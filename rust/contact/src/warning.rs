@@ -75,6 +75,8 @@ pub enum Warning {
         passes: usize,
         spacing: f64,
     },
+    /// Rows of a protocol did not reach their tolerances.
+    UnsolvedRows { unsolved: usize, rows: usize },
     /// The written skin lies in the product.
     Penetration { depth: f64 },
     /// Skin moved farther than it overlapped.
@@ -107,6 +109,7 @@ impl Warning {
             Warning::ProductInside
             | Warning::NoContact
             | Warning::Unsolved { .. }
+            | Warning::UnsolvedRows { .. }
             | Warning::Penetration { .. }
             | Warning::Runaway { .. } => Grade::DoNotUse,
         }
@@ -130,6 +133,7 @@ impl Warning {
             Warning::OffBalance { .. } => "off_balance",
             Warning::AdhesionUnsettled => "adhesion_unsettled",
             Warning::Unsolved { .. } => "unsolved",
+            Warning::UnsolvedRows { .. } => "unsolved_rows",
             Warning::Penetration { .. } => "penetration",
             Warning::Runaway { .. } => "runaway",
             Warning::ForceLeaps { .. } => "force_leaps",
@@ -250,6 +254,11 @@ impl fmt::Display for Warning {
                 f,
                 "the contact was not solved: {penetration:.3} mm are left after {passes} passes; the product may have folds \
                  smaller than the hand's vertex spacing of {spacing:.1} mm"
+            ),
+            Warning::UnsolvedRows { unsolved, rows } => write!(
+                f,
+                "{unsolved} of {rows} rows of the protocol were not solved (has_converged is false there); take smaller steps, or \
+                 refine the hand's mesh"
             ),
             Warning::Penetration { depth } => write!(
                 f,

@@ -116,7 +116,7 @@ fn ply_faults_name_file_place_and_remedy() {
         ),
         (
             changed("4 0 1 2 3", "4 0 1 2 7"),
-            "a.ply: triangle 1 is [0, 2, 7], the file has 4 vertices",
+            "a.ply, line 7: triangle 1 is [0, 2, 7], the file has 4 vertices",
         ),
         (
             changed("4 0 1 2 3", "2 0 1"),

@@ -7,6 +7,7 @@ use super::protocol::Protocol;
 use super::stand::Stand;
 use super::walk::Walk;
 use crate::skin::Skin;
+use crate::warning::Warning;
 use crate::{ContactError, Control};
 
 /// A protocol with what it is done to.
@@ -48,7 +49,12 @@ impl Skin {
             control.step("protocol", row as f64 / rows.len() as f64)?;
             steps.push(self.take(&mut walk, (run.product, moment), control)?);
         }
-        let last = walk.contact(self, &stand)?;
+        let mut last = walk.contact(self, &stand)?;
+        let unsolved = steps.iter().filter(|step| !step.has_converged).count();
+        if unsolved > 0 {
+            let rows = steps.len();
+            last.warnings.push(Warning::UnsolvedRows { unsolved, rows });
+        }
         control.step("protocol", 1.0)?;
         Ok(Course {
             steps,

@@ -18,6 +18,7 @@ use crate::press::{Drag, ForceTarget};
 use crate::simulate::{Pressed, Seconds};
 use crate::skin::Skin;
 use crate::summary::{summarize, totals};
+use crate::warning::Warning;
 use crate::{ActiveEffect, Contact, ContactError, Control};
 
 /// How far the product is taken off the skin where no force is asked for, mm.
@@ -173,6 +174,12 @@ impl Walk {
             contact.center_of_pressure += slide;
         }
         contact.total_moment += slide.cross(&contact.total_force);
+        for warning in &mut contact.warnings {
+            // A row may lift the product off.
+            if *warning == Warning::NoContact {
+                *warning = Warning::Note(warning.to_string());
+            }
+        }
         if let Some(motion) = &stand.motion {
             carried(&mut contact, motion);
         }

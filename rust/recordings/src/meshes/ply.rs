@@ -14,7 +14,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
     let header = ply_header::parse(bytes)?;
     let mut values = Values::new(bytes, &header);
     let mut mesh = MeshFile::default();
-    let mut faces = Faces::default();
+    let (mut faces, mut face_line) = (Faces::default(), 0);
     for element in &header.elements {
         let smallest = element.properties.len();
         if element
@@ -35,7 +35,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         }
         match element.name.as_slice() {
             b"vertex" => read_vertices(element, &mut values, &mut mesh)?,
-            b"face" => read_faces(element, &mut values, &mut faces)?,
+            b"face" => {
+                face_line = element.line;
+                read_faces(element, &mut values, &mut faces)?;
+            }
             b"tristrips" => {
                 let problem = "triangle strips are not read".into();
                 return Err(Fault::line(element.line, problem, "export faces instead"));
@@ -54,7 +57,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
             "triangle {number} is {:?}, the file has {vertices} vertices",
             mesh.triangles[number]
         );
-        return Err(Fault::file(problem, AGAIN));
+        return Err(Fault::line(face_line, problem, AGAIN));
     }
     Ok(mesh)
 }
