@@ -112,6 +112,7 @@ class _Asked:
 
     def __init__(self, product, cancel, progress):
         self.product = product
+        self.is_sheet = np.asarray(product.is_sheet)
         self.hooks = {"cancel": cancel, "progress": None}
         if progress is not None:
             progress("check", 0.0)
@@ -119,16 +120,18 @@ class _Asked:
     def at(self, points, normals):
         """Gap (n,), mm, infinite where far, and the nearest point of the product (n, 3)."""
         gap, closest = np.full(len(points), np.inf), np.full((len(points), 3), np.nan)
+        on_sheet = np.zeros(len(points), bool)
         for first in range(0, len(points), _CHUNK):
             piece = slice(first, first + _CHUNK)
             found = self.product.gap_mm(points[piece], cut_off_mm=_REACH_MM, **self.hooks)
             gap[piece], closest[piece] = found["gap_mm"], found["closest_mm"]
-        if self.product.is_closed:
+            on_sheet[piece] = self.is_sheet[found["triangle"]] & (found["triangle"] >= 0)
+        if not on_sheet.any():
             return gap, closest
         away = points - closest
         beneath = np.einsum("ij,ij->i", away, normals)
         with np.errstate(invalid="ignore"):
-            through = (gap > 0.0) & (gap < _THROUGH_MM) & (beneath > _BENEATH * gap)
+            through = on_sheet & (gap > 0.0) & (gap < _THROUGH_MM) & (beneath > _BENEATH * gap)
         gap[through] *= -1.0
         return gap, closest
 

@@ -15,6 +15,8 @@ pub use crate::spread::Sums;
 const AVERAGE_LENGTH: f64 = 16.0;
 /// Least cosine between a site's normal and its direction.
 pub const LEAST_COSINE: f64 = 0.35;
+/// How much farther than its depth a site may be sent along its direction, mm: the deeper it lies, the nearer that stays to its normal.
+const MOST_DETOUR: f64 = 3.0;
 
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///
@@ -49,7 +51,9 @@ pub fn yielding_directions(
         if is_known {
             *n
         } else {
-            tame(Vec3::new(s[0], s[1], s[2]), *n)
+            let depth = (-gap[k]).max(0.0);
+            let least = LEAST_COSINE.max(depth / (depth + MOST_DETOUR));
+            tame(Vec3::new(s[0], s[1], s[2]), (*n, least))
         }
     });
     (directions.collect(), averages)
@@ -95,16 +99,16 @@ fn strength(spacing: f64) -> f64 {
     AVERAGE_LENGTH * AVERAGE_LENGTH / (1.5 * spacing * spacing)
 }
 
-/// Unit direction nearest to `average` within the cone around `normal` that keeps the contact pressing.
-fn tame(average: Vec3, normal: Vec3) -> Vec3 {
+/// Unit direction nearest to `average` within the cone around `normal`, of cosine `least`, that keeps the contact pressing.
+fn tame(average: Vec3, (normal, least): (Vec3, f64)) -> Vec3 {
     let direction = average.try_normalize(1e-300).unwrap_or(normal);
     let cosine = direction.dot(&normal);
-    if cosine >= LEAST_COSINE {
+    if cosine >= least {
         return direction;
     }
     let sideways = direction - normal * cosine;
     match sideways.try_normalize(1e-12) {
-        Some(side) => normal * LEAST_COSINE + side * (1.0 - LEAST_COSINE * LEAST_COSINE).sqrt(),
+        Some(side) => normal * least + side * (1.0 - least * least).sqrt(),
         None => normal,
     }
 }

@@ -65,10 +65,11 @@ impl Product {
         self.0.warnings().to_vec()
     }
 
-    /// Whether the surface has no holes, so that it has an inside everywhere.
+    /// (l,), bool: triangles of sheets without thickness, which have two sides and no inside.
     #[getter]
-    fn is_closed(&self) -> bool {
-        self.0.is_closed()
+    fn is_sheet(&self, py: Python<'_>) -> Py<PyAny> {
+        let triangles = 0..self.0.mesh().triangles().len();
+        column(py, triangles.map(|t| self.0.is_sheet(t)).collect())
     }
 
     #[getter]

@@ -342,8 +342,7 @@ fn enclose(
 impl Product {
     /// Whether a gap was measured to a sheet.
     fn is_sheet_at(&self, gap: Option<&Gap>) -> bool {
-        let face = |g: &Gap| &self.tree.faces[self.tree.slots[g.triangle as usize] as usize];
-        gap.is_some_and(|g| face(g).is_sheet)
+        gap.is_some_and(|gap| self.is_sheet(gap.triangle as usize))
     }
 
     /// What a point inside would read if it had come through the wall that opposes its skin.

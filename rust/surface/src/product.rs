@@ -147,6 +147,13 @@ impl Product {
         &self.warnings
     }
 
+    /// Whether a triangle of [`Product::mesh`] is of a sheet without thickness, which has two sides and no inside.
+    pub fn is_sheet(&self, triangle: usize) -> bool {
+        let slot = self.tree.slots.get(triangle).copied();
+        let face = slot.and_then(|slot| self.tree.faces.get(slot as usize));
+        face.is_some_and(|face| face.is_sheet)
+    }
+
     /// Whether the surface has no holes, so that it has an inside everywhere.
     pub fn is_closed(&self) -> bool {
         self.interior.is_some()
