@@ -67,6 +67,13 @@ product_parts = parts_of.product_parts
 
 def check(context):
     """Refuse a scene that cannot be pressed. Returns hand and product parts. Raises `Refusal`."""
+    hand, parts = check_objects(context)
+    sizes.check_product_size(context, hand, parts)
+    return hand, parts
+
+
+def check_objects(context):
+    """The same without the product's size, which Live checks when the product changes."""
     problem = native.problem()
     if problem:
         raise checks.Refusal(problem)
@@ -75,7 +82,6 @@ def check(context):
     checks.check_hand(context, hand)
     checks.check_product(context, parts, hand)
     owned.check_names(hand)
-    sizes.check_product_size(context, hand, parts)
     return hand, parts
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import cache, comfort, effects, maps, names, native, sentences, workflow
 from .. import result as results
-from ..scene import attributes, checks, colors, mesh, own, read, state, units, write
+from ..scene import attributes, checks, colors, mesh, own, read, sizes, state, units, write
 from . import nodes
 
 
@@ -39,7 +39,7 @@ class Session:
 
 def check(context):
     """Refuse what Live cannot follow. Returns hand and product parts. Raises `Refusal`."""
-    hand, parts = workflow.check(context)
+    hand, parts = workflow.check_objects(context)
     if own.bake_modifiers(hand):
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then switch Live on")
     if context.scene.thenar.use_force:
@@ -51,6 +51,7 @@ def check(context):
 
 def begin(context, hand, parts):
     """A session for this hand: own earlier output is taken off, the modifier hung on. Raises `Refusal`."""
+    sizes.check_product_size(context, hand, parts)
     if own.contact_key(hand) is not None or any(part.thenar.is_moved for part in parts):
         write.clear(context, hand, parts)
     job = workflow.read_job(context, hand, parts)
@@ -108,6 +109,7 @@ def settle(context, session):
 
 def _take_product(context, session, parts):
     skin = session.job.reading.hand
+    sizes.check_product_size(context, context.scene.thenar.hand, parts)
     product = read.read_product(context, parts, skin.scale, skin.origin_mm)
     session.product = native.module.Product(product.vertices_mm, product.triangles)
     session.job = replace(session.job, reading=read.Reading(skin, product))

@@ -47,8 +47,12 @@ def unmark(mesh, name):
 
 def foreign(mesh, attribute_names):
     """The first attribute of these names that is not Thenar's, or None."""
-    found = (mesh.attributes[name] for name in attribute_names if name in mesh.attributes)
-    return next((attribute for attribute in found if not is_own(mesh, attribute.name)), None)
+    marked, is_signed = mesh.thenar.owned.split("\n"), has_signature(mesh)
+    for name in attribute_names:
+        attribute = mesh.attributes.get(name)
+        if attribute is not None and not ((is_signed or name in marked) and _fits(attribute, name)):
+            return attribute
+    return None
 
 
 def check_names(hand):
@@ -75,6 +79,8 @@ def is_own_key(mesh):
 
 def _is_fit(mesh, name):
     attribute = mesh.attributes.get(name)
-    if attribute is None:
-        return False
+    return attribute is not None and _fits(attribute, name)
+
+
+def _fits(attribute, name):
     return attribute.domain == "POINT" and attribute.data_type == KINDS.get(name, "FLOAT")
