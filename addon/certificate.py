@@ -17,6 +17,9 @@ _THROUGH_MM = 0.5
 """How far skin is looked for behind a sheet."""
 _BENEATH = 0.7
 """Least cosine between the skin's normal and the way back to a sheet."""
+_TOUCHING_MM = 0.02
+_AROUND_MM = 8.0
+"""How near to a place on a sheet skin that touches it tells on which side the flesh is."""
 _CHUNK = 20_000
 _ROUNDS = 12
 """How often added vertices take the mean of their neighbours."""
@@ -132,6 +135,13 @@ class _Asked:
         beneath = np.einsum("ij,ij->i", away, normals)
         with np.errstate(invalid="ignore"):
             through = on_sheet & (gap > 0.0) & (gap < _THROUGH_MM) & (beneath > _BENEATH * gap)
+            touching = on_sheet & (gap <= _TOUCHING_MM)
+        if touching.any():
+            # At the rim of a contact the skin is tangent to the sheet: there the flesh of what touches it tells.
+            for row in np.flatnonzero(through):
+                distance = np.linalg.norm(points[touching] - closest[row], axis=1)
+                around = normals[touching][distance < _AROUND_MM]
+                through[row] = not len(around) or away[row] @ around.sum(axis=0) > 0.0
         gap[through] *= -1.0
         return gap, closest
 

@@ -4,7 +4,7 @@ use thenar_surface::{Gap, GapLimits, Vec3};
 
 use crate::Model;
 use crate::carried::Found;
-use crate::direction::{LEAST_COSINE, Sums, yielding_directions};
+use crate::direction::{LEAST_COSINE, MOST_DETOUR, Sums, yielding_directions};
 use crate::held::Met;
 use crate::linearize::{Setting, vertex};
 use crate::live;
@@ -261,9 +261,9 @@ impl State {
             ..limits()
         };
         let found = setting.product.gaps_along(&points, None, in_full, &[]);
-        for (k, gap) in lost.into_iter().zip(found) {
-            gaps[k] = gap;
-        }
+        lost.into_iter()
+            .zip(found)
+            .for_each(|(k, gap)| gaps[k] = gap);
         gaps
     }
 
@@ -297,13 +297,34 @@ impl State {
     /// Lets what does not fit yield along the normal of the wall that it was detected at, from where it was posed.
     pub(crate) fn yield_along_walls(&mut self, skin: &Skin, setting: &Setting<'_>, tolerance: f64) {
         let misfits = self.misfits();
-        for k in (0..self.travel.len()).filter(|&k| misfits[k] > tolerance) {
+        let places = (0..misfits.len()).filter(|&k| misfits[k] > tolerance);
+        self.turn_to_walls(skin, setting, &places.collect::<Vec<usize>>());
+    }
+
+    /// The same for what bears a force and was sent farther than its depth and [`MOST_DETOUR`]; whether there was any. Each is turned once.
+    pub(crate) fn turn_strayed(&mut self, skin: &Skin, setting: &Setting<'_>) -> bool {
+        let has_strayed = |&k: &usize| {
+            let is_bearing = self.force[k] > 0.0 && self.direction[k] != self.wall[k];
+            is_bearing && self.travel[k] > self.depth(skin, setting, k) + MOST_DETOUR
+        };
+        let strayed: Vec<usize> = self.solved().into_iter().filter(has_strayed).collect();
+        if !strayed.is_empty() {
+            self.turn_to_walls(skin, setting, &strayed);
+        }
+        !strayed.is_empty()
+    }
+
+    fn turn_to_walls(&mut self, skin: &Skin, setting: &Setting<'_>, places: &[usize]) {
+        for &k in places {
             self.direction[k] = self.wall[k];
-            let vertex = vertex(skin, self.zone[k]);
-            let depth = setting.detection.distances[vertex];
-            (self.travel[k], self.cosine[k]) = ((-depth).max(0.0), 1.0);
+            (self.travel[k], self.cosine[k]) = (self.depth(skin, setting, k), 1.0);
         }
         self.place(skin, setting);
+    }
+
+    /// Depth at which a place was detected, mm.
+    fn depth(&self, skin: &Skin, setting: &Setting<'_>, k: usize) -> f64 {
+        (-setting.detection.distances[vertex(skin, self.zone[k])]).max(0.0)
     }
 
     /// Takes back half the way of what did not come nearer to fitting, from travels and misfits (mm) that were better, and measures it.
@@ -338,9 +359,7 @@ impl State {
 
     /// Largest penetration of the zone, or opening under a force, mm.
     pub(crate) fn measure(&self) -> f64 {
-        let all = self.touch.iter().zip(&self.force);
-        all.map(|(gap, force)| misfit(gap, *force))
-            .fold(0.0, f64::max)
+        self.misfits().into_iter().fold(0.0, f64::max)
     }
 
     pub(crate) fn found(&self) -> Found<'_> {

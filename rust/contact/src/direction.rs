@@ -16,7 +16,7 @@ const AVERAGE_LENGTH: f64 = 16.0;
 /// Least cosine between a site's normal and its direction.
 pub const LEAST_COSINE: f64 = 0.35;
 /// How much farther than its depth a site may be sent along its direction, mm: the deeper it lies, the nearer that stays to its normal.
-const MOST_DETOUR: f64 = 3.0;
+pub const MOST_DETOUR: f64 = 3.0;
 
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///

@@ -202,6 +202,12 @@ impl State {
             let before: Vec<(f64, f64)> = self.measured().collect();
             self.solve(skin, &turned, (Accuracy::Rough, control))?;
             self.place(skin, setting);
+            if skin.model == Model::Layer && self.turn_strayed(skin, setting) {
+                turned = self.turned(skin);
+                self.matrix(skin, setting, &mut turned);
+                best = Best::default();
+                continue;
+            }
             let has_improved = best.take(self);
             let is_stuck = best.is_stuck() && is_along_walls;
             let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || is_stuck;

@@ -14,6 +14,7 @@ mod facing;
 mod flesh;
 mod vicinity;
 mod poke;
+mod sheet_side;
 mod sight;
 mod interior;
 mod mesh;

@@ -23,10 +23,11 @@ use crate::flesh::Flesh;
 use crate::mesh::Vec3;
 use crate::nearest::Pending;
 use crate::product::{Gap, GapLimits, Product, Side};
+use crate::sheet_side::{flipped, read_by_side};
 use crate::sight::{PosedSkin, Sight, seen_and_away};
 use crate::tree::Face;
 use crate::triangle::ClosestPoint;
-use crate::vicinity::{SAMPLES, Vicinity};
+use crate::vicinity::{Vicinity, spacing};
 
 /// Cosine from which two readings push the same way.
 const SAME_WAY: f64 = 0.5;
@@ -113,22 +114,21 @@ pub(crate) fn settle(
     }
     candidates.sort_by_key(|c| c.at);
     enclose(product, skin, &candidates, (&is_settled, gaps));
-    candidates.iter().map(|c| (c.at, c.plain)).collect()
-}
-
-/// Median over some places of the mean edge at each, mm; on slender triangles the nearest vertex says little of the spacing.
-fn spacing(skin: &PosedSkin<'_>, places: &[u32]) -> Option<f64> {
-    let adjacency = skin.surface?.adjacency;
-    let at_place = |&i: &u32| {
-        let around = adjacency.neighbors(i as usize);
-        let edge = |&j: &u32| (skin.points[j as usize] - skin.points[i as usize]).norm();
-        let sum: f64 = around.iter().map(edge).sum();
-        (!around.is_empty()).then(|| sum / around.len() as f64)
-    };
-    let some = places.iter().step_by(places.len().div_ceil(SAMPLES).max(1));
-    let mut edges: Vec<f64> = some.filter_map(at_place).collect();
-    let middle = edges.len() / 2;
-    (!edges.is_empty()).then(|| *edges.select_nth_unstable_by(middle, f64::total_cmp).1)
+    let mut before: Vec<(u32, Option<Gap>)> = candidates.iter().map(|c| (c.at, c.plain)).collect();
+    if !product.has_sheets() {
+        return before;
+    }
+    let mut plain = gaps.to_vec();
+    candidates
+        .iter()
+        .for_each(|c| plain[c.at as usize] = c.plain);
+    for (i, reading) in read_by_side(product, skin, limits, (&plain, gaps)) {
+        if candidates.binary_search_by_key(&i, |c| c.at).is_err() {
+            before.push((i, gaps[i as usize]));
+        }
+        gaps[i as usize] = Some(reading);
+    }
+    before
 }
 
 /// What `f` gives for each item, in order.
@@ -379,11 +379,9 @@ impl Product {
             hit.map(|hit| self.reading(&query, &hit, Side::Inside))
         });
         let is_sheet = self.is_sheet_at(Some(gap));
-        let flipped = Gap {
-            distance: -gap.distance,
-            normal: -gap.normal,
-            ..*gap
-        };
-        [wall, (is_sheet && !crossings.is_empty()).then_some(flipped)]
+        [
+            wall,
+            (is_sheet && !crossings.is_empty()).then(|| flipped(gap)),
+        ]
     }
 }

@@ -10,6 +10,7 @@ use crate::normals::vertex_areas;
 use crate::orient::orient;
 use crate::poke::settle;
 use crate::readings::new_number;
+use crate::sheet_side::flipped;
 use crate::sight::{PosedSkin, Sight};
 use crate::sign::Sign;
 use crate::tree::{Query, Source, Tree};
@@ -24,6 +25,9 @@ pub(crate) const FEW: usize = 2_048;
 
 /// Distances below this part of the product's extent have no direction of their own; the surface's is used.
 const TOUCHING: f64 = 1e-9;
+
+/// Sine to the face's normal from which the way to a place on the rim of its piece is another than across the face.
+const SAME_PLANE: f64 = 1e-6;
 
 /// How far queries look.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -215,15 +219,18 @@ impl Product {
     ) -> Vec<Option<Gap>> {
         let mut gaps = self.read(points, facing, (limits, Turned::Opposing), hints);
         if let Some(normals) = facing.filter(|n| n.len() == points.len()) {
-            let sight = |(gap, normal): (&Option<Gap>, &Vec3)| match Sight::new(
-                gap.as_ref(),
-                normal,
-                limits,
-            ) {
-                Sight::Within => Sight::Toward,
-                sight => sight,
+            let sight = |(gap, normal): (&mut Option<Gap>, &Vec3)| {
+                match (Sight::new(gap.as_ref(), normal, limits), *gap) {
+                    (Sight::Within, _) => Sight::Toward,
+                    // The side of a sheet that was met is known: beyond it is through it.
+                    (Sight::Away, Some(met)) if self.is_sheet(met.triangle as usize) => {
+                        *gap = Some(flipped(&met));
+                        Sight::Toward
+                    }
+                    (sight, _) => sight,
+                }
             };
-            let sights: Vec<Sight> = gaps.iter().zip(normals).map(sight).collect();
+            let sights: Vec<Sight> = gaps.iter_mut().zip(normals).map(sight).collect();
             let skin = PosedSkin::of_points(points, normals);
             settle(self, &skin, limits, (&sights, &mut gaps));
         }
@@ -285,6 +292,11 @@ impl Product {
         winding.number(&self.tree, query.point) > 0.5
     }
 
+    /// Whether there is any sheet without thickness.
+    pub(crate) fn has_sheets(&self) -> bool {
+        self.sheets.is_some() || !self.has_body
+    }
+
     /// Whether a point about the tree's center is inside.
     fn holds(&self, point: Vec3, pending: &mut Pending) -> bool {
         let query = self.tree.local_query(point);
@@ -315,7 +327,8 @@ impl Product {
                 .normal(&self.tree, hit)
                 .try_normalize(0.0)
                 .unwrap_or(face.normal)
-        } else if on.feature == Feature::Face {
+        } else if hit.on.feature == Feature::Face || (face.is_piece && is_along(away, face.normal))
+        {
             // Over a face it is the face's own: the difference of two points that all but touch tells it badly.
             face.normal * away.dot(&face.normal).signum()
         } else {
@@ -331,6 +344,12 @@ impl Product {
             barycentric,
         }
     }
+}
+
+/// Whether the way to a place on the rim of a piece is along its face's normal: another piece of the same face goes on there. Else the
+/// faces of two parts meet at that place.
+fn is_along(way: Vec3, normal: Vec3) -> bool {
+    way.cross(&normal).norm() <= SAME_PLANE * way.norm()
 }
 
 /// Calls `work` with every part: in turn where there is little to do, else on several threads.

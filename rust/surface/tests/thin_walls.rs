@@ -3,7 +3,7 @@
 
 mod shapes;
 
-use shapes::{Random, cuboid, moved, sphere, v};
+use shapes::{Random, cuboid, cylinder, moved, sphere, v};
 use thenar_surface::{
     Adjacency, Gap, GapLimits, Mesh, PosedSkin, Product, Readings, SkinSurface, Vec3,
     vertex_normals,
@@ -228,6 +228,52 @@ fn lidless() -> Product {
         .collect();
     assert_eq!(kept.len(), 10);
     Product::new(Mesh::new(walls.positions().to_vec(), kept).unwrap()).unwrap()
+}
+
+#[test]
+fn skin_beside_a_patch_through_a_sheet_reads_by_its_side_of_the_sheet() {
+    // Pots without a lid, of one sheet, pressed from outside: at the rim of the patch the skin is tangent to the wall.
+    for (radius, height, depth) in [
+        (40.0, 120.0, 2.0),
+        (40.0, 120.0, 6.0),
+        (40.0, 120.0, 7.0),
+        (17.0, 115.0, 4.0),
+        (17.0, 115.0, 6.5),
+    ] {
+        let whole = cylinder(radius, height, 96);
+        let top = whole
+            .positions()
+            .iter()
+            .map(|p| p.z)
+            .fold(f64::MIN, f64::max);
+        let is_lid = |t: &[u32; 3]| {
+            t.iter()
+                .all(|&i| whole.positions()[i as usize].z > top - 1e-9)
+        };
+        let walls = whole.triangles().iter().filter(|t| !is_lid(t)).copied();
+        let pot =
+            Product::new(Mesh::new(whole.positions().to_vec(), walls.collect()).unwrap()).unwrap();
+        assert!((0..pot.mesh().triangles().len()).all(|t| pot.is_sheet(t)));
+        for turned in 0..8 {
+            let angle = 0.37 * f64::from(turned);
+            let place = v(
+                (radius + R - depth) * angle.cos(),
+                (radius + R - depth) * angle.sin(),
+                top - 58.2,
+            );
+            let skin = moved(&sphere(R, 18, 30), |p| v(p.z, p.x, p.y) + place);
+            for (p, gap) in skin.positions().iter().zip(press(&pot, &skin)) {
+                let from_axis = p.xy().norm();
+                // Facets lie up to 0.03 mm within the circle.
+                if (from_axis - radius).abs() > 0.05 {
+                    let gap = gap.map_or(f64::INFINITY, |gap| gap.distance); // none is out of reach
+                    let text =
+                        format!("{gap} at radius {from_axis} of {radius}, pressed {depth} mm");
+                    assert_eq!(gap < 0.0, from_axis < radius, "{text}");
+                }
+            }
+        }
+    }
 }
 
 #[test]

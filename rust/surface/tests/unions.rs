@@ -365,3 +365,19 @@ fn turned_boxes_that_overlap_are_one_solid() {
         }
     }
 }
+
+#[test]
+fn normal_at_the_edge_where_two_parts_meet_points_the_shortest_way_out() {
+    // An L of two boxes that overlap: within its corner the edge at x = y = 0 is nearest, whose place lies amid faces of both.
+    let foot = cuboid(Vec3::new(-10.0, -10.0, -10.0), Vec3::new(10.0, 0.0, 10.0));
+    let back = cuboid(Vec3::new(-10.0, -5.0, -10.0), Vec3::new(0.0, 10.0, 10.0));
+    let corner = Product::new(together(&[foot, back])).unwrap();
+    for (x, y, z) in [(1.0, 2.0, 0.3), (2.0, 0.5, -4.0), (1.5, 1.5, 3.0)] {
+        let gap = corner.gap(Vec3::new(-x, -y, z), None, FULL).unwrap();
+        assert!((gap.distance + x.hypot(y)).abs() < 1e-9, "{gap:?}");
+        assert!(
+            (gap.normal - Vec3::new(x, y, 0.0).normalize()).norm() < 1e-9,
+            "{gap:?}"
+        );
+    }
+}
