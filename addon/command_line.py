@@ -82,7 +82,7 @@ def _parser():
     add_press_options(solve)
     solve.add_argument("--out", metavar="OUT.blend", help="save the solved file there")
     solve.add_argument("--render", metavar="OUT.png", help="render the scene with pressure and legend")
-    solve.add_argument("--map", choices=[kind.lower() for kind in maps.MAPS], help="what the rendered colours show")
+    solve.add_argument("--map", choices=[kind.lower() for kind in maps.MAPS], help="what the rendered colors show")
     solve.add_argument("--json", metavar="OUT.json", help="write the result there")
     solve.set_defaults(run=_solve)
     batch = commands.add_parser("batch", help="solve many cases, each in a process of its own")

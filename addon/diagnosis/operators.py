@@ -76,7 +76,7 @@ class THENAR_OT_show_finding(_OfFinding, bpy.types.Operator):
     """Select the skin where this was found, and turn the view to it"""
 
     bl_idname = "thenar.show_finding"
-    bl_label = "Show Place"
+    bl_label = "Show Location"
 
     def execute(self, context):
         selecting.to_object_mode(context)

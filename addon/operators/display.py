@@ -142,7 +142,7 @@ class THENAR_OT_show_pressure(bpy.types.Operator):
     bl_label = "Show Pressure"
     bl_options = {"REGISTER", "UNDO"}
 
-    show: bpy.props.BoolProperty(name="Show", description="Off gives the materials back", default=True)
+    show: bpy.props.BoolProperty(name="Show", description="Off restores the materials", default=True)
 
     @classmethod
     def poll(cls, context):
@@ -163,7 +163,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
     bl_label = "Show Map"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(name="Map", description="What the colours show", items=map_settings.KINDS)
+    kind: bpy.props.EnumProperty(name="Map", description="Quantity that the colors show", items=map_settings.KINDS)
 
     @classmethod
     def description(cls, context, properties):
@@ -209,13 +209,13 @@ class THENAR_OT_reset_range(bpy.types.Operator):
 
 
 class THENAR_OT_render_preset(bpy.types.Operator):
-    """Set the render so that colours keep their values (Standard view, no denoiser) and carry the legend"""
+    """Render with the Standard view transform, without denoiser and with legend: map colors keep their values"""
 
     bl_idname = "thenar.render_preset"
-    bl_label = "True Colours"
+    bl_label = "Set Up Render Colors"
     bl_options = {"REGISTER", "UNDO"}
 
-    restore: bpy.props.BoolProperty(name="Restore", description="Give the earlier settings back", default=False)
+    restore: bpy.props.BoolProperty(name="Restore", description="Restore the earlier settings", default=False)
 
     def execute(self, context):
         if self.restore:

@@ -55,7 +55,7 @@ class THENAR_OT_show_place(bpy.types.Operator):
     """Show where on the hand the press failed, or what its grade is about"""
 
     bl_idname = "thenar.show_place"
-    bl_label = "Show the Place"
+    bl_label = "Show Location"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

@@ -134,7 +134,7 @@ class THENAR_OT_select_place(bpy.types.Operator):
     """Select the skin's vertices at this place"""
 
     bl_idname = "thenar.select_place"
-    bl_label = "Select Place"
+    bl_label = "Select Location"
     bl_options = {"REGISTER", "UNDO"}
 
     index: bpy.props.IntProperty(name="Place", description="Number of the place in the list", min=0)
