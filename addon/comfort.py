@@ -105,9 +105,9 @@ def _sentence(region_names, thresholds, areas):
         listed = ", ".join(f"{sentences.region_title(name)} {_area(area)}" for area, name in worst[:_NAMED])
         more = f" and {len(worst) - _NAMED} more regions" if len(worst) > _NAMED else ""
         share = sum(over) / max(touched, 1e-12)
-        text = f"{_area(sum(over))} ({share:.0%} of the contact) lies over its threshold: {listed}{more}"
+        text = f"{_area(sum(over))} ({share:.0%} of the contact) exceeds its threshold: {listed}{more}"
     else:
-        text = "No pressure lies over its threshold"
+        text = "No pressure exceeds its threshold"
     if unknown:
         text += "; one region has no threshold" if unknown == 1 else f"; {unknown} regions have no threshold"
     return text

@@ -99,7 +99,7 @@ def _parser():
     demo.add_argument("--samples", metavar="DIR", default="blend-samples")
     demo.add_argument("--out", default="target/demo", metavar="DIR")
     demo.set_defaults(run=_demo)
-    samples = commands.add_parser("samples", help="make the sample files anew")
+    samples = commands.add_parser("samples", help="make the sample files again")
     samples.add_argument("--out", required=True, metavar="DIR")
     samples.set_defaults(run=_samples)
     return parser

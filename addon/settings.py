@@ -104,7 +104,7 @@ def _number_properties():
 def _sentence(row, prop):
     if not row:
         return _LABELS[prop]
-    zero = "; 0 stands for no bone below" if prop == "thickness_mm" else ""
+    zero = "; 0: no bone below" if prop == "thickness_mm" else ""
     return f"{row['meaning'].capitalize()}{zero}. {row['source']}"
 
 

@@ -52,7 +52,7 @@ def apply(context, index):
     effect = _switch_on(hand, wanted)
     _to_model(state, finding)
     where = f"for '{sentences.region_title(effect.region)}'" if effect.region else "for all skin"
-    where = "at its place" if "center_x_mm" in wanted.numbers else where
+    where = "at its location" if "center_x_mm" in wanted.numbers else where
     waits = (
         "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
     )
@@ -102,7 +102,7 @@ def _wanted(context, found, finding, row):
             amplitude = _checked(value, (finding, name))
         elif name in shapes:
             if unit != shapes[name]:
-                raise Refusal(f"the finding gives {name} in {unit} and Thenar wants {shapes[name]}; diagnose again")
+                raise Refusal(f"the finding gives {name} in {unit} and Thenar expects {shapes[name]}; diagnose again")
             numbers[name] = _checked(value, (finding, name))
         elif name in options:
             choices[name] = value

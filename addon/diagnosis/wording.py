@@ -24,8 +24,8 @@ DEPENDS = {
     "direction": "direction of motion",
     "radius": "size of the tool",
     "contact_radius": "size of the contact",
-    "skin_position": "place on the skin",
-    "sensor_position": "place on the sensor",
+    "skin_position": "position on the skin",
+    "sensor_position": "position on the sensor",
 }
 
 
@@ -100,7 +100,7 @@ def place(where):
     if where.get("site"):
         parts.append(f"at the site {where['site']}")
     if where.get("center_mm") and where.get("radius_mm"):
-        parts.append(f"within {number(where['radius_mm'])} mm of one place")
+        parts.append(f"within {number(where['radius_mm'])} mm of one point")
     return f"It lies {', '.join(parts)}." if parts else ""
 
 

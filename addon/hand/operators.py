@@ -83,7 +83,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
 
 
 class THENAR_OT_apply_pose(bpy.types.Operator):
-    """Put the hand into a pose of the library; works on every armature whose bones are named"""
+    """Apply a pose of the library to the hand; works on every armature whose bones are assigned"""
 
     bl_idname = "thenar.apply_pose"
     bl_label = "Apply Pose"
@@ -101,7 +101,7 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
 
 class THENAR_OT_guess_bones(bpy.types.Operator):
-    """Fill in which bone is which from the bones' names and their order"""
+    """Assign the bones by their names and their order"""
 
     bl_idname = "thenar.guess_bones"
     bl_label = "Detect Bones"
@@ -120,7 +120,7 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
 
 
 class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
-    """Close the hand on the product until every pad lies as deep in it as asked, within the limits of the joints"""
+    """Close the hand on the product until every pad reaches the given depth, within the joint limits"""
 
     bl_idname = "thenar.fit_grasp"
     bl_label = "Fit Grasp"

@@ -7,7 +7,7 @@ from . import computing, display, polling
 
 
 class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
-    """Press every frame of a range and keep shape and fields beside the file; skin that rubs or remembers follows on"""
+    """Solve every frame of a range and save its shape and fields; friction and time-dependent effects carry over"""
 
     bl_idname = "thenar.bake"
     bl_label = "Bake Frames"

@@ -136,7 +136,7 @@ def _no_map(context):
 
 
 class THENAR_OT_show_pressure(bpy.types.Operator):
-    """Colour hand and product by pressure, over their own materials, with one range for both"""
+    """Color hand and product by pressure, over their own materials, with one range for both"""
 
     bl_idname = "thenar.show_pressure"
     bl_label = "Show Pressure"
@@ -157,7 +157,7 @@ class THENAR_OT_show_pressure(bpy.types.Operator):
 
 
 class THENAR_OT_show_map(bpy.types.Operator):
-    """Colour the skin by a map, over its own material"""
+    """Color the skin by a map, over its own material"""
 
     bl_idname = "thenar.show_map"
     bl_label = "Show Map"
@@ -188,7 +188,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
 
 
 class THENAR_OT_reset_range(bpy.types.Operator):
-    """Fit the range of the colours to the largest value of the map"""
+    """Fit the color range to the largest value of the map"""
 
     bl_idname = "thenar.reset_range"
     bl_label = "Fit Range"

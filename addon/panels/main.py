@@ -135,7 +135,7 @@ def _draw_refusal(layout, context, refusal):
     row = box.row(align=True)
     row.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
     if bpy.ops.thenar.fit_grasp.poll():
-        row.operator("thenar.grasp_lighter", text="Grasp Lighter", icon="HAND")
+        row.operator("thenar.grasp_lighter", text="Lighter Grasp", icon="HAND")
 
 
 def _draw_force(layout, settings):

@@ -48,7 +48,7 @@ def place_in_stack(hand: Object) -> int:
 def folder_of(hand: Object) -> Path:
     """The bake's folder beside the saved file, made where missing. Raises `Refusal` for an unsaved file."""
     if not bpy.data.filepath:
-        raise Refusal("a bake is kept beside the file; save the file first")
+        raise Refusal("a bake is saved next to the file; save the file first")
     folder = Path(bpy.data.filepath).parent / names.BAKE_FOLDER
     folder.mkdir(exist_ok=True)
     return folder / str(bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{hand.name}"))

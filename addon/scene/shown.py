@@ -150,7 +150,7 @@ def _listed(suspects: Sequence[tuple[str, str]]) -> str:
 def _refused(hand: Object, error_mm: float, suspects: Sequence[tuple[str, str]]) -> str:
     return (
         f"the shown skin of '{hand.name}' stays {error_mm:.2f} mm from the contact behind {_listed(suspects)}; apply "
-        "what stands there or switch it off in the viewport, then solve again"
+        "them or switch them off in the viewport, then solve again"
     )
 
 

@@ -32,9 +32,9 @@ def test_areas_over_the_threshold_are_those_of_the_vertices():
     pressure = np.array([100.0, 40.0, 0.0, 60.0, 10.0, 900.0])
     verdict = comfort.judged(["index", "palm"], [50.0, 50.0], (pressure, force, region))
     assert verdict.over_mm2 == pytest.approx((1.0, 5.0)), "0.1 N at 100 kPa is 1 mm², 0.3 N at 60 kPa is 5 mm²"
-    assert verdict.sentence == "6 mm² (29% of the contact) lies over its threshold: Palm 5 mm², Index 1 mm²"
+    assert verdict.sentence == "6 mm² (29% of the contact) exceeds its threshold: Palm 5 mm², Index 1 mm²"
     free = comfort.judged(["index", "palm"], [200.0, 0.0], (pressure, force, region))
-    assert free.sentence == "No pressure lies over its threshold; one region has no threshold"
+    assert free.sentence == "No pressure exceeds its threshold; one region has no threshold"
 
 
 @pytest.mark.parametrize(

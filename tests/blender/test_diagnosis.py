@@ -297,7 +297,7 @@ def test_a_finding_in_another_unit_is_refused(diagnose):
     found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["findings"][1]["parameters"]["thickness_mm"]["unit"] = "m"
     diagnose(found)
-    with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar wants mm"):
+    with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar expects mm"):
         bpy.ops.thenar.apply_finding(index=1)
     assert not effects()
 
