@@ -100,7 +100,7 @@ def test_the_verdict_is_exported_and_shown(tmp_path):
     rows = list(csv.DictReader((tmp_path / "judged.csv").open()))
     assert [float(row["threshold_share"]) > 1 for row in rows] == list(share > 1)
     told = json.loads(json.dumps(results.as_dict(settings.result)))
-    assert told["comfort"] == settings.result.comfort and "lies over its threshold" in told["comfort"]
+    assert told["comfort"] == settings.result.comfort and "exceeds its threshold" in told["comfort"]
     assert [row["threshold_kpa"] for row in told["regions"]] == [5.0, 10.0]
     assert told["over_threshold_mm2"] == pytest.approx(sum(over(hand, [5.0, 10.0])), rel=1e-4)
 
