@@ -11,9 +11,9 @@ def run():
     package = sys.modules[__package__]
     package.register()
     try:
-        from . import headless
+        from . import command_line
 
-        return headless.main(sys.argv[1:])
+        return command_line.main(sys.argv[1:])
     finally:
         package.unregister()
 

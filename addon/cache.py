@@ -2,16 +2,19 @@
 
 import hashlib
 from collections import OrderedDict
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import numpy as np
 
+T = TypeVar("T")
 _SKINS_KEPT = 4
-_skins = OrderedDict()
+_skins: OrderedDict[str, Any] = OrderedDict()
 _PRODUCTS_KEPT = 2
-_products = OrderedDict()
+_products: OrderedDict[str, Any] = OrderedDict()
 
 
-def content_hash(*parts):
+def content_hash(*parts: object) -> str:
     """Hex digest (32 digits) of arrays, texts and numbers; arrays enter with type, shape and bytes."""
     digest = hashlib.blake2b(digest_size=16)
     for part in parts:
@@ -24,32 +27,34 @@ def content_hash(*parts):
     return digest.hexdigest()
 
 
-def skin(key, make):
+def skin(key: str, make: Callable[[], T]) -> T:
     """The prepared skin of `key`, made by `make()` when it is not kept; a few are kept."""
     if key not in _skins:
         _skins[key] = make()
         while len(_skins) > _SKINS_KEPT:
             _skins.popitem(last=False)
     _skins.move_to_end(key)
-    return _skins[key]
+    kept: T = _skins[key]
+    return kept
 
 
-def product(key, make):
+def product(key: str, make: Callable[[], T]) -> T:
     """The prepared product of `key`, made by `make()` when it is not kept; a few are kept."""
     if key not in _products:
         _products[key] = make()
         while len(_products) > _PRODUCTS_KEPT:
             _products.popitem(last=False)
     _products.move_to_end(key)
-    return _products[key]
+    kept: T = _products[key]
+    return kept
 
 
-def drop(key):
+def drop(key: str) -> None:
     """Forget the skin of `key`: after a failure inside, it may not be whole."""
     _skins.pop(key, None)
 
 
-def clear():
+def clear() -> None:
     """Drop everything."""
     _skins.clear()
     _products.clear()

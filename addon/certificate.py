@@ -4,8 +4,12 @@ Of a flat sheet nothing is inside: there, skin that has the sheet close beneath 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from .scene.units import Bools, Floats, Ints
+from .steps import Cancel, Progress
 
 TOLERANCE_MM = 0.02
 """How deep shown skin may lie in the product without a word."""
@@ -32,9 +36,9 @@ class Surface:
     The first `base_count` points are the vertices of the hand's own mesh.
     """
 
-    points_mm: np.ndarray
-    triangles: np.ndarray
-    counts: np.ndarray
+    points_mm: Floats
+    triangles: Ints
+    counts: Bools
     base_count: int
 
 
@@ -47,14 +51,20 @@ class Found:
     """
 
     depth_mm: float
-    place_mm: np.ndarray
+    place_mm: Floats
     vertex: int
     between_mm: float
-    between_place_mm: np.ndarray
-    offsets_mm: np.ndarray
+    between_place_mm: Floats
+    offsets_mm: Floats
 
 
-def measure(surface, left_mm, place, cancel=None, progress=None):
+def measure(
+    surface: Surface,
+    left_mm: Floats | None,
+    place: tuple[Any, Floats],
+    cancel: Cancel | None = None,
+    progress: Progress | None = None,
+) -> Found:
     """Measure the shown skin against a product. Returns a `Found`.
 
     `place`: the prepared product (`thenar.Product`), and how far it moved (3), mm.
@@ -78,21 +88,21 @@ def measure(surface, left_mm, place, cancel=None, progress=None):
     samples, faces = _between(points, triangles, near)
     between, _ = asked.at(samples, _unit(_crosses(samples_of=points, triangles=faces)))
     worst, deepest = _deepest(gap), _deepest(between)
-    place = points[rows[worst]] + offset_mm if worst >= 0 else np.zeros(3)
+    here = points[rows[worst]] + offset_mm if worst >= 0 else np.zeros(3)
     there = samples[deepest] + offset_mm if deepest >= 0 else np.zeros(3)
     depth = max(-gap[worst], 0.0) if worst >= 0 else 0.0
     below = max(-between[deepest], 0.0) if deepest >= 0 else 0.0
     return Found(
         depth_mm=float(depth),
-        place_mm=place,
-        vertex=_nearest(surface, place if depth >= below else there) if max(depth, below) > 0.0 else -1,
+        place_mm=here,
+        vertex=_nearest(surface, here if depth >= below else there) if max(depth, below) > 0.0 else -1,
         between_mm=float(below),
         between_place_mm=there,
         offsets_mm=offsets,
     )
 
 
-def spread(surface, left_mm):
+def spread(surface: Surface, left_mm: Floats) -> Floats:
     """Offsets (m, 3) of all vertices from those (n, 3) of the hand's own: again and again their neighbours' mean."""
     count, total = surface.base_count, len(surface.points_mm)
     offsets = np.zeros((total, 3))
@@ -113,14 +123,14 @@ def spread(surface, left_mm):
 class _Asked:
     """Signed distances to a product, in pieces between which Esc is heard."""
 
-    def __init__(self, product, cancel, progress):
+    def __init__(self, product: Any, cancel: Cancel | None, progress: Progress | None) -> None:
         self.product = product
         self.is_sheet = np.asarray(product.is_sheet)
         self.hooks = {"cancel": cancel, "progress": None}
         if progress is not None:
             progress("check", 0.0)
 
-    def at(self, points, normals):
+    def at(self, points: Floats, normals: Floats) -> tuple[Floats, Floats]:
         """Gap (n,), mm, infinite where far, and the nearest point of the product (n, 3)."""
         gap, closest = np.full(len(points), np.inf), np.full((len(points), 3), np.nan)
         on_sheet = np.zeros(len(points), bool)
@@ -146,7 +156,7 @@ class _Asked:
         return gap, closest
 
 
-def _between(points, triangles, gap):
+def _between(points: Floats, triangles: Ints, gap: Floats) -> tuple[Floats, Ints]:
     """Mid points of edges and centres of the triangles near contact, and the triangle (n, 3) that each belongs to."""
     corners = points[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
@@ -156,16 +166,18 @@ def _between(points, triangles, gap):
     return samples, np.tile(faces, (4, 1))
 
 
-def _crosses(samples_of, triangles):
+def _crosses(samples_of: Floats, triangles: Ints) -> Floats:
     a, b, c = (samples_of[triangles[:, corner]] for corner in range(3))
-    return np.cross(b - a, c - a)
+    crosses: Floats = np.cross(b - a, c - a)
+    return crosses
 
 
-def _unit(vectors):
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
+def _unit(vectors: Floats) -> Floats:
+    unit: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
+    return unit
 
 
-def _normals(points, triangles):
+def _normals(points: Floats, triangles: Ints) -> Floats:
     crosses, sums = _crosses(points, triangles), np.empty_like(points)
     for axis in range(3):
         weights = np.repeat(crosses[:, axis], 3)
@@ -173,10 +185,10 @@ def _normals(points, triangles):
     return _unit(sums)
 
 
-def _deepest(gap):
+def _deepest(gap: Floats) -> int:
     return int(gap.argmin()) if len(gap) and np.isfinite(gap.min()) else -1
 
 
-def _nearest(surface, place_mm):
+def _nearest(surface: Surface, place_mm: Floats) -> int:
     away = surface.points_mm[: surface.base_count] - place_mm
     return int(np.einsum("ij,ij->i", away, away).argmin())

@@ -7,6 +7,9 @@ his blue-white-red turned round. Between stops the ramps are at most 5.5 of 255 
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from .scene.units import Floats
 
 _STOPS = {
     "CIVIDIS": (
@@ -28,26 +31,27 @@ _STOPS = {
 }
 
 
-def stops(name):
+def stops(name: str) -> Floats:
     """The map's stops (32, 3), sRGB 0 to 1, from low to high; not to be written to."""
     return _channels(name)[0].T
 
 
-def srgb(name, fraction):
+def srgb(name: str, fraction: Floats) -> Floats:
     """Colours (n, 3), sRGB, at `fraction` (n,) of the range; clipped to its ends."""
     return channels(name, fraction).T
 
 
-def channels(name, fraction):
+def channels(name: str, fraction: Floats) -> Floats:
     """Red, green and blue (3, n), sRGB, as `srgb` gives them: each in a row, which numpy computes faster."""
     table, steps = _channels(name)
     place = within(fraction) * steps.shape[1]
     low = np.minimum(place.astype(np.intp), steps.shape[1] - 1)
-    return table.take(low, axis=1) + steps.take(low, axis=1) * (place - low)
+    found: Floats = table.take(low, axis=1) + steps.take(low, axis=1) * (place - low)
+    return found
 
 
 @lru_cache
-def _channels(name):
+def _channels(name: str) -> tuple[Floats, Floats]:
     """The map's stops (3, 32), and the steps from each to the next (3, 31)."""
     stored = "WARMCOOL" if name == "COOLWARM" else name
     table = np.frombuffer(bytes.fromhex(_STOPS[stored]), np.uint8).reshape(-1, 3).T / 255.0
@@ -57,19 +61,19 @@ def _channels(name):
     return table, steps
 
 
-def to_linear(color):
+def to_linear(color: ArrayLike) -> Floats:
     """sRGB to scene-linear, by the standard's two branches."""
-    color = np.asarray(color, dtype=np.float64)
-    return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
+    encoded = np.asarray(color, dtype=np.float64)
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
-def cover(share):
+def cover(share: ArrayLike) -> Floats:
     """How far a map covers the surface (0 to 1) at `share` of its edge: a soft border where contact begins."""
     edge = within(np.asarray(share, dtype=np.float64))
     return edge * edge * (3.0 - 2.0 * edge)
 
 
-def within(share):
+def within(share: Floats) -> Floats:
     """`share` clipped to 0 to 1, NaN to 0."""
     return np.minimum(np.fmax(share, 0.0), 1.0)
 

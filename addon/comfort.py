@@ -6,8 +6,9 @@ No pain or discomfort threshold of the hand in kPa by region was found that coul
 from dataclasses import dataclass
 
 import numpy as np
+from bpy.types import Context
 
-from . import names, result
+from . import names, result, sentences
 from .scene import attributes
 from .scene.units import KPA_PER_MPA, cm2
 
@@ -20,7 +21,7 @@ SOURCES = {
     BLOOD_FLOW: "skin blood flow stops at about 50 kPa (The Hand in Manual Work, thesis, Chalmers 2004)",
     DISCOMFORT: "discomfort at 38 % (finger), 40 % (palm), 22 % (thenar) of your pain thresholds "
     "(Perception of Surface Pressure Applied to the Hand)",
-    OWN: "thresholds that you typed",
+    OWN: "thresholds that you entered",
 }
 _NAMED = 3
 """Regions that the sentence names."""
@@ -57,7 +58,7 @@ def threshold_kpa(region_name, given):
     return known[part] if part else min((value for value in known.values() if value > 0.0), default=0.0)
 
 
-def judge(context):
+def judge(context: Context) -> None:
     """Judge the result on the hand: rows of the result table, the sentence, and the attribute of the map."""
     settings = context.scene.thenar
     hand, outcome, given = settings.hand, settings.result, settings.comfort
@@ -98,15 +99,15 @@ def _sentence(region_names, thresholds, areas):
     over, touched = areas
     unknown = sum(limit == 0.0 for limit in thresholds)
     if unknown == len(thresholds):
-        return "No threshold is known; type yours under Comfort"
+        return "No threshold is known; enter yours under Comfort"
     worst = sorted((area, name) for name, area in zip(region_names, over, strict=True) if area > 0.0)[::-1]
     if worst:
-        listed = ", ".join(f"{name.replace('_', ' ')} {_area(area)}" for area, name in worst[:_NAMED])
+        listed = ", ".join(f"{sentences.region_title(name)} {_area(area)}" for area, name in worst[:_NAMED])
         more = f" and {len(worst) - _NAMED} more regions" if len(worst) > _NAMED else ""
         share = sum(over) / max(touched, 1e-12)
-        text = f"{_area(sum(over))} ({share:.0%} of the contact) lies over its threshold: {listed}{more}"
+        text = f"{_area(sum(over))} ({share:.0%} of the contact) exceeds its threshold: {listed}{more}"
     else:
-        text = "No pressure lies over its threshold"
+        text = "No pressure exceeds its threshold"
     if unknown:
         text += "; one region has no threshold" if unknown == 1 else f"; {unknown} regions have no threshold"
     return text

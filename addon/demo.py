@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from . import headless, pictures, workflow
+from . import headless, pictures, sentences, workflow
 from . import result as results
 from .scene.checks import Refusal
 
@@ -26,7 +26,7 @@ def run(sample, out):
     context = bpy.context
     settings = context.scene.thenar
     if settings.hand is None or (settings.product is None and settings.product_collection is None):
-        raise Refusal(f"'{path}' names no hand and product; make the samples anew")
+        raise Refusal(f"'{path}' names no hand and product; make the samples again")
     workflow.solve(context)
     summary = results.as_dict(settings.result)
     out.mkdir(parents=True, exist_ok=True)
@@ -36,7 +36,7 @@ def run(sample, out):
     summary["seconds"] |= seconds | {"whole demo": time.perf_counter() - started}
     headless.save_json(out / "summary.json", summary)
     _print_seconds(summary["seconds"])
-    print(f"\nPictures, solved file and summary.json stand in {out}")
+    print(f"\nPictures, solved file and summary.json are in {out}")
 
 
 def print_table(summary):
@@ -45,8 +45,8 @@ def print_table(summary):
     print(f"{'region':28}{'force N':>9}{'area cm2':>10}{'peak kPa':>10}{'mean kPa':>10}{'depth mm':>10}")
     for row in (*summary["regions"], *summary["fingers"]):
         print(
-            f"{row['name']:28}{row['force_n']:9.2f}{row['area_mm2'] / 100:10.2f}{row['peak_kpa']:10.1f}"
-            f"{row['mean_kpa']:10.1f}{row['depth_mm']:10.2f}"
+            f"{sentences.region_title(row['name']):28}{row['force_n']:9.2f}{row['area_mm2'] / 100:10.2f}"
+            f"{row['peak_kpa']:10.1f}{row['mean_kpa']:10.1f}{row['depth_mm']:10.2f}"
         )
     print(f"\n{'':28}{'Thenar':>9}{'measured':>10}{'paper sim':>10}   (Xie Table 6, 48 mm)")
     for label, key in (("force, N", "force_n"), ("peak, kPa", "peak_pressure_kpa"), ("mean, kPa", "mean_pressure_kpa")):

@@ -31,7 +31,7 @@ def meaning(name):
     return next((row["meaning"] for row in native.effects() if row["name"] == name), "")
 
 
-def acts_over_time(name):
+def acts_over_time(name: str) -> bool:
     """Whether the effect needs time: a press of one frame knows nothing of it, a bake follows it."""
     return offered().get(name, {}).get("stage") == _OVER_TIME
 
@@ -52,7 +52,7 @@ def is_on(hand, name):
     return any(effect.is_on and effect.name == name for effect in hand.thenar.effects)
 
 
-def title(name):
+def title(name: str) -> str:
     """An effect's or number's name for reading, without the unit that stands beside it."""
     unit = next((suffix for suffix in _UNITS if name.endswith(suffix)), "")
     return name.removesuffix(unit).replace("_", " ").capitalize()
@@ -65,7 +65,7 @@ def _options(self, _context):
 class ThenarEffectNumber(bpy.types.PropertyGroup):
     """One shape number of an effect; `name` is the library's."""
 
-    value: FloatProperty(name="Value", description="Shape number of the effect, in the unit beside it", precision=3)
+    value: FloatProperty(name="Value", description="Parameter of the effect, in the unit shown", precision=3)
     unit: StringProperty()
 
 
@@ -81,7 +81,7 @@ class ThenarEffect(bpy.types.PropertyGroup):
 
     is_on: BoolProperty(name="On", description="Switch the effect on; off is the base model, bit for bit", default=True)
     amplitude: FloatProperty(
-        name="Amplitude", description="How much of the effect acts; 0 is the base model", min=0.0, max=1.0, default=1.0
+        name="Amplitude", description="Strength of the effect; 0 is the base model", min=0.0, max=1.0, default=1.0
     )
     region: StringProperty(name="Region", description="Region the effect acts on; empty: all of the skin")
     numbers: CollectionProperty(type=ThenarEffectNumber)
@@ -91,7 +91,7 @@ class ThenarEffect(bpy.types.PropertyGroup):
         description="Vertex group that paints the effect's field; skin of weight 0 takes the number above",
     )
     painted_full: FloatProperty(
-        name="At Weight 1 (mm)", description="What the full weight of the painted group stands for", min=0.0, default=10
+        name="At Weight 1 (mm)", description="Value at weight 1 of the painted group", min=0.0, default=10
     )
 
 

@@ -1,10 +1,15 @@
 """The effects that are switched on for a hand, from its properties to plain values. Knows nothing of buttons."""
 
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
 
 import numpy as np
+from bpy.types import Context, Object, PropertyGroup
 
 from .scene import checks, regions
+from .scene.units import Floats
 
 
 @dataclass(frozen=True)
@@ -13,17 +18,17 @@ class UsedEffect:
 
     name: str
     amplitude: float
-    regions: tuple | None
-    numbers: tuple
-    painted: np.ndarray | None
+    regions: tuple[int, ...] | None
+    numbers: tuple[tuple[str, float | str], ...]
+    painted: Floats | None
 
-    def native(self, thenar):
+    def native(self, thenar: ModuleType) -> Any:
         """The library's effect."""
         numbers, places = dict(self.numbers), None if self.regions is None else list(self.regions)
         return thenar.Effect(self.name, self.amplitude, regions=places, painted=self.painted, **numbers)
 
 
-def shown(hand):
+def shown(hand: Object) -> Iterator[object]:
     """Values of every effect that is switched on, as the panel and the painted groups show them, for a digest."""
     for effect in hand.thenar.effects:
         if effect.is_on:
@@ -33,19 +38,19 @@ def shown(hand):
                 yield regions.painted_weights(hand, effect.painted)
 
 
-def read(context, hand, region_names):
+def read(context: Context, hand: Object, region_names: Sequence[str]) -> tuple[UsedEffect, ...]:
     """The effects that are switched on (tuple of `UsedEffect`). Raises `Refusal` for a region or group that is gone."""
     return tuple(_read(context, hand, effect, region_names) for effect in hand.thenar.effects if effect.is_on)
 
 
-def hashed(used):
+def hashed(used: Iterable[UsedEffect]) -> Iterator[object]:
     """What a result depends on of `used`, for `cache.content_hash`."""
     for effect in used:
         yield from (effect.name, effect.amplitude, effect.regions, effect.numbers)
         yield effect.painted if effect.painted is not None else ""
 
 
-def _read(context, hand, effect, region_names):
+def _read(context: Context, hand: Object, effect: PropertyGroup, region_names: Sequence[str]) -> UsedEffect:
     places = None
     if effect.region:
         if effect.region not in region_names:
@@ -66,11 +71,11 @@ def _read(context, hand, effect, region_names):
     return UsedEffect(effect.name, _number(effect.amplitude), places, _numbers(effect), painted)
 
 
-def _numbers(effect):
+def _numbers(effect: PropertyGroup) -> tuple[tuple[str, float | str], ...]:
     numbers = [(number.name, _number(number.value)) for number in effect.numbers]
     return tuple(numbers + [(choice.name, choice.value) for choice in effect.choices])
 
 
-def _number(value):
+def _number(value: float) -> float:
     """Six digits of Blender's single precision."""
     return float(f"{value:.6g}")

@@ -1,6 +1,7 @@
 """The grade of a result: the library's, and what the shown surface adds to it. Knows nothing of Blender."""
 
 from dataclasses import dataclass
+from typing import Any
 
 GOOD, READ, DO_NOT = "good", "read this", "do not use"
 ORDER = (GOOD, READ, DO_NOT)
@@ -18,16 +19,13 @@ class Judgement:
     vertex: int = -1
 
 
-def title(grade):
+def title(grade: str) -> str:
     """The grade as a label."""
     return grade.capitalize()
 
 
-def judge(contact, shown_mm, shown_vertex, named):
-    """The judgement on a native contact whose shown surface lies `shown_mm` inside (-1: not measured).
-
-    `named` puts the objects' names into a sentence of the library.
-    """
+def judge(contact: Any, shown_mm: float, shown_vertex: int) -> Judgement:
+    """The judgement on a native contact whose shown surface lies `shown_mm` inside (-1: not measured)."""
     if shown_mm > MOST_SHOWN_MM and contact.grade != DO_NOT:
         reason = (
             f"the skin as shown lies {shown_mm:.2f} mm inside the product, at vertex {shown_vertex}: a modifier behind "
@@ -38,4 +36,4 @@ def judge(contact, shown_mm, shown_vertex, named):
         return Judgement(GOOD)
     worst = next(remark for remark in contact.remarks if remark.grade == contact.grade)
     vertex = -1 if worst.vertex is None else worst.vertex
-    return Judgement(contact.grade, named(worst.text), worst.kind, vertex)
+    return Judgement(contact.grade, worst.text, worst.kind, vertex)

@@ -3,7 +3,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cache, headless, native, status, workflow
+from . import cache, command_line, native, status, workflow
 from .operators import running
 from .scene import baked
 
@@ -64,7 +64,7 @@ def register():
         if handler not in handlers:
             handlers.append(handler)
     if hasattr(bpy.utils, "register_cli_command"):
-        _state["command"] = bpy.utils.register_cli_command("thenar", headless.main)
+        _state["command"] = bpy.utils.register_cli_command("thenar", command_line.main)
 
 
 def unregister():

@@ -13,7 +13,11 @@ def _look_changed(_self, context):
 
 def _range(name, meaning, default):
     return FloatProperty(
-        name=name, description=f"{meaning} at the top of the colours", min=0.0, default=default, update=_look_changed
+        name=name,
+        description=f"{meaning} at the top of the color range",
+        min=0.0,
+        default=default,
+        update=_look_changed,
     )
 
 
@@ -23,7 +27,7 @@ KINDS = tuple((row.kind, row.title, row.meaning, place) for place, row in enumer
 class ThenarMaps(bpy.types.PropertyGroup):
     """`scene.thenar.maps`: the map on the skin, and the tops of the ranges of all maps but the pressure's."""
 
-    shown: EnumProperty(name="Map", description="What the colours on the skin show", items=KINDS)
+    shown: EnumProperty(name="Map", description="Quantity that the colors on the skin show", items=KINDS)
     shear_kpa: _range("Range (kPa)", "Shear, kPa,", 50)
     depth_mm: _range("Range (mm)", "Depth, mm,", 5)
     residual_kpa: _range("Range (kPa)", "Measured minus simulated pressure, kPa,", 50)

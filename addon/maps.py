@@ -1,13 +1,18 @@
 """The maps that can be laid over the skin: what each shows, unit, colours and range. Knows nothing of Blender."""
 
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 from . import colormap, names
+from .scene.units import Floats
 
 PRESSURE = "PRESSURE"
 THICKNESS = "THICKNESS"
 _BARELY = 0.01
 """Value from which a map covers all skin that carries one, in its unit."""
+
+
+Value = TypeVar("Value", float, Floats)
 
 
 @dataclass(frozen=True)
@@ -41,11 +46,11 @@ class Scale:
     edge: float
     low: float = 0.0
 
-    def share(self, value):
+    def share(self, value: Value) -> Value:
         """Where values stand in the range, 0 to 1."""
         return (value - self.low) / (self.high - self.low)
 
-    def value(self, share):
+    def value(self, share: Value) -> Value:
         """The value at a share of the range."""
         return self.low + share * (self.high - self.low)
 
@@ -72,8 +77,8 @@ MAPS = {
             "SLIP",
             names.SLIP_MARGIN,
             "Slip margin",
-            "0 slips, 1 rests",
-            "Share of the friction that is still unused: 0 where skin slips over the product, 1 where it only rests",
+            "0 slip, 1 stick",
+            "Unused share of the friction limit: 0 where skin slips over the product, 1 where it carries no shear",
             _NO_SHEAR,
             palette="WARMCOOL",
             covers="contact",
@@ -83,7 +88,7 @@ MAPS = {
             names.DEPTH_MM,
             "Depth",
             "mm",
-            "How deep product and skin overlap before the skin yields",
+            "Overlap of product and skin before the skin deforms",
             _NO_CONTACT,
             limit="depth_mm",
         ),
@@ -103,8 +108,8 @@ MAPS = {
             names.THRESHOLD_SHARE,
             "Comfort",
             "of threshold",
-            "Pressure over the threshold of its region: red lies over it",
-            "pressure is not judged; choose a threshold under Comfort, and solve",
+            "Pressure divided by the threshold of its region: red exceeds it",
+            "pressure is not assessed; choose a threshold under Comfort, and solve",
             palette="COOLWARM",
             fixed=2.0,
             covers="contact",
@@ -114,7 +119,7 @@ MAPS = {
             names.RESIDUAL_KPA,
             "Residual",
             "kPa",
-            "Measured minus simulated pressure below the compared mat: red reads more than the simulation",
+            "Measured minus simulated pressure under the compared mat: red where measured is larger",
             "no mat was compared; load a recording under Recordings, place it, and compare",
             palette="COOLWARM",
             limit="residual_kpa",
@@ -126,7 +131,7 @@ MAPS = {
             names.PRINT_RESIDUAL,
             "Handprint",
             "ink - simulation",
-            "Contact beside a compared handprint: red is inked alone, blue touches in simulation alone",
+            "Contact compared with a handprint: red is ink only, blue is simulated contact only",
             "no handprint was compared; load its image under Recordings, place it, and compare",
             palette="COOLWARM",
             covers="mat",
@@ -136,19 +141,19 @@ MAPS = {
 }
 
 
-def shown(look):
+def shown(look: Any) -> Map:
     """The map that is chosen in `scene.thenar`."""
-    return MAPS[look.maps.shown]
+    return MAPS[str(look.maps.shown)]
 
 
-def setting(view, look):
+def setting(view: Map, look: Any) -> tuple[Any, str] | None:
     """The property group and the name of the property that holds the top of the map's range; None where it is fixed."""
     if not view.limit:
         return None
     return (look if view.kind == PRESSURE else look.maps), view.limit
 
 
-def scale(view, look):
+def scale(view: Map, look: Any) -> Scale:
     """The map's `Scale` under the present settings."""
     place = setting(view, look)
     high = max(view.fixed if place is None else getattr(*place), 1e-6)
@@ -162,12 +167,12 @@ def scale(view, look):
     return Scale(high, view.palette or look.palette, edges[view.covers], low)
 
 
-def covering(view):
+def covering(view: Map) -> str:
     """The attribute that decides where the map covers the surface."""
     return {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT}.get(view.covers, view.attribute)
 
 
-def peak(view, result):
+def peak(view: Map, result: Any) -> float:
     """The largest value that the scene's result holds of the map; 0 where it holds none."""
     held = {PRESSURE: "peak_kpa", "SHEAR": "shear_peak_kpa", "DEPTH": "depth_mm"}.get(view.kind)
     return getattr(result, held) if held and result.is_valid else 0.0

@@ -77,7 +77,7 @@ WHOLE_SKIN = "Whole skin"
 """Name of the one region of a hand on which no region was assigned."""
 
 
-def suffixed(name, suffix):
+def suffixed(name: str, suffix: str) -> str:
     """The name with the suffix, cut in front of it where both would be too long for Blender."""
     room = _LONGEST - len(suffix.encode())
     return name.encode()[:room].decode(errors="ignore") + suffix

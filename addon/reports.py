@@ -42,7 +42,7 @@ def write(scene, path, kind=""):
         raise Refusal("there is nothing to report; press Compare or Diagnose first")
     kind = kind or max(held, key=lambda each: int(held[each].stamp or 0))
     if path.suffix not in {".html", ".json"}:
-        raise Refusal(f"'{path.name}' has no ending that is known; give .html for a page or .json for numbers")
+        raise Refusal(f"'{path.name}' has an unknown extension; give .html for a page or .json for numbers")
     text = _text(held[kind], kind, path.suffix)
     try:
         export.replace_file(path, lambda aside: aside.write_text(text, encoding="utf-8"))

@@ -1,17 +1,21 @@
 """A contact's numbers: from the native record into the file's properties, and out again as JSON."""
 
+from collections.abc import Sequence
 from functools import lru_cache
 from math import isfinite
+from typing import Any
 
 import numpy as np
+from bpy.types import PropertyGroup
 
-from . import grades, names, sentences
+from . import grades, names
 from .scene.units import KPA_PER_MPA
+from .scene.write import WriteReport
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")
 
 
-def fill(result, job, contact, written, notes):
+def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, notes: Sequence[str]) -> PropertyGroup:
     """Fill `scene.thenar.result` from a native contact, the write report and the contact's notes. Returns it."""
     result.region_index = 0
     result.schema, result.is_valid = names.SCHEMA, True
@@ -35,7 +39,7 @@ def fill(result, job, contact, written, notes):
     result.load_balance = left["load_balance"]
     result.write_error_mm = written.error_mm
     _add_shown(result, written.shown, origin)
-    _add_grade(result, job, contact)
+    _add_grade(result, contact)
     result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
     result.direction = _finite(np.asarray(contact.direction).tolist())
     result.input_hash = job.input_hash
@@ -48,7 +52,7 @@ def fill(result, job, contact, written, notes):
     return result
 
 
-def clear(result):
+def clear(result: PropertyGroup) -> None:
     """Forget the result."""
     _clear_rows(result)
     result.is_valid = False
@@ -164,9 +168,9 @@ def _add_shown(result, shown, origin):
     result.shown_blame = ", ".join(name for name, _ in shown.suspects) if shown.moved else ""
 
 
-def _add_grade(result, job, contact):
+def _add_grade(result, contact):
     shown_mm, vertex = result.shown_penetration_mm, result.shown_vertex
-    found = grades.judge(contact, shown_mm, vertex, lambda text: sentences.named(text, job))
+    found = grades.judge(contact, shown_mm, vertex)
     result.grade, result.reason = found.grade, found.reason
     result.reason_kind, result.reason_vertex = found.kind, found.vertex
 

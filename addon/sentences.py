@@ -1,59 +1,49 @@
-"""What the native module says of a press, in sentences with the objects' names. Knows nothing of Blender."""
+"""What the native module says of a press: its own sentences, unchanged, one per kind. Knows nothing of Blender."""
 
-import re
-from functools import lru_cache, partial
+from collections.abc import Iterable, Sequence
+from typing import Any, Protocol
 
-SENTENCES_KEPT = 256
-"""Notes whose wording is kept: from frame to frame most of them are the same."""
-_PLACES = r"\b[Tt]he (?P<role>hand|product)\b(?! ')|\bregion (?P<region>\d+)\b"
-"""Where a name belongs; names of regions that the native module already put are found first, and left as they are."""
-_NUMBERS = dict.fromkeys(map(ord, "0123456789."))
+SAME_KIND_IS_SAME_TEXT = "note"
+"""The kind of notes on meshes: two of them are alike only where they say the same."""
 
 
-def named(text, job):
-    """A sentence of the native module with the objects' names: it knows them as "the hand" and "the product" only."""
-    return _namer(job.hand_name, job.part_names, job.region_names)(text)
+class Named(Protocol):
+    """A press whose objects and regions have names."""
+
+    hand_name: str
+    part_names: tuple[str, ...]
+    region_names: tuple[str, ...]
 
 
-def remarks(contact, job):
-    """The notes of the native module on a contact, with the objects' names, `joined`."""
-    return list(joined(map(_namer(job.hand_name, job.part_names, job.region_names), contact.warnings)))
+def region_title(name: str) -> str:
+    """A region's name in words: `Index distal pad`. What is not a name in lower case and underscores stays as it is."""
+    return name.replace("_", " ").capitalize() if name.isidentifier() and name.islower() else name
 
 
-@lru_cache(maxsize=4)
-def _namer(hand_name, part_names, region_names):
-    """What does this for one hand and product: it remembers sentences without looking at all these names each time."""
-    objects = {"hand": hand_name, "product": ", ".join(part_names)}
-    by_name = "|".join(re.escape(f"'{name}'") for name in sorted(region_names, key=len, reverse=True))
-    places = re.compile(rf"{by_name}|{_PLACES}" if by_name else _PLACES)
-    return lru_cache(maxsize=SENTENCES_KEPT)(partial(_named, places=places, names=(objects, region_names)))
+def titles(region_names: Iterable[str]) -> list[str]:
+    """The names in words of all regions, as the native module puts them into its sentences."""
+    return [region_title(name) for name in region_names]
 
 
-def _named(text, places, names):
-    """One pass, so that a name is never looked into, whatever stands in it; each role is named once."""
-    objects, regions = dict(names[0]), dict(enumerate(names[1]))
-
-    def name(found):
-        if found["region"]:
-            return f"region '{regions.get(int(found['region']), found['region'])}'"
-        known = objects.pop(found["role"], None) if found["role"] else None
-        return found[0] if known is None else f"{found[0]} '{known}'"
-
-    return places.sub(name, text)
+def named(error: Exception, job: Named) -> Exception:
+    """The native module's error with the objects that it is about in front of its own sentence."""
+    about = " on ".join(f"'{name}'" for name in (job.hand_name, ", ".join(job.part_names)) if name)
+    told = type(error)(f"{about}: {error}")
+    vars(told)["vertices"] = list(getattr(error, "vertices", ()))
+    return told
 
 
-def joined(notes):
-    """Notes that differ by names and numbers only become one, which counts the others."""
-    alike = {}
-    for note in notes:
-        alike.setdefault(_kind(note), []).append(note)
-    for first, *others in alike.values():
-        yield first + (f" ({len(others)} more such)" if others else "")
+def remarks(contact: Any, job: Named) -> list[str]:
+    """The sentences on a contact; of those of one kind the first, with the other regions that it holds for."""
+    alike: dict[tuple[str, str], list[Any]] = {}
+    for remark in contact.remarks:
+        own = remark.text if remark.kind == SAME_KIND_IS_SAME_TEXT else ""
+        alike.setdefault((remark.kind, own), []).append(remark)
+    return [_with_others(group, job.region_names) for group in alike.values()]
 
 
-@lru_cache(maxsize=SENTENCES_KEPT)
-def _kind(note):
-    """The sentence without the names in quotes and without numbers."""
-    parts = note.split("'")
-    said = parts[::2] if len(parts) % 2 else parts[::2] + parts[-1:]
-    return "#".join(said).translate(_NUMBERS)
+def _with_others(group: list[Any], region_names: Sequence[str]) -> str:
+    first, *others = group
+    places = [region_title(region_names[other.region]) for other in others if other.region is not None]
+    text: str = first.text
+    return text + (f" (also: {', '.join(places)})" if places else "")

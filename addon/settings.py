@@ -104,7 +104,7 @@ def _number_properties():
 def _sentence(row, prop):
     if not row:
         return _LABELS[prop]
-    zero = "; 0 stands for no bone below" if prop == "thickness_mm" else ""
+    zero = "; 0: no bone below" if prop == "thickness_mm" else ""
     return f"{row['meaning'].capitalize()}{zero}. {row['source']}"
 
 
@@ -266,26 +266,26 @@ class ThenarScene(bpy.types.PropertyGroup):
     product_collection: PointerProperty(
         type=bpy.types.Collection,
         name="Parts",
-        description="A collection whose objects together are the product; used besides Product",
+        description="Collection whose objects are the product, in addition to Product",
     )
     model: EnumProperty(
         name="Model",
-        description="Law of the skin",
+        description="Contact model of the skin",
         items=(
-            ("LAYER", "Layer on bone", "Coupled skin of finite thickness over bone; keeps its volume"),
+            ("LAYER", "Layer on bone", "Coupled soft-tissue layer of finite thickness on bone, nearly incompressible"),
             ("PAPER", "Paper", "Xie, Kanai & Date as published: independent regions, half space, swelling"),
         ),
     )
     use_force: BoolProperty(
-        name="Force target", description="Move the product until the contact carries a wanted force"
+        name="Force target", description="Move the product until the contact carries the given normal force"
     )
-    force_n: FloatProperty(name="Force (N)", description="Wanted normal force, N", min=0.0, soft_max=500, default=10)
+    force_n: FloatProperty(name="Force (N)", description="Target normal force, N", min=0.0, soft_max=500, default=10)
     direction_mode: EnumProperty(
         name="Direction",
-        description="Along which direction the product moves to reach the force",
+        description="Direction in which the product moves to reach the force",
         items=(
-            ("AUTO", "Found", "The mean normal of the contact as posed"),
-            ("OWN", "Own", "A direction in world axes"),
+            ("AUTO", "Automatic", "The mean normal of the contact as posed"),
+            ("OWN", "Custom", "A direction in world axes"),
         ),
     )
     direction: FloatVectorProperty(
@@ -297,25 +297,25 @@ class ThenarScene(bpy.types.PropertyGroup):
     )
     slide_mm: FloatVectorProperty(
         name="Slide (mm)",
-        description="How far the product is dragged over the skin, world axes, mm; friction answers to it. "
-        "A bake takes the product's own motion instead",
+        description="Tangential displacement of the product over the skin, world axes, mm; needs the effect Friction. "
+        "A bake uses the product's own motion instead",
         size=3,
         subtype="XYZ",
     )
     range_kpa: FloatProperty(
         name="Range (kPa)",
-        description="Pressure at the top of the colour map, kPa; shared by hand and product and kept between solves",
+        description="Pressure at the top of the color map, kPa; shared by hand and product and kept between solves",
         min=0.0,
         soft_max=500,
         default=150,
         update=_look_changed,
     )
     palette: EnumProperty(
-        name="Colours",
-        description="Colour map of the pressure",
+        name="Colors",
+        description="Color map of the pressure",
         items=(
-            ("VIRIDIS", "Viridis", "Even steps of lightness and hue"),
-            ("CIVIDIS", "Cividis", "Even steps, the same for colour-blind eyes"),
+            ("VIRIDIS", "Viridis", "Perceptually uniform"),
+            ("CIVIDIS", "Cividis", "Perceptually uniform, also with a color-vision deficiency"),
         ),
         update=_look_changed,
     )
@@ -323,11 +323,11 @@ class ThenarScene(bpy.types.PropertyGroup):
         name="Legend", description="Show the legend in the viewport", default=True, update=_look_changed
     )
     accepted_mm: FloatProperty(
-        name="Accepted Size (mm)", description="Longest side of a product that is as large as it seems, mm", min=0.0
+        name="Accepted Size (mm)", description="Longest side of a product whose size was accepted, mm", min=0.0
     )
     live: BoolProperty(
         name="Live",
-        description="The contact follows while hand, armature or product move; not in renders, for those bake",
+        description="Update the contact while hand, armature or product move; renders need a bake",
         update=_live_switched,
     )
     maps: PointerProperty(type=map_settings.ThenarMaps)

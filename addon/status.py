@@ -2,6 +2,8 @@
 
 import platform
 import sys
+from collections.abc import Callable
+from typing import Any
 
 
 class Run:
@@ -23,38 +25,38 @@ class Following:
 run = Run()
 native_problem = ""
 """Why the native module cannot be used, as one sentence; empty if it can."""
-look_changed = []
+look_changed: list[Callable[[Any], object]] = []
 """Called with the context after range, colours or legend were changed."""
-comfort_changed = []
+comfort_changed: list[Callable[[Any], object]] = []
 """Called with the context after the threshold of comfort was changed."""
-live_switched = []
+live_switched: list[Callable[[Any], object]] = []
 """Called with the context after Live was switched on or off."""
-live = {}
+live: dict[str, Following] = {}
 """What Live tells of each scene, by its name: a `Following`."""
-_stale = {}
+_stale: dict[str, bool] = {}
 
 
-def where():
+def where() -> str:
     """Platform and Python, for a report."""
     return f"{platform.system()} {platform.machine()}, Python {sys.version.split()[0]}"
 
 
-def set_native_problem(text):
+def set_native_problem(text: str) -> None:
     """Remember why the native module cannot be used."""
     global native_problem
     native_problem = text
 
 
-def set_stale(scene_name, stale):
+def set_stale(scene_name: str, stale: bool) -> None:
     """Remember whether the result of the scene of that name is out of date."""
     _stale[scene_name] = bool(stale)
 
 
-def is_stale(scene_name):
+def is_stale(scene_name: str) -> bool:
     """Whether the result of that scene was last seen out of date."""
     return _stale.get(scene_name, False)
 
 
-def forget():
+def forget() -> None:
     """Drop what is known of results."""
     _stale.clear()

@@ -1,18 +1,25 @@
 """The order of a press: read, call the library, write back. Knows nothing of buttons and layout."""
 
 import time
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Literal, TypeAlias
 
 import numpy as np
+from bpy.types import Context, Object, PropertyGroup
 
 from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
 from . import result as results
 from .scene import checks, own, owned, read, refine, sizes, state, units, write
 from .scene import parts as parts_of
+from .scene.units import Floats
 from .settings import MATERIAL_NUMBERS
-from .steps import PAUSE, at_once
+from .steps import PAUSE, Cancel, Progress, Steps, Work, at_once
+
+Numbers: TypeAlias = tuple[tuple[str, float], ...]
+"""The library's numbers of a material by name."""
 
 
 @dataclass
@@ -20,21 +27,21 @@ class Job:
     """A press that was read from the scene and may be computed in any thread; nothing in it is a Blender object."""
 
     hand_name: str
-    part_names: tuple
+    part_names: tuple[str, ...]
     reading: read.Reading
-    region_names: tuple
-    materials: tuple
-    effects: tuple
-    slide_mm: tuple | None
-    model: str
+    region_names: tuple[str, ...]
+    materials: tuple[Numbers, ...]
+    effects: tuple[effects.UsedEffect, ...]
+    slide_mm: tuple[float, ...] | None
+    model: Literal["layer", "paper"]
     force_n: float | None
-    direction: tuple | None
+    direction: tuple[float, ...] | None
     input_hash: str
     state_hash: str = ""
-    seconds: dict = field(default_factory=dict)
-    thickness_mm: np.ndarray | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+    thickness_mm: Floats | None = None
     """(n), set by `compute`."""
-    product: object = None
+    product: "native.Product | None" = None
     """The native module's product, set by `compute`."""
     refines_product: bool = False
     """Whether `compute` refines a coarse product for its map."""
@@ -42,7 +49,7 @@ class Job:
     """What puts Thenar's earlier output back."""
 
 
-def prepare(context, taken):
+def prepare(context: Context, taken: ExitStack) -> Job:
     """Read the scene's hand and product into a `Job`. Raises `Refusal`.
 
     Thenar's own output stays out of the scene until the stack `taken` is closed, or a contact is written: putting it
@@ -65,7 +72,7 @@ def prepare(context, taken):
 product_parts = parts_of.product_parts
 
 
-def check(context):
+def check(context: Context) -> tuple[Object, list[Object]]:
     """Refuse a scene that cannot be pressed. Returns hand and product parts. Raises `Refusal`."""
     hand, parts = check_objects(context)
     sizes.check_product_size(context, hand, parts)
@@ -85,7 +92,7 @@ def check_objects(context):
     return hand, parts
 
 
-def read_job(context, hand, parts):
+def read_job(context: Context, hand: Object, parts: Sequence[Object]) -> Job:
     """The job of this hand and these parts at the current frame, read without Thenar's own output."""
     settings = context.scene.thenar
     listed = tuple(hand.thenar.materials)
@@ -99,8 +106,8 @@ def read_job(context, hand, parts):
     force = settings.force_n if settings.use_force else None
     direction = tuple(settings.direction) if settings.use_force and settings.direction_mode == "OWN" else None
     if direction is not None and not np.any(direction):
-        raise checks.Refusal("the direction of the force is zero; enter a direction or choose Found")
-    model = settings.model.lower()
+        raise checks.Refusal("the direction of the force is zero; enter a direction or choose Automatic")
+    model: Literal["layer", "paper"] = settings.model.lower()
     slide = tuple(settings.slide_mm) if any(effect.name == names.FRICTION for effect in used) else None
     return Job(
         hand_name=hand.name,
@@ -131,7 +138,7 @@ def read_job(context, hand, parts):
     )
 
 
-def check_groups(hand, group_names):
+def check_groups(hand: Object, group_names: Sequence[str]) -> None:
     """Refuse materials whose vertex group is gone. Raises `Refusal`."""
     missing = [name for name in group_names if name not in hand.vertex_groups]
     if missing:
@@ -141,12 +148,12 @@ def check_groups(hand, group_names):
         )
 
 
-def material_numbers(hand):
+def material_numbers(hand: Object) -> tuple[Numbers, ...]:
     """The library's numbers of every region's material; of the one material where no region is listed."""
     return tuple(_numbers(material) for material in (tuple(hand.thenar.materials) or (hand.thenar.default_material,)))
 
 
-def compute(job, cancel=None, progress=None):
+def compute(job: Job, cancel: Cancel | None = None, progress: Progress | None = None) -> "native.Contact":
     """The contact of a job, by the native module; no Blender in it, so that a thread may run it.
 
     `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
@@ -159,19 +166,17 @@ def compute(job, cancel=None, progress=None):
 
 
 @contextmanager
-def telling(job, cancel=None):
+def telling(job: Job, cancel: Cancel | None = None) -> Iterator[None]:
     """Errors of the native module leave with the objects' names, and the skin in which they happened is dropped."""
     try:
         yield
     except native.error_types() as error:
         if cancel is None or not cancel.is_set():
             cache.drop(_skin_key(job))
-        named = type(error)(sentences.named(str(error), job))
-        named.vertices = list(getattr(error, "vertices", ()))
-        raise named from None
+        raise sentences.named(error, job) from None
 
 
-def prepared(job, cancel=None, progress=None):
+def prepared(job: Job, cancel: Cancel | None = None, progress: Progress | None = None) -> "native.Skin":
     """The job's prepared skin with its effects."""
     thenar, started = native.module, time.perf_counter()
     if progress is not None:
@@ -183,12 +188,12 @@ def prepared(job, cancel=None, progress=None):
     return skin
 
 
-def _skin_key(job):
+def _skin_key(job: Job) -> str:
     hand = job.reading.hand
-    return cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.materials, job.model)
+    return cache.content_hash(hand.rest_mm, hand.triangles, hand.regions, job.region_names, job.materials, job.model)
 
 
-def _press(job, skin, cancel, progress):
+def _press(job: Job, skin: "native.Skin", cancel: Cancel | None, progress: Progress | None) -> "native.Contact":
     hand, product = job.reading.hand, job.reading.product
     started = time.perf_counter()
     job.product = cache.product(
@@ -208,7 +213,7 @@ def _press(job, skin, cancel, progress):
     return contact
 
 
-def finish(context, job, contact):
+def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[PropertyGroup]:
     """Write the contact back, check what is shown, and keep its numbers; steps that return the scene's result.
 
     Raises `Refusal` if the scene changed meanwhile; on any failure the scene is as before.
@@ -223,11 +228,12 @@ def finish(context, job, contact):
     started = time.perf_counter()
     fields = fields_of(contact, job)
 
-    def measure(surface, left_mm):
+    def measure(surface: certificate.Surface, left_mm: Floats | None) -> Work:
         return partial(certificate.measure, surface, left_mm, (job.product, fields.offset_mm))
 
     written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
-    job.taken.pop_all()
+    if job.taken is not None:
+        job.taken.pop_all()
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, written, notes)
@@ -237,7 +243,7 @@ def finish(context, job, contact):
     return result
 
 
-def steps(context):
+def steps(context: Context) -> Steps[PropertyGroup]:
     """One press as the steps of a computation. Returns the scene's result."""
     with ExitStack() as taken:
         job = prepare(context, taken)
@@ -245,12 +251,12 @@ def steps(context):
         return (yield from finish(context, job, contact))
 
 
-def solve(context):
+def solve(context: Context) -> PropertyGroup:
     """One press from start to end, in this thread. Returns the scene's result."""
     return at_once(steps(context))
 
 
-def fields_of(contact, job):
+def fields_of(contact: "native.Contact", job: Job) -> write.Fields:
     """The native contact's arrays as the writer wants them."""
     return write.Fields(
         displacement_mm=np.asarray(contact.displacement_mm),
@@ -265,30 +271,30 @@ def fields_of(contact, job):
     )
 
 
-def _left_out(job):
+def _left_out(job: Job) -> Iterator[str]:
     """What a press of one moment does not know."""
     waiting = [effect_settings.title(used.name).lower() for used in job.effects if _waits(used)]
     if waiting:
         yield f"{' and '.join(waiting)} act{'s' if len(waiting) == 1 else ''} over time: bake to see it"
 
 
-def _waits(used):
+def _waits(used: effects.UsedEffect) -> bool:
     return used.amplitude > 0.0 and effect_settings.acts_over_time(used.name)
 
 
-def _shear(contact):
+def _shear(contact: "native.Contact") -> tuple[Floats, Floats]:
     margin = np.asarray(contact.slip_margin)
     return np.asarray(contact.tangential_traction_mpa), np.where(np.isnan(margin), 1.0, margin)
 
 
-def offset_mm(contact, job):
+def offset_mm(contact: "native.Contact", job: Job) -> Floats:
     """How far the product moved to carry its force (3), world axes, mm; zero without a force target."""
     if job.force_n is None:
         return np.zeros(3)
     return float(contact.offset_mm) * np.asarray(contact.direction, dtype=np.float64)
 
 
-def state_hash(context):
+def state_hash(context: Context) -> str:
     """Digest of what the result depends on, as the scene shows it now; cheap enough for every change."""
     settings = context.scene.thenar
     hand, parts = settings.hand, product_parts(settings)
@@ -296,13 +302,16 @@ def state_hash(context):
         return ""
     listed = tuple(hand.thenar.materials) or (hand.thenar.default_material,)
     materials = tuple((material.name, _numbers(material)) for material in listed)
-    choices = (settings.model, settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction))
+    choices: tuple[object, ...] = (
+        settings.model,
+        settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction),
+    )
     shapes = state.shapes(context, [hand, *parts])
     choices += (*effects.shown(hand), *settings.slide_mm)
     return cache.content_hash(names.VERSION, materials, choices, units.mm_per_unit(context.scene), *shapes)
 
 
-def is_out_of_date(context):
+def is_out_of_date(context: Context) -> bool:
     """Whether the scene differs from the one that was solved; remembered for the panel.
 
     In Edit Mode Blender shows the cage in place of the shape: there the last answer stands.
@@ -311,12 +320,12 @@ def is_out_of_date(context):
     result = settings.result
     if any(obj.mode == "EDIT" for obj in (settings.hand, *product_parts(settings)) if obj is not None):
         return status.is_stale(context.scene.name)
-    stale = result.is_valid and result.state_hash != state_hash(context)
+    stale = bool(result.is_valid and result.state_hash != state_hash(context))
     status.set_stale(context.scene.name, stale)
     return stale
 
 
-def _numbers(material):
+def _numbers(material: PropertyGroup) -> Numbers:
     """The library's numbers of a region's material, in the table's order; six digits of Blender's single precision."""
     numbers = {}
     for name, (prop, factor) in MATERIAL_NUMBERS.items():
@@ -326,39 +335,39 @@ def _numbers(material):
     return tuple(numbers.items())
 
 
-def new_skin(job, cancel=None, progress=None):
+def new_skin(job: Job, cancel: Cancel | None = None, progress: Progress | None = None) -> "native.Skin":
     """The job's skin, prepared, still without effects. Raises the native module's errors."""
     thenar, hand = native.module, job.reading.hand
-    materials = [_material(thenar, numbers) for numbers in job.materials]
+    materials = [_material(numbers) for numbers in job.materials]
     return thenar.Skin(
         hand.rest_mm,
         hand.triangles,
         regions=hand.regions,
         materials=materials,
         model=job.model,
-        region_names=list(job.region_names),
+        region_names=sentences.titles(job.region_names),
         cancel=cancel,
         progress=progress,
     )
 
 
-def _material(thenar, numbers):
-    numbers = dict(numbers)
-    swelling = tuple(numbers.pop(name) for name in list(numbers) if name.startswith("swelling_"))
-    return thenar.Material(swelling=swelling, **numbers)
+def _material(numbers: Numbers) -> "native.Material":
+    by_name = dict(numbers)
+    height, radius, width = (by_name.pop(name) for name in list(by_name) if name.startswith("swelling_"))
+    return native.module.Material(swelling=(height, radius, width), **by_name)
 
 
-def has_output(context):
+def has_output(context: Context) -> bool:
     """Whether the scene's hand carries anything that Thenar wrote."""
     settings = context.scene.thenar
     hand = settings.hand
     if hand is None or hand.type != "MESH":
         return False
     carried = own.contact_key(hand) is not None or owned.is_own(hand.data, names.PRESSURE_KPA)
-    return carried or settings.result.is_valid or bool(own.played_modifiers(hand))
+    return bool(carried or settings.result.is_valid or own.played_modifiers(hand))
 
 
-def clear(context):
+def clear(context: Context) -> bool:
     """Take everything away that Thenar wrote on hand and product. Raises `Refusal` for linked data. Returns True."""
     settings = context.scene.thenar
     hand, parts = settings.hand, product_parts(settings)
@@ -369,7 +378,7 @@ def clear(context):
     return True
 
 
-def apply(context):
+def apply(context: Context) -> bool:
     """Add the contact's offsets to every other shape, and remove its key. Raises `Refusal`. Returns True."""
     settings = context.scene.thenar
     checks.check_writable(settings.hand)

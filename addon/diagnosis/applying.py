@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import effect_settings, names, native
+from .. import effect_settings, names, native, sentences
 from ..scene import matching
 from ..scene.checks import Refusal
 from . import freshness, reading, wording
@@ -51,8 +51,8 @@ def apply(context, index):
     wanted = _wanted(context, found, finding, row)
     effect = _switch_on(hand, wanted)
     _to_model(state, finding)
-    where = f"for '{effect.region}'" if effect.region else "for all skin"
-    where = "at its place" if "center_x_mm" in wanted.numbers else where
+    where = f"for '{sentences.region_title(effect.region)}'" if effect.region else "for all skin"
+    where = "at its location" if "center_x_mm" in wanted.numbers else where
     waits = (
         "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
     )
@@ -73,7 +73,8 @@ def _refuse_unnamed(found, finding):
         )
     if rivals:
         raise Refusal(
-            f"these recordings cannot tell {wording.apart([effect, *rivals])}, so neither is switched on; {remedy}"
+            f"these recordings cannot distinguish {wording.apart([effect, *rivals])}, "
+            f"so neither is switched on; {remedy}"
         )
     if verdict not in reading.NAMED:
         word = {"cannot_tell": "cannot tell what is missing", "insufficient_data": "are too few to name anything"}
@@ -101,7 +102,7 @@ def _wanted(context, found, finding, row):
             amplitude = _checked(value, (finding, name))
         elif name in shapes:
             if unit != shapes[name]:
-                raise Refusal(f"the finding gives {name} in {unit} and Thenar wants {shapes[name]}; diagnose again")
+                raise Refusal(f"the finding gives {name} in {unit} and Thenar expects {shapes[name]}; diagnose again")
             numbers[name] = _checked(value, (finding, name))
         elif name in options:
             choices[name] = value

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from .. import sentences
 from ..scene.units import KPA_PER_MPA
 from . import reading, wording
 
@@ -118,12 +119,12 @@ def lines(letter):
     yield letter.heading
     yield letter.sentence
     for entry in letter.entries:
-        sure = "" if entry.sureness is None else f", {wording.share(entry.sureness)} sure"
+        sure = "" if entry.sureness is None else f", {wording.share(entry.sureness)} confidence"
         yield f"{entry.index + 1}. {entry.title}{sure}"
         yield from (f"   {text}" for text in (entry.meaning, entry.story) if text)
         yield from (f"   {row.label}: {row.text}" for row in entry.rows)
         yield from (f"   {'Seen' if holds else 'Not seen'}: {sign}" for sign, holds in entry.signs)
-    yield from (f"Goes with {bar.label.lower()}: {bar.text}" for bar in letter.depends)
+    yield from (f"Depends on {bar.label.lower()}: {bar.text}" for bar in letter.depends)
     yield from (f"Evidence {bar.label}: {bar.text}" for bar in letter.phases)
     yield from letter.rivals
     yield from (f"{bar.label}: {bar.text}" for bar in letter.bars)
@@ -131,7 +132,7 @@ def lines(letter):
     for advice in letter.advice:
         yield f"Record next: {advice.text}"
         yield from (text for text in (advice.settles, advice.outlook) if text)
-    yield from (f"Would be seen, {row.label.lower()}: {row.text}" for row in letter.smallest)
+    yield from (f"Detection limit, {row.label.lower()}: {row.text}" for row in letter.smallest)
     yield from (f"Fitted, {row.label}: {row.text}" for row in letter.moduli)
     yield from letter.notes
 
@@ -165,13 +166,13 @@ def _depends(unlisted):
             yield Bar(wording.depended(told["on"]), wording.share(removed), min(max(removed, 0.0), 1.0))
     rhythm = unlisted.get("rhythm")
     if rhythm:
-        yield Bar("Rhythm", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f}/min", 1.0)
+        yield Bar("Periodic component", f"{wording.number(rhythm['hz'])} Hz, {rhythm['per_minute']:.0f}/min", 1.0)
 
 
 def _depends_note(unlisted):
     if unlisted.get("correction"):
-        return "Removed by an empirical correction, on protocols that it was not fitted to; it says what, not why"
-    return "Told from what differs between repeats; it begins anew in each" if unlisted.get("rhythm") else ""
+        return "Removed by an empirical correction on held-out protocols; it shows a dependence, not its cause"
+    return "Found from differences between repeats; its phase differs in each" if unlisted.get("rhythm") else ""
 
 
 def _phases(found):
@@ -189,12 +190,12 @@ def _phases(found):
 def _rivals(found):
     """What cannot be told apart, and what else the name may be at 90 %."""
     for effects in found.get("cannot_tell", ()):
-        yield f"These recordings cannot tell {wording.apart(effects)}."
+        yield f"These recordings cannot distinguish {wording.apart(effects)}."
     sets = found.get("names_90") or []
     if len(sets) > 1 and found["verdict"] not in _UNSAID:
         words = [wording.listed(wording.name(effect) for effect in effects) or "nothing" for effects in sets]
         more = f"; and {len(words) - _SETS} more" if len(words) > _SETS else ""
-        yield f"At 90 % it is one of: {'; '.join(words[:_SETS])}{more}."
+        yield f"At 90 % the explanation is one of: {'; '.join(words[:_SETS])}{more}."
 
 
 def _fit(fit):
@@ -215,7 +216,7 @@ def _moduli(found):
         both = [numbers.get(name) for name in ("g0_mpa", "g_lim_mpa")]
         told = [wording.number(KPA_PER_MPA * value) for value in both if value is not None]
         if told:
-            yield Row(wording.title(region), f"G {' to '.join(told)} kPa")
+            yield Row(sentences.region_title(region), f"G {' to '.join(told)} kPa")
 
 
 def _gain(fit):
@@ -224,16 +225,16 @@ def _gain(fit):
         between = ""
         if removed.get("low") is not None and removed.get("high") is not None:
             between = f" ({wording.share(removed['low'])} to {wording.share(removed['high'])})"
-        yield f"{wording.share(removed['value'])}{between} of the error that could be removed is gone."
+        yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
     placebo = fit.get("placebo_removed")
     if placebo is not None:
         share = wording.share(max(placebo, 0.0))
-        yield f"A placebo, the same change on the wrong recordings at the wrong moments, removes {share} at most."
+        yield f"A negative control, the same change on the wrong recordings and moments, removes {share} at most."
     held_out = fit.get("held_out")
     if held_out:
         count = len(held_out)
         plural = "" if count == 1 else "s"
-        yield f"Judged on {count} recording{plural} that the fit did not use: {wording.some(held_out)}."
+        yield f"Evaluated on {count} held-out recording{plural}: {wording.some(held_out)}."
 
 
 def _advice(told):
@@ -246,6 +247,6 @@ def _advice(told):
         outlook.append(f"{wording.number(told['minutes'])} min")
     return Advice(
         text=told.get("text") or "",
-        settles=f"Tells {words}." if words else "",
+        settles=f"Distinguishes {words}." if words else "",
         outlook=", ".join(outlook)[:1].upper() + ", ".join(outlook)[1:],
     )

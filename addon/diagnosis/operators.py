@@ -54,7 +54,7 @@ class _OfFinding:
 
 
 class THENAR_OT_apply_finding(_OfFinding, bpy.types.Operator):
-    """Switch the effect on in the scene with the numbers found, and take it into the study's model"""
+    """Enable the effect in the scene with its fitted parameters, and add it to the study's model"""
 
     bl_idname = "thenar.apply_finding"
     bl_label = "Switch On"
@@ -73,10 +73,10 @@ class THENAR_OT_apply_finding(_OfFinding, bpy.types.Operator):
 
 
 class THENAR_OT_show_finding(_OfFinding, bpy.types.Operator):
-    """Select the skin where this was found, and turn the view to it"""
+    """Select the skin at the location of this finding, and turn the view to it"""
 
     bl_idname = "thenar.show_finding"
-    bl_label = "Show Place"
+    bl_label = "Show Location"
 
     def execute(self, context):
         selecting.to_object_mode(context)

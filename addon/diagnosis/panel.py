@@ -88,7 +88,7 @@ class _Part(Tab):
 class THENAR_PT_findings(_Part, bpy.types.Panel):
     """What was found: how sure, how large, where, when."""
 
-    bl_label = "What Was Found"
+    bl_label = "Findings"
 
     @staticmethod
     def said(told):
@@ -103,7 +103,7 @@ class THENAR_PT_findings(_Part, bpy.types.Panel):
 class THENAR_PT_depends(_Part, bpy.types.Panel):
     """What something without a name goes with."""
 
-    bl_label = "What It Goes With"
+    bl_label = "Dependence"
 
     @staticmethod
     def said(told):
@@ -119,7 +119,7 @@ class THENAR_PT_depends(_Part, bpy.types.Panel):
 class THENAR_PT_phases(_Part, bpy.types.Panel):
     """In which phase of the recordings the evidence stands."""
 
-    bl_label = "Where the Evidence Stands"
+    bl_label = "Evidence by Phase"
 
     @staticmethod
     def said(told):
@@ -133,7 +133,7 @@ class THENAR_PT_phases(_Part, bpy.types.Panel):
 class THENAR_PT_gain(_Part, bpy.types.Panel):
     """The error on recordings held out, before and after."""
 
-    bl_label = "Before and After"
+    bl_label = "Held-Out Error"
 
     @staticmethod
     def said(told):
@@ -143,7 +143,7 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
     def draw(self, context):
         layout, told = self.layout, _letter(context)
         if told.bars:
-            text.faint(layout, context, "Error (rms) on recordings held out; σ: the noise's standard deviation")
+            text.faint(layout, context, "RMS error on held-out recordings; σ: standard deviation of the noise")
         _draw_bars(layout, told.bars, 0.34)
         for sentence in told.gain:
             text.paragraph(layout, context, sentence)
@@ -158,7 +158,7 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
 class THENAR_PT_rivals(_Part, bpy.types.Panel):
     """What cannot be told, and which recording would tell it."""
 
-    bl_label = "What to Record Next"
+    bl_label = "Next Recording"
 
     @staticmethod
     def said(told):
@@ -180,7 +180,7 @@ class THENAR_PT_rivals(_Part, bpy.types.Panel):
 class THENAR_PT_smallest(_Part, bpy.types.Panel):
     """The smallest of every effect that these recordings would have shown."""
 
-    bl_label = "Smallest That Would Be Seen"
+    bl_label = "Detection Limits"
     bl_options = {"DEFAULT_CLOSED"}
 
     @staticmethod
@@ -250,7 +250,7 @@ def _draw_entry(layout, context, entry):
     if entry.sureness is not None:
         sure = head.row()
         sure.alignment = "RIGHT"
-        sure.label(text=f"{letter.wording.share(entry.sureness)} sure")
+        sure.label(text=f"{letter.wording.share(entry.sureness)} confidence")
     if entry.meaning:
         text.faint(box, context, entry.meaning)
     for row in entry.rows:

@@ -37,7 +37,7 @@ def _listed(match, text):
 
 def _region(context, hand, region):
     if region in (None, *applying.EVERYWHERE):
-        raise Refusal("the finding holds for all of the skin; there is no one place to show")
+        raise Refusal("the finding holds for all of the skin; there is no single location to show")
     if hand is None or hand.type != "MESH" or region not in hand.vertex_groups:
         name = "the hand" if hand is None else f"'{hand.name}'"
         raise Refusal(f"{name} has no vertex group '{region}'; choose the hand that the study was taken from")

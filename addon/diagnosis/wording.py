@@ -2,7 +2,7 @@
 
 from math import isfinite
 
-from .. import effect_settings
+from .. import effect_settings, sentences
 
 PHASES = {
     "load": "while pressing in",
@@ -24,13 +24,13 @@ DEPENDS = {
     "direction": "direction of motion",
     "radius": "size of the tool",
     "contact_radius": "size of the contact",
-    "skin_position": "place on the skin",
-    "sensor_position": "place on the sensor",
+    "skin_position": "position on the skin",
+    "sensor_position": "position on the sensor",
 }
 
 
 def title(name):
-    """An effect's, number's or region's name for reading."""
+    """An effect's or number's name for reading."""
     return effect_settings.title(name)
 
 
@@ -40,9 +40,9 @@ def name(effect):
 
 
 def apart(effects):
-    """What follows "cannot tell": `relaxation from drainage`, `gain, modulus and offset apart`."""
+    """What follows "cannot distinguish": `relaxation from drainage`, `gain, modulus and offset`."""
     words = [name(effect) for effect in effects]
-    return " from ".join(words) if len(words) < 3 else f"{', '.join(words[:-1])} and {words[-1]} apart"
+    return " from ".join(words) if len(words) < 3 else listed(words)
 
 
 def number(value):
@@ -75,10 +75,10 @@ def value(told):
 
 
 def least(seen):
-    """The smallest size of an effect that would have been seen; `at no size` where it is out of reason or not known."""
+    """The detection limit of an effect; `not detectable` where it is out of reason or not known."""
     size = seen.get("value")
     whole = 1.0 if (seen.get("unit") or "").startswith(_SHARE) else _OUT_OF_REASON
-    return value(seen) if size is not None and size < whole else "at no size"
+    return value(seen) if size is not None and size < whole else "not detectable"
 
 
 def share(part):
@@ -96,11 +96,11 @@ def place(where):
     """Where a finding lies, as a sentence. Empty where it lies everywhere."""
     parts = []
     if where.get("region"):
-        parts.append(f"in the region {title(where['region']).lower()}")
+        parts.append(f"in the region {sentences.region_title(where['region'])}")
     if where.get("site"):
         parts.append(f"at the site {where['site']}")
     if where.get("center_mm") and where.get("radius_mm"):
-        parts.append(f"within {number(where['radius_mm'])} mm of one place")
+        parts.append(f"within {number(where['radius_mm'])} mm of one point")
     return f"It lies {', '.join(parts)}." if parts else ""
 
 

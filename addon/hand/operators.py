@@ -14,7 +14,7 @@ from .poses import LABELS
 STRENGTHS = (
     ("LIGHT", "Light", "Pads sink 2 to 3 mm, as in a loose hold"),
     ("FIRM", "Firm", "Pads sink 3 to 6 mm, as the contact areas of a power grasp need"),
-    ("CUSTOM", "Own Depths", "Depths entered below"),
+    ("CUSTOM", "Custom Depths", "Depths entered below"),
 )
 MOVES = (
     ("HAND", "Hand", "The hand goes to the product"),
@@ -22,8 +22,8 @@ MOVES = (
     ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
 )
 PLACES = (
-    ("LAY", "Into the Palm", "The product is laid across the palm before the fingers close"),
-    ("KEEP", "From Here", "The fit starts from where hand and product are now"),
+    ("LAY", "In Palm", "The product is placed across the palm before the fingers close"),
+    ("KEEP", "Current Pose", "The fit starts from the current pose and place of hand and product"),
 )
 DIGITS = (
     ("thumb", "Thumb", "", 1),
@@ -83,7 +83,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
 
 
 class THENAR_OT_apply_pose(bpy.types.Operator):
-    """Put the hand into a pose of the library; works on every armature whose bones are named"""
+    """Apply a pose of the library to the hand; works on every armature whose bones are assigned"""
 
     bl_idname = "thenar.apply_pose"
     bl_label = "Apply Pose"
@@ -101,10 +101,10 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
 
 class THENAR_OT_guess_bones(bpy.types.Operator):
-    """Fill in which bone is which from the bones' names and their order"""
+    """Assign the bones by their names and their order"""
 
     bl_idname = "thenar.guess_bones"
-    bl_label = "Find Bones"
+    bl_label = "Detect Bones"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -120,7 +120,7 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
 
 
 class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
-    """Close the hand on the product until every pad lies as deep in it as asked, within the limits of the joints"""
+    """Close the hand on the product until every pad reaches the given depth, within the joint limits"""
 
     bl_idname = "thenar.fit_grasp"
     bl_label = "Fit Grasp"
@@ -134,9 +134,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     palm_mm: _depth("palm")
     place: EnumProperty(name="Start", items=PLACES, default="LAY")
     moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
-    digits: EnumProperty(
-        name="Taking Part", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS}
-    )
+    digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
     force_n: FloatProperty(
         name="Force (N)", description="Total force that the pressed skin shall carry, N; 0 for depths alone", min=0.0
     )

@@ -62,7 +62,7 @@ def begin(context, hand, parts):
         skin = workflow.new_skin(job)
         skin.set_effects([effect.native(native.module) for effect in job.effects])
     except native.error_types() as error:
-        raise type(error)(sentences.named(str(error), job)) from None
+        raise sentences.named(error, job) from None
     write.write_thickness(hand.data, np.asarray(skin.thickness_mm))
     return Session(job, setup_of(context, hand), skin=skin)
 
@@ -124,7 +124,7 @@ def _press(session, posed):
     try:
         return session.skin.press(session.product, posed_vertices_mm=posed, slide_mm=slide, live=session.is_warm)
     except native.error_types() as error:
-        raise type(error)(sentences.named(str(error), job)) from None
+        raise sentences.named(error, job) from None
 
 
 def _write(context, session, contact, matrix):

@@ -7,7 +7,7 @@ from . import computing, display, polling
 
 
 class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
-    """Press every frame of a range and keep shape and fields beside the file; skin that rubs or remembers follows on"""
+    """Solve every frame of a range and save its shape and fields; friction and time-dependent effects carry over"""
 
     bl_idname = "thenar.bake"
     bl_label = "Bake Frames"
@@ -27,7 +27,7 @@ class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
     def _report(self, context, bake):
         display.refresh(context)
         told, count = context.scene.thenar.hand.thenar.bake, len(bake.done)
-        text = f"Baked {count} frame{'s' if count > 1 else ''}; highest peak {told.peak_kpa:.0f} kPa"
+        text = f"Baked {count} frame{'s' if count > 1 else ''}; max. pressure {told.peak_kpa:.0f} kPa"
         if told.cycles:
             text += f"; {told.cycle_loss_mj:.3g} mJ lost per cycle"
         self.report({"INFO"}, text)

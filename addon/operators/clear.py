@@ -7,7 +7,7 @@ from . import display, polling, running
 
 
 class THENAR_OT_clear(bpy.types.Operator):
-    """Remove shape key, attributes, colours and bake of Thenar, and put the product back in its place"""
+    """Remove shape key, attributes, colors and bake of Thenar, and move the product back"""
 
     bl_idname = "thenar.clear"
     bl_label = "Clear Contact"
@@ -26,7 +26,7 @@ class THENAR_OT_clear(bpy.types.Operator):
 
 
 class THENAR_OT_apply(bpy.types.Operator):
-    """Make the contact part of the mesh's own shape; pressure and result stay, the shape key goes"""
+    """Apply the contact to the mesh's own shape and remove its shape key; pressure and result stay"""
 
     bl_idname = "thenar.apply"
     bl_label = "Apply Contact"

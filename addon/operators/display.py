@@ -136,13 +136,13 @@ def _no_map(context):
 
 
 class THENAR_OT_show_pressure(bpy.types.Operator):
-    """Colour hand and product by pressure, over their own materials, with one range for both"""
+    """Color hand and product by pressure, over their own materials, with one range for both"""
 
     bl_idname = "thenar.show_pressure"
     bl_label = "Show Pressure"
     bl_options = {"REGISTER", "UNDO"}
 
-    show: bpy.props.BoolProperty(name="Show", description="Off gives the materials back", default=True)
+    show: bpy.props.BoolProperty(name="Show", description="Off restores the materials", default=True)
 
     @classmethod
     def poll(cls, context):
@@ -157,13 +157,13 @@ class THENAR_OT_show_pressure(bpy.types.Operator):
 
 
 class THENAR_OT_show_map(bpy.types.Operator):
-    """Colour the skin by a map, over its own material"""
+    """Color the skin by a map, over its own material"""
 
     bl_idname = "thenar.show_map"
     bl_label = "Show Map"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(name="Map", description="What the colours show", items=map_settings.KINDS)
+    kind: bpy.props.EnumProperty(name="Map", description="Quantity that the colors show", items=map_settings.KINDS)
 
     @classmethod
     def description(cls, context, properties):
@@ -188,7 +188,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
 
 
 class THENAR_OT_reset_range(bpy.types.Operator):
-    """Fit the range of the colours to the largest value of the map"""
+    """Fit the color range to the largest value of the map"""
 
     bl_idname = "thenar.reset_range"
     bl_label = "Fit Range"
@@ -209,13 +209,13 @@ class THENAR_OT_reset_range(bpy.types.Operator):
 
 
 class THENAR_OT_render_preset(bpy.types.Operator):
-    """Set the render so that colours keep their values (Standard view, no denoiser) and carry the legend"""
+    """Render with the Standard view transform, without denoiser and with legend: map colors keep their values"""
 
     bl_idname = "thenar.render_preset"
-    bl_label = "True Colours"
+    bl_label = "Set Up Render Colors"
     bl_options = {"REGISTER", "UNDO"}
 
-    restore: bpy.props.BoolProperty(name="Restore", description="Give the earlier settings back", default=False)
+    restore: bpy.props.BoolProperty(name="Restore", description="Restore the earlier settings", default=False)
 
     def execute(self, context):
         if self.restore:

@@ -18,7 +18,7 @@ def _kinds(_self, _context):
 
 
 class THENAR_OT_effect_add(bpy.types.Operator):
-    """Switch an effect on: physics beyond the base model"""
+    """Add an effect: physics beyond the base model"""
 
     bl_idname = "thenar.effect_add"
     bl_label = "Add Effect"
@@ -38,7 +38,7 @@ class THENAR_OT_effect_add(bpy.types.Operator):
 
 
 class THENAR_OT_effect_remove(bpy.types.Operator):
-    """Take the effect off the list"""
+    """Remove the effect from the list"""
 
     bl_idname = "thenar.effect_remove"
     bl_label = "Remove Effect"
@@ -56,7 +56,7 @@ class THENAR_OT_effect_remove(bpy.types.Operator):
 
 
 class THENAR_OT_paint_thickness(bpy.types.Operator):
-    """Paint the thickness over bone: makes a vertex group from the thickness as it is, and enters Weight Paint"""
+    """Paint the thickness over bone: make a vertex group from the current thickness, and enter Weight Paint"""
 
     bl_idname = "thenar.paint_thickness"
     bl_label = "Paint Thickness"

@@ -77,7 +77,7 @@ class THENAR_OT_region_add(bpy.types.Operator):
 
 
 class THENAR_OT_region_remove(bpy.types.Operator):
-    """Take the region off the list; its vertices then carry no skin. The vertex group stays"""
+    """Remove the region from the list: its vertices are then no skin. The vertex group stays"""
 
     bl_idname = "thenar.region_remove"
     bl_label = "Remove Region"

@@ -8,7 +8,7 @@ from . import polling, running
 
 
 class THENAR_OT_scale_product(bpy.types.Operator):
-    """Scale the whole product, as if its file had been read in another unit"""
+    """Scale the whole product to correct the unit in which its file was read"""
 
     bl_idname = "thenar.scale_product"
     bl_label = "Scale Product"
@@ -32,7 +32,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
 
 
 class THENAR_OT_accept_size(bpy.types.Operator):
-    """Solve with the product as large as it is"""
+    """Keep the size of the product"""
 
     bl_idname = "thenar.accept_size"
     bl_label = "Accept Size"

@@ -52,10 +52,10 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
 
 
 class THENAR_OT_show_place(bpy.types.Operator):
-    """Show where on the hand the press failed, or what its grade is about"""
+    """Select the vertices at which the press failed, or that the grade is about"""
 
     bl_idname = "thenar.show_place"
-    bl_label = "Show the Place"
+    bl_label = "Show Location"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -70,10 +70,10 @@ class THENAR_OT_show_place(bpy.types.Operator):
 
 
 class THENAR_OT_grasp_lighter(bpy.types.Operator):
-    """Close the hand on the product more lightly, and press again"""
+    """Fit a lighter grasp and solve again"""
 
     bl_idname = "thenar.grasp_lighter"
-    bl_label = "Grasp Lighter and Solve"
+    bl_label = "Lighter Grasp and Solve"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

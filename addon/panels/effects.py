@@ -2,8 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, maps, names
-from .lists import title as region_title
+from .. import effect_settings, maps, names, sentences
 from .main import OfHand
 
 NAME_SHARE = 0.72
@@ -19,7 +18,7 @@ class THENAR_UL_effects(bpy.types.UIList):
         row.prop(item, "is_on", text="")
         words = row.row()
         words.active = item.is_on
-        place = f", {region_title(item.region).lower()}" if item.region else ""
+        place = f", {sentences.region_title(item.region)}" if item.region else ""
         words.label(text=effect_settings.title(item.name) + place)
         number = split.row()
         number.active = item.is_on
@@ -52,7 +51,7 @@ class THENAR_PT_effects(OfHand, bpy.types.Panel):
 def _draw_effect(layout, effect, hand):
     column = layout.column(align=True)
     if effect_settings.acts_over_time(effect.name):
-        column.label(text="Acts over time: bake", icon="TIME")
+        column.label(text="Time-dependent: needs a bake", icon="TIME")
     if hand.thenar.materials:
         column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")
     for choice in effect.choices:

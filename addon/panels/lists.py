@@ -2,6 +2,8 @@
 
 import bpy
 
+from .. import sentences
+
 
 class THENAR_UL_materials(bpy.types.UIList):
     """Regions of the skin with their material."""
@@ -9,7 +11,7 @@ class THENAR_UL_materials(bpy.types.UIList):
     def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
         missing = item.name not in item.id_data.vertex_groups
         split = layout.split(factor=SHARE)
-        split.label(text=title(item.name), icon="ERROR" if missing else "NONE")
+        split.label(text=sentences.region_title(item.name), icon="ERROR" if missing else "NONE")
         split.prop(item, "preset", text="", emboss=False)
 
 
@@ -29,14 +31,9 @@ SHARE = 0.56
 """Of a row's width, what its name takes."""
 
 
-def title(name):
-    """A region's name for reading."""
-    return name.removesuffix("_pad").replace("_", " ").capitalize()
-
-
 def brief(name):
     """A region's name beside its numbers: a sidebar of default width cuts "Thumb proximal" and "Distal palm radial"."""
-    return title(name).replace("proximal", "prox.").replace("Distal palm", "Palm")
+    return sentences.region_title(name.removesuffix("_pad")).replace("proximal", "prox.").replace("Distal palm", "Palm")
 
 
 def columns(split, item):

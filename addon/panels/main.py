@@ -87,9 +87,9 @@ def _draw_state(layout, context):
     if settings.live:
         told = status.live.get(context.scene.name)
         waits = told is not None and told.problem
-        column.label(text="Live waits" if waits else "The contact is live", icon="PAUSE" if waits else "CHECKMARK")
+        column.label(text="Live paused" if waits else "Live running", icon="PAUSE" if waits else "CHECKMARK")
     elif hand.thenar.bake_path:
-        column.label(text="Plays a bake", icon="RENDER_ANIMATION")
+        column.label(text="Playing a bake", icon="RENDER_ANIMATION")
     elif not settings.result.is_valid:
         column.label(text="Not solved yet", icon="DOT")
     elif status.is_stale(context.scene.name):
@@ -123,7 +123,7 @@ def _draw_sizes(layout, context):
     for factor in measured.factors:
         size = sizes.length(factor * measured.product_mm)
         box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {size}").factor = factor
-    box.operator("thenar.accept_size", text=f"It is {sizes.length(measured.product_mm)} long")
+    box.operator("thenar.accept_size", text=f"Keep size {sizes.length(measured.product_mm)}")
 
 
 def _draw_refusal(layout, context, refusal):
@@ -135,7 +135,7 @@ def _draw_refusal(layout, context, refusal):
     row = box.row(align=True)
     row.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
     if bpy.ops.thenar.fit_grasp.poll():
-        row.operator("thenar.grasp_lighter", text="Grasp Lighter", icon="HAND")
+        row.operator("thenar.grasp_lighter", text="Lighter Grasp", icon="HAND")
 
 
 def _draw_force(layout, settings):
@@ -170,7 +170,7 @@ def _draw_live(layout, context):
     if told.problem:
         text.alert(layout, context, told.problem)
     else:
-        layout.label(text=f"{told.rate:.0f} a second, {told.ms:.0f} ms each", icon="TIME")
+        layout.label(text=f"{told.rate:.0f} updates/s, {told.ms:.0f} ms each", icon="TIME")
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):
@@ -207,7 +207,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         kept = bool(settings.preset_before)
         button = layout.operator(
             "thenar.render_preset",
-            text="Give Render Settings Back" if kept else "True Colours and Legend in Render",
+            text="Restore Render Settings" if kept else "Set Up Render Colors and Legend",
             icon="LOOP_BACK" if kept else "RESTRICT_RENDER_OFF",
         )
         button.restore = kept
@@ -249,7 +249,7 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
         if hand is not None and effect_settings.needs_history(hand):
             column = layout.column(align=True)
             column.active = False
-            column.label(text=f"Frames remember, {scene.render.fps / scene.render.fps_base:g} a second", icon="TIME")
+            column.label(text=f"Frames keep history, {scene.render.fps / scene.render.fps_base:g} fps", icon="TIME")
         layout.operator("thenar.export", icon="EXPORT")
         column = layout.column(align=True)
         column.active = False

@@ -33,13 +33,13 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
         _pair(box, "Peak pressure", f"{result.peak_kpa:.0f} kPa")
         _pair(box, "Peak over 24 mm²", f"{result.patch_peak_kpa:.0f} kPa")
         _pair(box, "Mean pressure", f"{result.mean_kpa:.1f} kPa")
-        _pair(box, "Deepest before", f"{result.depth_mm:.2f} mm")
+        _pair(box, "Max. overlap", f"{result.depth_mm:.2f} mm")
         if result.offset_mm:
-            _pair(box, "Product moved", f"{result.offset_mm:+.2f} mm")
+            _pair(box, "Product offset", f"{result.offset_mm:+.2f} mm")
         if result.shear_n:
             _pair(box, "Shear force", f"{result.shear_n:.1f} N")
             _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")
-            _pair(box, "Skin that slips", f"{result.slipping:.0%} of the area")
+            _pair(box, "Slipping area", f"{result.slipping:.0%} of the area")
         draw_maps(layout, context.scene.thenar)
 
 
@@ -159,9 +159,9 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
         layout, told = self.layout, context.scene.thenar.hand.thenar.bake
         box = layout.box().column(align=True)
         _pair(box, "Frames", f"{told.frame_start} to {told.frame_end}")
-        _pair(box, "Frames remember", "yes" if told.follows else "no, each alone")
-        _pair(box, "Highest force", f"{told.peak_force_n:.1f} N")
-        _pair(box, "Highest peak", f"{told.peak_kpa:.0f} kPa")
+        _pair(box, "History kept", "yes" if told.follows else "no")
+        _pair(box, "Max. force", f"{told.peak_force_n:.1f} N")
+        _pair(box, "Max. pressure", f"{told.peak_kpa:.0f} kPa")
         if told.follows:
             _draw_energy(box, told)
         layout.operator("thenar.export_bake", icon="EXPORT")
@@ -169,11 +169,11 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
 
 def _draw_energy(box, told):
     if told.peak_shear_n:
-        _pair(box, "Highest shear", f"{told.peak_shear_n:.1f} N")
-        _pair(box, "Lost to slip", f"{told.slip_loss_mj:.3g} mJ")
-    _pair(box, "Work on the skin", f"{told.work_mj:.3g} mJ")
+        _pair(box, "Max. shear force", f"{told.peak_shear_n:.1f} N")
+        _pair(box, "Slip dissipation", f"{told.slip_loss_mj:.3g} mJ")
+    _pair(box, "Work on skin", f"{told.work_mj:.3g} mJ")
     if told.cycles:
-        _pair(box, f"Lost per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}")
+        _pair(box, f"Loss per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}")
 
 
 class THENAR_PT_notes(Tab, bpy.types.Panel):
@@ -210,7 +210,7 @@ class THENAR_PT_quality(Tab, bpy.types.Panel):
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
         box = layout.box().column(align=True)
-        _pair(box, "Still penetrating", f"{result.penetration_mm * 1000:.1f} µm")
+        _pair(box, "Penetration", f"{result.penetration_mm * 1000:.1f} µm")
         _pair(box, "Write-back error", f"{result.write_error_mm * 1000:.1f} µm")
         _pair(box, "Complementarity", f"{result.complementarity:.0e}")
         _pair(box, "Model", result.model.capitalize())

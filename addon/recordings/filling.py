@@ -2,6 +2,8 @@
 
 from math import isnan
 
+from .. import sentences
+
 _SHOWN = {
     "peak_kpa": "Peak",
     "mean_kpa": "Mean",
@@ -62,7 +64,7 @@ def _regions(rows, regions, group):
     """What of each region touched, where a print shows several."""
     for region in regions:
         row = rows.add()
-        row.name, row.group = region.name.replace("_", " "), group
+        row.name, row.group = sentences.region_title(region.name), group
         row.measured, row.simulated = _text(region.recorded_mm2, False), _text(region.simulated_mm2, False)
 
 

@@ -61,7 +61,7 @@ def _guess_diameter(context, item):
 
 
 class THENAR_OT_remove_recording(bpy.types.Operator):
-    """Take the recording off the list; its file stays"""
+    """Remove the recording from the list; its file stays"""
 
     bl_idname = "thenar.remove_recording"
     bl_label = "Remove Recording"
@@ -79,7 +79,7 @@ class THENAR_OT_remove_recording(bpy.types.Operator):
 
 
 class THENAR_OT_outline_mat(bpy.types.Operator):
-    """Show the sensels of the mat where they lie on the product"""
+    """Show the sensels of the mat on the product"""
 
     bl_idname = "thenar.outline_mat"
     bl_label = "Show Mat"
@@ -131,10 +131,10 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
 
 
 class THENAR_OT_select_place(bpy.types.Operator):
-    """Select the skin's vertices at this place"""
+    """Select the skin's vertices at this location"""
 
     bl_idname = "thenar.select_place"
-    bl_label = "Select Place"
+    bl_label = "Select Location"
     bl_options = {"REGISTER", "UNDO"}
 
     index: bpy.props.IntProperty(name="Place", description="Number of the place in the list", min=0)

@@ -94,7 +94,7 @@ class THENAR_PT_comparison(Tab, bpy.types.Panel):
         text.paragraph(layout, context, state.sentence)
         _draw_measures(layout, context, state)
         if len(state.worst):
-            layout.label(text="Worst places: click to select")
+            layout.label(text="Largest residuals: click to select")
         column, group = layout.column(align=True), ""
         for number, place in enumerate(state.worst):
             if place.group != group:

@@ -44,7 +44,7 @@ class ThenarPlacing(bpy.types.PropertyGroup):
     shift_mm: FloatVectorProperty(
         name="Shift (mm)", description="Along the rows and along the columns, from the middle, mm", size=2
     )
-    is_mirrored: BoolProperty(name="Other way round", description="Columns count the other way")
+    is_mirrored: BoolProperty(name="Reverse columns", description="Columns are numbered in the opposite direction")
 
 
 class ThenarPrint(bpy.types.PropertyGroup):
@@ -62,17 +62,17 @@ class ThenarPrint(bpy.types.PropertyGroup):
         name="Ink",
         description="Whether ink is darker or lighter than the paper",
         items=(
-            ("AUTO", "By the edge", "Paper is what most of the image's edge is"),
+            ("AUTO", "Automatic", "The paper's brightness is taken from the edge of the image"),
             ("DARK", "Dark", "Dark ink on light paper"),
             ("LIGHT", "Light", "Light on dark ground, as paint or dust"),
         ),
     )
     ink_kpa: FloatProperty(
-        name="Inks above (kPa)", description="Pressure above which skin leaves ink, kPa; 0: any touch", min=0.0
+        name="Ink threshold (kPa)", description="Pressure above which skin leaves ink, kPa; 0: any touch", min=0.0
     )
     is_mirrored: BoolProperty(
-        name="Seen from behind",
-        description="The image shows the print from behind, as through glass or after a transfer",
+        name="Mirrored image",
+        description="The image is mirrored, as seen through glass or after a transfer",
     )
 
 

@@ -1,6 +1,11 @@
 """Point attributes on meshes: get or create, typed writes, and copies to restore them from."""
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 import numpy as np
+from bpy.types import Mesh
+from numpy.typing import ArrayLike, NDArray
 
 from . import owned
 
@@ -8,7 +13,7 @@ _FIELD = {"FLOAT": "value", "INT": "value", "FLOAT_VECTOR": "vector", "FLOAT_COL
 _WIDTH = {"FLOAT": 1, "INT": 1, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}
 
 
-def write(mesh, name, kind, values):
+def write(mesh: Mesh, name: str, kind: str, values: ArrayLike) -> None:
     """Write point attribute `name` of `kind`; where there is one, it is Thenar's, see `owned`."""
     attribute = mesh.attributes.get(name)
     if attribute is not None and attribute.data_type != kind and owned.is_marked(mesh, name):
@@ -22,15 +27,16 @@ def write(mesh, name, kind, values):
     attribute.data.foreach_set(_FIELD[kind], np.ascontiguousarray(values, dtype).ravel())
 
 
-def settle(mesh, name, kind, values):
+def settle(mesh: Mesh, name: str, kind: str, values: ArrayLike) -> None:
     """Write as `write` does, but only where the mesh holds something else: writing makes Blender evaluate it anew."""
     attribute = mesh.attributes.get(name)
-    if attribute is not None and attribute.data_type == kind and np.array_equal(read(mesh, name), values):
+    held = read(mesh, name) if attribute is not None and attribute.data_type == kind else None
+    if held is not None and np.array_equal(held, values):
         return
     write(mesh, name, kind, values)
 
 
-def read(mesh, name):
+def read(mesh: Mesh, name: str) -> NDArray[Any] | None:
     """Values (n,) or (n, k) of a point attribute, or None where the mesh has none of that name."""
     attribute = mesh.attributes.get(name)
     if attribute is None or attribute.data_type not in _FIELD or attribute.domain != "POINT":
@@ -42,22 +48,22 @@ def read(mesh, name):
     return out if width == 1 else out.reshape(-1, width)
 
 
-def remove(mesh, attribute_names):
+def remove(mesh: Mesh, attribute_names: Iterable[str]) -> None:
     """Remove the attributes of these names where they exist and are Thenar's."""
     for name in [name for name in attribute_names if owned.is_own(mesh, name)]:
         mesh.attributes.remove(mesh.attributes[name])
         owned.unmark(mesh, name)
 
 
-def snapshot(mesh, attribute_names):
+def snapshot(mesh: Mesh, attribute_names: Iterable[str]) -> Callable[[], None]:
     """A function that puts these attributes back as they are now."""
     kept = {
-        name: (mesh.attributes[name].data_type, read(mesh, name))
+        name: (mesh.attributes[name].data_type, values)
         for name in attribute_names
-        if read(mesh, name) is not None
+        if (values := read(mesh, name)) is not None
     }
 
-    def restore():
+    def restore() -> None:
         remove(mesh, [name for name in attribute_names if name not in kept])
         for name, (kind, values) in kept.items():
             write(mesh, name, kind, values)

@@ -2,14 +2,21 @@
 
 import os
 import struct
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any, BinaryIO, TypeAlias
 
 import bpy
 import numpy as np
+from bpy.types import Mesh, Object, PropertyGroup, Scene
 
 from .. import names
-from . import attributes, colors, correction, moving, own, units
+from . import attributes, colors, correction, moving, own, units, write
 from .checks import Refusal
+from .units import Floats
+
+Frame: TypeAlias = dict[str, Any]
+"""What is kept of a frame, see `publish`."""
 
 DEFORMERS = {
     "ARMATURE", "CAST", "CORRECTIVE_SMOOTH", "CURVE", "DISPLACE", "HOOK", "LAPLACIANDEFORM", "LAPLACIANSMOOTH",
@@ -29,25 +36,25 @@ _OF_ONE_PRESS = (
     names.THRESHOLD_SHARE,
 )
 """Attributes of a press that are wrong once a bake plays, unless the bake plays them too."""
-_loaded = {}
+_loaded: dict[str, dict[str, Any]] = {}
 
 
-def place_in_stack(hand):
+def place_in_stack(hand: Object) -> int:
     """Index of the bake's modifier: behind the leading deformers, before the first that may add vertices."""
     others = [modifier for modifier in hand.modifiers if not modifier.name.startswith(names.BAKE_MODIFIER)]
     return next((index for index, modifier in enumerate(others) if modifier.type not in DEFORMERS), len(others))
 
 
-def folder_of(hand):
+def folder_of(hand: Object) -> Path:
     """The bake's folder beside the saved file, made where missing. Raises `Refusal` for an unsaved file."""
     if not bpy.data.filepath:
-        raise Refusal("a bake is kept beside the file; save the file first")
+        raise Refusal("a bake is saved next to the file; save the file first")
     folder = Path(bpy.data.filepath).parent / names.BAKE_FOLDER
     folder.mkdir(exist_ok=True)
-    return folder / bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{hand.name}")
+    return folder / str(bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{hand.name}"))
 
 
-def publish(hand, stem, first_frame, frames):
+def publish(hand: Object, stem: Path, first_frame: int, frames: Sequence[Frame]) -> None:
     """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
 
     `frames`: dicts with `local` (n, 3) positions in object space, `fields` {attribute: (n)} of the hand, `parts` {name:
@@ -70,7 +77,7 @@ def publish(hand, stem, first_frame, frames):
     _loaded.clear()
 
 
-def hand_fields(fields):
+def hand_fields(fields: write.Fields) -> dict[str, Floats]:
     """What a frame plays on the hand, float32 (n,) by attribute, from `write.Fields`."""
     values = {names.PRESSURE_KPA: units.kpa(fields.pressure_mpa), names.DEPTH_MM: fields.depth_mm}
     if fields.shear is not None:
@@ -78,7 +85,7 @@ def hand_fields(fields):
     return {name: np.asarray(value, np.float32) for name, value in values.items()}
 
 
-def play(scene, find_parts):
+def play(scene: Scene, find_parts: Callable[[PropertyGroup], Sequence[Object]]) -> None:
     """Write the pressures of the scene's frame onto hand and product, and move the product; nothing without a bake.
 
     `find_parts(settings)` gives the product's objects. A missing file is left for the panel to tell.
@@ -102,7 +109,7 @@ def play(scene, find_parts):
         moving.shift(part, offsets[row])
 
 
-def curves(hand):
+def curves(hand: Object) -> dict[str, Any] | None:
     """Columns (k,) by name of the hand's bake, one row per frame; None where its file is gone."""
     tables = _load(hand)
     if tables is None:
@@ -111,17 +118,17 @@ def curves(hand):
     return {"frame": frames, **{name: tables[name] for name in _NUMBERS if name in tables}}
 
 
-def is_missing(hand):
+def is_missing(hand: Object) -> bool:
     """Whether the hand's bake names a file that is not there."""
     return bool(hand.thenar.bake_path) and not os.path.exists(bpy.path.abspath(hand.thenar.bake_path))
 
 
-def forget():
+def forget() -> None:
     """Drop loaded bakes."""
     _loaded.clear()
 
 
-def _show(mesh, fields, look, bare):
+def _show(mesh: Mesh, fields: dict[str, Floats], look: PropertyGroup, bare: colors.Color) -> None:
     if any(len(values) != len(mesh.vertices) for values in fields.values()):
         return
     for name, values in fields.items():
@@ -129,7 +136,7 @@ def _show(mesh, fields, look, bare):
     colors.recolor(mesh, look, bare)
 
 
-def _load(hand):
+def _load(hand: Object) -> dict[str, Floats] | None:
     path = bpy.path.abspath(hand.thenar.bake_path)
     if path not in _loaded:
         _loaded.clear()
@@ -140,8 +147,8 @@ def _load(hand):
     return _loaded[path]
 
 
-def _tables(first_frame, frames):
-    tables = {"first_frame": np.int32(first_frame)}
+def _tables(first_frame: int, frames: Sequence[Frame]) -> dict[str, Any]:
+    tables: dict[str, Any] = {"first_frame": np.int32(first_frame)}
     for name in _field_names(frames):
         plain = np.full(len(frames[0]["local"]), _UNTOUCHED.get(name, 0.0), np.float32)
         tables[f"hand/{name}"] = np.stack([frame["fields"].get(name, plain) for frame in frames])
@@ -152,22 +159,22 @@ def _tables(first_frame, frames):
     return tables
 
 
-def _field_names(frames):
+def _field_names(frames: Sequence[Frame]) -> list[str]:
     return sorted({name for frame in frames for name in frame["fields"]})
 
 
-def _write_pc2(file, first_frame, frames):
+def _write_pc2(file: BinaryIO, first_frame: int, frames: Sequence[Frame]) -> None:
     count = len(frames[0]["local"])
     file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, count, float(first_frame), 1.0, len(frames)))
     for frame in frames:
         file.write(np.ascontiguousarray(frame["local"], "<f4").tobytes())
 
 
-def _replace(path, write):
+def _replace(path: Path, put: Callable[[BinaryIO], object]) -> None:
     partial = path.with_name(f".{path.name}.partial")
     try:
         with partial.open("wb") as file:
-            write(file)
+            put(file)
             file.flush()
             os.fsync(file.fileno())
         os.replace(partial, path)

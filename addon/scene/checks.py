@@ -1,9 +1,13 @@
 """Refuses, with a sentence, every state of hand and product from which no right result can come."""
 
+from collections.abc import Sequence
 from itertools import chain
 from math import hypot, isfinite
 
 import numpy as np
+from bpy.types import Context, LayerCollection, Object, Scene
+
+from .units import Floats
 
 PRODUCT_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _SAFE_MODES = {"OBJECT", "POSE", "WEIGHT_PAINT", "VERTEX_PAINT", "TEXTURE_PAINT"}
@@ -16,7 +20,7 @@ class Refusal(Exception):
     """A mistake that the user can mend; the text names the object and the remedy."""
 
 
-def check_hand(context, hand):
+def check_hand(context: Context, hand: Object | None) -> None:
     """Refuse a hand that cannot be read and written back. Raises `Refusal`."""
     if hand is None:
         raise Refusal("no hand is chosen; pick the hand's mesh under Hand")
@@ -41,7 +45,7 @@ def check_hand(context, hand):
     _check_matrix(hand)
 
 
-def check_product(context, parts, hand):
+def check_product(context: Context, parts: Sequence[Object], hand: Object | None) -> None:
     """Refuse products that cannot be read; `parts` are their objects. Raises `Refusal`."""
     if not parts:
         raise Refusal("no product is chosen; pick an object under Product, or a collection of its parts")
@@ -55,7 +59,7 @@ def check_product(context, parts, hand):
         _check_matrix(part)
 
 
-def check_writable(hand):
+def check_writable(hand: Object | None) -> None:
     """Refuse a hand on which nothing can be written. Raises `Refusal`."""
     if hand is None or hand.type != "MESH":
         raise Refusal("no hand is chosen; pick the hand's mesh under Hand")
@@ -63,7 +67,7 @@ def check_writable(hand):
     _check_mode(hand, "hand")
 
 
-def check_visible(context, obj, role):
+def check_visible(context: Context, obj: Object, role: str) -> None:
     """Refuse what the view layer does not evaluate: Blender would hand back its rest shape without a word."""
     layer = context.view_layer
     if layer.objects.get(obj.name) != obj:
@@ -77,7 +81,7 @@ def check_visible(context, obj, role):
         raise Refusal(f"a collection of the {role} '{obj.name}' is disabled in viewports; enable it in the Outliner")
 
 
-def check_finite(positions, name, what):
+def check_finite(positions: Floats, name: str, what: str) -> None:
     """Refuse NaN and infinity, which Blender accepts silently; it may hold infinity as its largest number."""
     if np.vdot(positions, positions) < 0.9 * _FARTHEST**2:  # then none is farther, and Live asks every frame
         return
@@ -86,7 +90,7 @@ def check_finite(positions, name, what):
         raise Refusal(f"vertex {bad[0]} of the {what} '{name}' is not a number ({bad.size} in all); delete or reset it")
 
 
-def check_size(positions_mm, name, scene):
+def check_size(positions_mm: Floats, name: str, scene: Scene) -> None:
     """Refuse a hand of impossible size and name the unit scale that would mend it."""
     extent = float(np.ptp(positions_mm, axis=0).max())
     low, high = HAND_MM
@@ -105,11 +109,11 @@ def check_size(positions_mm, name, scene):
     raise Refusal(f"the hand '{name}' is {_length(extent)} long, outside 2 mm to 0.5 m; scale it to its true size")
 
 
-def _length(mm):
+def _length(mm: float) -> str:
     return f"{mm / 1000:.4g} m" if mm > 1000 else f"{mm:.3g} mm"
 
 
-def _check_editable(obj):
+def _check_editable(obj: Object) -> None:
     if obj.library is not None or not obj.is_editable:
         raise Refusal(f"'{obj.name}' is linked from a library; use Object > Relations > Make Local > Selected & Data")
     if obj.data is not None and not obj.data.is_editable:
@@ -121,7 +125,7 @@ def _check_editable(obj):
         raise Refusal(f"the mesh of '{obj.name}' is a library override; make it local first")
 
 
-def _check_mode(obj, role):
+def _check_mode(obj: Object, role: str) -> None:
     if obj.mode not in _SAFE_MODES:
         mode = obj.mode.replace("_", " ").title()
         raise Refusal(
@@ -129,7 +133,7 @@ def _check_mode(obj, role):
         )
 
 
-def _check_matrix(obj):
+def _check_matrix(obj: Object) -> None:
     """Plain numbers: of nine, numpy takes ten times as long, and Live asks every frame."""
     rows = [tuple(row) for row in obj.matrix_world]
     if not all(map(isfinite, chain(*rows))):
@@ -141,7 +145,7 @@ def _check_matrix(obj):
         raise Refusal(f"the scale of '{obj.name}' is zero along an axis; give it a size again")
 
 
-def _is_evaluated(layer_collection, obj):
+def _is_evaluated(layer_collection: LayerCollection, obj: Object) -> bool:
     collection = layer_collection.collection
     if layer_collection.exclude or collection.hide_viewport:
         return False

@@ -2,17 +2,19 @@
 
 import bpy
 import numpy as np
+from bpy.types import Collection, Context, Mesh, Object
 
 from .. import names
-from . import attributes, colors, shading, units
+from . import attributes, colors, read, shading, units
+from .units import Floats, Ints
 
 
-def copy_name(part_name):
+def copy_name(part_name: str) -> str:
     """Name of the copy of the product part of that name; Blender may have to number it."""
     return names.suffixed(part_name, names.COPY_SUFFIX)
 
 
-def find_copy(part_name):
+def find_copy(part_name: str) -> Object | None:
     """The copy of that product part, or None."""
     home = bpy.data.collections.get(names.RESULTS_COLLECTION)
     usual = bpy.data.objects.get(copy_name(part_name))
@@ -21,7 +23,9 @@ def find_copy(part_name):
     return next((obj for obj in found if obj.thenar.copy_of == part_name), None)
 
 
-def write_copy(context, record, reading, offset_mm, pressure_mpa):
+def write_copy(
+    context: Context, record: read.Part, reading: read.Reading, offset_mm: Floats, pressure_mpa: Floats
+) -> Object:
     """Make anew the mesh object that shows the part's pressure; hidden until the pressure is shown."""
     skin, product, look = reading.hand, reading.product, context.scene.thenar
     remove_copy(record.name)
@@ -40,7 +44,7 @@ def write_copy(context, record, reading, offset_mm, pressure_mpa):
     return copy
 
 
-def remove_copy(part_name):
+def remove_copy(part_name: str) -> None:
     """Remove the copy of that part, if there is one, and the collection once it is empty."""
     copy = find_copy(part_name)
     if copy is None:
@@ -54,7 +58,7 @@ def remove_copy(part_name):
         bpy.data.collections.remove(home)
 
 
-def collection(context):
+def collection(context: Context) -> Collection:
     """The collection of results in the scene, made where missing."""
     home = bpy.data.collections.get(names.RESULTS_COLLECTION)
     if home is None:
@@ -64,7 +68,7 @@ def collection(context):
     return home
 
 
-def _dress(mesh, part):
+def _dress(mesh: Mesh, part: Object) -> None:
     """Give the copy the part's first material, and flat faces where the part has them."""
     if part.material_slots:
         mesh.materials.append(part.material_slots[0].material)
@@ -72,7 +76,7 @@ def _dress(mesh, part):
         mesh.polygons.foreach_set("use_smooth", np.zeros(len(mesh.polygons), bool))
 
 
-def _mesh(name, positions, triangles):
+def _mesh(name: str, positions: Floats, triangles: Ints) -> Mesh:
     mesh = bpy.data.meshes.new(name)
     mesh.vertices.add(len(positions))
     mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())

@@ -5,14 +5,19 @@ hand has as many vertices as when they were found. Else, as in a render at anoth
 attribute of the hand's own vertices, which Blender carries to all others.
 """
 
+from collections.abc import Iterable
+from contextlib import ExitStack
+
 import bpy
 import numpy as np
+from bpy.types import Modifier, NodeSocket, NodeTree, Object
 
 from .. import names
 from . import attributes, own
+from .units import Floats
 
 
-def attach(hand, offsets, undo):
+def attach(hand: Object, offsets: Floats, undo: ExitStack) -> Modifier:
     """Have the modifier move the evaluated vertices by `offsets` (m, 3), local, Blender units. Returns it.
 
     The hand's own vertices come first. `undo` (an `ExitStack`) gets what takes it back. A modifier that is there is
@@ -36,7 +41,7 @@ def attach(hand, offsets, undo):
     return modifier
 
 
-def detach(hand, modifier):
+def detach(hand: Object, modifier: Modifier) -> None:
     """Take one such modifier off the hand, and what only it used."""
     tree = modifier.node_group
     hand.modifiers.remove(modifier)
@@ -45,7 +50,7 @@ def detach(hand, modifier):
     tidy()
 
 
-def tidy():
+def tidy() -> None:
     """Remove meshes of offsets that no modifier uses any more."""
     for mesh in [mesh for mesh in bpy.data.meshes if mesh.name.startswith(names.SHOWN_MODIFIER)]:
         carriers = [obj for obj in bpy.data.objects if obj.data == mesh] if mesh.users else []
@@ -55,7 +60,7 @@ def tidy():
             bpy.data.meshes.remove(mesh)
 
 
-def remove(hand):
+def remove(hand: Object) -> None:
     """Take every such modifier and its attribute off the hand."""
     for modifier in own.shown_modifiers(hand):
         detach(hand, modifier)
@@ -63,7 +68,7 @@ def remove(hand):
         attributes.remove(hand.data, [names.SHOWN_OFFSET])
 
 
-def give_up(hand):
+def give_up(hand: Object) -> None:
     """Leave the modifier on the hand as its own: a contact that was applied keeps its shape."""
     for modifier in own.shown_modifiers(hand):
         modifier.name = names.APPLIED_MODIFIER
@@ -76,7 +81,7 @@ def give_up(hand):
     attributes.remove(hand.data, [names.SHOWN_OFFSET])
 
 
-def _tree():
+def _tree() -> NodeTree:
     tree = bpy.data.node_groups.new(names.SHOWN_MODIFIER, "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
     tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
@@ -108,18 +113,18 @@ def _tree():
     return tree
 
 
-def _carrier(offsets):
+def _carrier(offsets: Floats) -> Object:
     mesh = bpy.data.meshes.new(names.SHOWN_MODIFIER)
     mesh.vertices.add(len(offsets))
     mesh.vertices.foreach_set("co", np.ascontiguousarray(offsets, np.float32).ravel())
     return bpy.data.objects.new(names.SHOWN_MODIFIER, mesh)
 
 
-def _points(tree, geometry):
+def _points(tree: NodeTree, geometry: NodeSocket) -> NodeSocket:
     size = tree.nodes.new("GeometryNodeAttributeDomainSize")
     tree.links.new(geometry, size.inputs[0])
     return size.outputs["Point Count"]
 
 
-def _enabled(sockets, name):
+def _enabled(sockets: Iterable[NodeSocket], name: str) -> NodeSocket:
     return next(socket for socket in sockets if socket.name == name and socket.enabled)

@@ -4,14 +4,21 @@ Finite differences through Blender's own evaluation give each vertex's 3 x 3 Jac
 the rest. A key written without this is up to twice the displacement off under a bent armature.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
+from bpy.types import Context, Object, ShapeKey
 
 from .. import names
-from ..steps import PAUSE
+from ..steps import PAUSE, Steps
 from . import mesh, owned
 from .own import contact_key
+from .units import Bools, Floats
+
+Moved: TypeAlias = Callable[[Floats | float], Floats]
+"""Where the evaluated vertices are (n, 3) once the key has these offsets."""
 
 CORRECTIONS = 12
 """Most corrections; nine usual stacks need at most three. What a key cannot reach is left to `correction`."""
@@ -32,7 +39,7 @@ class KeyReport:
     unsolvable: int
 
 
-def ensure_key(hand):
+def ensure_key(hand: Object) -> ShapeKey:
     """The contact's key, made with value 1 where missing, unmuted; the user's active key stays active."""
     keys = hand.data.shape_keys
     index = hand.active_shape_key_index
@@ -49,7 +56,7 @@ def ensure_key(hand):
     return key
 
 
-def remove_key(hand):
+def remove_key(hand: Object) -> None:
     """Remove the contact's key, and the basis where nothing else needs it; the user's active key stays active."""
     key = contact_key(hand)
     if key is None:
@@ -66,20 +73,20 @@ def remove_key(hand):
         hand.active_shape_key_index = blocks.find(name)
 
 
-def key_points(key):
+def key_points(key: ShapeKey) -> Floats:
     """The key's positions (n, 3) float64, local, Blender units."""
     out = np.empty(len(key.points) * 3, np.float32)
     key.points.foreach_get("co", out)
     return out.reshape(-1, 3).astype(np.float64)
 
 
-def put_points(hand, key, points):
+def put_points(hand: Object, key: ShapeKey, points: Floats) -> None:
     """Write the key's positions (n, 3), local, Blender units."""
     key.points.foreach_set("co", points.astype(np.float32).ravel())
     hand.data.update()
 
 
-def fit_steps(context, hand, key, wanted):
+def fit_steps(context: Context, hand: Object, key: ShapeKey, wanted: Floats) -> Steps[KeyReport]:
     """Write the key so that the evaluated mesh moves by `wanted` (n, 3), object space, Blender units.
 
     Steps as in `addon/steps.py` that return a `KeyReport`. The key's value is respected. Nothing else may deform the
@@ -88,7 +95,7 @@ def fit_steps(context, hand, key, wanted):
     base = key_points(hand.data.shape_keys.reference_key)
     count, largest = len(base), float(np.abs(wanted).max(initial=0.0))
 
-    def moved(offsets):
+    def moved(offsets: Floats | float) -> Floats:
         put_points(hand, key, base + offsets)
         context.view_layer.update()
         return mesh.evaluated_positions(hand, context.evaluated_depsgraph_get(), count)
@@ -110,7 +117,7 @@ def fit_steps(context, hand, key, wanted):
     return KeyReport(error * largest, corrections, int((~solvable).sum()))
 
 
-def _jacobian(moved, base, active):
+def _jacobian(moved: Moved, base: Floats, active: Bools) -> Steps[tuple[Floats, Bools]]:
     step = 1e-3 * float(np.ptp(base, axis=0).max())
     jacobian = np.empty((int(active.sum()), 3, 3))
     for axis in range(3):
@@ -128,18 +135,20 @@ def _jacobian(moved, base, active):
 class _Fit:
     """The best offsets so far and their error, over residual corrections."""
 
-    def __init__(self, moved, start, wanted, active, largest):
+    def __init__(self, moved: Moved, start: Floats, wanted: Floats, active: Bools, largest: float) -> None:
         self.moved, self.start, self.wanted = moved, start, wanted
         self.active, self.largest = active, largest
 
-    def correct(self, offsets, jacobian, corrections, solvable=slice(None)):
+    def correct(
+        self, offsets: Floats, jacobian: Floats, corrections: int, solvable: Any = slice(None)
+    ) -> Steps[tuple[Floats, float, int]]:
         """Offsets (n, 3), relative error and corrections used, from `offsets` on."""
-        best, before = None, np.inf
+        best, before = (offsets, np.inf, 0), np.inf
         rows = np.flatnonzero(self.active)[solvable]
         for step in range(corrections + 1):
             residual = self.wanted - (self.moved(offsets) - self.start)
             error = float(np.abs(residual).max()) / self.largest
-            if best is None or error < best[1]:
+            if step == 0 or error < best[1]:
                 best = (offsets.copy(), error, step)
             yield PAUSE
             if error < TOLERANCE or step == corrections or error > SLOW * before:

@@ -1,53 +1,56 @@
 """Takes Thenar's own earlier output out of a scene while it is read, and puts it back."""
 
+from collections.abc import Container, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+
+from bpy.types import Context, Depsgraph, Modifier, Object, ShapeKey
 
 from .. import names
 from . import owned
 
 
-def contact_key(obj):
+def contact_key(obj: Object) -> ShapeKey | None:
     """The contact's shape key of a hand, or None."""
     keys = obj.data.shape_keys if obj.type == "MESH" else None
     return keys.key_blocks.get(names.SHAPE_KEY) if keys is not None and owned.is_own_key(obj.data) else None
 
 
-def bake_modifiers(obj):
+def bake_modifiers(obj: Object) -> list[Modifier]:
     """The modifiers that play a bake on this hand."""
     return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.BAKE_MODIFIER)]
 
 
-def live_modifier(obj):
+def live_modifier(obj: Object) -> Modifier | None:
     """The modifier that shows a live contact on this hand, or None."""
     return next((modifier for modifier in obj.modifiers if modifier.name == names.LIVE_MODIFIER), None)
 
 
-def played_modifiers(obj):
+def played_modifiers(obj: Object) -> list[Modifier]:
     """All modifiers of Thenar's on this hand."""
     live = live_modifier(obj)
     return [*bake_modifiers(obj), *([live] if live is not None else [])]
 
 
-def roots(parts):
+def roots(parts: Sequence[Object]) -> list[Object]:
     """Those of `parts` that no other part carries along as a parent."""
     chosen = set(parts)
     return [part for part in parts if not any(parent in chosen for parent in _parents(part))]
 
 
-def shown_modifiers(obj):
+def shown_modifiers(obj: Object) -> list[Modifier]:
     """The modifiers that bring the shown surface to the contact, as far as its key does not."""
     return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.SHOWN_MODIFIER)]
 
 
 @contextmanager
-def without_own_output(context, hand, parts):
+def without_own_output(context: Context, hand: Object, parts: Sequence[Object]) -> Iterator[Depsgraph]:
     """The scene as if Thenar had never run; yields the evaluated depsgraph, and restores on leaving."""
     with ExitStack() as restore:
         take_out(context, hand, parts, restore)
         yield context.evaluated_depsgraph_get()
 
 
-def take_out(context, hand, parts, restore):
+def take_out(context: Context, hand: Object, parts: Sequence[Object], restore: ExitStack) -> None:
     """Take Thenar's own output out of the scene; the stack `restore` gets what puts it back."""
     restore.callback(context.view_layer.update)
     key = contact_key(hand)
@@ -66,7 +69,7 @@ def take_out(context, hand, parts, restore):
 
 
 @contextmanager
-def without_types(hand, types):
+def without_types(hand: Object, types: Container[str]) -> Iterator[None]:
     """The hand without its modifiers of these types."""
     shown = [modifier for modifier in hand.modifiers if modifier.type in types and modifier.show_viewport]
     for modifier in shown:
@@ -79,7 +82,7 @@ def without_types(hand, types):
 
 
 @contextmanager
-def without_generators(hand, first):
+def without_generators(hand: Object, first: int) -> Iterator[None]:
     """The hand without its modifiers from index `first` on, Thenar's own not counted."""
     others = [modifier for modifier in hand.modifiers if not modifier.name.startswith(names.BAKE_MODIFIER)]
     shown = [modifier for modifier in others[first:] if modifier.show_viewport]
@@ -92,7 +95,7 @@ def without_generators(hand, first):
             modifier.show_viewport = True
 
 
-def _parents(obj):
+def _parents(obj: Object) -> Iterator[Object]:
     parent = obj.parent
     while parent is not None:
         yield parent

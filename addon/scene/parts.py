@@ -1,9 +1,11 @@
 """Which objects together are the product."""
 
+from bpy.types import Object, PropertyGroup
+
 from .checks import PRODUCT_TYPES
 
 
-def product_parts(settings):
+def product_parts(settings: PropertyGroup) -> list[Object]:
     """The objects that together are the product, in a fixed order, hand and Thenar's own copies left out."""
     parts = [settings.product] if settings.product is not None else []
     if settings.product_collection is not None:
@@ -12,6 +14,6 @@ def product_parts(settings):
     return parts
 
 
-def _is_part(part, settings):
+def _is_part(part: Object, settings: PropertyGroup) -> bool:
     drawn = part.type in PRODUCT_TYPES or part.instance_type != "NONE"
     return drawn and part != settings.hand and not part.thenar.copy_of

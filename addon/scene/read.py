@@ -1,26 +1,39 @@
 """Hand and product as arrays in mm about the hand, in world axes. Writes nothing that lasts."""
 
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
+from bpy.types import Context, Depsgraph, Object
 
 from .. import names
 from . import checks, mesh, owned, regions, units
+from .units import Floats, Ints
 
 
 @dataclass(frozen=True)
 class HandReading:
     """The hand as the library wants it; positions (n, 3) float64, mm."""
 
-    rest_mm: np.ndarray
-    posed_mm: np.ndarray
-    triangles: np.ndarray
-    regions: np.ndarray
-    matrix: np.ndarray
+    rest_mm: Floats
+    posed_mm: Floats
+    triangles: Ints
+    regions: Ints
+    matrix: Floats
     scale: float
-    origin_mm: np.ndarray
-    warnings: tuple = ()
+    origin_mm: Floats
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """What was added to a part: `parents` of each new vertex by level, and areas (mm2) before and after."""
+
+    parents: tuple[Ints, ...]
+    own_count: int
+    own_areas_mm2: Floats
+    areas_mm2: Floats
 
 
 @dataclass(frozen=True)
@@ -32,17 +45,17 @@ class Part:
     count: int
     base_count: int
     reason: str = ""
-    refinement: object = None
-    """How a coarse part was refined (`refine.Refinement`), or None."""
+    refinement: Refinement | None = None
+    """How `refine` refined a coarse part, or None."""
 
 
 @dataclass(frozen=True)
 class ProductReading:
     """The product's evaluated surface, parts joined; positions (k, 3) float64, mm."""
 
-    vertices_mm: np.ndarray
-    triangles: np.ndarray
-    parts: tuple = ()
+    vertices_mm: Floats
+    triangles: Ints
+    parts: tuple[Part, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -53,7 +66,7 @@ class Reading:
     product: ProductReading
 
 
-def read_hand(context, hand, group_names):
+def read_hand(context: Context, hand: Object, group_names: Sequence[str]) -> HandReading:
     """The hand at rest and posed, about its own centre.
 
     Raises `Refusal` for vertices that are not numbers, an impossible size, or modifiers that reorder vertices.
@@ -88,7 +101,7 @@ def read_hand(context, hand, group_names):
     )
 
 
-def read_product(context, parts, scale, origin_mm):
+def read_product(context: Context, parts: Sequence[Object], scale: float, origin_mm: Floats) -> ProductReading:
     """The evaluated surface of all parts and their instances. Raises `Refusal` where there is none."""
     context.view_layer.update()
     depsgraph = context.evaluated_depsgraph_get()
@@ -111,16 +124,16 @@ def read_product(context, parts, scale, origin_mm):
     return ProductReading(np.concatenate(vertices), np.concatenate(triangles).astype(np.int32), tuple(records))
 
 
-def rest_mm(context, hand):
+def rest_mm(context: Context, hand: Object) -> Floats:
     """The hand's rest positions (n, 3), mm, in the frame that the library has them in, whatever was solved."""
     return _stretched(rest_positions(hand), units.world_from_local(hand), units.mm_per_unit(context.scene))
 
 
-def _stretched(rest, matrix, scale):
+def _stretched(rest: Floats, matrix: Floats, scale: float) -> Floats:
     return rest.astype(np.float64) @ units.rest_stretch(matrix, scale).T
 
 
-def rest_positions(hand):
+def rest_positions(hand: Object) -> Floats:
     """Positions (n, 3) float32 of the hand's first shape, local, Blender units."""
     keys = hand.data.shape_keys
     if keys is None:
@@ -130,7 +143,7 @@ def rest_positions(hand):
     return out.reshape(-1, 3)
 
 
-def _check_regions(hand, vertex_regions):
+def _check_regions(hand: Object, vertex_regions: Ints) -> None:
     if (vertex_regions < 0).all():
         raise checks.Refusal(
             f"no vertex of '{hand.name}' belongs to a region; paint the vertex groups listed under Materials, "
@@ -138,13 +151,13 @@ def _check_regions(hand, vertex_regions):
         )
 
 
-def _hand_warnings(hand):
+def _hand_warnings(hand: Object) -> tuple[str, ...]:
     if any(modifier.type == "MIRROR" and modifier.show_viewport for modifier in hand.modifiers):
         return (f"a Mirror modifier on '{hand.name}': only the modelled half was pressed; its mirror image repeats it",)
     return ()
 
 
-def _pieces(depsgraph, part):
+def _pieces(depsgraph: Depsgraph, part: Object) -> Iterator[tuple[Floats, Ints, Floats]]:
     """Local positions, triangles and world matrix of the part's own surface and of everything it instances."""
     with mesh.evaluated_mesh(part, depsgraph) if part.type in checks.PRODUCT_TYPES else nullcontext() as surface:
         if surface is not None and len(surface.polygons):
@@ -163,7 +176,7 @@ def _pieces(depsgraph, part):
             instance.object.to_mesh_clear()
 
 
-def _carry_problem(context, part, pieces):
+def _carry_problem(context: Context, part: Object, pieces: int) -> str:
     """Why the part's own mesh cannot carry pressure per vertex; empty if it can."""
     if part.type != "MESH":
         return f"it is a {part.type.lower()}"

@@ -3,9 +3,13 @@
 The surface stays where it was: edges are halved, and the triangles at them, so that neighbors keep their common edges.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import cast
 
 import numpy as np
+
+from .read import HandReading, ProductReading, Refinement
+from .units import Bools, Floats, Ints
 
 COARSE = 4.0
 """Product edges longer than this many edges of the hand smear the map; the library warns from there on."""
@@ -21,17 +25,7 @@ MOST_TRIANGLES = 300_000
 _CHUNK = 4_000_000
 
 
-@dataclass(frozen=True)
-class Refinement:
-    """What was added to a part: `parents` of each new vertex by level, and areas (mm2) before and after."""
-
-    parents: tuple
-    own_count: int
-    own_areas_mm2: np.ndarray
-    areas_mm2: np.ndarray
-
-
-def refined(product, skin):
+def refined(product: ProductReading, skin: HandReading) -> ProductReading:
     """`product` (a `ProductReading`) refined near the skin of `skin` (a `HandReading`), part by part."""
     spacing = _median_edge(skin)
     near = _thinned(skin.posed_mm[skin.regions >= 0])
@@ -55,7 +49,7 @@ def refined(product, skin):
     return replace(product, vertices_mm=np.concatenate(vertices), triangles=joined, parts=tuple(parts))
 
 
-def gathered(pressure, refinement):
+def gathered(pressure: Floats, refinement: Refinement) -> Floats:
     """Pressure (own_count,) on the part's own vertices with the same force as `pressure` on the refined ones."""
     force, last = pressure * refinement.areas_mm2, len(pressure)
     for pair in reversed(refinement.parents):
@@ -67,7 +61,7 @@ def gathered(pressure, refinement):
     return np.divide(force, areas, out=np.zeros_like(force), where=areas > 0.0)
 
 
-def _cut(points, faces, near, spacing):
+def _cut(points: Floats, faces: Ints, near: Floats, spacing: float) -> tuple[Floats, Ints, tuple[Ints, ...]]:
     """Points, faces and parents by level after halving what is too long."""
     levels, longest = [], COARSE * spacing
     for _ in range(MOST_LEVELS):
@@ -89,7 +83,7 @@ def _cut(points, faces, near, spacing):
     return points, faces, tuple(levels)
 
 
-def _split(faces, middle):
+def _split(faces: Ints, middle: Ints) -> Ints:
     """Triangles after edge k of each, from corner k to the next, got the vertex `middle[:, k]`, or -1."""
     count = (middle >= 0).sum(axis=1)
     out = [faces[count == 0]]
@@ -107,12 +101,12 @@ def _split(faces, middle):
     return np.concatenate(out)
 
 
-def _is_near(ends, near):
+def _is_near(ends: Floats, near: Floats) -> Bools:
     """Whether each edge, given by its two ends (k, 2, 3), comes near the skin."""
     middle, half = ends.mean(axis=1), 0.5 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     reach = REACH_MM + THINNED_MM + half
     low, high = near.min(axis=0), near.max(axis=0)
-    is_near = ((middle >= low - reach[:, None]) & (middle <= high + reach[:, None])).all(axis=1)
+    is_near: Bools = ((middle >= low - reach[:, None]) & (middle <= high + reach[:, None])).all(axis=1)
     rows = np.flatnonzero(is_near)
     step = max(_CHUNK // len(near), 1)
     for first in range(0, len(rows), step):
@@ -122,19 +116,21 @@ def _is_near(ends, near):
     return is_near
 
 
-def _thinned(points):
+def _thinned(points: Floats) -> Floats:
     """One of the points in every cube."""
     _, first = np.unique(np.floor(points / THINNED_MM), axis=0, return_index=True)
-    return points[np.sort(first)]
+    some: Floats = points[np.sort(first)]
+    return some
 
 
-def _median_edge(skin):
+def _median_edge(skin: HandReading) -> float:
     corners = skin.posed_mm[skin.triangles]
     return float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
 
 
-def _vertex_areas(points, faces):
+def _vertex_areas(points: Floats, faces: Ints) -> Floats:
     """A third of the triangles at each vertex, mm2."""
     a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
     third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
-    return np.bincount(faces.ravel(), np.repeat(third, 3), minlength=len(points))
+    areas = np.bincount(faces.ravel(), np.repeat(third, 3), minlength=len(points))
+    return cast(Floats, areas)  # with weights NumPy sums floats, which its types do not know

@@ -1,17 +1,21 @@
 """Regions of the skin from vertex groups, without a loop over vertices."""
 
+from collections.abc import Iterable, Sequence
+
 import bpy
 import numpy as np
+from bpy.types import Context, Mesh, NodeSocket, NodeTree, Object, VertexGroup
 
 from .. import names
 from . import attributes
+from .units import Bools, Floats, Ints
 
 _WEIGHT = ".thenar_weight_"
 LEAST_WEIGHT = 1e-4
 """A vertex belongs to a region from this weight on; Blender's brushes leave smaller remains."""
 
 
-def vertex_regions(context, hand, group_names):
+def vertex_regions(context: Context, hand: Object, group_names: Sequence[str]) -> Ints:
     """Region per vertex (n,) int32: the listed group with the largest weight there, -1 for none.
 
     With no names the whole mesh is one region, 0.
@@ -20,17 +24,17 @@ def vertex_regions(context, hand, group_names):
     if not group_names:
         return np.zeros(count, np.int32)
     weights = group_weights(context, hand, group_names)
-    regions = weights.argmax(axis=0).astype(np.int32)
+    regions: Ints = weights.argmax(axis=0).astype(np.int32)
     regions[weights.max(axis=0) < LEAST_WEIGHT] = -1
     return regions
 
 
-def region_vertices(mesh, region):
+def region_vertices(mesh: Mesh, region: int) -> Ints:
     """Numbers of the vertices that the last result counted to `region`. Not in Edit Mode, which hides attributes."""
     return np.flatnonzero(attributes.read(mesh, names.REGION) == region)
 
 
-def select_only(mesh, vertices):
+def select_only(mesh: Mesh, vertices: Ints | Bools) -> None:
     """Select vertices, given as numbers or as a mask, and nothing else."""
     chosen = np.zeros(len(mesh.vertices), bool)
     chosen[vertices] = True
@@ -42,7 +46,7 @@ def select_only(mesh, vertices):
             layer.data.foreach_set("value", [False] * len(layer.data))
 
 
-def group_weights(context, hand, group_names):
+def group_weights(context: Context, hand: Object, group_names: Sequence[str]) -> Floats:
     """Weights (k, n) float32 of vertex groups; a group that does not exist weighs nothing.
 
     Vertex groups have no array access in Python, but Geometry Nodes read them as attributes: a passing object
@@ -64,7 +68,7 @@ def group_weights(context, hand, group_names):
         bpy.data.node_groups.remove(tree)
 
 
-def painted_weights(hand, group_name):
+def painted_weights(hand: Object, group_name: str) -> Floats:
     """Weights (n,) float32 of one vertex group, 0 for vertices outside, read without touching the scene.
 
     A loop over vertices, 25 ms for 10,000: for digests that must not set off another change; `group_weights` is faster.
@@ -78,7 +82,7 @@ def painted_weights(hand, group_name):
     return weights
 
 
-def paint(hand, group_name, weights):
+def paint(hand: Object, group_name: str, weights: Floats) -> VertexGroup:
     """Make the vertex group of that name anew with `weights` (n,), vertices of weight 0 left out; it becomes active."""
     old = hand.vertex_groups.get(group_name)
     if old is not None:
@@ -90,7 +94,7 @@ def paint(hand, group_name, weights):
     return group
 
 
-def _reader(group_names):
+def _reader(group_names: Sequence[str]) -> NodeTree:
     tree = bpy.data.node_groups.new(_WEIGHT, "GeometryNodeTree")
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
     tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
@@ -110,5 +114,5 @@ def _reader(group_names):
     return tree
 
 
-def _enabled(sockets, name):
+def _enabled(sockets: Iterable[NodeSocket], name: str) -> NodeSocket:
     return next(socket for socket in sockets if socket.name == name and socket.enabled)

@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from .units import Floats
 
-def motion(before, after):
+
+def motion(before: Floats, after: Floats) -> tuple[Floats, float]:
     """The rigid motion (4, 4) that takes points `before` (n, 3) to `after`, and the largest distance it leaves, mm.
 
     Least squares (Kabsch 1976): the turn comes from the singular vectors of the points' covariance.
@@ -17,11 +19,13 @@ def motion(before, after):
     return whole, float(np.linalg.norm(moved(before, whole) - after, axis=1).max(initial=0.0))
 
 
-def moved(points, whole):
+def moved(points: Floats, whole: Floats) -> Floats:
     """Points (n, 3) taken along by a motion (4, 4)."""
-    return points @ whole[:3, :3].T + whole[:3, 3]
+    taken: Floats = points @ whole[:3, :3].T + whole[:3, 3]
+    return taken
 
 
-def seen(points, whole):
+def seen(points: Floats, whole: Floats) -> Floats:
     """Points (n, 3) as something that was moved by `whole` (4, 4) sees them."""
-    return (points - whole[:3, 3]) @ whole[:3, :3]
+    own: Floats = (points - whole[:3, 3]) @ whole[:3, :3]
+    return own

@@ -1,6 +1,7 @@
 """Materials that show a map over the user's own, and the way back to them."""
 
 import bpy
+from bpy.types import ColorRamp, Material, NodeTree, Object, PropertyGroup
 
 from .. import colormap, maps, names
 
@@ -8,7 +9,7 @@ _SKIN = (0.80, 0.52, 0.40, 1.0)
 _BARE = (0.62, 0.62, 0.60, 1.0)
 
 
-def show(obj, look, is_skin):
+def show(obj: Object, look: PropertyGroup, is_skin: bool) -> None:
     """Overlay the map on every material slot of `obj`; the slots' own materials stay in the mesh, untouched."""
     hide(obj)
     state = obj.thenar
@@ -28,7 +29,7 @@ def show(obj, look, is_skin):
     state.shows_pressure = True
 
 
-def hide(obj):
+def hide(obj: Object) -> None:
     """Give every slot its own material back and drop the overlaid copies."""
     state = obj.thenar
     if not state.shows_pressure:
@@ -46,7 +47,7 @@ def hide(obj):
     state.slots.clear()
 
 
-def update_group(look):
+def update_group(look: PropertyGroup) -> None:
     """Set map, range and colours of the overlay that all overlaid materials share."""
     tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
     if tree is None:
@@ -63,13 +64,13 @@ def update_group(look):
     _fill_ramp(tree.nodes["Ramp"].color_ramp, scale.palette)
 
 
-def _is_overlaid(material):
+def _is_overlaid(material: Material) -> bool:
     nodes = material.node_tree.nodes if material.node_tree is not None else ()
     group = bpy.data.node_groups.get(names.OVERLAY_GROUP)
     return any(node.type == "GROUP" and node.node_tree == group for node in nodes)
 
 
-def _overlaid(own, look, is_skin):
+def _overlaid(own: Material | None, look: PropertyGroup, is_skin: bool) -> Material:
     base = own.copy() if own is not None else _plain(is_skin)
     stem = own.name if own is not None else ("Skin" if is_skin else "Product")
     base.name = names.suffixed(stem, names.MATERIAL_SUFFIX)
@@ -87,7 +88,7 @@ def _overlaid(own, look, is_skin):
     return base
 
 
-def _plain(is_skin):
+def _plain(is_skin: bool) -> Material:
     material = bpy.data.materials.new("plain")
     if material.node_tree is None:
         material.use_nodes = True
@@ -101,7 +102,7 @@ def _plain(is_skin):
     return material
 
 
-def _group(look):
+def _group(look: PropertyGroup) -> NodeTree:
     tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
     if tree is None:
         tree = _new_group()
@@ -109,7 +110,7 @@ def _group(look):
     return tree
 
 
-def _new_group():
+def _new_group() -> NodeTree:
     tree = bpy.data.node_groups.new(names.OVERLAY_GROUP, "ShaderNodeTree")
     tree.interface.new_socket("Surface", in_out="INPUT", socket_type="NodeSocketShader")
     tree.interface.new_socket("Surface", in_out="OUTPUT", socket_type="NodeSocketShader")
@@ -117,7 +118,7 @@ def _new_group():
     return tree
 
 
-def _fill_group(tree):
+def _fill_group(tree: NodeTree) -> None:
     nodes, links = tree.nodes, tree.links
     nodes.clear()
     entry, leave = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
@@ -142,7 +143,7 @@ def _fill_group(tree):
     links.new(mix.outputs["Shader"], leave.inputs["Surface"])
 
 
-def _fill_ramp(ramp, palette):
+def _fill_ramp(ramp: ColorRamp, palette: str) -> None:
     colors = colormap.to_linear(colormap.stops(palette))
     elements = ramp.elements
     while len(elements) > len(colors):

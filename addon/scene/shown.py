@@ -4,15 +4,23 @@ The key is written first. What it did not bring to the shown vertices, since mod
 vertices of their own, a modifier at the end of the stack adds (see `correction`).
 """
 
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+from bpy.types import Context, Modifier, Object
 
 from .. import names
-from ..certificate import BETWEEN_MM, TOLERANCE_MM, Surface
-from ..steps import PAUSE
-from . import attributes, correction, mesh, own, units
+from ..certificate import BETWEEN_MM, TOLERANCE_MM, Found, Surface
+from ..steps import PAUSE, Steps, Work
+from . import attributes, correction, mesh, own, read, units
 from .checks import Refusal
+from .units import Floats, Ints
+
+Measure: TypeAlias = Callable[[Surface, Floats | None], Work]
+"""The work that gives a `Found` of a surface, and of how far its own vertices still have to go."""
 
 ADDING = {"SUBSURF", "MULTIRES", "SOLIDIFY", "MIRROR", "ARRAY", "EDGE_SPLIT", "TRIANGULATE", "WIREFRAME", "SCREW"}
 """Modifiers that add vertices; the key is fitted without them, which is faster and does not swing."""
@@ -35,19 +43,21 @@ class Shown:
     evaluated hand the modifier moves, by `moved_mm` at most; `suspects`: names and kinds of what stands before it.
     """
 
-    found: object
+    found: Found
     error_mm: float
     moved: int
     moved_mm: float
-    suspects: tuple
+    suspects: tuple[tuple[str, str], ...]
 
 
-def mark_skin(hand, regions):
+def mark_skin(hand: Object, regions: Ints) -> None:
     """Mark skin for `certify`, where modifiers add vertices."""
     attributes.write(hand.data, names.SHOWN_SKIN, "FLOAT", regions >= 0)
 
 
-def certify(context, hand, reading, wanted_mm, tools):
+def certify(
+    context: Context, hand: Object, reading: read.Reading, wanted_mm: Floats, tools: tuple[Measure, ExitStack]
+) -> Steps[Shown]:
     """Bring the shown skin to the contact and measure it; steps that return a `Shown`.
 
     `wanted_mm` (n, 3), world axes, of the hand's own vertices; `tools`: `measure(surface, left_mm)`, the work
@@ -78,7 +88,7 @@ def certify(context, hand, reading, wanted_mm, tools):
     return Shown(found, error, moved, moved_mm, suspects)
 
 
-def notes(hand, shown, origin_mm):
+def notes(hand: Object, shown: Shown, origin_mm: Floats) -> Iterator[str]:
     """What a user should know of the shown skin, one sentence each; `origin_mm` (3), of the readings."""
     if shown.moved:
         yield (
@@ -106,7 +116,7 @@ def notes(hand, shown, origin_mm):
         )
 
 
-def _read(context, hand, skin, before=None):
+def _read(context: Context, hand: Object, skin: read.HandReading, before: Surface | None = None) -> Surface:
     """The evaluated hand as a `Surface`; what `before` tells of the same vertices is taken from there."""
     context.view_layer.update()
     with mesh.evaluated_mesh(hand, context.evaluated_depsgraph_get()) as evaluated:
@@ -123,32 +133,32 @@ def _read(context, hand, skin, before=None):
     return Surface(points, triangles, counts, len(skin.posed_mm))
 
 
-def _largest(vectors):
+def _largest(vectors: Floats) -> float:
     return float(np.sqrt(np.einsum("ij,ij->i", vectors, vectors).max(initial=0.0)))
 
 
-def _suspects(hand):
+def _suspects(hand: Object) -> Iterator[tuple[str, str]]:
     for modifier in hand.modifiers:
         if modifier.show_viewport and modifier.type in PULLING and modifier not in own.shown_modifiers(hand):
             yield modifier.name, modifier.bl_rna.name.removesuffix(" Modifier")
 
 
-def _listed(suspects):
+def _listed(suspects: Sequence[tuple[str, str]]) -> str:
     return ", ".join(f"'{name}' ({kind})" for name, kind in suspects) or "the modifiers"
 
 
-def _refused(hand, error_mm, suspects):
+def _refused(hand: Object, error_mm: float, suspects: Sequence[tuple[str, str]]) -> str:
     return (
         f"the shown skin of '{hand.name}' stays {error_mm:.2f} mm from the contact behind {_listed(suspects)}; apply "
-        "what stands there or switch it off in the viewport, then solve again"
+        "them or switch them off in the viewport, then solve again"
     )
 
 
-def _place(place_mm, origin_mm):
+def _place(place_mm: Floats, origin_mm: Floats) -> str:
     return "({:.1f}, {:.1f}, {:.1f}) mm".format(*(place_mm + origin_mm))
 
 
-def _renders_otherwise(modifier):
+def _renders_otherwise(modifier: Modifier) -> bool:
     if modifier.type not in {"SUBSURF", "MULTIRES"} or not (modifier.show_render and modifier.show_viewport):
         return False
-    return modifier.render_levels != modifier.levels
+    return bool(modifier.render_levels != modifier.levels)

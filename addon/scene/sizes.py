@@ -1,11 +1,15 @@
 """How large hand and product are, and whether the product's size is a mistake of units. Evaluates no mesh."""
 
 import time
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from bpy.types import Context, Object, Scene
+from mathutils import Matrix
 
 from . import checks, mesh, own, units
+from .units import Floats
 
 FACTORS = (1e-3, 1e-2, 1e-1, 0.0254, 1.0 / 0.0254, 10.0, 100.0, 1000.0)
 """What a file in one unit is off by when it is read in another: mm, cm, dm and inches as m, and the other way."""
@@ -21,7 +25,6 @@ FEW = 16
 """Parts that are measured at every redraw."""
 _KEPT = 20.0
 """A size is kept for so many times what measuring it took: a redraw of many parts must stay cheap."""
-_kept = {}
 
 
 @dataclass(frozen=True)
@@ -30,34 +33,37 @@ class Sizes:
 
     hand_mm: float
     product_mm: float
-    factors: tuple = ()
+    factors: tuple[float, ...] = ()
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"Hand {length(self.hand_mm)}, product {length(self.product_mm)}"
 
 
-def measure(scene, hand, parts):
+_kept: dict[str, tuple[float, tuple[str, int, str], Sizes]] = {}
+
+
+def measure(scene: Scene, hand: Object, parts: Sequence[Object]) -> Sizes:
     """Sizes by the bounding boxes as last evaluated, and factors where the product's is not believed."""
     sizes = _measured(scene, hand, parts)
     return _measured(scene, hand, parts, without_loose=True) if sizes.factors else sizes
 
 
-def glance(scene, hand, parts):
+def glance(scene: Scene, hand: Object, parts: Sequence[Object]) -> Sizes:
     """The same for a panel: kept a moment where there are many parts."""
     if len(parts) <= FEW:
         return measure(scene, hand, parts)
-    until, key, sizes = _kept.get(scene.name, (0.0, None, None))
+    kept = _kept.get(scene.name)
     began = time.monotonic()
     wanted = hand.name, len(parts), parts[0].name
-    if began < until and key == wanted:
-        return sizes
+    if kept is not None and began < kept[0] and kept[1] == wanted:
+        return kept[2]
     sizes = measure(scene, hand, parts)
     now = time.monotonic()
     _kept[scene.name] = now + _KEPT * (now - began), wanted, sizes
     return sizes
 
 
-def check_product_size(context, hand, parts):
+def check_product_size(context: Context, hand: Object, parts: Sequence[Object]) -> None:
     """Refuse a product whose size is a likely mistake of units. Raises `Refusal`, which names sizes and remedy."""
     sizes = measure(context.scene, hand, parts)
     if not sizes.factors:
@@ -70,12 +76,12 @@ def check_product_size(context, hand, parts):
     )
 
 
-def accept(scene, hand, parts):
+def accept(scene: Scene, hand: Object, parts: Sequence[Object]) -> None:
     """Believe the product's size from now on, as long as it stays so."""
     scene.thenar.accepted_mm = measure(scene, hand, parts).product_mm
 
 
-def scale_product(context, hand, parts, factor):
+def scale_product(context: Context, hand: Object, parts: Sequence[Object], factor: float) -> Sizes:
     """Scale the whole product by `factor`; the parts keep their places to each other.
 
     One object is scaled about its own origin, several about the world's, as their importer would have. Returns the new
@@ -107,12 +113,12 @@ def scale_product(context, hand, parts, factor):
     return after
 
 
-def length(mm):
+def length(mm: float) -> str:
     """A length as one reads it: m from 1000 mm on, else mm."""
     return f"{mm / 1000:.4g} m" if mm >= 1000.0 else f"{mm:.3g} mm"
 
 
-def _measured(scene, hand, parts, without_loose=False):
+def _measured(scene: Scene, hand: Object, parts: Sequence[Object], without_loose: bool = False) -> Sizes:
     """By boxes, or by the vertices of faces where a mesh has others: they take longer, and change the size rarely."""
     scale = units.mm_per_unit(scene)
     sides = np.sort(np.ptp(_corners(parts, without_loose), axis=0)) * scale
@@ -127,7 +133,7 @@ def _measured(scene, hand, parts, without_loose=False):
     return Sizes(hand_mm, product_mm, tuple(nearness))
 
 
-def _scaled(part, roots, factor):
+def _scaled(part: Object, roots: Sequence[Object], factor: float) -> Matrix:
     """The part's world matrix after the scaling."""
     matrix = part.matrix_world.copy()
     place = matrix.translation.copy()
@@ -137,11 +143,11 @@ def _scaled(part, roots, factor):
     return matrix
 
 
-def _is_accepted(scene, product_mm):
-    return abs(product_mm - scene.thenar.accepted_mm) < 0.01 * product_mm
+def _is_accepted(scene: Scene, product_mm: float) -> bool:
+    return bool(abs(product_mm - scene.thenar.accepted_mm) < 0.01 * product_mm)
 
 
-def _corners(objects, without_loose=False):
+def _corners(objects: Iterable[Object], without_loose: bool = False) -> Floats:
     """World corners (k, 3) of the objects' boxes, Blender units; of what an empty instances in its stead."""
     boxes = []
     for obj in objects:
@@ -155,7 +161,7 @@ def _corners(objects, without_loose=False):
     return np.concatenate(boxes) if boxes else np.zeros((1, 3))
 
 
-def _box(obj, without_loose=False):
+def _box(obj: Object, without_loose: bool = False) -> Floats:
     matrix = np.array(obj.matrix_world)
     box = np.array(obj.bound_box)
     if without_loose and obj.type == "MESH" and len(obj.data.polygons):
@@ -163,4 +169,5 @@ def _box(obj, without_loose=False):
         obj.data.loops.foreach_get("vertex_index", used)
         if not mesh.is_used(used, len(points)).all():
             box = points[used]  # as modelled: boxes know nothing of loose vertices
-    return box @ matrix[:3, :3].T + matrix[:3, 3]
+    corners: Floats = box @ matrix[:3, :3].T + matrix[:3, 3]
+    return corners

@@ -1,11 +1,15 @@
 """What the scene shows now, in short: the shapes that a result depends on."""
 
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 import numpy as np
+from bpy.types import Context, Object
 
 from . import checks, mesh
 
 
-def shapes(context, objects):
+def shapes(context: Context, objects: Iterable[Object]) -> list[Any]:
     """Hashable parts (matrix, positions, vertex groups) of each object as evaluated, Thenar's own output included."""
     depsgraph = context.evaluated_depsgraph_get()
     parts = []
@@ -20,7 +24,7 @@ def shapes(context, objects):
     return parts
 
 
-def is_same(parts, others):
+def is_same(parts: Sequence[Any], others: Sequence[Any] | None) -> bool:
     """Whether two such lists, or lists of arrays, say the same; `others` may be None, which nothing is."""
     if others is None or len(parts) != len(others):
         return False

@@ -1,14 +1,18 @@
 """Writes a contact onto hand and product, all of it or nothing."""
 
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from bpy.types import Context, Mesh, Object, PropertyGroup
 
 from .. import names
-from ..steps import PAUSE
-from . import attributes, colors, copies, correction, key, moving, own, refine, shown, units
+from ..steps import PAUSE, Steps
+from . import attributes, colors, copies, correction, key, moving, own, read, refine, shown, units
+from .shown import Shown
+from .units import Floats, Ints
 
 NO_BONE_MM = 1000.0
 """What stands for tissue without bone in the thickness attribute: the thickest that the library admits."""
@@ -18,17 +22,17 @@ NO_BONE_MM = 1000.0
 class Fields:
     """What a contact writes; arrays per hand vertex (n) or product vertex (k), world axes, library units."""
 
-    displacement_mm: np.ndarray
-    pressure_mpa: np.ndarray
-    force_n: np.ndarray
-    depth_mm: np.ndarray
-    regions: np.ndarray
-    product_pressure_mpa: np.ndarray
-    offset_mm: np.ndarray
+    displacement_mm: Floats
+    pressure_mpa: Floats
+    force_n: Floats
+    depth_mm: Floats
+    regions: Ints
+    product_pressure_mpa: Floats
+    offset_mm: Floats
     """(3) how far the product moved to reach its force."""
-    shear: tuple | None = None
+    shear: tuple[Floats, Floats] | None = None
     """Shear traction (n), MPa, and slip margin (n), 0 where skin slips to 1, where the product was dragged."""
-    thickness_mm: np.ndarray | None = None
+    thickness_mm: Floats | None = None
     """(n), soft tissue over bone; infinite where there is no bone, NaN away from the skin."""
 
 
@@ -41,11 +45,13 @@ class WriteReport:
 
     error_mm: float
     corrections: int
-    notes: tuple
-    shown: object = None
+    notes: tuple[str, ...]
+    shown: Shown | None = None
 
 
-def write_contact(context, hand, parts, job, measure):
+def write_contact(
+    context: Context, hand: Object, parts: Sequence[Object], job: tuple[read.Reading, Fields], measure: shown.Measure
+) -> Steps[WriteReport]:
     """Shape key, attributes and the product's place, as steps that return a `WriteReport`.
 
     `job`: what was read and the `Fields`; `measure(surface, left_mm)`: work that gives a `certificate.Found`.
@@ -80,7 +86,7 @@ def write_contact(context, hand, parts, job, measure):
     return WriteReport(seen.error_mm, report.corrections, notes, seen)
 
 
-def _hide_correction(undo, hand):
+def _hide_correction(undo: ExitStack, hand: Object) -> None:
     """Switch off what an earlier contact hung behind the key."""
     for modifier in own.shown_modifiers(hand):
         if modifier.show_viewport:
@@ -88,7 +94,7 @@ def _hide_correction(undo, hand):
             modifier.show_viewport = False
 
 
-def write_hand(hand, fields, look):
+def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
     """The hand's attributes and its colours for Solid view."""
     mesh, pressure = hand.data, units.kpa(fields.pressure_mpa)
     attributes.remove(mesh, names.RESIDUAL_ATTRIBUTES)  # they belong to the contact before
@@ -108,13 +114,13 @@ def write_hand(hand, fields, look):
     mesh.update()
 
 
-def write_thickness(mesh, thickness_mm):
+def write_thickness(mesh: Mesh, thickness_mm: Floats) -> None:
     """Soft tissue over bone (n), mm, as an attribute: 0 away from the skin, `NO_BONE_MM` where there is no bone."""
     values = np.nan_to_num(thickness_mm, nan=0.0, posinf=NO_BONE_MM)
     attributes.write(mesh, names.THICKNESS_MM, "FLOAT", np.minimum(values, NO_BONE_MM))
 
 
-def _keep_key(undo, hand):
+def _keep_key(undo: ExitStack, hand: Object) -> None:
     contact = own.contact_key(hand)
     if contact is None:
         hand.thenar.made_basis = hand.data.shape_keys is None
@@ -122,14 +128,14 @@ def _keep_key(undo, hand):
         return
     points, value, mute = key.key_points(contact), contact.value, contact.mute
 
-    def restore():
+    def restore() -> None:
         contact.value, contact.mute = value, mute
         key.put_points(hand, contact, points)
 
     undo.callback(restore)
 
 
-def _write_part(context, undo, record, reading, fields):
+def _write_part(context: Context, undo: ExitStack, record: read.Part, reading: read.Reading, fields: Fields) -> None:
     part, look = bpy.data.objects[record.name], context.scene.thenar
     pressure = fields.product_pressure_mpa[record.first : record.first + record.count]
     if record.reason or record.refinement is not None:
@@ -149,7 +155,7 @@ def _write_part(context, undo, record, reading, fields):
     part.data.update()
 
 
-def _notes(product):
+def _notes(product: read.ProductReading) -> Iterator[str]:
     for record in product.parts:
         if record.reason:
             yield f"a copy of '{record.name}' in '{names.RESULTS_COLLECTION}' carries the pressure: {record.reason}"
@@ -160,7 +166,7 @@ def _notes(product):
             )
 
 
-def clear(context, hand, parts):
+def clear(context: Context, hand: Object, parts: Sequence[Object]) -> None:
     """Remove Thenar's key, attributes, copies and bake, and put the product back."""
     for modifier in own.played_modifiers(hand):
         hand.modifiers.remove(modifier)
@@ -178,12 +184,13 @@ def clear(context, hand, parts):
     context.view_layer.update()
 
 
-def apply(context, hand, parts):
+def apply(context: Context, hand: Object, parts: Sequence[Object]) -> None:
     """Add the contact's offsets (as far as its value counts) to every other shape key, then remove its key.
 
     A moved product stays where it is: that place is now its own.
     """
-    contact, blocks = own.contact_key(hand), hand.data.shape_keys.key_blocks
+    blocks = hand.data.shape_keys.key_blocks
+    contact = blocks[names.SHAPE_KEY]
     base = key.key_points(hand.data.shape_keys.reference_key)
     offsets = (key.key_points(contact) - base) * (0.0 if contact.mute else contact.value)
     for block in blocks:

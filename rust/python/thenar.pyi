@@ -91,6 +91,7 @@ class Material:
     def swelling_radius_mm(self) -> float: ...
     @property
     def swelling_width_mm(self) -> float: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
 @type_check_only
 class _Gaps(TypedDict):
@@ -250,6 +251,7 @@ class Effect:
     @property
     def numbers(self) -> dict[str, float | str]: ...
     def with_amplitude(self, amplitude: float) -> Effect: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[str, float], dict[str, Any]]: ...
 
 @final
 class Walk:
@@ -384,7 +386,8 @@ class Contact:
     @property
     def reason(self) -> str | None: ...
     @property
-    def remarks(self) -> list[Record]: ...
+    def remarks(self) -> list[Record]:
+        """One per warning: kind, grade, text, and the vertex and the region it is about, None where there is none."""
     @property
     def seconds(self) -> Record: ...
 
@@ -618,6 +621,9 @@ def solve_complementarity(matrix: ArrayLike, gap: ArrayLike) -> NDArray[np.float
 def solve_stick_slip(matrix: ArrayLike, travel_mm: ArrayLike, limit_n: ArrayLike) -> Record: ...
 def observe(signals: Mapping[str, Any], mat: Mat | None = None, effects: Sequence[Effect] | None = None) -> Record:
     """What a measuring set-up shows of what happens at the skin: channels after the instrument effects."""
+
+def parquet(columns: dict[str, Sequence[float | None] | Sequence[str | None]]) -> bytes:
+    """The bytes of an Apache Parquet file with these columns, all of one length. Raises `ValueError`."""
 
 def parameters() -> list[Record]:
     """The table of material numbers: name, symbol, unit, default, low, high, meaning, source."""

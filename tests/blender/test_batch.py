@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import stage
 import thenar
-from thenar_blender import batch, headless
+from thenar_blender import batch, command_line
 from thenar_blender.batch import child
 from thenar_blender.scene.checks import Refusal
 
@@ -218,7 +218,7 @@ def test_flamenco_job_type_deals_out_parts():
     assert [task["name"] for task in tasks] == ["part-1", "part-2", "tables"]
     assert tasks[2]["needs"] == ["part-1", "part-2"]
     (command,) = tasks[1]["commands"]
-    known = headless._parser().parse_args(command["parameters"]["args"][2:])
+    known = command_line._parser().parse_args(command["parameters"]["args"][2:])
     assert (known.jobs, known.out, known.part) == ("/j.toml", "/r", "2/2")
 
 

@@ -32,9 +32,9 @@ def test_areas_over_the_threshold_are_those_of_the_vertices():
     pressure = np.array([100.0, 40.0, 0.0, 60.0, 10.0, 900.0])
     verdict = comfort.judged(["index", "palm"], [50.0, 50.0], (pressure, force, region))
     assert verdict.over_mm2 == pytest.approx((1.0, 5.0)), "0.1 N at 100 kPa is 1 mm², 0.3 N at 60 kPa is 5 mm²"
-    assert verdict.sentence == "6 mm² (29% of the contact) lies over its threshold: palm 5 mm², index 1 mm²"
+    assert verdict.sentence == "6 mm² (29% of the contact) exceeds its threshold: Palm 5 mm², Index 1 mm²"
     free = comfort.judged(["index", "palm"], [200.0, 0.0], (pressure, force, region))
-    assert free.sentence == "No pressure lies over its threshold; one region has no threshold"
+    assert free.sentence == "No pressure exceeds its threshold; one region has no threshold"
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_discomfort_is_a_share_of_the_pain_threshold_that_the_user_types():
     stage.solve()
     settings = bpy.context.scene.thenar
     settings.comfort.rule = "DISCOMFORT"
-    assert settings.result.comfort == "No threshold is known; type yours under Comfort"
+    assert settings.result.comfort == "No threshold is known; enter yours under Comfort"
     assert settings.result.over_mm2 == 0.0
     peak = float(stage.attribute(hand, "pressure_kpa").max())
     settings.comfort.finger_kpa, settings.comfort.thenar_kpa = peak / 0.76, peak / 0.44
@@ -100,7 +100,7 @@ def test_the_verdict_is_exported_and_shown(tmp_path):
     rows = list(csv.DictReader((tmp_path / "judged.csv").open()))
     assert [float(row["threshold_share"]) > 1 for row in rows] == list(share > 1)
     told = json.loads(json.dumps(results.as_dict(settings.result)))
-    assert told["comfort"] == settings.result.comfort and "lies over its threshold" in told["comfort"]
+    assert told["comfort"] == settings.result.comfort and "exceeds its threshold" in told["comfort"]
     assert [row["threshold_kpa"] for row in told["regions"]] == [5.0, 10.0]
     assert told["over_threshold_mm2"] == pytest.approx(sum(over(hand, [5.0, 10.0])), rel=1e-4)
 

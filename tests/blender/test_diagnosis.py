@@ -70,7 +70,7 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
     diagnose(letters.FINDINGS["missing_physics"])
     lines = told()
     for line in (
-        "1. Relaxation, 97 % sure",
+        "1. Relaxation, 97 % confidence",
         "   Amplitude: 0.34 (0.31–0.37)",
         "   Time 3: 1.9 s (1.6–2.3)",
         "   Force that fades with time at held depth, by three exponentials of time.",
@@ -78,12 +78,12 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "'fast 1' and 2 more. It depends on time and speed.",
         "Before: 0.21 N (0.18–0.24)",
         "Noise floor: 0.03 N (0.02–0.04)",
-        "96 % (91 % to > 99 %) of the error that could be removed is gone.",
-        "Judged on 2 recordings that the fit did not use: 'sphere 1' and 'sphere 2'.",
-        "Would be seen, adhesion: 0.02 J/m²",
-        "Would be seen, bone: 17.2 % of the thickness",
-        "Would be seen, relaxation: at no size",
-        "Would be seen, saturation: at no size",
+        "96 % (91 % to > 99 %) of the reducible error is removed.",
+        "Evaluated on 2 held-out recordings: 'sphere 1' and 'sphere 2'.",
+        "Detection limit, adhesion: 0.02 J/m²",
+        "Detection limit, bone: 17.2 % of the thickness",
+        "Detection limit, relaxation: not detectable",
+        "Detection limit, saturation: not detectable",
         "   Seen: force at held depth falls with time",
         "   Not seen: fast presses need more force than slow ones",
         "Evidence while pressing in: 25 %",
@@ -123,8 +123,8 @@ def test_curves_of_the_clearest_recordings_are_kept_and_drawn(diagnose):
 def test_the_letter_names_rivals_and_the_recording_that_settles_it(diagnose):
     diagnose(letters.FINDINGS["cannot_tell"])
     lines = told()
-    assert "These recordings cannot tell relaxation from drainage." in lines
-    assert "At 90 % it is one of: relaxation; drainage." in lines
+    assert "These recordings cannot distinguish relaxation from drainage." in lines
+    assert "At 90 % the explanation is one of: relaxation; drainage." in lines
     assert "Record next: Hold a sphere of 16 mm or more at the same depth for 30 s, twice." in lines
     assert "Settles it in 87 % of cases, 4 min" in lines
 
@@ -268,7 +268,7 @@ def test_an_instrument_changes_nothing_on_the_skin(diagnose):
     ("verdict", "index", "reason"),
     [
         ("unlisted", 0, "not in Thenar's list"),
-        ("cannot_tell", 0, "cannot tell relaxation from drainage.*record this first: hold a sphere"),
+        ("cannot_tell", 0, "cannot distinguish relaxation from drainage.*record this first: hold a sphere"),
         ("nothing_missing", 0, "lists no finding"),
         ("missing_physics", 7, "no finding 7; the diagnosis lists 2"),
     ],
@@ -286,7 +286,7 @@ def test_a_named_effect_with_a_rival_is_not_switched_on(diagnose):
     found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["cannot_tell"] = [["bone", "stiffening_law"]]
     diagnose(found)
-    with pytest.raises(RuntimeError, match="cannot tell bone from stiffening law"):
+    with pytest.raises(RuntimeError, match="cannot distinguish bone from stiffening law"):
         bpy.ops.thenar.apply_finding(index=1)
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     assert set(effects()) == {"relaxation"}
@@ -297,7 +297,7 @@ def test_a_finding_in_another_unit_is_refused(diagnose):
     found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
     found["findings"][1]["parameters"]["thickness_mm"]["unit"] = "m"
     diagnose(found)
-    with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar wants mm"):
+    with pytest.raises(RuntimeError, match="thickness_mm in m and Thenar expects mm"):
         bpy.ops.thenar.apply_finding(index=1)
     assert not effects()
 

@@ -101,31 +101,13 @@ def test_presets_set_published_numbers():
     assert stage.solve().force_n != stiff
 
 
-def test_notes_that_differ_by_region_are_told_once():
-    from thenar_blender import sentences
-
-    notes = ["region 'a' is 1.5 mm deep", "region 'b' is 2.5 mm deep", "the hand is open"]
-    assert list(sentences.joined(notes)) == ["region 'a' is 1.5 mm deep (1 more such)", "the hand is open"]
-
-
-def test_notes_name_what_their_own_job_names():
-    from types import SimpleNamespace
-
-    from thenar_blender import sentences
-
-    text = "the hand: region 1 lies on the product"
-    for hand, part, region in (("Left", "Cup", "palm"), ("Right", "Cup", "palm"), ("Right", "Cup", "thumb")):
-        job = SimpleNamespace(hand_name=hand, part_names=(part,), region_names=("index", region))
-        assert sentences.named(text, job) == f"the hand '{hand}': region '{region}' lies on the product '{part}'"
-
-
-def test_notes_of_a_solve_name_one_region_and_count_the_others():
+def test_notes_of_a_solve_name_one_region_and_list_the_others():
     hand, _ = stage.scene(top=-3.5)
     points = stage.evaluated(hand)
-    for name, inside in (("left", points[:, 0] < 0.0), ("right", points[:, 0] >= 0.0)):
+    for name, inside in (("left_pad", points[:, 0] < 0.0), ("right_pad", points[:, 0] >= 0.0)):
         hand.vertex_groups.new(name=name).add([int(i) for i in np.flatnonzero(inside)], 1.0, "REPLACE")
     bpy.ops.thenar.assign_regions()
     deep = [note.name for note in stage.solve().warnings if "over half its" in note.name]
     assert len(deep) == 1, deep
-    assert deep[0].startswith("region 'left'")
-    assert deep[0].endswith("(1 more such)")
+    assert deep[0].startswith("region 'Left pad' is pressed")
+    assert deep[0].endswith(" (also: Right pad)")

@@ -176,11 +176,11 @@ def test_regions_are_told_apart(compared):
     rows = bpy.context.scene.thenar_recordings.comparison.measures
     shown = [row for row in rows if row.group == "inked area by region, mm²"]
     found = {row.name: (float(row.measured), float(row.simulated)) for row in shown}
-    assert set(found) == {"side left", "side right"}
+    assert set(found) == {"Side left", "Side right"}
     half = np.pi * radius**2 / 2
     for read, simulated, expected in (
-        (*found["side left"], half),
-        (*found["side right"], half - inked_corner(radius)),
+        (*found["Side left"], half),
+        (*found["Side right"], half - inked_corner(radius)),
     ):
         assert read == pytest.approx(expected, rel=0.15) and simulated == pytest.approx(half, rel=0.15)
 

@@ -21,7 +21,7 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
         ("depth", "71 %", 0.71),
         ("size of the contact", "30 %", 0.3),
     ]
-    assert "Goes with depth: 71 %" in letter.lines(written)
+    assert "Depends on depth: 71 %" in letter.lines(written)
     either = {"unlisted": nameless, "names_90": [["relaxation"], ["drainage"]]}
     assert letter.write(letters.FINDINGS["unlisted"] | either).rivals == ()
     beats = {

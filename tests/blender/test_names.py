@@ -5,6 +5,7 @@ import json
 import bpy
 import pytest
 import stage
+import thenar
 from test_sentences import job
 from thenar_blender import sentences
 from thenar_blender.result import as_dict
@@ -26,14 +27,9 @@ NAMES = [
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_sentence_holds_the_name_as_it_is(name):
-    text = "the hand meets region 0, then the product and region 1"
-    wanted = f"the hand '{name}' meets region 'thumb pad', then the product '{name}' and region 'palm'"
-    assert sentences.named(text, job(name, name)) == wanted
-    regions = job("Hand", "Mug")
-    regions.region_names = (name, "palm")
-    assert sentences.named("region 0 touches", regions) == f"region '{name}' touches"
-    assert sentences.named(f"region '{name}' leaves the hand", regions) == f"region '{name}' leaves the hand 'Hand'"
+def test_an_error_holds_the_name_as_it_is(name):
+    told = sentences.named(thenar.SolveError("the hand's region 0 meets the product"), job(name, name))
+    assert str(told) == f"'{name}' on '{name}': the hand's region 0 meets the product"
 
 
 def data_blocks():

@@ -160,7 +160,7 @@ def test_both_sizes_are_shown_and_a_doubtful_one_has_its_buttons():
     bpy.context.view_layer.update()
     drawn = draw()
     said = [words for words, _ in drawn["THENAR_PT_main"]]
-    assert "Scale by 0.001, to 30 mm" in said and "It is 30 m long" in said
+    assert "Scale by 0.001, to 30 mm" in said and "Keep size 30 m" in said
     assert not too_long(drawn)
 
 

@@ -31,7 +31,7 @@ def test_planted_relaxation_is_found_switched_on_and_reported(tmp_path):
     lines = told()
     assert lines[0] == "Physics is missing" and lines[1] == found["sentence"]
     assert any(line.startswith("1. Relaxation, ") for line in lines)
-    assert any("of the error that could be removed is gone" in line for line in lines)
+    assert any("of the reducible error is removed" in line for line in lines)
     assert not any("None" in line or "nan" in line.split() for line in lines), lines
     assert bpy.ops.thenar.apply_finding(index=0) == {"FINISHED"}
     (effect,) = bpy.context.scene.thenar.hand.thenar.effects

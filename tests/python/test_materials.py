@@ -108,7 +108,9 @@ def test_warnings_call_regions_by_their_names():
     product = shapes.ball(3.0, (0.0, 0.0, 1.5), 8)  # 1.5 mm deep
     thin = thenar.Material.finger_layer().replace(thickness_mm=2.0)
     skin = thenar.Skin(VERTICES, TRIANGLES, np.zeros(49, int), [thin], region_names=["index fingertip"])
-    assert any(said.startswith("region 'index fingertip' is pressed 1.") for said in skin.press(*product).warnings)
+    remarks = [each for each in skin.press(*product).remarks if each.region is not None]
+    assert remarks and {each.region for each in remarks} == {0}
+    assert any(each.text.startswith("region 'index fingertip' is pressed 1.") for each in remarks)
 
 
 @pytest.mark.parametrize(("model", "preset"), [("layer", "finger_layer"), ("paper", "finger")])

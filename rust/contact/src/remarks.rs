@@ -88,6 +88,7 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
     let is_line = !laws.iter().any(|law| law.acts_on(index as u32));
     if is_line && depth > material.d_lim_mm && material.g_lim_mpa != material.g0_mpa {
         said.push(Warning::BeyondStiffening {
+            region: index,
             title: title.clone(),
             depth,
             limit: material.d_lim_mm,
@@ -96,12 +97,14 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
     let thickness = material.thickness_mm;
     if skin.model == Model::Layer && depth > thickness {
         said.push(Warning::BeyondTissue {
+            region: index,
             title,
             depth,
             thickness,
         });
     } else if skin.model == Model::Layer && depth > KERNEL_LIMIT * thickness {
         said.push(Warning::BeyondTheory {
+            region: index,
             title,
             depth,
             thickness,

@@ -34,12 +34,14 @@ pub enum Warning {
     HandSize { extent: f64 },
     /// A region's modulus has reached its limit.
     BeyondStiffening {
+        region: usize,
         title: String,
         depth: f64,
         limit: f64,
     },
     /// A region is pressed over half its thickness.
     BeyondTheory {
+        region: usize,
         title: String,
         depth: f64,
         thickness: f64,
@@ -47,6 +49,7 @@ pub enum Warning {
     },
     /// A region is pressed deeper than it is thick.
     BeyondTissue {
+        region: usize,
         title: String,
         depth: f64,
         thickness: f64,
@@ -149,6 +152,16 @@ impl Warning {
             _ => None,
         }
     }
+
+    /// The region that it is about, if it is about one.
+    pub fn region(&self) -> Option<usize> {
+        match self {
+            Warning::BeyondStiffening { region, .. }
+            | Warning::BeyondTheory { region, .. }
+            | Warning::BeyondTissue { region, .. } => Some(*region),
+            _ => None,
+        }
+    }
 }
 
 /// The grade of a result with these remarks: that of the gravest.
@@ -180,6 +193,7 @@ impl fmt::Display for Warning {
                 title,
                 depth,
                 limit,
+                ..
             } => write!(
                 f,
                 "{title} is pressed {depth:.2} mm deep, beyond its dlim of {limit:.2} mm: its modulus is held at Glim"
@@ -189,6 +203,7 @@ impl fmt::Display for Warning {
                 depth,
                 thickness,
                 taken_as,
+                ..
             } => write!(
                 f,
                 "{title} is pressed {depth:.2} mm deep, over half its {thickness:.2} mm of soft tissue: its stiffness is taken \
@@ -198,6 +213,7 @@ impl fmt::Display for Warning {
                 title,
                 depth,
                 thickness,
+                ..
             } => write!(
                 f,
                 "{title} is pressed {depth:.2} mm deep, more than its {thickness:.2} mm of soft tissue: forces there are not \

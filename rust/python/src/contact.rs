@@ -323,7 +323,7 @@ impl Contact {
             .get(py, |text| Ok(text.into_pyobject(py)?.unbind()))
     }
 
-    /// A record per warning: kind, grade, text, and vertex, None where it is about none.
+    /// A record per warning: kind, grade, text, and the vertex and the region it is about, each None where there is none.
     #[getter]
     fn remarks(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.remarks

