@@ -79,7 +79,7 @@ def check(context: Context) -> tuple[Object, list[Object]]:
     return hand, parts
 
 
-def check_objects(context):
+def check_objects(context: Context) -> tuple[Object, list[Object]]:
     """The same without the product's size, which Live checks when the product changes."""
     problem = native.problem()
     if problem:
