@@ -18,7 +18,7 @@ ALLOWED = {
 LIBRARIES = ["surface", "contact", "hand", "recordings", "diagnosis"]
 # Pattern -> the one file that may hold it.
 ONE_FILE = {
-    r"\b(obvhs|glam)::|\buse (obvhs|glam)\b": "rust/surface/src/tree.rs",
+    r"\b(obvhs|glam)::|\buse (obvhs|glam)\b": "rust/surface/src/tree/bvh.rs",
     r"\bnumpy::|\buse numpy\b": "rust/python/src/arrays.rs",
 }
 PRINTING = r"\b(println|eprintln|print|eprint|dbg)!"

@@ -1,0 +1,113 @@
+//! Which side of a sheet skin lies on.
+//!
+//! Skin far from the sheets is where it should be. From there on the side is followed along the edges of the skin's mesh: it changes where an
+//! edge crosses a sheet, and nowhere else. So skin that goes around the rim of a cup into it is outside, and skin that has come through
+//! its wall is not, wherever its normals point: at the rim of a contact they are about tangent to the sheet. Where sheets enclose skin that came
+//! in both ways, the wall counts.
+
+use std::collections::VecDeque;
+
+use crate::mesh::triangles::Vec3;
+use crate::reading::facing::PosedSkin;
+use crate::solid::gap::flipped;
+use crate::solid::gap::{Gap, GapLimits};
+use crate::solid::product::Product;
+use crate::tree::nearest::Pending;
+
+/// Part of a way within which two crossings are one.
+const ON_EDGE: f64 = 1e-9;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum SkinSide {
+    Unknown,
+    Outside,
+    Through,
+}
+
+/// Reads the skin near sheets by its side; returns the vertices that then read otherwise, with what they read now.
+///
+/// `plain` (n): what each vertex reads of the nearest wall from outside. A skin whose surface is not known, and pieces of it that lie near
+/// sheets with all their vertices, keep what they read.
+pub(crate) fn read_by_side(
+    product: &Product,
+    skin: &PosedSkin<'_>,
+    limits: GapLimits,
+    (plain, gaps): (&[Option<Gap>], &[Option<Gap>]),
+) -> Vec<(u32, Gap)> {
+    let Some(surface) = skin.surface else {
+        return Vec::new();
+    };
+    let of_sheet = |gap: &Gap| product.is_sheet(gap.triangle as usize);
+    let near: Vec<Option<Gap>> = plain.iter().map(|gap| gap.filter(of_sheet)).collect();
+    let mut side = vec![SkinSide::Unknown; near.len()];
+    let mut queue = VecDeque::new();
+    for i in 0..near.len() {
+        let around = surface.adjacency.neighbors(i);
+        if near[i].is_none() && around.iter().any(|&j| near[j as usize].is_some()) {
+            side[i] = SkinSide::Outside;
+            queue.push_back(i);
+        }
+    }
+    let mut pending = Pending::default();
+    let mut crosses = |i: usize, j: usize| {
+        let (from, to) = (skin.points[i], skin.points[j]);
+        let is_near = near[j].is_some_and(|gap| gap.distance.abs() <= (to - from).norm());
+        is_near && product.sheets_between(from, to, &mut pending) % 2 == 1
+    };
+    let mut through = Vec::new();
+    while let Some(i) = queue.pop_front() {
+        for &j in surface.adjacency.neighbors(i) {
+            let j = j as usize;
+            if near[j].is_none() || side[j] != SkinSide::Unknown {
+                continue;
+            }
+            side[j] = match (side[i], crosses(i, j)) {
+                (SkinSide::Through, false) | (SkinSide::Outside, true) => SkinSide::Through,
+                _ => SkinSide::Outside,
+            };
+            queue.push_back(j);
+            if side[j] == SkinSide::Through {
+                through.push(j);
+            }
+        }
+    }
+    // Skin that came in through a wall and, by another way, through an opening: where the sheets enclose it, the wall counts.
+    through.retain(|&i| product.winds_around(skin.points[i]));
+    while let Some(i) = through.pop() {
+        for &j in surface.adjacency.neighbors(i) {
+            let j = j as usize;
+            let is_open = near[j].is_some() && side[j] == SkinSide::Outside;
+            if is_open && product.winds_around(skin.points[j]) && !crosses(i, j) {
+                side[j] = SkinSide::Through;
+                through.push(j);
+            }
+        }
+    }
+    let reads = |j: usize| {
+        let gap = near[j].as_ref()?;
+        let is_through = side[j] == SkinSide::Through && gap.distance <= limits.max_depth_mm;
+        let reads = if is_through { flipped(gap) } else { *gap };
+        let is_known = side[j] != SkinSide::Unknown;
+        (is_known && gaps[j] != Some(reads)).then_some((j as u32, reads))
+    };
+    (0..near.len()).filter_map(reads).collect()
+}
+
+impl Product {
+    /// How often the way from one point to another crosses a sheet.
+    fn sheets_between(&self, from: Vec3, to: Vec3, pending: &mut Pending) -> usize {
+        let (way, start) = (to - from, self.tree.query(from).point);
+        let Some(along) = way.try_normalize(0.0) else {
+            return 0;
+        };
+        let crossings = self.tree.crossings(start, along, way.norm(), pending);
+        let is_sheet = |slot: u32| self.tree.faces[slot as usize].is_sheet;
+        let mut at: Vec<f64> = crossings
+            .into_iter()
+            .filter(|(_, slot)| is_sheet(*slot))
+            .map(|(t, _)| t)
+            .collect();
+        at.dedup_by(|next, last| *next - *last <= ON_EDGE * way.norm()); // through an edge it meets both faces
+        at.len()
+    }
+}
