@@ -8,9 +8,9 @@
 
 use thenar_surface::Vec3;
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
-use crate::sites::Sites;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::skin::sites::Sites;
 
 const THICKNESS: usize = 0;
 const SLOPE: usize = 1;

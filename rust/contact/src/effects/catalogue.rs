@@ -1,6 +1,6 @@
 //! The list of effects, by the names that scripts, files and findings use.
 
-use super::entry::Entry;
+use super::definition::entry::Entry;
 use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};
 use super::{rate_independent_loss, region_coupling, relaxation, stiff_skin, stiffening_law};
 use crate::instrument::{crosstalk, dead_cells, drift, fixture_compliance, gain, misregistration};

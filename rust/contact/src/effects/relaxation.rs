@@ -3,8 +3,8 @@
 //! `g(t) = 1 - amplitude + amplitude sum_k w_k exp(-t / time_k)`, the w normalized to 1; the force on a site is `g * d f_e`,
 //! f_e being what an elastic tissue would bear (Fung 1993, 7.6). A press without a protocol is the answer at once, g = 1.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const BRANCHES: usize = 3;
 

@@ -11,10 +11,10 @@
 //! The strain is known before the solve: penetration of depth d and volume V belongs to a sphere with
 //! `a/R = sqrt(pi d^3 / V)`, a being Hertz's contact radius.
 
-use super::active::ActiveEffect;
-use super::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
-use crate::skin::Skin;
-use crate::zone::Detection;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::detection::gaps::Detection;
+use crate::skin::prepare::Skin;
 
 const REFERENCE_DEPTH: usize = 0;
 const REFERENCE_STRAIN: usize = 1;

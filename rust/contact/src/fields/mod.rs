@@ -2,4 +2,8 @@
 
 pub mod contact_area;
 pub mod patch_peak;
-pub mod product_side;
+pub mod merged_vertices;
+pub mod product_pressure;
+pub mod summary;
+pub mod warning_rules;
+pub mod warnings;

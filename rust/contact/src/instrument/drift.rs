@@ -3,7 +3,8 @@
 //! zero: `y' = y + amplitude * rate * t`; sensitivity: `y' = y (1 + amplitude * creep * log10(1 + t / 1 s))`, both with t from
 //! the first instant. Neither needs contact to go on.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
 

@@ -2,7 +2,8 @@
 //!
 //! `y' = y (1 + amplitude * error)`; painted, each sensel has its own error.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 

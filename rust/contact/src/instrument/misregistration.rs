@@ -1,6 +1,6 @@
 //! Effect `misregistration`: a mat that lies beside where it is said to lie, shifted in its two directions and turned.
 
-use super::walk::Placement;
+use super::mat::placement::Placement;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const SHIFT: &str =

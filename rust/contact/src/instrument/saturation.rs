@@ -1,6 +1,7 @@
 //! Effect `saturation`: readings that stop at a ceiling.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 

@@ -1,6 +1,7 @@
 //! Effect `threshold`: readings below a floor that are shown as nothing.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 

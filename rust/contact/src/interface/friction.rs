@@ -12,13 +12,13 @@ use super::shear_kernel::ShearTables;
 use super::shear_matrix::{ShearMatrix, tangents};
 use super::shear_response::{Pairs, Place, ShearResponse};
 use super::stick_slip::{Dragged, Grip, Trace};
+use crate::api::Drag;
+use crate::detection::gaps::limits;
 use crate::effects::{ActiveEffect, Effect, friction};
-use crate::linearize::Solved;
-use crate::press::Drag;
+use crate::press::Pressed;
+use crate::press::relinearize::Solved;
 use crate::response::rows::extent;
-use crate::simulate::Pressed;
-use crate::skin::Skin;
-use crate::zone::limits;
+use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
 
 /// Most sites in contact: their compliance takes 8 bytes a pair.

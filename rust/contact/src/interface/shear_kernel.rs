@@ -9,7 +9,7 @@
 use libm::{j0, j1};
 
 use crate::response::bonded_layer::Layer;
-use crate::response::grid::{Grid, RANGE_IN_THICKNESSES, pair};
+use crate::response::kernel_grid::{Grid, RANGE_IN_THICKNESSES, pair};
 
 /// Share of the range over which the kernel fades to zero.
 const FADE_SHARE: f64 = 0.25;

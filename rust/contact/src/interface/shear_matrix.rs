@@ -2,7 +2,7 @@
 
 use thenar_surface::Vec3;
 
-use crate::solve::operator::Entry;
+use crate::solve::row_runs::Entry;
 
 /// A vector field in tangent planes, `n` first components and then `n` second ones.
 pub type Planar = Vec<f64>;

@@ -8,8 +8,8 @@ use thenar_surface::Vec3;
 use super::shear_kernel::{Held, LATTICE, ShearTables};
 use super::shear_matrix::ShearMatrix;
 use crate::response::rows::{Mix, Response};
-use crate::response::skin_metric::arc_length;
-use crate::sites::Sites;
+use crate::skin::arc_length::arc_length;
+use crate::skin::sites::Sites;
 
 /// A site of the skin where it is now.
 #[derive(Debug, Clone, Copy)]

@@ -5,8 +5,8 @@
 
 use thenar_surface::Vec3;
 
-use super::discs::{DiscSolution, largest_pair, solve_discs};
-use super::pull::Travel;
+use super::disc_solver::{DiscSolution, largest_pair, solve_discs};
+use super::drag_force_search::Travel;
 use super::shear_matrix::ShearMatrix;
 use crate::Control;
 

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use super::rows::Response;
-use crate::sites::Sites;
-use crate::solve::operator::{Rows, Run};
+use crate::skin::sites::Sites;
+use crate::solve::row_runs::{Rows, Run};
 
 /// Values of a row that are copied at a time.
 pub const SHORT: usize = 16;

@@ -1,8 +1,8 @@
 //! Entries of the response between any sites: the very ones that its rows hold.
 
 use super::rows::Response;
-use super::skin_metric::{Site, arc_lengths};
-use crate::sites::Sites;
+use crate::skin::arc_length::{Site, arc_lengths};
+use crate::skin::sites::Sites;
 
 /// What entries are made with, kept for its storage.
 #[derive(Debug, Default)]

@@ -7,11 +7,13 @@ use rayon::prelude::*;
 use thenar_surface::SkinDistance;
 
 use super::bonded_layer::Layer;
-use super::grid::RANGE_IN_THICKNESSES;
-use super::kernel::KernelTables;
-use super::{sheet::Sheet, skin_metric::arc_lengths, stiff_skin::StiffSkin};
+use super::kernel_grid::RANGE_IN_THICKNESSES;
+use super::layer_kernel::KernelTables;
+use super::plate_on_layer::Sheet;
+use super::stiff_skin_kernel::StiffSkin;
 use crate::Model;
-use crate::sites::Sites;
+use crate::skin::arc_length::arc_lengths;
+use crate::skin::sites::Sites;
 
 /// Lattice self term: a point's own area A acts like a source at distance sqrt(A) / 3.9003, where 3.9003 is
 /// -4 zeta(1/2) beta(1/2): the quadrature-corrected point rule on a square lattice.

@@ -1,7 +1,7 @@
 //! A bent sheet of skin with its rows made: what the tests of the response press.
 
-use super::near::Near;
-use crate::skin::Skin;
+use super::near_field::Near;
+use crate::skin::prepare::Skin;
 use crate::{Control, Material, Model, SkinInput};
 use thenar_surface::{Mesh, Vec3};
 

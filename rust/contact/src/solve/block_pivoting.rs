@@ -4,9 +4,9 @@
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
-use super::half::Compliance;
-use super::kept::Kept;
-use super::projection::mprgp;
+use super::mprgp::mprgp;
+use super::packed::Compliance;
+use super::submatrix::Kept;
 use crate::Control;
 
 /// Residual from which a level is loose.
@@ -293,7 +293,7 @@ impl<'a> Run<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::operator::Rows;
+    use crate::solve::row_runs::Rows;
 
     const FULL: (Accuracy, &Control<'static>) = (
         Accuracy::Full,

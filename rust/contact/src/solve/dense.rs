@@ -1,7 +1,7 @@
 //! The contact problem of a dense matrix that somebody else made.
 
 use super::block_pivoting::{Accuracy, Solution, solve_contact};
-use super::operator::Rows;
+use super::row_runs::Rows;
 use crate::{ContactError, Control};
 
 const TILE: usize = 32;

@@ -1,17 +1,17 @@
 //! Stage 4: the contact problem and its solvers.
 
-pub mod operator;
+pub mod row_runs;
 
-mod along;
+mod directional;
 mod block_pivoting;
 mod conjugate_gradient;
 mod dense;
-mod half;
-mod kept;
-mod projection;
+mod packed;
+mod submatrix;
+mod mprgp;
 
-pub use along::{Along, Axes, Part};
 pub use block_pivoting::{Accuracy, Solution, solve_contact};
 pub use dense::solve_dense;
-pub use half::{Compliance, Preconditioner, Symmetric};
-pub use kept::Kept;
+pub use directional::{Along, Axes, Part};
+pub use packed::{Compliance, Preconditioner, Symmetric};
+pub use submatrix::Kept;

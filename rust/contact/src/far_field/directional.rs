@@ -1,0 +1,113 @@
+//! The compliance of a zone along directions, as the solver sees it.
+
+use super::block_kernels::zeros;
+use super::blocks::Coupled;
+use super::preconditioner::OnSet;
+use crate::solve::{Compliance, Kept, Preconditioner, Symmetric};
+use thenar_surface::Vec3;
+
+/// Power steps that find the largest eigenvalue, and the factor that makes their result a bound.
+const POWER_STEPS: usize = 24;
+const MARGIN: f64 = 1.2;
+
+/// `A_ij = K_ij v_i . v_j` (mm/N) for a vector at every site of a zone: response weight times direction.
+pub struct Directed<'a> {
+    coupled: &'a Coupled,
+    along: &'a [Vec3],
+    diagonal: Vec<f64>,
+    is_active: Vec<bool>,
+}
+
+impl<'a> Directed<'a> {
+    /// The compliance along the vectors, in the zone's order.
+    pub fn new(coupled: &'a Coupled, along: &'a [Vec3]) -> Self {
+        let own = coupled.own().iter().zip(along);
+        Directed {
+            coupled,
+            along,
+            diagonal: own.map(|(k, v)| k * v.norm_squared()).collect(),
+            is_active: vec![true; along.len()],
+        }
+    }
+}
+
+impl Symmetric for Directed<'_> {
+    fn diagonal(&self) -> &[f64] {
+        &self.diagonal
+    }
+
+    fn times(&self, x: &[f64], out: &mut [f64]) {
+        self.between((&self.is_active, &self.is_active), x, out);
+    }
+
+    fn preconditioner(&self, set: &[u32]) -> Box<dyn Preconditioner + '_> {
+        Box::new(OnSet::new(self.coupled, self.along, set))
+    }
+}
+
+impl Directed<'_> {
+    /// The compliance times `x`, which is zero outside `from`, at the places of `to`.
+    fn between(&self, (from, to): (&[bool], &[bool]), x: &[f64], out: &mut [f64]) {
+        let mut loads = zeros(x.len());
+        for (k, (x, along)) in x.iter().zip(self.along).enumerate() {
+            for axis in 0..3 {
+                loads[axis][k] = along[axis] * x;
+            }
+        }
+        let [a, b, c] = self.coupled.times(&loads, (from, to));
+        for (k, (out, along)) in out.iter_mut().zip(self.along).enumerate() {
+            *out = along.x * a[k] + along.y * b[k] + along.z * c[k];
+        }
+    }
+}
+
+impl Compliance for Directed<'_> {
+    fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
+        let from: Vec<bool> = x.iter().map(|x| *x != 0.0).collect();
+        let mut to = vec![false; x.len()];
+        rows.iter().for_each(|&i| to[i as usize] = true);
+        let mut all = vec![0.0; x.len()];
+        self.between((&from, &to), x, &mut all);
+        for (&i, out) in rows.iter().zip(out) {
+            *out = all[i as usize];
+        }
+    }
+
+    /// By the power method from a fixed start.
+    fn norm_bound(&self) -> f64 {
+        let n = self.along.len();
+        let (mut x, mut image) = (vec![1.0 / (n as f64).sqrt(); n], vec![0.0; n]);
+        let mut length = f64::MIN_POSITIVE;
+        for _ in 0..POWER_STEPS {
+            self.times(&x, &mut image);
+            length = image
+                .iter()
+                .map(|v| v * v)
+                .sum::<f64>()
+                .sqrt()
+                .max(f64::MIN_POSITIVE);
+            x.iter_mut().zip(&image).for_each(|(x, v)| *x = v / length);
+        }
+        MARGIN * length
+    }
+
+    fn kept(&self, set: &[u32], _is_rough: bool) -> Kept<'_> {
+        let mut is_active = vec![false; self.along.len()];
+        set.iter().for_each(|&i| is_active[i as usize] = true);
+        let part = Directed {
+            coupled: self.coupled,
+            along: self.along,
+            diagonal: self.diagonal.clone(),
+            is_active,
+        };
+        Kept::in_place(self.along.len(), set, Box::new(part))
+    }
+
+    fn is_narrow(&self, _is_rough: bool) -> bool {
+        false
+    }
+
+    fn is_dear(&self) -> bool {
+        true
+    }
+}

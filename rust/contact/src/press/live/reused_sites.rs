@@ -1,0 +1,180 @@
+//! What of the last live contact still holds: skin that neither moved nor was strained from elsewhere keeps its forces.
+//!
+//! Certified each time: held skin is not carried off by what changed elsewhere, nor solved skin by what changed beyond its near
+//! coupling, farther than the written surface may miss the product; where it is, it is solved anew.
+
+use thenar_surface::{Gap, Vec3};
+
+use super::extrapolation::{ahead, is_live};
+use crate::detection::press_direction::Sums;
+use crate::press::displacement_field::Found;
+use crate::press::relinearize::{Setting, vertex};
+use crate::skin::prepare::Skin;
+
+/// Skin in patches nearer than this to one in which skin moved is solved with it, mm (tests pass from 1 to 8).
+const REACH: f64 = 3.0;
+/// The same about skin that is found to stray or to be lifted, mm: it is off by little (tests pass from 1 to 3).
+const REACH_AGAIN: f64 = 1.0;
+/// Share of the zone above which all of it is solved.
+const MOST: f64 = 0.7;
+/// How far skin may stray, over the deepest penetration: somewhat less than the certificate's half per cent, so that what is held
+/// on to stays within that.
+const STRAY: f64 = 4.5e-3;
+/// Share of that from which skin that is foreseen to stray is solved.
+const EARLY: f64 = 0.9;
+
+/// Where a site met the product in the last live solve.
+#[derive(Debug, Clone)]
+pub struct Met {
+    /// Its gap before deformation, and its response weight.
+    gap: Option<Gap>,
+    weight: f64,
+    /// As in a solve's state.
+    pub touch: Gap,
+    pub direction: Vec3,
+    /// What the direction comes from, where it is an average.
+    pub sums: Sums,
+    pub cosine: f64,
+    pub travel: f64,
+    pub force: f64,
+    pub slack: f64,
+}
+
+/// The last live solve.
+#[derive(Debug, Clone, Default)]
+pub struct Held {
+    /// Its zone, ascending.
+    pub zone: Vec<u32>,
+    /// What each of them met, by site, so that what is held on to stays where it is.
+    met: Vec<Option<Met>>,
+}
+
+impl Held {
+    /// What a site met, if it was in the zone.
+    pub fn of(&self, site: u32) -> Option<&Met> {
+        self.met.get(site as usize)?.as_ref()
+    }
+}
+
+/// Which sites of `zone` hold on to what they met in the last live solve; the others are to be solved. Empty if all are.
+///
+/// `strayed`: sites that were carried off in this very press, if that is why it solves again; None in its first round.
+pub fn held(
+    skin: &Skin,
+    setting: &Setting<'_>,
+    zone: &[u32],
+    strayed: Option<&[u32]>,
+) -> Vec<bool> {
+    let last = &skin.memory.held;
+    if !is_live(skin, setting) || last.zone.is_empty() {
+        return Vec::new();
+    }
+    let met: Vec<Option<&Met>> = zone.iter().map(|&site| last.of(site)).collect();
+    let is_changed = |(&site, met): (&u32, &Option<&Met>)| {
+        let gap = &setting.detection.gaps[vertex(skin, site)];
+        let weight = setting.weight[site as usize];
+        !met.is_some_and(|met| met.gap == *gap && met.weight == weight)
+    };
+    let changed = zone.iter().zip(&met).filter(|&pair| is_changed(pair));
+    let mut changed: Vec<u32> = changed.map(|(&site, _)| site).collect();
+    // What will stray is solved with what moved; where nothing did, the last certificate stands.
+    match strayed {
+        Some(strayed) => changed.extend(strayed),
+        None if changed.is_empty() => {}
+        None => changed.extend(will_stray(skin, setting, zone, &met)),
+    }
+    changed.sort();
+    let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
+    let is_open = near(skin, &changed, reach);
+    let held = zone.iter().zip(met);
+    let held = held.map(|(&site, met)| met.is_some() && !is_open[site as usize]);
+    let held: Vec<bool> = held.collect();
+    let open = held.iter().filter(|is_held| !**is_held).count();
+    if open as f64 > MOST * zone.len() as f64 {
+        return Vec::new();
+    }
+    held
+}
+
+/// Sites of `zone` that would stray if they were held while what changed last goes on.
+fn will_stray(skin: &Skin, setting: &Setting<'_>, zone: &[u32], met: &[Option<&Met>]) -> Vec<u32> {
+    let most = EARLY * STRAY * setting.detection.deepest();
+    let strays = |(site, met): &(&u32, &Option<&Met>)| {
+        let off = |met: &&Met| met.direction.dot(&ahead(skin, setting, **site)) - met.travel;
+        met.as_ref().is_some_and(|met| off(met).abs() > most)
+    };
+    let straying = zone.iter().zip(met).filter(strays);
+    straying.map(|(&site, _)| site).collect()
+}
+
+/// Which sites lie in patches within `reach` (mm) of that of some of `sites` (ascending).
+fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
+    let patch_of = |site: &u32| skin.sites.patch[*site as usize];
+    let mut is_near = vec![false; skin.sites.len()];
+    for of_patch in sites.chunk_by(|a, b| patch_of(a) == patch_of(b)) {
+        let bounds = skin.response.bounds(patch_of(&of_patch[0]));
+        for (patch, _) in bounds.filter(|(_, bound)| *bound < reach) {
+            let (first, last) = skin.sites.patch_range[patch as usize];
+            is_near[first as usize..last as usize].fill(true);
+        }
+    }
+    is_near
+}
+
+/// Keeps a live solve for the next; forgets what there was after any other.
+///
+/// `held`: which sites of the zone held on to what they met before, as they do still; empty if none did.
+pub fn keep(
+    skin: &mut Skin,
+    setting: &Setting<'_>,
+    found: &Found<'_>,
+    (slack, sums, held): (&[f64], &[Sums], &[bool]),
+) {
+    if !is_live(skin, setting) {
+        skin.memory.held = Held::default();
+        return;
+    }
+    let mut kept = std::mem::take(&mut skin.memory.held);
+    kept.met.resize_with(skin.sites.len(), || None);
+    for site in &kept.zone {
+        if found.zone.binary_search(site).is_err() {
+            kept.met[*site as usize] = None;
+        }
+    }
+    for (k, &site) in found.zone.iter().enumerate() {
+        if held.get(k) == Some(&true) {
+            continue;
+        }
+        kept.met[site as usize] = Some(Met {
+            gap: setting.detection.gaps[vertex(skin, site)],
+            weight: setting.weight[site as usize],
+            touch: found.touch[k],
+            direction: found.direction[k],
+            sums: sums[k],
+            cosine: found.cosine[k],
+            travel: found.travel[k],
+            force: found.force[k],
+            slack: slack[k],
+        });
+    }
+    kept.zone.clear();
+    kept.zone.extend_from_slice(found.zone);
+    skin.memory.held = kept;
+}
+
+/// How far skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far: held skin
+/// by what changed elsewhere, solved skin by what changed beyond its near coupling.
+///
+/// `field`: displacement of every site by all forces.
+pub fn strays(found: &Found<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>) {
+    let most = STRAY * deepest;
+    let (mut worst, mut far) = (0.0f64, Vec::new());
+    for (k, &site) in found.zone.iter().enumerate() {
+        let off = (found.direction[k].dot(&field[site as usize]) - found.travel[k]).abs();
+        worst = worst.max(off);
+        if off > most {
+            far.push(site);
+        }
+    }
+    (worst / deepest.max(f64::MIN_POSITIVE), far)
+}

@@ -1,0 +1,278 @@
+//! Stage 4's outer loop: the contact problem is linear in the gap, the product is not; repeat until the written surface fits.
+
+use thenar_surface::{Gap, Product, Vec3};
+
+use super::displacement_field::{field, keep_out, lifted_sites};
+use super::live::extrapolation;
+use super::live::reused_sites::{held, keep, strays};
+use super::zone_state::{Beyond, State};
+use crate::api::Convergence;
+use crate::detection::gaps::Detection;
+use crate::skin::prepare::Skin;
+use crate::solve::Accuracy;
+use crate::workspace::Last;
+use crate::{ContactError, Control, Model};
+
+/// Largest distance between written contact and product that ends the loop, mm.
+const OUTER_TOLERANCE: f64 = 0.008;
+/// The same relative to the largest penetration: shallow presses are resolved as finely as deep ones.
+const OUTER_SHARE: f64 = 5e-4;
+/// Largest certificate of a large skin's far field.
+const FAR_FIELD_TOLERANCE: f64 = 1e-4;
+/// Passes in which slopes are those of the walls met; later ones take secants where the skin does not fit.
+const PLAIN_PASSES: usize = 2;
+/// Passes after which, at the latest, skin that does not fit along the averaged direction yields along the normal of its own wall.
+const MOST_AVERAGED: usize = 10;
+/// Most re-linearizations.
+const MOST_PASSES: usize = 30;
+/// Passes without a lower misfit that end the loop.
+const MOST_STALLED: usize = 3;
+/// Depth to which skin outside the zone may be left lifted into the product after the last round, mm.
+const MOST_LIFTED: f64 = 0.02;
+/// Most rounds in which sites lifted into the product join the zone.
+const MOST_ROUNDS: usize = 4;
+
+/// The solved contact, in the product's frame.
+#[derive(Clone)]
+pub struct Solved {
+    /// Sites that could touch, ascending.
+    pub zone: Vec<u32>,
+    /// Normal force on each, N.
+    pub force: Vec<f64>,
+    /// Where each touches, or would: closest point and normal after deformation.
+    pub touch: Vec<Gap>,
+    /// Travel of each along its direction, mm.
+    pub travel: Vec<f64>,
+    /// Slack of the last linear problem, mm.
+    pub slack: Vec<f64>,
+    /// Direction in which each yields times its cosine with the normal: load per normal force.
+    pub bearing: Vec<Vec3>,
+    /// Displacement of every site, mm.
+    pub displacement: Vec<Vec3>,
+    /// Signed distance of the written zone, and of every other site that was lifted towards the product, at worst, mm.
+    pub penetration: f64,
+    /// Complementarity of the last linear problem.
+    pub complementarity: f64,
+    /// Largest difference of the displacement from the direct sum, on a sample of sites, relative to the largest.
+    pub far_field: f64,
+    /// How it ended.
+    pub convergence: Convergence,
+    /// Sites that do not fit the product within the tolerance, the worst first, and how far that is off, mm.
+    pub unfit: Vec<u32>,
+    pub left: f64,
+}
+
+impl Solved {
+    /// The error that names where the contact did not reach its tolerances; None where it did.
+    pub fn refusal(&self, skin: &Skin) -> Option<ContactError> {
+        if self.convergence.has_converged {
+            return None;
+        }
+        let source = |site: &u32| skin.welded.source[vertex(skin, *site)] as usize;
+        let region = self
+            .unfit
+            .first()
+            .map_or(-1, |&site| skin.sites.region[site as usize]);
+        Some(ContactError::Unsolved {
+            title: match usize::try_from(region) {
+                Ok(region) => skin.region_title(region),
+                Err(_) => "the skin".to_owned(),
+            },
+            left_mm: self.left,
+            passes: self.convergence.passes,
+            vertices: self.unfit.iter().map(source).collect(),
+        })
+    }
+}
+
+/// What does not change within a solve.
+pub struct Setting<'a> {
+    /// The product.
+    pub product: &'a Product,
+    /// Detection of this posture.
+    pub detection: &'a Detection,
+    /// Response weight s = sqrt((1 - nu) / (2 pi G)) of every site.
+    pub weight: &'a [f64],
+    /// What to start from.
+    pub start: Option<&'a Last>,
+    /// How far the last linear problem is solved.
+    pub accuracy: Accuracy,
+    /// Median edge, mm.
+    pub spacing: f64,
+}
+
+/// Solves the contact of the sites in `zone`.
+///
+/// # Errors
+/// [`ContactError::Cancelled`].
+pub fn solve(
+    skin: &mut Skin,
+    zone: Vec<u32>,
+    setting: &Setting<'_>,
+    control: &Control,
+) -> Result<Solved, ContactError> {
+    let mut state = State::new(extrapolation::with_foreseen(skin, setting, zone));
+    let deepest = setting.detection.deepest();
+    let tolerance = match setting.accuracy {
+        Accuracy::Full => OUTER_TOLERANCE.min(OUTER_SHARE * deepest),
+        Accuracy::Rough => extrapolation::tolerance(deepest),
+    };
+    let mut strayed = Vec::new();
+    for round in 1.. {
+        skin.memory.near.turn_to(round);
+        let again = (round > 1).then_some(&strayed[..]);
+        state.held = held(skin, setting, &state.zone, again);
+        state.beyond = extrapolation::beyond(skin, setting, round);
+        match state.beyond {
+            Beyond::Nothing => skin.couple(&state.solved_sites(), control)?,
+            _ => extrapolation::couple(skin, (&state.zone, &state.solved_sites()), control)?,
+        }
+        skin.memory.zone.clone_from(&state.zone);
+        state.open(skin, setting);
+        state.passes(skin, setting, (tolerance, control))?;
+        if round == 1 {
+            skin.memory.shown.begin();
+        }
+        let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
+        let (stray, far) = match state.beyond {
+            Beyond::Nothing => (0.0, Vec::new()),
+            _ => strays(&state.found(), &field, deepest),
+        };
+        keep_out(skin, setting, &state.found(), &mut field);
+        let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
+        let left = (&state.slack[..], &state.sums[..], &state.held[..]);
+        keep(skin, setting, &state.found(), left);
+        if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
+            state.complementarity = state.complementarity.max(stray);
+            let wanted = (tolerance, setting.accuracy.certificate());
+            return Ok(state.finish((field, far_field), (worst, lifted), wanted));
+        }
+        strayed.extend(far);
+        state.extend(match setting.accuracy {
+            Accuracy::Full => lifted,
+            Accuracy::Rough => extrapolation::ringed(skin, setting, &state.zone, lifted),
+        });
+    }
+    Err(ContactError::Cancelled)
+}
+
+/// The best fit so far: the merit of a pass is the misfit of the written skin, and what does not lower it goes half the way.
+#[derive(Default)]
+struct Best {
+    misfit: Option<f64>,
+    travel: Vec<f64>,
+    misfits: Vec<f64>,
+    stalled: usize,
+}
+
+impl Best {
+    /// Takes over a state that fits better; whether it does.
+    fn take(&mut self, state: &State) -> bool {
+        let is_better = self.misfit.is_none_or(|best| state.misfit < best);
+        if is_better {
+            self.misfit = Some(state.misfit);
+            self.travel.clone_from(&state.travel);
+            self.misfits = state.misfits();
+            self.stalled = 0;
+        } else {
+            self.stalled += 1;
+        }
+        is_better
+    }
+
+    fn is_stuck(&self) -> bool {
+        self.stalled >= MOST_STALLED
+    }
+}
+
+impl State {
+    /// Re-linearizes until the zone fits the product: roughly at first, to the end once it does.
+    fn passes(
+        &mut self,
+        skin: &mut Skin,
+        setting: &Setting<'_>,
+        (tolerance, control): (f64, &Control),
+    ) -> Result<(), ContactError> {
+        let mut turned = self.turned(skin);
+        self.matrix(skin, setting, &mut turned);
+        let (mut best, mut is_along_walls) = (Best::default(), false);
+        for pass in 0..MOST_PASSES {
+            control.step("solving", pass as f64 / MOST_PASSES as f64)?;
+            self.convergence.passes = pass + 1;
+            let before: Vec<(f64, f64)> = self.measured().collect();
+            self.solve(skin, &turned, (Accuracy::Rough, control))?;
+            self.place(skin, setting);
+            let has_improved = best.take(self);
+            let is_stuck = best.is_stuck() && is_along_walls;
+            let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || is_stuck;
+            if is_last && setting.accuracy != Accuracy::Rough {
+                self.solve(skin, &turned, (setting.accuracy, control))?;
+                self.place(skin, setting);
+            }
+            if self.misfit <= tolerance || is_stuck {
+                break;
+            }
+            if pass == 0 && skin.model == Model::Layer {
+                // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
+                self.see_along_normals(skin);
+                self.matrix(skin, setting, &mut turned);
+            }
+            if pass >= PLAIN_PASSES || !has_improved {
+                self.take_secants(&before, tolerance);
+                if !is_along_walls && (best.is_stuck() || pass + 1 >= MOST_AVERAGED) {
+                    is_along_walls = true;
+                    // What does not fit along the averaged direction yields along the normal of its own wall.
+                    self.yield_along_walls(skin, setting, tolerance);
+                    turned = self.turned(skin);
+                    best = Best::default();
+                } else if !has_improved {
+                    self.step_back(skin, setting, (&best.travel, &best.misfits));
+                }
+                self.matrix(skin, setting, &mut turned);
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(
+        mut self,
+        (displacement, far_field): (Vec<Vec3>, f64),
+        (worst, lifted): (f64, Vec<u32>),
+        (tolerance, certificate): (f64, f64),
+    ) -> Solved {
+        let is_fit = self.misfit <= tolerance && (lifted.is_empty() || worst <= MOST_LIFTED);
+        let is_solved = is_fit && self.complementarity <= certificate;
+        self.convergence.has_converged = is_solved && far_field <= FAR_FIELD_TOLERANCE;
+        let misfits = self.misfits();
+        let mut unfit: Vec<usize> = (0..misfits.len())
+            .filter(|&k| misfits[k] > tolerance)
+            .collect();
+        unfit.sort_by(|&a, &b| misfits[b].total_cmp(&misfits[a]));
+        let mut unfit: Vec<u32> = unfit.into_iter().map(|k| self.zone[k]).collect();
+        if !is_fit {
+            unfit.extend(lifted);
+        }
+        let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
+        let bearing = self.direction.iter().zip(&self.cosine);
+        Solved {
+            bearing: bearing.map(|(d, c)| d * *c).collect(),
+            zone: self.zone,
+            force: self.force,
+            touch: self.touch,
+            travel: self.travel,
+            slack: self.slack,
+            displacement,
+            penetration: deepest.max(0.0),
+            complementarity: self.complementarity,
+            far_field,
+            convergence: self.convergence,
+            unfit,
+            left: self.misfit.max(worst),
+        }
+    }
+}
+
+/// The welded vertex of a site.
+pub fn vertex(skin: &Skin, site: u32) -> usize {
+    skin.sites.vertex[site as usize] as usize
+}
