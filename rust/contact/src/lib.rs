@@ -21,13 +21,11 @@ mod history;
 mod press;
 mod fields;
 
-pub use api::{
-    Contact, Convergence, Drag, ForceTarget, Model, Press, RegionResult, Residual, Shear,
-    SkinInput, Start, Unsolved,
-};
+pub use api::{Drag, ForceTarget, Model, Press, SkinInput, Start, Unsolved};
 pub use control::Control;
 pub use effects::ActiveEffect;
 pub use error::ContactError;
+pub use fields::result::{Contact, Convergence, RegionResult, Residual, Shear};
 pub use fields::warnings::{Grade, Warning};
 pub use history::{Course, Cycle, Demand, Keep, Motion, Protocol, Row, Run, Stand, Step, Walk};
 pub use interface::{StickSlip, solve_stick_slip};

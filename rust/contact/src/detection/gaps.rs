@@ -4,24 +4,14 @@ use std::sync::Arc;
 
 use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, SkinSurface, Vec3};
 
+use crate::ContactError;
 use crate::skin::prepare::Skin;
-use crate::workspace::Shape;
-use crate::{ContactError, Model};
+use crate::workspace::posture::Shape;
 
 /// Reach of the distance query outside the product, mm.
 pub const CUT_OFF: f64 = 8.0;
 /// Penetration beyond which no soft tissue of a hand can yield, mm.
 pub const MOST_DEPTH: f64 = 20.0;
-/// Power of thickness with which stiffness falls near that depth.
-const ESCAPE_POWER: f64 = 1.5;
-/// Least thickness in vertex spacings for which a vertex still yields to its own force (0.34 in theory).
-const COARSEST_SHARE: f64 = 0.4;
-/// Share of the largest penetration that a bulge may rise into the product (0.2 measured at most; see physics tests).
-const BULGE_SHARE: f64 = 0.25;
-/// Gap beyond that margin up to which sites join the zone of a warm start, mm: the zone then serves many small moves.
-const WARM_MARGIN: f64 = 0.3;
-/// Largest penetration over thickness for which the bonded layer's kernel is used as it is.
-pub const KERNEL_LIMIT: f64 = 0.5;
 
 /// The skin in one posture beside one product.
 #[derive(Clone)]
@@ -132,120 +122,4 @@ pub fn detect(
 pub fn distances_of(gaps: &[Option<Gap>]) -> Vec<f64> {
     let distance = |gap: &Option<Gap>| gap.as_ref().map_or(f64::INFINITY, |gap| gap.distance);
     gaps.iter().map(distance).collect()
-}
-
-/// Sites that may touch: skin that penetrates or may be lifted into the product, ascending.
-pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
-    within(skin, detection, 0.0)
-}
-
-/// [`candidates`] and their surroundings, to be kept while the posture changes little; with the `last` zone where that is little
-/// more, for what was lifted into it is likely to be again.
-pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
-    let lasting = within(skin, detection, WARM_MARGIN);
-    let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
-    let is_known = |s: &&u32| distance(**s) < f64::INFINITY;
-    let mut both = lasting.clone();
-    both.extend(last.iter().filter(is_known));
-    // Of two ascending lists, which a stable sort merges.
-    both.sort();
-    both.dedup();
-    if both.len() > lasting.len() + lasting.len() / 4 {
-        lasting
-    } else {
-        both
-    }
-}
-
-/// The last zone where it still serves, else the sites that may touch.
-pub fn serving(skin: &Skin, detection: &Detection) -> Vec<u32> {
-    let zone = candidates(skin, detection);
-    let last = &skin.memory.zone;
-    let is_warm = !skin.memory.trail.last.force.is_empty();
-    let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
-    let is_known = |&s: &u32| distance(s) < f64::INFINITY;
-    let serves = is_warm
-        && last.len() <= zone.len() + zone.len() / 4
-        && zone.iter().all(|site| last.binary_search(site).is_ok())
-        && last.iter().all(is_known);
-    match (serves, is_warm && !zone.is_empty()) {
-        (true, _) => last.clone(),
-        (false, true) => lasting_with(skin, detection, last),
-        (false, false) => zone,
-    }
-}
-
-fn within(skin: &Skin, detection: &Detection, more: f64) -> Vec<u32> {
-    let margin = match skin.model {
-        Model::Paper => 0.0,
-        Model::Layer => BULGE_SHARE * detection.deepest() + more,
-    };
-    let may_touch = |site: &u32| {
-        let site = *site as usize;
-        let distance = detection.distances[skin.sites.vertex[site] as usize];
-        distance < margin && skin.sites.is_skin(site)
-    };
-    if detection.deepest() <= 0.0 {
-        return Vec::new();
-    }
-    (0..skin.sites.len() as u32).filter(may_touch).collect()
-}
-
-/// Thickness where each region is pressed deepest, mm.
-pub fn pressed_thickness(skin: &Skin, detection: &Detection) -> Vec<f64> {
-    let of_region = skin.tissue.materials.iter().map(|m| m.thickness_mm);
-    let mut thickness: Vec<f64> = of_region.collect();
-    if skin.tissue.geometry.curvature.is_none() {
-        return thickness;
-    }
-    let mut deepest = vec![0.0; thickness.len()];
-    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let (region, depth) = (
-            skin.sites.region[site],
-            -detection.distances[vertex as usize],
-        );
-        if region >= 0 && depth > deepest[region as usize] {
-            deepest[region as usize] = depth;
-            thickness[region as usize] = skin.tissue.thickness(site, region as usize);
-        }
-    }
-    thickness
-}
-
-/// Refuses to press skin whose vertices are too far apart for a layer so thin: one would answer its own force the wrong way.
-///
-/// # Errors
-/// [`ContactError::TooCoarse`] naming the first such vertex.
-pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
-    for &site in zone.iter().filter(|_| skin.model == Model::Layer) {
-        let region = skin.sites.region[site as usize];
-        let spacing_mm = (skin.sites.area[site as usize] * 2.0 / 3f64.sqrt()).sqrt();
-        let thickness_mm = skin.tissue.thickness(site as usize, region as usize);
-        if thickness_mm < COARSEST_SHARE * spacing_mm {
-            let vertex = skin.welded.source[skin.sites.vertex[site as usize] as usize] as usize;
-            return Err(ContactError::TooCoarse {
-                region,
-                title: skin.region_title(region as usize),
-                vertex,
-                spacing_mm,
-                thickness_mm,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// Share of the small-strain stiffness that tissue of `thickness` (mm) keeps when pressed to `depth` (mm); 1 up to half.
-///
-/// Beyond, free sides and a receding bone let the tissue escape as a thicker layer would. A pad on a layer needs a force
-/// that falls as the 1.5th power of thickness near these depths (fingertip of radius 8 mm at 4 mm: 6.25 times the half
-/// space's on 5 mm, 3.67 times on 7.1 mm), so the stiffness is that of a layer which is twice as thick as the press is deep.
-/// The response keeps its shape, stays definite, and force keeps growing with depth.
-pub fn kept_stiffness(thickness: f64, depth: f64) -> f64 {
-    let excess = depth / (KERNEL_LIMIT * thickness);
-    if excess > 1.0 {
-        excess.powf(-ESCAPE_POWER)
-    } else {
-        1.0
-    }
 }

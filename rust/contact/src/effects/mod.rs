@@ -19,6 +19,7 @@ pub(crate) mod rate_independent_loss;
 pub(crate) mod friction;
 pub(crate) mod adhesion;
 
-pub use catalogue::{CATALOGUE, Effect};
+pub use catalogue::CATALOGUE;
 pub use definition::active::ActiveEffect;
+pub use definition::entry::Effect;
 pub use definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};

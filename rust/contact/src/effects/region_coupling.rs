@@ -6,7 +6,7 @@
 
 use super::definition::active::ActiveEffect;
 use super::definition::entry::{Consequence, Entry, Sign, Stage};
-use crate::response::rows::Cut;
+use crate::response::tissue_geometry::Cut;
 use crate::skin::sites::Sites;
 
 pub const ENTRY: Entry = Entry {
@@ -18,6 +18,7 @@ pub const ENTRY: Entry = Entry {
     shape: &[],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::BelongsToTheCrease,

@@ -24,6 +24,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: Some(check),
     consequences: &[
         Consequence {
             sign: Sign::ForceFallsInHold,
@@ -70,8 +71,8 @@ const fn weight(name: &'static str) -> ShapeNumber {
 }
 
 /// What is wrong beyond the ranges of single numbers.
-pub fn check(effect: &ActiveEffect) -> Result<(), String> {
-    if effect.shape[BRANCHES..].iter().sum::<f64>() > 0.0 {
+fn check(shape: &[f64], _painted: &[f64]) -> Result<(), String> {
+    if shape[BRANCHES..].iter().sum::<f64>() > 0.0 {
         Ok(())
     } else {
         Err("all weights are 0; at least one must be positive".to_owned())

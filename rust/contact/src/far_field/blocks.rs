@@ -4,13 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::cluster_bases::Clusters;
-use super::preconditioner::InverseFactor;
-use super::{Ground, Hierarchy, Listed, SEPARATION, gap};
-use crate::{ContactError, Control};
+use crate::ContactError;
 
-/// Most memory for the response of one zone, GiB; a zone that needs more is refused before any is taken.
-pub const MOST_GIB: f64 = 12.0;
 /// Blocks that are made between two looks at the caller's wish to stop.
 const AT_ONCE: usize = 2048;
 /// Blocks of a strip: few enough for their result to stay in a core's cache, many enough to add it up seldom.
@@ -21,14 +16,14 @@ const STRIP: usize = 256;
 pub struct Pair {
     pub(super) a: usize,
     pub(super) b: usize,
-    start: usize,
+    pub(super) start: usize,
     /// Where the strip's result has them.
     pub(super) to_a: u32,
     pub(super) to_b: u32,
 }
 
 impl Pair {
-    fn new(a: usize, b: usize) -> Pair {
+    pub(super) fn new(a: usize, b: usize) -> Pair {
         let (start, to_a, to_b) = (0, 0, 0);
         Pair {
             a,
@@ -55,195 +50,13 @@ pub struct Strip {
 pub struct Blocks {
     pub(super) pairs: Vec<Pair>,
     pub(super) values: Vec<f32>,
-    entries: usize,
+    pub(super) entries: usize,
     pub(super) strips: Vec<Strip>,
-}
-
-/// `K` between the sites of a zone, 1/mm.
-#[derive(Debug, Clone, Default)]
-pub struct Coupled {
-    /// The zone's clusters.
-    pub clusters: Clusters,
-    /// Place in the zone of each of the clusters' sites.
-    pub(super) place: Vec<u32>,
-    /// First of each cluster's chosen sites in fields over all of them.
-    pub(super) offset: Vec<usize>,
-    pub(super) near: Blocks,
-    pub(super) far: Blocks,
-    /// `K_ii` in the zone's order.
-    pub(super) own: Vec<f64>,
-    /// What stands for the inverse.
-    pub(super) inverse_factor: InverseFactor,
-}
-
-impl Coupled {
-    /// Makes the blocks of `zone` (ascending).
-    ///
-    /// # Errors
-    /// [`ContactError::TooLarge`] before their memory is taken, or `Cancelled`.
-    pub fn new(
-        hierarchy: &Hierarchy,
-        zone: &[u32],
-        ground: Ground<'_>,
-        control: &Control,
-    ) -> Result<Coupled, ContactError> {
-        let mut coupled = Coupled::planned(hierarchy, zone, ground, control)?;
-        coupled.check(MOST_GIB)?;
-        coupled.fill(hierarchy, ground, control)?;
-        coupled.own = coupled.diagonal();
-        Ok(coupled)
-    }
-
-    /// Finds skeletons, pairs and what lies beside each cluster; no block yet.
-    pub(super) fn planned(
-        hierarchy: &Hierarchy,
-        zone: &[u32],
-        ground: Ground<'_>,
-        control: &Control,
-    ) -> Result<Coupled, ContactError> {
-        let clusters = Clusters::new(hierarchy, zone, ground, control)?;
-        let find = |site: &u32| zone.partition_point(|z| z < site) as u32;
-        let mut coupled = Coupled {
-            place: clusters.sites.iter().map(find).collect(),
-            offset: clusters.offsets(),
-            clusters,
-            ..Coupled::default()
-        };
-        if !zone.is_empty() {
-            coupled.pair(hierarchy, 0, 0);
-        }
-        coupled.lay_out();
-        let (near, clusters) = (&coupled.near, &coupled.clusters);
-        coupled.inverse_factor = InverseFactor::planned(near, clusters, ground);
-        Ok(coupled)
-    }
-
-    /// Memory of the blocks, the inverse factor and the skeletons, GiB, known before the blocks are made.
-    pub fn needed_gib(&self) -> f64 {
-        let bases = self.clusters.list.iter().filter_map(|c| c.basis.as_ref());
-        let transfers: usize = bases.map(|basis| basis.transfer.len()).sum();
-        let singles = self.near.entries + self.far.entries + transfers;
-        let doubles = self.inverse_factor.entries();
-        (singles * size_of::<f32>() + doubles * size_of::<f64>()) as f64 / f64::from(1 << 30)
-    }
-
-    /// # Errors
-    /// [`ContactError::TooLarge`] if more than `limit_gib` is needed.
-    pub fn check(&self, limit_gib: f64) -> Result<(), ContactError> {
-        let needed_gib = self.needed_gib();
-        if needed_gib > limit_gib {
-            return Err(ContactError::TooLarge {
-                vertices: self.len(),
-                needed_gib,
-                limit_gib,
-            });
-        }
-        Ok(())
-    }
-
-    /// Number of sites.
-    pub fn len(&self) -> usize {
-        self.place.len()
-    }
-
-    /// `K_ii`, 1/mm.
-    pub fn own(&self) -> &[f64] {
-        &self.own
-    }
-
-    /// Sorts pairs of clusters into near and far ones; those out of range are left out.
-    fn pair(&mut self, hierarchy: &Hierarchy, a: usize, b: usize) {
-        let (one, other) = (&self.clusters.list[a], &self.clusters.list[b]);
-        let nodes = &hierarchy.tree.nodes;
-        let (left, right) = (&nodes[one.node], &nodes[other.node]);
-        if a != b {
-            if hierarchy.is_out_of_range(left, right) {
-                return;
-            }
-            let is_far = gap(left, right) >= SEPARATION * left.radius.max(right.radius);
-            if is_far && one.basis.is_some() && other.basis.is_some() {
-                self.far.pairs.push(Pair::new(a, b));
-                return;
-            }
-        }
-        let cuts_first =
-            other.children.is_empty() || (!one.children.is_empty() && left.radius >= right.radius);
-        let halves = if cuts_first {
-            &one.children
-        } else {
-            &other.children
-        }
-        .clone();
-        if halves.is_empty() {
-            self.near.pairs.push(Pair::new(a, b));
-        } else if a == b {
-            for (k, &low) in halves.iter().enumerate() {
-                for &high in &halves[k..] {
-                    self.pair(hierarchy, low, high);
-                }
-            }
-        } else {
-            for half in halves {
-                let (a, b) = if cuts_first { (half, b) } else { (a, half) };
-                self.pair(hierarchy, a, b);
-            }
-        }
-    }
-
-    /// Places of the blocks in memory.
-    fn lay_out(&mut self) {
-        let (list, offset) = (&self.clusters.list, &self.offset);
-        let members = |c: usize| list[c].last - list[c].first;
-        let rank = |c: usize| offset[c + 1] - offset[c];
-        self.near.lay_out(members, list.len());
-        self.far.lay_out(rank, list.len());
-    }
-
-    fn fill(
-        &mut self,
-        hierarchy: &Hierarchy,
-        ground: Ground<'_>,
-        control: &Control,
-    ) -> Result<(), ContactError> {
-        let list = &self.clusters.list;
-        let sites = &self.clusters.sites;
-        let members = |c: usize| &sites[list[c].first..list[c].last];
-        let chosen = |c: usize| list[c].basis.as_ref().map_or(&[][..], |b| &b.chosen);
-        let make = |a: &[u32], b: &[u32], out: &mut [f32]| {
-            hierarchy.block(ground, a, &Listed::new(b, ground.sites), out);
-        };
-        let watched = |share: f64| control.step("response", share);
-        self.near.fill(
-            |p, out| make(members(p.a), members(p.b), out),
-            |s| watched(0.5 + 0.3 * s),
-        )?;
-        self.far.fill(
-            |p, out| make(chosen(p.a), chosen(p.b), out),
-            |s| watched(0.8 + 0.15 * s),
-        )?;
-        let factor = &mut self.inverse_factor;
-        factor.fill(hierarchy, (&self.clusters, ground), |s| {
-            watched(0.95 + 0.05 * s)
-        })
-    }
-
-    fn diagonal(&self) -> Vec<f64> {
-        let mut own = vec![0.0; self.len()];
-        for pair in self.near.pairs.iter().filter(|p| p.a == p.b) {
-            let cluster = &self.clusters.list[pair.a];
-            let columns = cluster.last - cluster.first;
-            for k in 0..columns {
-                let value = self.near.values[pair.start + k * columns + k];
-                own[self.place[cluster.first + k] as usize] = f64::from(value);
-            }
-        }
-        own
-    }
 }
 
 impl Blocks {
     /// Gives every block its place, in memory and in a strip.
-    fn lay_out(&mut self, size: impl Fn(usize) -> usize, clusters: usize) {
+    pub(super) fn lay_out(&mut self, size: impl Fn(usize) -> usize, clusters: usize) {
         let mut end = 0;
         for pair in &mut self.pairs {
             pair.start = end;
@@ -287,7 +100,7 @@ impl Blocks {
         &self.values[self.range(pair)]
     }
 
-    fn fill(
+    pub(super) fn fill(
         &mut self,
         make: impl Fn(&Pair, &mut [f32]) + Sync,
         watch: impl Fn(f64) -> Result<(), ContactError>,

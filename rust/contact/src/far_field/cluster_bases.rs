@@ -4,8 +4,8 @@ use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use super::cluster_tree::{Node, Tree};
+use super::hierarchy::{Ground, Hierarchy, Listed, SEPARATION, TOLERANCE};
 use super::skeletons::skeleton;
-use super::{Ground, Hierarchy, Listed, SEPARATION, TOLERANCE};
 use crate::{ContactError, Control};
 
 /// Clusters whose skeletons are found between two looks at the caller's wish to stop.

@@ -1,9 +1,11 @@
 //! The compliance of a zone along directions, as the solver sees it.
 
 use super::block_kernels::zeros;
-use super::blocks::Coupled;
-use super::preconditioner::OnSet;
+use super::preconditioner::Rows;
+use super::zone_coupling::Coupled;
 use crate::solve::{Compliance, Kept, Preconditioner, Symmetric};
+use nalgebra::DVector;
+use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 /// Power steps that find the largest eigenvalue, and the factor that makes their result a bound.
@@ -109,5 +111,61 @@ impl Compliance for Directed<'_> {
 
     fn is_dear(&self) -> bool {
         true
+    }
+}
+
+/// The approximate inverse of `A_ij = K_ij v_i . v_j` on a set: directions hardly differ over a cluster, lengths may.
+pub struct OnSet<'a> {
+    coupled: &'a Coupled,
+    /// Places of the set's unknowns among the clusters' sites.
+    places: Vec<u32>,
+    /// Rows that see some of the set.
+    rows: Vec<&'a Rows>,
+    /// `1 / |v|` at the places of the set, N/mm^2.
+    per_length: Vec<f64>,
+}
+
+impl<'a> OnSet<'a> {
+    /// For the unknowns of `set`, vectors `along` the whole zone.
+    pub fn new(coupled: &'a Coupled, along: &[Vec3], set: &[u32]) -> Self {
+        let mut is_in = vec![false; coupled.len()];
+        set.iter().for_each(|&i| is_in[i as usize] = true);
+        let mut place = vec![0; coupled.len()];
+        for (k, &i) in coupled.place.iter().enumerate() {
+            place[i as usize] = k as u32;
+        }
+        let sees = |rows: &&Rows| {
+            let mut columns = rows.columns.iter();
+            columns.any(|&k| is_in[coupled.place[k as usize] as usize])
+        };
+        OnSet {
+            coupled,
+            places: set.iter().map(|&i| place[i as usize]).collect(),
+            rows: coupled.inverse_factor.0.iter().filter(sees).collect(),
+            per_length: set
+                .iter()
+                .map(|&i| 1.0 / along[i as usize].norm())
+                .collect(),
+        }
+    }
+}
+
+impl Preconditioner for OnSet<'_> {
+    fn apply(&self, residual: &[f64], out: &mut [f64]) {
+        let mut all = vec![0.0; self.coupled.len()];
+        for ((&k, r), per) in self.places.iter().zip(residual).zip(&self.per_length) {
+            all[k as usize] = r * per;
+        }
+        let found: Vec<DVector<f64>> = self.rows.par_iter().map(|rows| rows.times(&all)).collect();
+        all.fill(0.0);
+        // In one order, for any number of threads.
+        for (rows, found) in self.rows.iter().zip(&found) {
+            for (&k, found) in rows.columns.iter().zip(found) {
+                all[k as usize] += found;
+            }
+        }
+        for ((&k, out), per) in self.places.iter().zip(out).zip(&self.per_length) {
+            *out = all[k as usize] * per;
+        }
     }
 }

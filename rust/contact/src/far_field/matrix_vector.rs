@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 
 use super::block_kernels::{Fields, add_product, add_transposed, part, part_mut, zeros};
-use super::blocks::{Blocks, Coupled, Strip};
+use super::blocks::{Blocks, Strip};
 use super::cluster_bases::{Cluster, Clusters};
+use super::zone_coupling::Coupled;
 
 /// Which clusters bear loads, and which are asked what comes of them.
 type Awake<'a> = (&'a [bool], &'a [bool]);

@@ -8,11 +8,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
-use super::blocks::{Blocks, Coupled};
+use super::blocks::Blocks;
 use super::cluster_bases::Clusters;
-use super::{Ground, Hierarchy, Listed};
+use super::hierarchy::{Ground, Hierarchy, Listed};
 use crate::ContactError;
-use crate::solve::Preconditioner;
 
 /// Clusters whose rows are made between two looks at the caller's wish to stop.
 const AT_ONCE: usize = 256;
@@ -21,13 +20,13 @@ const BESIDE: usize = 64;
 
 /// The factor of a zone, by its smallest clusters.
 #[derive(Debug, Clone, Default)]
-pub struct InverseFactor(Vec<Rows>);
+pub struct InverseFactor(pub(super) Vec<Rows>);
 
 /// Rows of one cluster.
 #[derive(Debug, Clone)]
-struct Rows {
+pub(super) struct Rows {
     /// Places among the clusters' sites: those beside, then its own.
-    columns: Vec<u32>,
+    pub columns: Vec<u32>,
     /// How many are its own.
     own: usize,
     /// The rows, transposed, mm^(1/2); empty until they are filled.
@@ -122,7 +121,7 @@ impl Rows {
     }
 
     /// Its part of `G' G` times fields over the clusters' sites, at its columns.
-    fn times(&self, all: &[f64]) -> DVector<f64> {
+    pub fn times(&self, all: &[f64]) -> DVector<f64> {
         let loads = self.columns.iter().map(|&k| all[k as usize]);
         let loads = DVector::from_iterator(self.columns.len(), loads);
         &self.transposed * self.transposed.tr_mul(&loads)
@@ -153,69 +152,13 @@ fn last_rows(matrix: &[f32], rows: usize) -> DMatrix<f64> {
     last
 }
 
-/// The approximate inverse of `A_ij = K_ij v_i . v_j` on a set: directions hardly differ over a cluster, lengths may.
-pub struct OnSet<'a> {
-    coupled: &'a Coupled,
-    /// Places of the set's unknowns among the clusters' sites.
-    places: Vec<u32>,
-    /// Rows that see some of the set.
-    rows: Vec<&'a Rows>,
-    /// `1 / |v|` at the places of the set, N/mm^2.
-    per_length: Vec<f64>,
-}
-
-impl<'a> OnSet<'a> {
-    /// For the unknowns of `set`, vectors `along` the whole zone.
-    pub fn new(coupled: &'a Coupled, along: &[Vec3], set: &[u32]) -> Self {
-        let mut is_in = vec![false; coupled.len()];
-        set.iter().for_each(|&i| is_in[i as usize] = true);
-        let mut place = vec![0; coupled.len()];
-        for (k, &i) in coupled.place.iter().enumerate() {
-            place[i as usize] = k as u32;
-        }
-        let sees = |rows: &&Rows| {
-            let mut columns = rows.columns.iter();
-            columns.any(|&k| is_in[coupled.place[k as usize] as usize])
-        };
-        OnSet {
-            coupled,
-            places: set.iter().map(|&i| place[i as usize]).collect(),
-            rows: coupled.inverse_factor.0.iter().filter(sees).collect(),
-            per_length: set
-                .iter()
-                .map(|&i| 1.0 / along[i as usize].norm())
-                .collect(),
-        }
-    }
-}
-
-impl Preconditioner for OnSet<'_> {
-    fn apply(&self, residual: &[f64], out: &mut [f64]) {
-        let mut all = vec![0.0; self.coupled.len()];
-        for ((&k, r), per) in self.places.iter().zip(residual).zip(&self.per_length) {
-            all[k as usize] = r * per;
-        }
-        let found: Vec<DVector<f64>> = self.rows.par_iter().map(|rows| rows.times(&all)).collect();
-        all.fill(0.0);
-        // In one order, for any number of threads.
-        for (rows, found) in self.rows.iter().zip(&found) {
-            for (&k, found) in rows.columns.iter().zip(found) {
-                all[k as usize] += found;
-            }
-        }
-        for ((&k, out), per) in self.places.iter().zip(out).zip(&self.per_length) {
-            *out = all[k as usize] * per;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
     use crate::Control;
-    use crate::far_field::Directed;
+    use crate::far_field::{Coupled, Directed};
     use crate::far_field::tests::{all, skin};
     use crate::solve::Symmetric;
 

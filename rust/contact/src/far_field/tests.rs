@@ -4,7 +4,8 @@ use nalgebra::DMatrix;
 use thenar_surface::{Mesh, Vec3};
 
 use super::block_kernels::{Fields, zeros};
-use super::{Coupled, Directed, Ground, Hierarchy, Listed};
+use super::hierarchy::{Ground, Hierarchy, Listed};
+use super::{Coupled, Directed};
 use crate::response::assembly::Load;
 use crate::response::entries::Scratch;
 use crate::skin::prepare::Skin;

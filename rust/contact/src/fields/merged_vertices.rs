@@ -4,9 +4,10 @@
 
 use thenar_surface::Vec3;
 
+use super::result::Contact;
 use super::warning_rules::MOST_PENETRATION;
 use super::warnings::{Grade, Warning};
-use crate::api::{Contact, Press};
+use crate::api::Press;
 use crate::detection::gaps::limits;
 use crate::skin::prepare::Skin;
 

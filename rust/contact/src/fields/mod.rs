@@ -4,6 +4,7 @@ pub mod contact_area;
 pub mod patch_peak;
 pub mod merged_vertices;
 pub mod product_pressure;
+pub mod result;
 pub mod summary;
 pub mod warning_rules;
 pub mod warnings;

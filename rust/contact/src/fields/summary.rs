@@ -5,10 +5,11 @@ use thenar_surface::{Gap, Mesh, Product, Vec3};
 use super::contact_area::{EdgeData, contact_areas};
 use super::patch_peak::{Field, patch_peak};
 use super::product_pressure::product_pressure;
+use super::result::{Contact, Convergence, RegionResult, Residual};
 use super::warning_rules::{Figures, remarks};
-use crate::api::{Contact, Convergence, RegionResult, Residual};
+use crate::interface::pulls::Clinging;
 use crate::interface::shear_result::{shear_fields, shear_load};
-use crate::press::Pressed;
+use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
 /// Least posed area of a vertex relative to its rest area: posing must not turn a sliver into infinite pressure.
@@ -89,7 +90,7 @@ pub fn summarize(
         product_pressure,
         offset,
         direction,
-        adhesion: pressed.clinging.by_vertex(skin),
+        adhesion: adhesion_by_vertex(skin, &pressed.clinging),
         shear,
         residual: Residual {
             complementarity: solved.complementarity,
@@ -125,6 +126,16 @@ fn force_by_vertex(skin: &Skin, force: Vec<f64>) -> Vec<f64> {
         by_vertex[source as usize] = *f;
     }
     by_vertex
+}
+
+/// Attraction of every vertex of the mesh as given, N; merged vertices bear none.
+fn adhesion_by_vertex(skin: &Skin, clinging: &Clinging) -> Vec<f64> {
+    let mut force = vec![0.0; skin.vertices()];
+    for pull in &clinging.pulls {
+        let vertex = skin.sites.vertex[pull.site as usize] as usize;
+        force[skin.welded.source[vertex] as usize] = pull.newton;
+    }
+    force
 }
 
 /// Sums of a press, without what only a full result needs.

@@ -4,8 +4,9 @@ use thenar_surface::{Mesh, Product, Vec3};
 
 use super::warnings::Warning;
 use crate::Model;
-use crate::detection::gaps::{KERNEL_LIMIT, limits};
-use crate::press::Pressed;
+use crate::detection::gaps::limits;
+use crate::press::effective_modulus::KERNEL_LIMIT;
+use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
 /// Depth of parts without skin in the product that is worth a word, mm.

@@ -6,7 +6,7 @@ use thenar_surface::{Product, Vec3};
 
 use super::tissue_memory::Recall;
 use crate::detection::gaps::{Detection, distances_of, limits};
-use crate::press::relinearize::Solved;
+use crate::press::solution::Solved;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};

@@ -1,7 +1,7 @@
 //! The branches of memory that the effects ask for, each fading by a clock of its own.
 
+use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect, drainage, rate_independent_loss, relaxation};
-use crate::skin::tissue::in_order;
 
 /// What makes a branch fade.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3};
 use rayon::prelude::*;
 use thenar_surface::{Mesh, Product, Vec3, vertex_normals};
 
-use crate::api::Contact;
+use crate::fields::result::Contact;
 use crate::skin::prepare::Skin;
 
 /// A rigid motion, mm and rad.

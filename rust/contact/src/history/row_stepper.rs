@@ -14,12 +14,14 @@ use crate::fields::summary::{summarize, totals};
 use crate::fields::warnings::Warning;
 use crate::instrument::loads_of;
 use crate::interface::friction;
-use crate::interface::friction::Grasp;
+use crate::interface::friction_state::Grasp;
 use crate::interface::stick_slip::Dragged;
+use crate::press::at_position::press_at;
 use crate::press::force_control::{find_offset, mean_normal};
-use crate::press::{Pressed, Seconds};
+use crate::press::pressed::Pressed;
+use crate::press::stage_times::Seconds;
 use crate::skin::prepare::Skin;
-use crate::workspace::Trail;
+use crate::workspace::warm_start::Trail;
 use crate::{ActiveEffect, Contact, ContactError, Control};
 
 /// How far the product is taken off the skin where no force is asked for, mm.
@@ -227,7 +229,7 @@ impl Walk {
             }
         };
         let shift = direction * offset;
-        let pressed = skin.press_at(&posed, (product, shift), (control, &mut seconds))?;
+        let pressed = press_at(skin, &posed, (product, shift), (control, &mut seconds))?;
         Ok((offset, pressed))
     }
 
@@ -351,7 +353,7 @@ impl Skin {
         };
         friction::drag(self, &mut pressed, (motion, &walk.grasp), &quiet)?;
         walk.grasp = friction::grasp(&pressed, row.slide);
-        self.remember(&pressed, offset);
+        pressed.start_next(self, offset);
         let step = walk
             .keep(self, row, (offset, &pressed))
             .ok_or(ContactError::EmptyProtocol)?;

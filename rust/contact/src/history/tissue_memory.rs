@@ -4,9 +4,9 @@ use nalgebra::Rotation3;
 use thenar_surface::Vec3;
 
 use super::memory_branches::{Branch, Clock, branches};
+use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect, cycle_softening, drainage};
 use crate::skin::sites::Sites;
-use crate::skin::tissue::in_order;
 
 /// Steps shorter than this share of a branch's period are taken by the series of the closed form.
 const SHORT_STEP: f64 = 1e-4;

@@ -12,6 +12,7 @@ pub const ENTRY: Entry = Entry {
     shape: &[],
     choices: &[],
     painted: Some("1 where a sensel is dead, 0 where it is well; one per sensel"),
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::MovesWithTheMat,

@@ -56,6 +56,7 @@ pub const ENTRY: Entry = Entry {
         },
     ],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::TrendsWithoutContact,

@@ -25,6 +25,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[CHANNEL],
     painted: Some("error of each sensel, 1"),
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ScalesReadings,

@@ -6,8 +6,8 @@ use super::signals::Signals;
 use super::{crosstalk, dead_cells, drift, fixture_compliance, gain, misregistration};
 use super::{offset, saturation, threshold, timing};
 use crate::ContactError;
+use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect};
-use crate::skin::tissue::in_order;
 
 /// What a set-up shows of `signals`, which are what happens at the skin.
 ///

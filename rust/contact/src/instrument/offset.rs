@@ -38,6 +38,7 @@ pub const ENTRY: Entry = Entry {
         meaning: "whose zero is off: the map's, the load cell's, or the depth's",
     }],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ShiftsReadings,

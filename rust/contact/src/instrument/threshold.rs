@@ -33,6 +33,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[CHANNEL],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::SilentBelowFloor,

@@ -24,6 +24,7 @@ pub const ENTRY: Entry = Entry {
         meaning: "which channel is behind: the map, the load cell (with its tangential force), or the motion",
     }],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::LagsBehind,

@@ -7,9 +7,12 @@
 
 use thenar_surface::{Gap, Product, Vec3};
 
+use super::pulls::Pull;
 use crate::detection::gaps::{Detection, limits};
 use crate::effects::{ActiveEffect, Effect, adhesion};
-use crate::press::relinearize::{Solved, vertex};
+use crate::press::effective_modulus::rest_weights;
+use crate::press::setting::vertex;
+use crate::press::solution::Solved;
 use crate::skin::prepare::Skin;
 
 /// Largest attraction of a vertex over `sqrt(2 w A / a)`, with A its area and a its own compliance.
@@ -28,47 +31,6 @@ const MESH_SHARE: f64 = 0.95;
 const TOLERANCE: f64 = 1e-5;
 /// Most solves of one press.
 pub const MOST_SOLVES: usize = 400;
-/// Solves in which attraction turns with the product's normal; then it turns ever less, since facets make it flicker.
-const SEEKING_SOLVES: usize = 8;
-/// Solves after which it turns no more.
-const TURNING_SOLVES: usize = 40;
-
-/// Attraction of one site.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pull {
-    /// The site.
-    pub site: u32,
-    /// Product's outward normal there.
-    pub normal: Vec3,
-    /// Closest point of the product, mm.
-    pub closest: Vec3,
-    /// Attraction towards the product, N, >= 0.
-    pub newton: f64,
-}
-
-impl Pull {
-    /// Load on the skin, N.
-    pub fn load(&self) -> Vec3 {
-        -self.normal * self.newton
-    }
-}
-
-/// Keeps the normals of `after` near those of the solve before, the longer the nearer: where they flicker their mean is left.
-pub fn steady(before: &[Pull], after: &mut [Pull], solve: usize) {
-    let share = match solve {
-        0..=SEEKING_SOLVES => return,
-        TURNING_SOLVES.. => 0.0,
-        _ => 1.0 / (solve - SEEKING_SOLVES + 1) as f64,
-    };
-    let mut known = before.iter().peekable();
-    for pull in after {
-        while known.next_if(|known| known.site < pull.site).is_some() {}
-        if let Some(known) = known.next_if(|known| known.site == pull.site) {
-            let mean = known.normal + (pull.normal - known.normal) * share;
-            pull.normal = mean.try_normalize(0.0).unwrap_or(known.normal);
-        }
-    }
-}
 
 /// The law of every site of a skin.
 pub(crate) struct Attraction {
@@ -92,7 +54,7 @@ impl Attraction {
         if active.is_empty() {
             return None;
         }
-        let weight = skin.rest_weights();
+        let weight = rest_weights(skin);
         let law_at = |site: usize| {
             let region = skin.sites.home_region(site);
             let here = active
@@ -193,45 +155,5 @@ impl Attraction {
                 return false;
             }
         }
-    }
-}
-
-/// The attraction of a press.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Clinging {
-    /// By site, ascending.
-    pub pulls: Vec<Pull>,
-    /// True if it was found to the tolerance.
-    pub is_settled: bool,
-}
-
-impl Clinging {
-    /// No attraction.
-    pub fn none() -> Clinging {
-        Clinging {
-            pulls: Vec::new(),
-            is_settled: true,
-        }
-    }
-
-    /// Sum of the attraction on the skin, N.
-    pub fn force(&self) -> Vec3 {
-        self.pulls.iter().map(|p| -p.normal * p.newton).sum()
-    }
-
-    /// Moment about the origin of the attraction on the product, moved by `shift` (mm), N mm.
-    pub fn moment(&self, shift: Vec3) -> Vec3 {
-        let one = |p: &Pull| (p.closest + shift).cross(&p.normal) * p.newton;
-        self.pulls.iter().map(one).sum()
-    }
-
-    /// Attraction of every vertex of the mesh as given, N; merged vertices bear none.
-    pub fn by_vertex(&self, skin: &Skin) -> Vec<f64> {
-        let mut force = vec![0.0; skin.vertices()];
-        for pull in &self.pulls {
-            let vertex = skin.sites.vertex[pull.site as usize] as usize;
-            force[skin.welded.source[vertex] as usize] = pull.newton;
-        }
-        force
     }
 }

@@ -86,3 +86,37 @@ impl Travel<'_, '_> {
         (newton.abs() * mean / (n as f64).sqrt()).max(1e-9)
     }
 }
+
+impl Grip<'_> {
+    /// Drags along `direction` (by site, per unit of travel) until the shear force along it is `newton`.
+    ///
+    /// Returns the travel and the step, or None if friction cannot hold that much.
+    pub fn drag_to_force(
+        &self,
+        from: &[Vec3],
+        (direction, along, newton): (&[Vec3], Vec3, f64),
+        control: &Control,
+    ) -> Option<(f64, Dragged)> {
+        let start = self.start();
+        let before = self.slip_before(&start, from);
+        let most: f64 = self
+            .tangents
+            .iter()
+            .zip(self.limit)
+            .map(|([a, b], limit)| limit * along.dot(a).hypot(along.dot(b)))
+            .sum();
+        if newton >= most {
+            return None;
+        }
+        let mut search = Travel {
+            grip: self,
+            from,
+            direction,
+            along,
+            control,
+            start,
+            before,
+        };
+        Some(search.find(newton))
+    }
+}

@@ -8,15 +8,16 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 use thenar_surface::{Gap, Product, Vec3};
 
+use super::friction_state::{Grasp, Sheared};
 use super::shear_kernel::ShearTables;
 use super::shear_matrix::{ShearMatrix, tangents};
 use super::shear_response::{Pairs, Place, ShearResponse};
-use super::stick_slip::{Dragged, Grip, Trace};
+use super::stick_slip::{Grip, Trace};
 use crate::api::Drag;
 use crate::detection::gaps::limits;
 use crate::effects::{ActiveEffect, Effect, friction};
-use crate::press::Pressed;
-use crate::press::relinearize::Solved;
+use crate::press::pressed::Pressed;
+use crate::press::solution::Solved;
 use crate::response::rows::extent;
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
@@ -26,36 +27,6 @@ const MOST_SITES: usize = 8192;
 
 /// Most sites whose kernel is kept for the next row.
 const MOST_KEPT: usize = 3000;
-
-/// Shear of a press, by site in contact.
-#[derive(Debug, Clone)]
-pub(crate) struct Sheared {
-    /// Index into the zone of the press.
-    pub at: Vec<usize>,
-    /// Where each is.
-    pub places: Vec<Place>,
-    /// Largest shear force of each, N.
-    pub limit: Vec<f64>,
-    /// Travel of the product, mm.
-    pub travel: Vec3,
-    /// Turn of the product about the center of the contact, rad.
-    pub turn: Vec3,
-    /// The end of the step.
-    pub end: Dragged,
-}
-
-/// What friction remembers from step to step.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Grasp {
-    /// Memory of each site that was in contact, ascending by site.
-    pub traces: Vec<(u32, Trace)>,
-    /// Travel of the product so far, mm.
-    pub travel: Vec3,
-    /// Its turn about the center of the contact so far, rad.
-    pub turn: Vec3,
-    /// Motion of the product against each site by a posture that has moved since, mm; empty if it has not.
-    pub strays: Vec<Vec3>,
-}
 
 /// True if friction acts anywhere.
 pub(crate) fn acts(skin: &Skin) -> bool {

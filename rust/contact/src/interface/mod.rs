@@ -8,6 +8,8 @@ pub mod stick_slip;
 pub mod drag_force_search;
 
 pub(crate) mod adhesion;
+pub(crate) mod friction_state;
+pub(crate) mod pulls;
 pub(crate) mod friction;
 pub(crate) mod shear_result;
 mod dense_stick_slip;

@@ -7,7 +7,8 @@ use thenar_surface::Vec3;
 
 use super::shear_kernel::{Held, LATTICE, ShearTables};
 use super::shear_matrix::ShearMatrix;
-use crate::response::rows::{Mix, Response};
+use crate::response::rows::Response;
+use crate::response::tissue_geometry::Mix;
 use crate::skin::arc_length::arc_length;
 use crate::skin::sites::Sites;
 

@@ -2,8 +2,8 @@
 
 use thenar_surface::Vec3;
 
-use crate::api::Shear;
-use crate::press::Pressed;
+use crate::fields::result::Shear;
+use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
 /// The shear of a press; None if no product was dragged over skin with friction. `area` by welded vertex, mm2.

@@ -6,7 +6,6 @@
 use thenar_surface::Vec3;
 
 use super::disc_solver::{DiscSolution, largest_pair, solve_discs};
-use super::drag_force_search::Travel;
 use super::shear_matrix::ShearMatrix;
 use crate::Control;
 
@@ -90,38 +89,6 @@ impl Grip<'_> {
         self.dragged((&offset, before), solution)
     }
 
-    /// Drags along `direction` (by site, per unit of travel) until the shear force along it is `newton`.
-    ///
-    /// Returns the travel and the step, or None if friction cannot hold that much.
-    pub fn drag_to_force(
-        &self,
-        from: &[Vec3],
-        (direction, along, newton): (&[Vec3], Vec3, f64),
-        control: &Control,
-    ) -> Option<(f64, Dragged)> {
-        let start = self.start();
-        let before = self.slip_before(&start, from);
-        let most: f64 = self
-            .tangents
-            .iter()
-            .zip(self.limit)
-            .map(|([a, b], limit)| limit * along.dot(a).hypot(along.dot(b)))
-            .sum();
-        if newton >= most {
-            return None;
-        }
-        let mut search = Travel {
-            grip: self,
-            from,
-            direction,
-            along,
-            control,
-            start,
-            before,
-        };
-        Some(search.find(newton))
-    }
-
     fn dragged(&self, (offset, before): (&[f64], &[f64]), solution: DiscSolution) -> Dragged {
         let n = self.limit.len();
         let DiscSolution { force, slip, .. } = solution;
@@ -151,7 +118,7 @@ impl Grip<'_> {
     }
 
     /// Remembered forces in the planes of today.
-    fn start(&self) -> Vec<f64> {
+    pub(super) fn start(&self) -> Vec<f64> {
         let remembered: Vec<Vec3> = self
             .before
             .iter()
@@ -161,7 +128,7 @@ impl Grip<'_> {
     }
 
     /// Slip so far in the planes of today.
-    fn slip_before(&self, start: &[f64], from: &[Vec3]) -> Vec<f64> {
+    pub(super) fn slip_before(&self, start: &[f64], from: &[Vec3]) -> Vec<f64> {
         let n = self.limit.len();
         let remembered: Vec<Vec3> = self
             .before

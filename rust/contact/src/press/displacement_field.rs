@@ -3,9 +3,11 @@
 use thenar_surface::{Gap, Vec3};
 
 use super::paper_model;
-use super::relinearize::{Setting, vertex};
+use super::setting::{Setting, vertex};
+use super::solution::Found;
 use crate::detection::gaps::limits;
 use crate::far_field::Carried;
+use crate::press::live::extrapolation::can_reach;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
@@ -13,22 +15,6 @@ use crate::{ContactError, Control, Model};
 
 /// Change of a load, over the largest, that a live press does not yet carry on: all together move skin by some micrometres.
 const WAITING: f64 = 1e-5;
-
-/// What a solve found, by site of its zone.
-pub struct Found<'a> {
-    /// Sites, ascending.
-    pub zone: &'a [u32],
-    /// Normal force, N.
-    pub force: &'a [f64],
-    /// Direction in which each yields.
-    pub direction: &'a [Vec3],
-    /// Cosine between that and the product's normal.
-    pub cosine: &'a [f64],
-    /// Travel along it, mm.
-    pub travel: &'a [f64],
-    /// Where each met the product.
-    pub touch: &'a [Gap],
-}
 
 /// Displacement of every site, and how far a large skin's is from the direct sum (0: not at all).
 ///
@@ -150,11 +136,6 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
             field[site as usize] = found.direction[k] * found.travel[k];
         }
     }
-}
-
-/// Whether a displacement `u` is longer than skin is away from the product, mm.
-pub fn can_reach(u: &Vec3, distance: f64) -> bool {
-    distance < 0.0 || distance * distance < u.norm_squared()
 }
 
 /// Skin outside the zone that the displacement carries into the product, and how deep, mm.

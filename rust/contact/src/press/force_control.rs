@@ -2,11 +2,13 @@
 
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
-use super::{Pressed, Seconds};
+use super::at_position::press_at;
+use super::pressed::Pressed;
+use super::stage_times::Seconds;
 use crate::api::ForceTarget;
 use crate::detection::gaps::limits;
 use crate::skin::prepare::Skin;
-use crate::workspace::Last;
+use crate::workspace::warm_start::Last;
 use crate::{ContactError, Control};
 
 /// Force within this share of the target ends the search.
@@ -137,15 +139,14 @@ impl Search<'_, '_> {
             progress: &|_, _| {},
             ..*self.control
         };
-        let pressed =
-            self.skin
-                .press_at(self.posed, (self.product, shift), (&control, self.seconds));
+        let there = (self.product, shift);
+        let pressed = press_at(self.skin, self.posed, there, (&control, self.seconds));
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
         self.skin.memory.trail.last = Last {
             travel: Vec::new(),
-            ..Last::of(&pressed.solved, self.skin.sites.len())
+            ..pressed.solved.to_start(self.skin.sites.len())
         };
         Ok((pressed.force_along(&self.direction), pressed))
     }

@@ -2,8 +2,9 @@
 
 use thenar_surface::Vec3;
 
-use super::relinearize::Setting;
-use super::zone_state::{Beyond, State};
+use super::live::extrapolation::Beyond;
+use super::setting::Setting;
+use super::zone_state::State;
 use crate::response::assembly::compliance;
 use crate::response::near_field::directional::NearAlong;
 use crate::skin::prepare::Skin;

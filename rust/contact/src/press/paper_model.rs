@@ -7,7 +7,7 @@
 
 use thenar_surface::Vec3;
 
-use super::relinearize::Setting;
+use super::setting::Setting;
 use crate::response::assembly::{Load, displacements};
 use crate::skin::arc_length::arc_length;
 use crate::skin::prepare::Skin;

@@ -1,16 +1,16 @@
 //! Stage 4's outer loop: the contact problem is linear in the gap, the product is not; repeat until the written surface fits.
 
-use thenar_surface::{Gap, Product, Vec3};
+use thenar_surface::Vec3;
 
 use super::displacement_field::{field, keep_out, lifted_sites};
 use super::live::extrapolation;
+use super::live::extrapolation::Beyond;
 use super::live::reused_sites::{held, keep, strays};
-use super::zone_state::{Beyond, State};
-use crate::api::Convergence;
-use crate::detection::gaps::Detection;
+use super::setting::Setting;
+use super::solution::Solved;
+use super::zone_state::State;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::Last;
 use crate::{ContactError, Control, Model};
 
 /// Largest distance between written contact and product that ends the loop, mm.
@@ -31,75 +31,6 @@ const MOST_STALLED: usize = 3;
 const MOST_LIFTED: f64 = 0.02;
 /// Most rounds in which sites lifted into the product join the zone.
 const MOST_ROUNDS: usize = 4;
-
-/// The solved contact, in the product's frame.
-#[derive(Clone)]
-pub struct Solved {
-    /// Sites that could touch, ascending.
-    pub zone: Vec<u32>,
-    /// Normal force on each, N.
-    pub force: Vec<f64>,
-    /// Where each touches, or would: closest point and normal after deformation.
-    pub touch: Vec<Gap>,
-    /// Travel of each along its direction, mm.
-    pub travel: Vec<f64>,
-    /// Slack of the last linear problem, mm.
-    pub slack: Vec<f64>,
-    /// Direction in which each yields times its cosine with the normal: load per normal force.
-    pub bearing: Vec<Vec3>,
-    /// Displacement of every site, mm.
-    pub displacement: Vec<Vec3>,
-    /// Signed distance of the written zone, and of every other site that was lifted towards the product, at worst, mm.
-    pub penetration: f64,
-    /// Complementarity of the last linear problem.
-    pub complementarity: f64,
-    /// Largest difference of the displacement from the direct sum, on a sample of sites, relative to the largest.
-    pub far_field: f64,
-    /// How it ended.
-    pub convergence: Convergence,
-    /// Sites that do not fit the product within the tolerance, the worst first, and how far that is off, mm.
-    pub unfit: Vec<u32>,
-    pub left: f64,
-}
-
-impl Solved {
-    /// The error that names where the contact did not reach its tolerances; None where it did.
-    pub fn refusal(&self, skin: &Skin) -> Option<ContactError> {
-        if self.convergence.has_converged {
-            return None;
-        }
-        let source = |site: &u32| skin.welded.source[vertex(skin, *site)] as usize;
-        let region = self
-            .unfit
-            .first()
-            .map_or(-1, |&site| skin.sites.region[site as usize]);
-        Some(ContactError::Unsolved {
-            title: match usize::try_from(region) {
-                Ok(region) => skin.region_title(region),
-                Err(_) => "the skin".to_owned(),
-            },
-            left_mm: self.left,
-            passes: self.convergence.passes,
-            vertices: self.unfit.iter().map(source).collect(),
-        })
-    }
-}
-
-/// What does not change within a solve.
-pub struct Setting<'a> {
-    /// The product.
-    pub product: &'a Product,
-    /// Detection of this posture.
-    pub detection: &'a Detection,
-    /// Response weight s = sqrt((1 - nu) / (2 pi G)) of every site.
-    pub weight: &'a [f64],
-    /// What to start from.
-    pub start: Option<&'a Last>,
-    /// How far the last linear problem is solved.
-    pub accuracy: Accuracy,
-    /// Median edge, mm.
-    pub spacing: f64,
-}
 
 /// Solves the contact of the sites in `zone`.
 ///
@@ -270,9 +201,4 @@ impl State {
             left: self.misfit.max(worst),
         }
     }
-}
-
-/// The welded vertex of a site.
-pub fn vertex(skin: &Skin, site: u32) -> usize {
-    skin.sites.vertex[site as usize] as usize
 }

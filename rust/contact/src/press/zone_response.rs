@@ -1,20 +1,13 @@
 //! Where a skin uses its hierarchy, and where its rows in memory.
 
 use crate::far_field::block_kernels::zeros;
-use crate::far_field::{Carried, Clusters, Coupled, Directed, Ground, MOST_GIB};
+use crate::far_field::{Carried, Clusters, Coupled, Directed, MOST_GIB};
 use crate::response::assembly::{Load, coupling, displacements};
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
 use thenar_surface::Vec3;
 
 impl Skin {
-    pub(crate) fn ground(&self) -> Ground<'_> {
-        Ground {
-            response: &self.response,
-            sites: &self.sites,
-        }
-    }
-
     /// Makes the coupling between the sites of `zone` (ascending), or keeps the last one if it is the same.
     ///
     /// # Errors

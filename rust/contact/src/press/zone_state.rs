@@ -2,30 +2,20 @@
 
 use thenar_surface::{Gap, GapLimits, Vec3};
 
-use super::displacement_field::Found;
 use super::live::extrapolation;
-use super::live::reused_sites::Met;
-use super::relinearize::{Setting, vertex};
+use super::setting::{Setting, vertex};
+use super::solution::Found;
 use crate::Model;
-use crate::api::Convergence;
 use crate::detection::gaps::limits;
 use crate::detection::press_direction::{LEAST_COSINE, Sums, yielding_directions};
+use crate::fields::result::Convergence;
+use crate::press::live::extrapolation::Beyond;
 use crate::skin::prepare::Skin;
+use crate::workspace::live_cache::Met;
 
 /// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most (tests
 /// pass up to 0.1).
 const LITTLE_WAY: f64 = 1e-2;
-
-/// What acts on the sites that are solved besides the coupling among them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Beyond {
-    /// Nothing: all that bears forces is solved, and all of it is coupled.
-    Nothing,
-    /// What does by the forces shown last.
-    Last,
-    /// What does by the forces that those are changing to.
-    Trend,
-}
 
 /// What is known so far, by place in the zone.
 pub(crate) struct State {

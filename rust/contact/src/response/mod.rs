@@ -9,6 +9,7 @@ pub mod near_field;
 pub mod quantized_rows;
 pub mod stiff_skin_kernel;
 pub mod rows;
+pub mod tissue_geometry;
 pub mod plate_on_layer;
 
 #[cfg(test)]

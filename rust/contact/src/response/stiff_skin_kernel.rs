@@ -10,7 +10,7 @@ use super::bonded_layer::Layer;
 use super::kernel_grid::{KNOTS_PER_THICKNESS, RANGE_IN_THICKNESSES, RULE};
 use super::layer_kernel::interpolate;
 use super::plate_on_layer::Sheet;
-use super::rows::Mix;
+use super::tissue_geometry::Mix;
 use crate::skin::sites::Sites;
 
 /// Wave numbers reach to this over the bending length, at most to `MOST_WAVE_NUMBER` (1/mm).

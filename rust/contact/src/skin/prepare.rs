@@ -5,7 +5,7 @@ use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, ve
 use super::merged_vertices::Welded;
 use super::sites::Sites;
 use super::tissue::{Place, Tissue};
-use crate::far_field::{Ground, Hierarchy};
+use crate::far_field::hierarchy::{Ground, Hierarchy};
 use crate::history::tissue_memory::History;
 use crate::response::kernel_grid::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
@@ -237,6 +237,13 @@ impl Skin {
         }
         (self.tissue, self.effects) = (tissue, effects);
         control.step("preparing", 1.0)
+    }
+
+    pub(crate) fn ground(&self) -> Ground<'_> {
+        Ground {
+            response: &self.response,
+            sites: &self.sites,
+        }
     }
 
     /// The welded mesh in a posture given for the mesh as given.

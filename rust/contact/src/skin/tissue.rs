@@ -3,12 +3,12 @@
 use thenar_surface::SkinDistance;
 
 use super::sites::Sites;
-use crate::effects::catalogue::Effect;
-use crate::effects::definition::active::ActiveEffect;
+use crate::effects::definition::active::{ActiveEffect, in_order};
+use crate::effects::definition::entry::Effect;
 use crate::effects::{bone, compressibility, inclusion, region_coupling, stiff_skin};
 use crate::response::bonded_layer::Layer;
 use crate::response::plate_on_layer::Sheet;
-use crate::response::rows::Geometry;
+use crate::response::tissue_geometry::Geometry;
 use crate::{ContactError, Material};
 
 /// The skin that effects act on.
@@ -196,13 +196,6 @@ impl Tissue {
             }
         }
     }
-}
-
-/// The effects that do anything, in the order of the catalogue; equal ones stay in the order given.
-pub fn in_order(effects: &[ActiveEffect]) -> Vec<&ActiveEffect> {
-    let mut acting: Vec<&ActiveEffect> = effects.iter().filter(|e| e.amplitude > 0.0).collect();
-    acting.sort_by_key(|e| e.effect.place());
-    acting
 }
 
 /// The layers of the materials.

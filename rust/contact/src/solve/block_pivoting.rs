@@ -4,71 +4,15 @@
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
+use super::lcp::{Accuracy, Compliance, EXACT, ROUGH, Solution};
 use super::mprgp::mprgp;
-use super::packed::Compliance;
 use super::submatrix::Kept;
 use crate::Control;
 
-/// Residual from which a level is loose.
-const ROUGH: f64 = 1e-4;
-/// Residual at which the set of a large problem is looked at once more: a set that proves wrong later is solved twice.
-const FINE: f64 = 1e-7;
-/// Residual of the certificate.
-const EXACT: f64 = 1e-12;
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
 const PATIENCE: usize = 8;
 /// Passes in all before the fallback.
 const MOST_PASSES: usize = 120;
-
-/// How far a contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Accuracy {
-    /// To 1e-4 of the largest gap: enough to see where the surface goes.
-    Rough,
-    /// To 1e-12 of it: the certificate; from forces that are already rough, this costs least.
-    #[default]
-    Full,
-}
-
-impl Accuracy {
-    /// Residuals to go through, relative to the largest gap; the set must hold still before the next is taken.
-    ///
-    /// Where products are dear, the set is looked at on the way to the certificate, not only at its end, and not before a rough
-    /// solution: steps are few, and each look costs two products.
-    fn levels(self, is_dear: bool) -> &'static [f64] {
-        match self {
-            Accuracy::Rough if is_dear => &[ROUGH],
-            Accuracy::Rough => &[1e-2, ROUGH],
-            Accuracy::Full if is_dear => &[FINE, EXACT],
-            Accuracy::Full => &[EXACT],
-        }
-    }
-
-    /// Largest complementarity of a contact that counts as solved.
-    pub fn certificate(self) -> f64 {
-        match self {
-            Accuracy::Rough => 5e-3,
-            Accuracy::Full => 1e-10,
-        }
-    }
-}
-
-/// Forces and what is left of the equations.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// Nodal force, N, >= 0.
-    pub force: Vec<f64>,
-    /// Slack `A p + d`, mm, >= 0.
-    pub slack: Vec<f64>,
-    /// Largest |min(A_ii p_i, s_i)|, relative to the largest |d|.
-    pub complementarity: f64,
-    /// Changes of the contact set.
-    pub pivots: usize,
-    /// Conjugate-gradient steps, or products of the fallback.
-    pub steps: usize,
-    /// True if the fallback was needed.
-    pub fell_back: bool,
-}
 
 /// Solves the contact of `matrix` (mm/N) under `gap` (mm, negative: penetrating), starting from the forces `start`.
 ///

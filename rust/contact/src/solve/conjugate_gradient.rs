@@ -1,6 +1,6 @@
 //! Conjugate gradients on a principal submatrix, with the preconditioner that the matrix gives for it.
 
-use super::packed::Symmetric;
+use super::symmetric::Symmetric;
 
 /// How a run of conjugate gradients ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

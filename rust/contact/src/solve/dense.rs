@@ -1,6 +1,7 @@
 //! The contact problem of a dense matrix that somebody else made.
 
-use super::block_pivoting::{Accuracy, Solution, solve_contact};
+use super::block_pivoting::solve_contact;
+use super::lcp::{Accuracy, Solution};
 use super::row_runs::Rows;
 use crate::{ContactError, Control};
 

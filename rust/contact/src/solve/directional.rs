@@ -7,9 +7,11 @@ use std::rc::Rc;
 
 use thenar_surface::Vec3;
 
-use super::packed::{Compliance, Half, Symmetric};
+use super::lcp::Compliance;
+use super::packed::Half;
 use super::row_runs::Rows;
 use super::submatrix::Kept;
+use super::symmetric::Symmetric;
 
 /// Unit directions by axis.
 #[derive(Debug, Clone, Default)]

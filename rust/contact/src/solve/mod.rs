@@ -6,12 +6,16 @@ mod directional;
 mod block_pivoting;
 mod conjugate_gradient;
 mod dense;
+mod lcp;
 mod packed;
 mod submatrix;
+mod symmetric;
 mod mprgp;
 
-pub use block_pivoting::{Accuracy, Solution, solve_contact};
+pub use block_pivoting::solve_contact;
 pub use dense::solve_dense;
 pub use directional::{Along, Axes, Part};
-pub use packed::{Compliance, Preconditioner, Symmetric};
+pub use lcp::Compliance;
+pub use lcp::{Accuracy, Solution};
 pub use submatrix::Kept;
+pub use symmetric::{Preconditioner, Symmetric};

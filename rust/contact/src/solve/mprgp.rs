@@ -1,6 +1,6 @@
 //! The solver that always ends: modified proportioning with reduced gradient projections (MPRGP, Dostal & Schoeberl 2005).
 
-use super::packed::Compliance;
+use super::lcp::Compliance;
 use crate::Control;
 
 /// Minimizes `x A x / 2 + d x` over `x >= 0`, from the feasible part of the `x` given.

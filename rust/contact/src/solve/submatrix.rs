@@ -1,7 +1,8 @@
 //! The part of a matrix that contact sets are solved on.
 
-use super::packed::{Half, Symmetric};
+use super::packed::Half;
 use super::row_runs::{Entry, Rows};
+use super::symmetric::Symmetric;
 
 /// Share of the unknowns above which the set of a large problem is solved in place instead of copied out.
 const COPY_SHARE: f64 = 0.6;

@@ -6,9 +6,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::ring_contact::touch;
 use super::ring_quadrature::Rings;
+use super::stiff_skin::StiffSkin;
 use super::wave_response::moved;
-use super::{StiffSkin, touch};
 use crate::response::bonded_layer::Layer;
 
 /// Part of a new tension that is taken in a turn, relative change of the force that ends them, and how many there are at most.

@@ -7,7 +7,7 @@
 
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
 
-use super::StiffSkin;
+use super::stiff_skin::StiffSkin;
 use crate::response::bonded_layer::Layer;
 
 /// What a pressure p and a force along the skin f of one wave number move: downwards w, and along itself the skin's middle v.

@@ -1,9 +1,9 @@
 //! One effect switched on: amplitude, shape numbers, forms chosen, and where it acts.
 
+use super::entry::Effect;
 use super::entry::Entry;
-use crate::effects::catalogue::{CATALOGUE, Effect};
-use crate::effects::{bone, relaxation};
 use crate::{ContactError, Model};
+use std::fmt;
 
 /// An effect that a user, or a diagnosis, has switched on.
 ///
@@ -12,10 +12,12 @@ use crate::{ContactError, Model};
 /// let bone = ActiveEffect::named("bone", 1.0).unwrap().with("thickness_mm", 5.0).unwrap();
 /// assert_eq!(bone.number("thickness_mm"), 5.0);
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone)]
 pub struct ActiveEffect {
     /// Which.
     pub effect: Effect,
+    /// What the catalogue says of it.
+    pub(crate) entry: &'static Entry,
     /// How much of it; 0 is the base model, bit for bit.
     pub amplitude: f64,
     /// Its numbers, in the order of [`Entry::shape`].
@@ -29,19 +31,6 @@ pub struct ActiveEffect {
 }
 
 impl ActiveEffect {
-    /// An effect with the catalogue's numbers, on all regions.
-    pub fn new(effect: Effect, amplitude: f64) -> ActiveEffect {
-        let entry = effect.entry();
-        ActiveEffect {
-            effect,
-            amplitude,
-            shape: entry.shape.iter().map(|number| number.default).collect(),
-            chosen: vec![0; entry.choices.len()],
-            regions: None,
-            painted: None,
-        }
-    }
-
     /// True if both act alike: equal, and painted at the same vertices. (Unpainted vertices are NaN, which equals nothing.)
     pub fn acts_as(&self, other: &ActiveEffect) -> bool {
         let bits = |effect: &ActiveEffect| -> Option<Vec<u64>> {
@@ -53,20 +42,6 @@ impl ActiveEffect {
             ..effect.clone()
         };
         bare(self) == bare(other) && bits(self) == bits(other)
-    }
-
-    /// The effect of that name, with the catalogue's numbers, on all regions.
-    ///
-    /// # Errors
-    /// [`ContactError::UnknownEffect`] with the names that there are.
-    pub fn named(name: &str, amplitude: f64) -> Result<ActiveEffect, ContactError> {
-        match Effect::named(name) {
-            Some(effect) => Ok(ActiveEffect::new(effect, amplitude)),
-            None => Err(ContactError::UnknownEffect {
-                name: name.to_owned(),
-                known: joined(CATALOGUE.iter().map(|(_, entry)| entry.name)),
-            }),
-        }
     }
 
     /// The same with one number changed.
@@ -126,7 +101,7 @@ impl ActiveEffect {
 
     /// What the catalogue says of it.
     pub fn entry(&self) -> &'static Entry {
-        self.effect.entry()
+        self.entry
     }
 
     /// A shape number by its name; NaN if there is none of that name.
@@ -173,12 +148,11 @@ impl ActiveEffect {
         }
         self.check_numbers()?;
         self.check_place(regions, vertices)?;
-        match self.effect {
-            Effect::Bone => bone::check(self),
-            Effect::Relaxation => relaxation::check(self),
-            _ => Ok(()),
-        }
-        .map_err(|problem| self.refuse(problem))
+        let Some(check) = self.entry.check else {
+            return Ok(());
+        };
+        let painted = self.painted.as_deref().unwrap_or_default();
+        check(&self.shape, painted).map_err(|problem| self.refuse(problem))
     }
 
     /// Checks amplitude and numbers.
@@ -237,10 +211,42 @@ impl ActiveEffect {
 
     pub(crate) fn refuse(&self, problem: String) -> ContactError {
         ContactError::Effect {
-            effect: self.effect.name(),
+            effect: self.entry.name,
             problem,
         }
     }
+}
+
+impl PartialEq for ActiveEffect {
+    fn eq(&self, other: &ActiveEffect) -> bool {
+        // An effect has one entry.
+        self.effect == other.effect
+            && self.amplitude == other.amplitude
+            && self.shape == other.shape
+            && self.chosen == other.chosen
+            && self.regions == other.regions
+            && self.painted == other.painted
+    }
+}
+
+impl fmt::Debug for ActiveEffect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ActiveEffect")
+            .field("effect", &self.effect)
+            .field("amplitude", &self.amplitude)
+            .field("shape", &self.shape)
+            .field("chosen", &self.chosen)
+            .field("regions", &self.regions)
+            .field("painted", &self.painted)
+            .finish()
+    }
+}
+
+/// The effects that do anything, in the order of the catalogue; equal ones stay in the order given.
+pub fn in_order(effects: &[ActiveEffect]) -> Vec<&ActiveEffect> {
+    let mut acting: Vec<&ActiveEffect> = effects.iter().filter(|e| e.amplitude > 0.0).collect();
+    acting.sort_by_key(|e| e.effect.place());
+    acting
 }
 
 fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> String {
@@ -252,7 +258,7 @@ fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str>) -> 
     }
 }
 
-fn joined<'a>(names: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn joined<'a>(names: impl Iterator<Item = &'a str>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 

@@ -1,5 +1,61 @@
 //! What the catalogue says of one effect: its numbers with their sources, and the signs it must leave in data.
 
+/// An effect of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Effect {
+    /// Soft tissue of another thickness over bone.
+    Bone,
+    /// Tissue that gives up volume.
+    Compressibility,
+    /// A thin stiff skin over soft pulp.
+    StiffSkin,
+    /// Regions that answer each other's forces only in part.
+    RegionCoupling,
+    /// Another growth of the modulus.
+    StiffeningLaw,
+    /// A place where the tissue is stiffer or softer.
+    Inclusion,
+    /// Stiffness that falls with use and recovers in rest.
+    CycleSoftening,
+    /// Force that fades with time.
+    Relaxation,
+    /// Fluid that leaves the pressed tissue.
+    Drainage,
+    /// Energy lost per cycle at any speed.
+    RateIndependentLoss,
+    /// Skin that sticks to the product and slips over it.
+    Friction,
+    /// Skin that clings to the product.
+    Adhesion,
+    /// A fixture that yields in series with the skin.
+    FixtureCompliance,
+    /// A mat that lies beside where it is said to lie.
+    Misregistration,
+    /// Sensels that pass part of their reading on.
+    Crosstalk,
+    /// Readings too large or too small by a factor.
+    Gain,
+    /// A zero point that is not at zero.
+    Offset,
+    /// Readings that wander with time.
+    Drift,
+    /// Readings that stop at a ceiling.
+    Saturation,
+    /// Readings below a floor that are shown as nothing.
+    Threshold,
+    /// Sensels that show nothing.
+    DeadCells,
+    /// A channel whose clock is behind.
+    Timing,
+}
+
+impl Effect {
+    /// Its place in the catalogue, and so in the order of composition.
+    pub fn place(self) -> usize {
+        self as usize
+    }
+}
+
 /// When an effect acts, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
@@ -129,6 +185,9 @@ pub struct Consequence {
     pub sentence: &'static str,
 }
 
+/// A check of shape numbers and painted values; says what is wrong.
+pub type Check = fn(shape: &[f64], painted: &[f64]) -> Result<(), String>;
+
 /// What the catalogue says of one effect.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
@@ -148,6 +207,8 @@ pub struct Entry {
     pub choices: &'static [Choice],
     /// Whether values can be painted per vertex instead, and of what.
     pub painted: Option<&'static str>,
+    /// Checks shape numbers and painted values (empty: none) beyond the range of each; None where the ranges say it all.
+    pub check: Option<Check>,
     /// Signs that must hold in data if it is at work.
     pub consequences: &'static [Consequence],
     /// Where the model comes from.

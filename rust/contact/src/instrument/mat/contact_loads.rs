@@ -4,7 +4,7 @@ use thenar_surface::Vec3;
 
 use super::PointLoad;
 use crate::Contact;
-use crate::press::Pressed;
+use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
 /// The loads of a contact on a mat that lies on the product as it was given: `posed` are the positions that were pressed

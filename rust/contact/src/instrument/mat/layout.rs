@@ -77,6 +77,11 @@ impl Lie {
         lie
     }
 
+    /// Sensels beside a sensel, at most four.
+    pub fn neighbors(&self, sensel: usize) -> impl Iterator<Item = usize> + '_ {
+        self.beside[sensel].iter().flatten().map(|k| *k as usize)
+    }
+
     /// From one sensel to another along the mat, in its two directions, mm: exact on planes and cylinders.
     pub fn apart(&self, centers: &[Vec3], (from, to): (usize, usize)) -> [f64; 2] {
         let chord = centers[to] - centers[from];

@@ -120,10 +120,7 @@ impl Mat {
 
     /// Sensels beside a sensel, at most four.
     pub fn neighbors(&self, sensel: usize) -> impl Iterator<Item = usize> + '_ {
-        self.lie.beside[sensel]
-            .iter()
-            .flatten()
-            .map(|k| *k as usize)
+        self.lie.neighbors(sensel)
     }
 
     /// What the mat reads: mean pressure over each sensel, kPa.
@@ -139,7 +136,7 @@ impl Mat {
                 continue;
             };
             if !placement.is_none() {
-                spot = placement.moved(self, spot);
+                spot = placement.moved((&self.lie, &self.centers), spot);
             }
             self.share(&spot, load, &mut force);
         }
@@ -184,7 +181,7 @@ impl Mat {
     }
 
     /// From one sensel to another along the mat, in its two directions, mm.
-    pub(super) fn apart(&self, from: usize, to: usize) -> [f64; 2] {
+    fn apart(&self, from: usize, to: usize) -> [f64; 2] {
         self.lie.apart(&self.centers, (from, to))
     }
 

@@ -1,6 +1,8 @@
 //! A mat that lies otherwise than it should: shifted along itself and turned about its middle, flat or wrapped.
 
-use super::Mat;
+use thenar_surface::Vec3;
+
+use super::layout::Lie;
 
 /// How a mat lies otherwise than it should.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,14 +27,14 @@ impl Placement {
     }
 
     /// Where a load lies as the misplaced mat sees it.
-    pub(super) fn moved(&self, mat: &Mat, spot: Spot) -> Spot {
-        let flat = mat.flat()[spot.sensel];
+    pub(super) fn moved(&self, (lie, centers): (&Lie, &[Vec3]), spot: Spot) -> Spot {
+        let flat = lie.flat[spot.sensel];
         let [x, y] = [0, 1].map(|axis| flat[axis] + spot.at[axis]);
         let (sin, cos) = self.turn_rad.sin_cos();
         let [a, b] = [x - self.shift_mm[0], y - self.shift_mm[1]];
         let step = [cos * a + sin * b - x, cos * b - sin * a - y];
         settled(
-            mat,
+            (lie, centers),
             Spot {
                 at: [0, 1].map(|axis| spot.at[axis] + step[axis]),
                 ..spot
@@ -42,11 +44,11 @@ impl Placement {
 }
 
 /// The same place seen from the sensel nearest to it, reached from neighbor to neighbor.
-fn settled(mat: &Mat, mut spot: Spot) -> Spot {
+fn settled((lie, centers): (&Lie, &[Vec3]), mut spot: Spot) -> Spot {
     let far = |at: [f64; 2]| at[0].hypot(at[1]);
     loop {
-        let seen = mat.neighbors(spot.sensel).map(|sensel| {
-            let apart = mat.apart(spot.sensel, sensel);
+        let seen = lie.neighbors(spot.sensel).map(|sensel| {
+            let apart = lie.apart(centers, (spot.sensel, sensel));
             let at = [0, 1].map(|axis| spot.at[axis] - apart[axis]);
             Spot { sensel, at }
         });

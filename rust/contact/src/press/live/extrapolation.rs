@@ -2,12 +2,10 @@
 
 use thenar_surface::{Gap, Vec3};
 
-use crate::press::displacement_field::can_reach;
-use crate::press::relinearize::{Setting, vertex};
-use crate::press::zone_state::Beyond;
+use crate::press::setting::{Setting, vertex};
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::Shown;
+use crate::workspace::live_cache::Shown;
 use crate::{ContactError, Control, Model};
 
 /// Sites whose patches are farther apart than this answer each other as they did last, mm: 3 thicknesses of a finger's tissue.
@@ -21,6 +19,22 @@ const CLEAR: f64 = 0.3;
 /// Largest distance between written contact and product that ends a live solve, mm, and over the deepest penetration.
 const MISFIT: f64 = 0.02;
 const MISFIT_SHARE: f64 = 2.5e-3;
+
+/// What acts on the sites that are solved besides the coupling among them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Beyond {
+    /// Nothing: all that bears forces is solved, and all of it is coupled.
+    Nothing,
+    /// What does by the forces shown last.
+    Last,
+    /// What does by the forces that those are changing to.
+    Trend,
+}
+
+/// Whether a displacement `u` is longer than skin is away from the product, mm.
+pub fn can_reach(u: &Vec3, distance: f64) -> bool {
+    distance < 0.0 || distance * distance < u.norm_squared()
+}
 
 /// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
 pub fn ahead(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
@@ -154,8 +168,8 @@ mod tests {
     use super::*;
     use crate::detection::gaps::detect;
     use crate::detection::press_direction::Sums;
-    use crate::press::displacement_field::Found;
     use crate::press::live::reused_sites::keep;
+    use crate::press::solution::Found;
     use crate::response::test_sheet::sheet;
     use thenar_surface::{Mesh, Product};
 

@@ -3,13 +3,14 @@
 //! Certified each time: held skin is not carried off by what changed elsewhere, nor solved skin by what changed beyond its near
 //! coupling, farther than the written surface may miss the product; where it is, it is solved anew.
 
-use thenar_surface::{Gap, Vec3};
+use thenar_surface::Vec3;
 
 use super::extrapolation::{ahead, is_live};
 use crate::detection::press_direction::Sums;
-use crate::press::displacement_field::Found;
-use crate::press::relinearize::{Setting, vertex};
+use crate::press::setting::{Setting, vertex};
+use crate::press::solution::Found;
 use crate::skin::prepare::Skin;
+use crate::workspace::live_cache::{Held, Met};
 
 /// Skin in patches nearer than this to one in which skin moved is solved with it, mm (tests pass from 1 to 8).
 const REACH: f64 = 3.0;
@@ -22,39 +23,6 @@ const MOST: f64 = 0.7;
 const STRAY: f64 = 4.5e-3;
 /// Share of that from which skin that is foreseen to stray is solved.
 const EARLY: f64 = 0.9;
-
-/// Where a site met the product in the last live solve.
-#[derive(Debug, Clone)]
-pub struct Met {
-    /// Its gap before deformation, and its response weight.
-    gap: Option<Gap>,
-    weight: f64,
-    /// As in a solve's state.
-    pub touch: Gap,
-    pub direction: Vec3,
-    /// What the direction comes from, where it is an average.
-    pub sums: Sums,
-    pub cosine: f64,
-    pub travel: f64,
-    pub force: f64,
-    pub slack: f64,
-}
-
-/// The last live solve.
-#[derive(Debug, Clone, Default)]
-pub struct Held {
-    /// Its zone, ascending.
-    pub zone: Vec<u32>,
-    /// What each of them met, by site, so that what is held on to stays where it is.
-    met: Vec<Option<Met>>,
-}
-
-impl Held {
-    /// What a site met, if it was in the zone.
-    pub fn of(&self, site: u32) -> Option<&Met> {
-        self.met.get(site as usize)?.as_ref()
-    }
-}
 
 /// Which sites of `zone` hold on to what they met in the last live solve; the others are to be solved. Empty if all are.
 ///

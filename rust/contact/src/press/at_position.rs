@@ -1,0 +1,210 @@
+//! One press with the product at one position: detection, response, then active zone and solve; memory and adhesion move the posture.
+
+use std::time::Instant;
+
+use thenar_surface::{Mesh, Product, Vec3};
+
+use super::effective_modulus::{region_moduli, site_response};
+use super::pressed::{Pressed, Recalled};
+use super::relinearize::solve;
+use super::setting::Setting;
+use super::solution::Solved;
+use super::stage_times::{Seconds, add_time};
+use crate::detection::active_zone::{check_resolution, serving};
+use crate::detection::gaps::{Detection, detect};
+use crate::history::displaced_posture::{Moved, moved, restore};
+use crate::history::tissue_memory::Recall;
+use crate::interface::adhesion::{Attraction, MOST_SOLVES};
+use crate::interface::pulls::{Clinging, Pull, steady};
+use crate::skin::prepare::Skin;
+use crate::solve::Accuracy;
+use crate::workspace::warm_start::Last;
+use crate::{ContactError, Control};
+
+/// One position of the product, measured.
+struct Position<'a> {
+    product: &'a Product,
+    /// Gaps of the true posture.
+    detection: &'a Detection,
+    /// What the tissue remembers, if a protocol is followed.
+    recall: Option<&'a Recall>,
+    /// Response weight by site.
+    weight: &'a [f64],
+}
+
+/// Presses with the product moved by `shift` (mm).
+///
+/// # Errors
+/// Those of a press; see [`Skin::press`].
+pub fn press_at(
+    skin: &mut Skin,
+    posed: &Mesh,
+    (product, shift): (&Product, Vec3),
+    (control, seconds): (&Control, &mut Seconds),
+) -> Result<Pressed, ContactError> {
+    // 1 Detection.
+    control.step("distances", 0.0)?;
+    let started = Instant::now();
+    let detection = detect(skin, posed, product, shift)?;
+    add_time(seconds, "distances", started);
+    // 3 Response: its moduli and weights; rows and couplings are made for the zone.
+    let started = Instant::now();
+    let mut shear_modulus = region_moduli(skin, &detection);
+    let recall = recall(skin, &detection);
+    if let Some(recall) = &recall {
+        recall.soften(&mut shear_modulus);
+    }
+    let mut response = site_response(skin, &shear_modulus, &detection);
+    let attraction = Attraction::new(skin);
+    add_time(seconds, "response", started);
+    // 2 Active zone and 4 solve, with adhesion as often as it takes.
+    let started = Instant::now();
+    let position = Position {
+        product,
+        detection: &detection,
+        recall: recall.as_ref(),
+        weight: &response.weight,
+    };
+    let (mut solved, clinging) = match &attraction {
+        None => (solve_zone(skin, &position, &[], control)?, Clinging::none()),
+        Some(attraction) => solve_adhesive(skin, attraction, &position, control)?,
+    };
+    let modulus_at = &mut response.modulus;
+    let recalled = recall.map(|recall| {
+        let mut bearing = restore(skin, &mut solved, modulus_at, &recall);
+        let mut clings = vec![false; recall.at_once.len()];
+        for pull in &clinging.pulls {
+            bearing.push(elastic(skin, pull, &recall));
+            clings[skin.sites.home_region(pull.site as usize) as usize] = true;
+        }
+        Recalled {
+            recall,
+            bearing,
+            clings,
+        }
+    });
+    add_time(seconds, "solve", started);
+    Ok(Pressed {
+        detection,
+        solved,
+        shear_modulus,
+        modulus_at: response.modulus,
+        recalled,
+        clinging,
+        shear: None,
+    })
+}
+
+/// What the tissue remembers of the steps before, if a protocol is followed.
+fn recall(skin: &Skin, detection: &Detection) -> Option<Recall> {
+    let history = skin.history.as_ref()?;
+    Some(history.recall(&detection.max_penetration, &skin.sites))
+}
+
+/// Finds the active zone and solves its contact, in the posture that memory and attraction make of the true one.
+fn solve_zone(
+    skin: &mut Skin,
+    position: &Position<'_>,
+    pulls: &[Pull],
+    control: &Control,
+) -> Result<Solved, ContactError> {
+    let moved = displaced(skin, position, pulls, control)?;
+    let detection = moved
+        .as_ref()
+        .map_or(position.detection, |moved| &moved.detection);
+    let zone = serving(skin, detection);
+    check_resolution(skin, &zone)?;
+    let last = std::mem::take(&mut skin.memory.trail.last);
+    let elastic = position.recall.map(|recall| Last {
+        force: recall.elastic(&last.force, &skin.sites),
+        travel: Vec::new(),
+    });
+    let start = elastic.as_ref().unwrap_or(&last);
+    let setting = Setting {
+        product: position.product,
+        detection,
+        weight: position.weight,
+        start: (start.force.len() == skin.sites.len()).then_some(start),
+        // What moves besides the product is solved to the end.
+        accuracy: match &moved {
+            None => skin.memory.trail.accuracy,
+            Some(_) => Accuracy::Full,
+        },
+        spacing: skin.spacing,
+    };
+    let solved = solve(skin, zone, &setting, control);
+    skin.memory.trail.last = last;
+    let mut solved = solved?;
+    if let Some(moved) = &moved {
+        moved.add_to(&mut solved);
+    }
+    Ok(solved)
+}
+
+/// The posture displaced by remembered loads and by attraction; None where there are none.
+fn displaced(
+    skin: &mut Skin,
+    position: &Position<'_>,
+    pulls: &[Pull],
+    control: &Control,
+) -> Result<Option<Moved>, ContactError> {
+    if position.recall.is_none() && pulls.is_empty() {
+        return Ok(None);
+    }
+    let pulled: Vec<u32> = pulls.iter().map(|pull| pull.site).collect();
+    if skin.hierarchy.is_none() {
+        skin.response.make_rows(&pulled, &skin.sites);
+    }
+    let mut loads = position
+        .recall
+        .map_or_else(Vec::new, |recall| recall.loads.clone());
+    for pull in pulls {
+        loads.push(match position.recall {
+            Some(recall) => elastic(skin, pull, recall),
+            None => (pull.site, pull.load()),
+        });
+    }
+    let mut moved = moved(
+        skin,
+        position.product,
+        (position.detection, &loads),
+        (position.weight, control),
+    )?;
+    if !pulls.is_empty() {
+        moved.detection.deepen(skin);
+    }
+    Ok(Some(moved))
+}
+
+/// What an attraction is in the elastic tissue's terms: borne at once by what has not yet faded, N.
+fn elastic(skin: &Skin, pull: &Pull, recall: &Recall) -> (u32, Vec3) {
+    let region = skin.sites.home_region(pull.site as usize) as usize;
+    (pull.site, pull.load() / recall.at_once[region])
+}
+
+/// Finds attraction and contact together, from the attraction of the step before.
+fn solve_adhesive(
+    skin: &mut Skin,
+    attraction: &Attraction,
+    position: &Position<'_>,
+    control: &Control,
+) -> Result<(Solved, Clinging), ContactError> {
+    let mut pulls = skin.memory.trail.pulls.clone();
+    for solve in 1.. {
+        let solved = solve_zone(skin, position, &pulls, control)?;
+        let mut next = attraction.pulls(skin, (position.product, position.detection), &solved);
+        steady(&pulls, &mut next, solve);
+        let is_settled = attraction.is_settled(&pulls, &next);
+        if is_settled || solve == MOST_SOLVES {
+            return Ok((solved, Clinging { pulls, is_settled }));
+        }
+        pulls = next;
+        if position.recall.is_none() {
+            skin.memory.trail.last = Last {
+                travel: Vec::new(),
+                ..solved.to_start(skin.sites.len())
+            };
+        }
+    }
+    Err(ContactError::Cancelled)
+}

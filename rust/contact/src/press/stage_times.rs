@@ -1,0 +1,15 @@
+//! Wall time of a press by stage.
+
+use std::time::Instant;
+
+/// Wall time by stage, s.
+pub(crate) type Seconds = Vec<(&'static str, f64)>;
+
+/// Adds the time since `started` to a stage.
+pub(crate) fn add_time(seconds: &mut Seconds, stage: &'static str, started: Instant) {
+    let elapsed = started.elapsed().as_secs_f64();
+    match seconds.iter_mut().find(|s| s.0 == stage) {
+        Some(entry) => entry.1 += elapsed,
+        None => seconds.push((stage, elapsed)),
+    }
+}
