@@ -1,4 +1,4 @@
-//! What goes into a press and what comes out of it.
+//! The request: hand, model, press, force target, drag and start. The result is `fields::result`.
 
 use thenar_surface::{Mesh, Product, Vec3};
 

@@ -1,4 +1,4 @@
-//! What can be wrong with the input of a press, one variant a cause, each naming place and remedy.
+//! Errors of the input, one variant a cause, each with place and remedy.
 
 use thenar_surface::MeshError;
 

@@ -1,4 +1,4 @@
-//! Stage 2: the active zone, the sites that may come to touch; a warm start keeps the last one where it still serves.
+//! Stage 2: the active zone, the sites that may come into contact; a warm start keeps the last zone where it still serves.
 
 use crate::detection::gaps::Detection;
 use crate::skin::prepare::Skin;
@@ -18,7 +18,7 @@ pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
 
 /// [`candidates`] and their surroundings, to be kept while the posture changes little; with the `last` zone where that is little
 /// more, for what was lifted into it is likely to be again.
-pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
+pub fn widened_zone(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
     let lasting = within(skin, detection, WARM_MARGIN);
     let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
     let is_known = |s: &&u32| distance(**s) < f64::INFINITY;
@@ -35,10 +35,10 @@ pub fn lasting_with(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32
 }
 
 /// The last zone where it still serves, else the sites that may touch.
-pub fn serving(skin: &Skin, detection: &Detection) -> Vec<u32> {
+pub fn active_zone(skin: &Skin, detection: &Detection) -> Vec<u32> {
     let zone = candidates(skin, detection);
-    let last = &skin.memory.zone;
-    let is_warm = !skin.memory.trail.last.force.is_empty();
+    let last = &skin.workspace.problem.zone;
+    let is_warm = !skin.workspace.warm_start.last.force.is_empty();
     let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
     let is_known = |&s: &u32| distance(s) < f64::INFINITY;
     let serves = is_warm
@@ -47,7 +47,7 @@ pub fn serving(skin: &Skin, detection: &Detection) -> Vec<u32> {
         && last.iter().all(is_known);
     match (serves, is_warm && !zone.is_empty()) {
         (true, _) => last.clone(),
-        (false, true) => lasting_with(skin, detection, last),
+        (false, true) => widened_zone(skin, detection, last),
         (false, false) => zone,
     }
 }
@@ -78,7 +78,7 @@ pub fn check_resolution(skin: &Skin, zone: &[u32]) -> Result<(), ContactError> {
         let spacing_mm = (skin.sites.area[site as usize] * 2.0 / 3f64.sqrt()).sqrt();
         let thickness_mm = skin.tissue.thickness(site as usize, region as usize);
         if thickness_mm < COARSEST_SHARE * spacing_mm {
-            let vertex = skin.welded.source[skin.sites.vertex[site as usize] as usize] as usize;
+            let vertex = skin.merged.source[skin.sites.vertex[site as usize] as usize] as usize;
             return Err(ContactError::TooCoarse {
                 region,
                 title: skin.region_title(region as usize),

@@ -1,4 +1,4 @@
-//! Stages 1 and 2: which sites penetrate, how deep each region is pressed, and which sites may come to touch.
+//! Stage 1: signed gaps of the posed skin to the product, and the largest penetration of each region.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, SkinSurface, Vec3
 
 use crate::ContactError;
 use crate::skin::prepare::Skin;
-use crate::workspace::posture::Shape;
+use crate::workspace::posture::PostureShape;
 
 /// Reach of the distance query outside the product, mm.
 pub const CUT_OFF: f64 = 8.0;
@@ -68,8 +68,8 @@ pub fn detect(
     shift: Vec3,
 ) -> Result<Detection, ContactError> {
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
-    let seen = &mut skin.memory.seen;
-    let Shape { normals, areas } = seen.shape(posed);
+    let seen = &mut skin.workspace.posture;
+    let PostureShape { normals, areas } = seen.shape(posed);
     let facing = PosedSkin {
         points: &positions,
         normals: &normals,
@@ -103,7 +103,7 @@ pub fn detect(
     let (depth_mm, vertex) = deepest;
     if depth_mm > MOST_DEPTH {
         return Err(ContactError::Swallowed {
-            vertex: skin.welded.source[vertex as usize] as usize,
+            vertex: skin.merged.source[vertex as usize] as usize,
             depth_mm,
             limit_mm: MOST_DEPTH,
         });

@@ -1,4 +1,4 @@
-//! Values that spread over a graph: a screened diffusion whose result is linear in its input.
+//! Screened diffusion on a graph, `(1 + c L) x = b`: Chebyshev iteration with a coarse correction; linear in `b`.
 
 use std::collections::VecDeque;
 
@@ -67,7 +67,7 @@ impl Graph {
 }
 
 /// Solves `(1 + c L) x = b` with the graph's Laplacian L: every value spreads over its neighborhood.
-pub fn spread(b: &[Sums], graph: &Graph) -> Vec<Sums> {
+pub fn diffuse(b: &[Sums], graph: &Graph) -> Vec<Sums> {
     let mut x = vec![Sums::default(); b.len()];
     let is_strong = graph.strength >= STRONG;
     let Some(groups) = is_strong.then(|| Groups::new(graph)).flatten() else {
@@ -277,7 +277,7 @@ mod tests {
             let b: Vec<Sums> = (0..count).map(value).collect();
             let mut wanted = vec![Sums::default(); count];
             chebyshev(&graph, &b, (1.0, 1e-9), &mut wanted);
-            let found = spread(&b, &graph);
+            let found = diffuse(&b, &graph);
             let most = wanted
                 .iter()
                 .flatten()

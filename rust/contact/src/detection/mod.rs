@@ -1,4 +1,4 @@
-//! Stages 1 and 2: gaps to the product, the active zone and the direction in which each vertex is pressed.
+//! Stages 1 and 2: gaps to the product, active zone, press direction of each site.
 
 pub mod active_zone;
 pub mod gaps;

@@ -1,4 +1,4 @@
-//! The direction in which each site yields.
+//! The direction in which each site is pressed in: product normals averaged over the contact around it.
 //!
 //! Linear theory moves the skin of a contact in one direction, that of the load. The product's normal at each closest
 //! point would fan out under a small sphere and cost several percent of the force; so normals are averaged over the
@@ -6,7 +6,7 @@
 
 use thenar_surface::{Adjacency, Vec3};
 
-use super::graph_diffusion::{Graph, spread};
+use super::graph_diffusion::{Graph, diffuse};
 use crate::skin::sites::Sites;
 
 pub use super::graph_diffusion::Sums;
@@ -21,7 +21,7 @@ const MOST_DETOUR: f64 = 3.0;
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///
 /// `known`: sums of sites that keep theirs, and with them their directions; empty where none does.
-pub fn yielding_directions(
+pub fn press_directions(
     zone: &[u32],
     (normal, gap): (&[Vec3], &[f64]),
     known: &[Option<Sums>],
@@ -45,7 +45,7 @@ pub fn yielding_directions(
         let there = there.filter_map(|&v| place.get(sites.of_vertex[v as usize] as usize));
         there.copied().filter(|j| *j != u32::MAX)
     };
-    let averages = spread_beside((zone.len(), sums), (beside, known), spacing);
+    let averages = diffuse_beside((zone.len(), sums), (beside, known), spacing);
     let directions = averages.iter().zip(normal).enumerate().map(|(k, (s, n))| {
         let is_known = known.get(k).is_some_and(Option::is_some);
         if is_known {
@@ -53,14 +53,14 @@ pub fn yielding_directions(
         } else {
             let depth = (-gap[k]).max(0.0);
             let least = LEAST_COSINE.max(depth / (depth + MOST_DETOUR));
-            tame(Vec3::new(s[0], s[1], s[2]), (*n, least))
+            limit_tilt(Vec3::new(s[0], s[1], s[2]), (*n, least))
         }
     });
     (directions.collect(), averages)
 }
 
-/// [`spread`] of `count` values, where some are `known`: what lies beside them takes from them, and they stay.
-fn spread_beside<I: Iterator<Item = u32>>(
+/// [`diffuse`] of `count` values, where some are `known`: what lies beside them takes from them, and they stay.
+fn diffuse_beside<I: Iterator<Item = u32>>(
     (count, value): (usize, impl Fn(usize) -> Sums),
     (beside, known): (impl Fn(usize) -> I, &[Option<Sums>]),
     spacing: f64,
@@ -87,7 +87,7 @@ fn spread_beside<I: Iterator<Item = u32>>(
         right.push(sum);
     }
     let mut all: Vec<Sums> = (0..count).map(|k| known(k).unwrap_or_default()).collect();
-    for (k, x) in open.into_iter().zip(spread(&right, &graph)) {
+    for (k, x) in open.into_iter().zip(diffuse(&right, &graph)) {
         all[k] = x;
     }
     all
@@ -100,7 +100,7 @@ fn strength(spacing: f64) -> f64 {
 }
 
 /// Unit direction nearest to `average` within the cone around `normal`, of cosine `least`, that keeps the contact pressing.
-fn tame(average: Vec3, (normal, least): (Vec3, f64)) -> Vec3 {
+fn limit_tilt(average: Vec3, (normal, least): (Vec3, f64)) -> Vec3 {
     let direction = average.try_normalize(1e-300).unwrap_or(normal);
     let cosine = direction.dot(&normal);
     if cosine >= least {
@@ -127,10 +127,10 @@ mod tests {
             .map(|i| [0.3, 0.7, 1.1, 1.9].map(|pace| 1.0 + (pace * f64::from(i)).sin()))
             .collect();
         let value = |k: usize| b[k];
-        let whole = spread_beside((b.len(), value), (neighbors, &[]), 1.5);
+        let whole = diffuse_beside((b.len(), value), (neighbors, &[]), 1.5);
         let known = |i: u32| (20..50).contains(&i).then_some(whole[i as usize]);
         let known: Vec<Option<Sums>> = (0..n).map(known).collect();
-        let again = spread_beside((b.len(), value), (neighbors, &known), 1.5);
+        let again = diffuse_beside((b.len(), value), (neighbors, &known), 1.5);
         let all = || whole.iter().zip(&again).zip(&known);
         assert!(all().all(|((a, b), known)| known.is_none() || a == b));
         let off = all().flat_map(|((a, b), _)| (0..4).map(move |axis| (a[axis] - b[axis]).abs()));

@@ -1,4 +1,4 @@
-//! The list of effects, by the names that scripts, files and findings use.
+//! The catalogue of effects: one line each, in the order in which they compose.
 
 use super::definition::entry::Entry;
 use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};

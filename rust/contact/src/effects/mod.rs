@@ -1,4 +1,4 @@
-//! The physics that the base model leaves out: effects with an amplitude, shape numbers and a place, one file each.
+//! Physics beyond the base model: effects with an amplitude, shape numbers and a place, one file each.
 //!
 //! An effect of amplitude 0 leaves the base model as it is, bit for bit. Effects compose in the fixed order of [`Stage`]:
 //! geometry, stiffening, history, interface, instrument; within a stage in the order of [`CATALOGUE`]. What acts on the

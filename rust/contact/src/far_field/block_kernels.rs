@@ -1,4 +1,4 @@
-//! Blocks of single-precision entries times three fields at a time, and times them the other way round.
+//! Single-precision blocks times three fields, and their transposes: the inner loops of the far field.
 
 /// Three fields, the components of a vector at every place of a list.
 pub type Fields = [Vec<f64>; 3];

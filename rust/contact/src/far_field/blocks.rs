@@ -1,4 +1,4 @@
-//! The coupling of a zone as near blocks and far blocks, kept in memory; each pair of clusters is stored once.
+//! Near and far blocks of a zone's coupling, laid out in strips; each pair of clusters is stored once.
 
 use std::ops::Range;
 

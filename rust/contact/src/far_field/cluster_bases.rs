@@ -1,10 +1,10 @@
-//! The clusters of some sites, each with the sites it is told from when seen from afar.
+//! Clusters of a set of sites with their skeleton bases.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use super::cluster_tree::{Node, Tree};
-use super::hierarchy::{Ground, Hierarchy, Listed, SEPARATION, TOLERANCE};
+use super::hierarchy::{Hierarchy, SEPARATION, SiteList, SkinResponse, TOLERANCE};
 use super::skeletons::skeleton;
 use crate::{ContactError, Control};
 
@@ -55,7 +55,7 @@ impl Clusters {
     pub fn new(
         hierarchy: &Hierarchy,
         members: &[u32],
-        ground: Ground<'_>,
+        ground: SkinResponse<'_>,
         control: &Control,
     ) -> Result<Clusters, ContactError> {
         let tree = &hierarchy.tree;
@@ -138,14 +138,19 @@ impl Clusters {
         Some(lists?.into_iter().flatten().copied().collect())
     }
 
-    fn basis(&self, hierarchy: &Hierarchy, cluster: usize, ground: Ground<'_>) -> Option<Basis> {
+    fn basis(
+        &self,
+        hierarchy: &Hierarchy,
+        cluster: usize,
+        ground: SkinResponse<'_>,
+    ) -> Option<Basis> {
         let candidates = self.candidates(cluster)?;
         let node = &hierarchy.tree.nodes[self.list[cluster].node];
         let seen = seen_from(hierarchy, node, ground);
         if seen.is_empty() {
             return None;
         }
-        let listed = Listed::new(&seen, ground.sites);
+        let listed = SiteList::new(&seen, ground.sites);
         let mut block = vec![0.0f32; candidates.len() * seen.len()];
         hierarchy.block(ground, &candidates, &listed, &mut block);
         let mut block: Vec<f64> = block.into_iter().map(f64::from).collect();
@@ -159,7 +164,7 @@ impl Clusters {
 }
 
 /// Sites that stand for all that is far from a cluster, and in its range.
-fn seen_from(hierarchy: &Hierarchy, from: &Node, ground: Ground<'_>) -> Vec<u32> {
+fn seen_from(hierarchy: &Hierarchy, from: &Node, ground: SkinResponse<'_>) -> Vec<u32> {
     let tree = &hierarchy.tree;
     let least = (1.0 + SEPARATION) * from.radius;
     let place = |site: u32| ground.sites.rest[site as usize].position;

@@ -1,4 +1,4 @@
-//! Clusters of sites by where they lie in rest, each cut in two until few are left; the smallest lie within one patch.
+//! The cluster tree: sites bisected by rest position; leaves lie within one patch.
 
 use thenar_surface::Vec3;
 

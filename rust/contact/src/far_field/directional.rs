@@ -1,9 +1,9 @@
-//! The compliance of a zone along directions, as the solver sees it.
+//! The compliance of a large zone along its press directions, for the solver, and its preconditioner on a contact set.
 
 use super::block_kernels::zeros;
-use super::preconditioner::Rows;
-use super::zone_coupling::Coupled;
-use crate::solve::{Compliance, Kept, Preconditioner, Symmetric};
+use super::preconditioner::FactorRows;
+use super::zone_coupling::ZoneCoupling;
+use crate::solve::{Compliance, Preconditioner, Submatrix, Symmetric};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use thenar_surface::Vec3;
@@ -13,18 +13,18 @@ const POWER_STEPS: usize = 24;
 const MARGIN: f64 = 1.2;
 
 /// `A_ij = K_ij v_i . v_j` (mm/N) for a vector at every site of a zone: response weight times direction.
-pub struct Directed<'a> {
-    coupled: &'a Coupled,
+pub struct DirectionalCoupling<'a> {
+    coupled: &'a ZoneCoupling,
     along: &'a [Vec3],
     diagonal: Vec<f64>,
     is_active: Vec<bool>,
 }
 
-impl<'a> Directed<'a> {
+impl<'a> DirectionalCoupling<'a> {
     /// The compliance along the vectors, in the zone's order.
-    pub fn new(coupled: &'a Coupled, along: &'a [Vec3]) -> Self {
+    pub fn new(coupled: &'a ZoneCoupling, along: &'a [Vec3]) -> Self {
         let own = coupled.own().iter().zip(along);
-        Directed {
+        DirectionalCoupling {
             coupled,
             along,
             diagonal: own.map(|(k, v)| k * v.norm_squared()).collect(),
@@ -33,7 +33,7 @@ impl<'a> Directed<'a> {
     }
 }
 
-impl Symmetric for Directed<'_> {
+impl Symmetric for DirectionalCoupling<'_> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
@@ -43,11 +43,11 @@ impl Symmetric for Directed<'_> {
     }
 
     fn preconditioner(&self, set: &[u32]) -> Box<dyn Preconditioner + '_> {
-        Box::new(OnSet::new(self.coupled, self.along, set))
+        Box::new(SetPreconditioner::new(self.coupled, self.along, set))
     }
 }
 
-impl Directed<'_> {
+impl DirectionalCoupling<'_> {
     /// The compliance times `x`, which is zero outside `from`, at the places of `to`.
     fn between(&self, (from, to): (&[bool], &[bool]), x: &[f64], out: &mut [f64]) {
         let mut loads = zeros(x.len());
@@ -63,7 +63,7 @@ impl Directed<'_> {
     }
 }
 
-impl Compliance for Directed<'_> {
+impl Compliance for DirectionalCoupling<'_> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
         let from: Vec<bool> = x.iter().map(|x| *x != 0.0).collect();
         let mut to = vec![false; x.len()];
@@ -93,55 +93,55 @@ impl Compliance for Directed<'_> {
         MARGIN * length
     }
 
-    fn kept(&self, set: &[u32], _is_rough: bool) -> Kept<'_> {
+    fn submatrix(&self, set: &[u32], _is_rough: bool) -> Submatrix<'_> {
         let mut is_active = vec![false; self.along.len()];
         set.iter().for_each(|&i| is_active[i as usize] = true);
-        let part = Directed {
+        let part = DirectionalCoupling {
             coupled: self.coupled,
             along: self.along,
             diagonal: self.diagonal.clone(),
             is_active,
         };
-        Kept::in_place(self.along.len(), set, Box::new(part))
+        Submatrix::in_place(self.along.len(), set, Box::new(part))
     }
 
     fn is_narrow(&self, _is_rough: bool) -> bool {
         false
     }
 
-    fn is_dear(&self) -> bool {
+    fn is_costly(&self) -> bool {
         true
     }
 }
 
 /// The approximate inverse of `A_ij = K_ij v_i . v_j` on a set: directions hardly differ over a cluster, lengths may.
-pub struct OnSet<'a> {
-    coupled: &'a Coupled,
+pub struct SetPreconditioner<'a> {
+    coupled: &'a ZoneCoupling,
     /// Places of the set's unknowns among the clusters' sites.
     places: Vec<u32>,
     /// Rows that see some of the set.
-    rows: Vec<&'a Rows>,
+    rows: Vec<&'a FactorRows>,
     /// `1 / |v|` at the places of the set, N/mm^2.
     per_length: Vec<f64>,
 }
 
-impl<'a> OnSet<'a> {
+impl<'a> SetPreconditioner<'a> {
     /// For the unknowns of `set`, vectors `along` the whole zone.
-    pub fn new(coupled: &'a Coupled, along: &[Vec3], set: &[u32]) -> Self {
+    pub fn new(coupled: &'a ZoneCoupling, along: &[Vec3], set: &[u32]) -> Self {
         let mut is_in = vec![false; coupled.len()];
         set.iter().for_each(|&i| is_in[i as usize] = true);
         let mut place = vec![0; coupled.len()];
         for (k, &i) in coupled.place.iter().enumerate() {
             place[i as usize] = k as u32;
         }
-        let sees = |rows: &&Rows| {
+        let sees = |rows: &&FactorRows| {
             let mut columns = rows.columns.iter();
             columns.any(|&k| is_in[coupled.place[k as usize] as usize])
         };
-        OnSet {
+        SetPreconditioner {
             coupled,
             places: set.iter().map(|&i| place[i as usize]).collect(),
-            rows: coupled.inverse_factor.0.iter().filter(sees).collect(),
+            rows: coupled.sparse_inverse.0.iter().filter(sees).collect(),
             per_length: set
                 .iter()
                 .map(|&i| 1.0 / along[i as usize].norm())
@@ -150,7 +150,7 @@ impl<'a> OnSet<'a> {
     }
 }
 
-impl Preconditioner for OnSet<'_> {
+impl Preconditioner for SetPreconditioner<'_> {
     fn apply(&self, residual: &[f64], out: &mut [f64]) {
         let mut all = vec![0.0; self.coupled.len()];
         for ((&k, r), per) in self.places.iter().zip(residual).zip(&self.per_length) {

@@ -1,4 +1,4 @@
-//! Where loads carry a whole skin: near loads one by one, far clusters of them by their chosen sites; and how exact that is.
+//! Displacement of a large skin under loads: near loads one by one, far clusters by skeletons; error sampled.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
@@ -6,7 +6,7 @@ use thenar_surface::Vec3;
 use super::block_kernels::{Fields, zeros};
 use super::cluster_bases::Clusters;
 use super::cluster_tree::Node;
-use super::hierarchy::{Ground, Hierarchy, Listed, SEPARATION, gap};
+use super::hierarchy::{Hierarchy, SEPARATION, SiteList, SkinResponse, gap};
 use super::matrix_vector::raise;
 use crate::response::assembly::Load;
 use crate::response::entries::Scratch;
@@ -18,7 +18,7 @@ const SAMPLES: usize = 48;
 const AT_ONCE: usize = 512;
 
 /// A field and what it is worth.
-pub struct Carried {
+pub struct FarFieldDisplacement {
     /// `sum_j K_ij load_j` at every site; multiply by the response weight of the site for mm.
     pub field: Vec<Vec3>,
     /// Largest difference from the direct sum on a sample of sites, relative to the largest field.
@@ -43,9 +43,9 @@ impl Hierarchy {
         &self,
         (loads, clusters): (&[Load], &Clusters),
         known: &[Option<Vec3>],
-        ground: Ground<'_>,
+        ground: SkinResponse<'_>,
         control: &Control,
-    ) -> Result<Carried, ContactError> {
+    ) -> Result<FarFieldDisplacement, ContactError> {
         let sources = Sources::new(loads, clusters);
         let members = |node: &Node| &self.tree.order[node.first..node.last];
         let is_open = |node: &&Node| {
@@ -70,12 +70,12 @@ impl Hierarchy {
             }
         }
         let certificate = self.certify(loads, &field, ground);
-        Ok(Carried { field, certificate })
+        Ok(FarFieldDisplacement { field, certificate })
     }
 
     /// The field at the sites of a smallest cluster.
-    fn at(&self, leaf: &Node, sources: &Sources<'_>, ground: Ground<'_>) -> Fields {
-        let listed = Listed::new(&self.tree.order[leaf.first..leaf.last], ground.sites);
+    fn at(&self, leaf: &Node, sources: &Sources<'_>, ground: SkinResponse<'_>) -> Fields {
+        let listed = SiteList::new(&self.tree.order[leaf.first..leaf.last], ground.sites);
         let mut out = zeros(listed.sites.len());
         let mut row = vec![0.0f32; listed.sites.len()];
         let mut scratch = Scratch::default();
@@ -119,7 +119,7 @@ impl Hierarchy {
         out
     }
 
-    fn certify(&self, loads: &[Load], field: &[Vec3], ground: Ground<'_>) -> f64 {
+    fn certify(&self, loads: &[Load], field: &[Vec3], ground: SkinResponse<'_>) -> f64 {
         let largest = field.iter().map(|u| u.norm()).fold(0.0, f64::max);
         if largest == 0.0 {
             return 0.0;
@@ -130,7 +130,7 @@ impl Hierarchy {
         let anywhere = some(field.len()).map(|k| self.tree.order[k]);
         let samples: Vec<u32> = among.chain(anywhere).collect();
         let bearing: Vec<u32> = loads.iter().map(|load| load.site).collect();
-        let listed = Listed::new(&bearing, ground.sites);
+        let listed = SiteList::new(&bearing, ground.sites);
         let off = |&site: &u32| {
             let mut row = vec![0.0f32; bearing.len()];
             self.fill(ground, &listed, site, (&mut Scratch::default(), &mut row));

@@ -1,4 +1,4 @@
-//! The hierarchy of a large skin: its cluster tree, bounds of distance, and blocks of the response between clusters.
+//! The hierarchy of a large skin: cluster tree, bounds of distance, blocks of the response between site lists.
 
 use super::cluster_tree::{Node, Tree};
 use crate::Model;
@@ -27,20 +27,20 @@ pub struct Hierarchy {
 
 /// The skin and its response.
 #[derive(Clone, Copy)]
-pub struct Ground<'a> {
+pub struct SkinResponse<'a> {
     pub response: &'a Response,
     pub sites: &'a Sites,
 }
 
 impl Hierarchy {
     /// None where rows in memory serve: in small skins, and in model paper, whose response has no far field of its own.
-    pub fn new(model: Model, ground: Ground<'_>) -> Option<Hierarchy> {
+    pub fn new(model: Model, ground: SkinResponse<'_>) -> Option<Hierarchy> {
         let is_large = ground.sites.len() >= LEAST_SITES;
         (model == Model::Layer && is_large).then(|| Hierarchy::of(ground))
     }
 
     /// The hierarchy of a skin of any size.
-    pub(super) fn of(Ground { response, sites }: Ground<'_>) -> Hierarchy {
+    pub(super) fn of(SkinResponse { response, sites }: SkinResponse<'_>) -> Hierarchy {
         let patches = sites.patch_range.len();
         let mut bounds = vec![f32::INFINITY; patches * patches];
         for a in 0..patches as u32 {
@@ -73,15 +73,15 @@ pub(super) fn gap(a: &Node, b: &Node) -> f64 {
 }
 
 /// A list of sites, their places at hand, cut where the patch changes.
-pub(super) struct Listed {
+pub(super) struct SiteList {
     pub(super) sites: Vec<u32>,
     pub(super) rest: Vec<Site>,
     /// Patch, and the end of its part of the list.
     pub(super) runs: Vec<(u32, usize)>,
 }
 
-impl Listed {
-    pub(super) fn new(list: &[u32], sites: &Sites) -> Listed {
+impl SiteList {
+    pub(super) fn new(list: &[u32], sites: &Sites) -> SiteList {
         let mut runs: Vec<(u32, usize)> = Vec::new();
         for (k, &site) in list.iter().enumerate() {
             let patch = sites.patch[site as usize];
@@ -90,7 +90,7 @@ impl Listed {
                 _ => runs.push((patch, k + 1)),
             }
         }
-        Listed {
+        SiteList {
             sites: list.to_vec(),
             rest: list.iter().map(|&i| sites.rest[i as usize]).collect(),
             runs,
@@ -102,8 +102,8 @@ impl Hierarchy {
     /// `K` between the sites of a list and one site, 1/mm.
     pub(super) fn fill(
         &self,
-        ground: Ground<'_>,
-        list: &Listed,
+        ground: SkinResponse<'_>,
+        list: &SiteList,
         j: u32,
         (scratch, out): (&mut Scratch, &mut [f32]),
     ) {
@@ -124,7 +124,13 @@ impl Hierarchy {
     }
 
     /// `K` between rows and the sites of a list, row by row, 1/mm.
-    pub(super) fn block(&self, ground: Ground<'_>, rows: &[u32], list: &Listed, out: &mut [f32]) {
+    pub(super) fn block(
+        &self,
+        ground: SkinResponse<'_>,
+        rows: &[u32],
+        list: &SiteList,
+        out: &mut [f32],
+    ) {
         let mut scratch = Scratch::default();
         for (&i, out) in rows.iter().zip(out.chunks_mut(list.sites.len().max(1))) {
             self.fill(ground, list, i, (&mut scratch, out));

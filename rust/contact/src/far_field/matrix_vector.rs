@@ -1,16 +1,16 @@
-//! The product of a zone's coupling with fields over the zone.
+//! The matrix-vector product of a zone's coupling, for three components at once.
 
 use rayon::prelude::*;
 
 use super::block_kernels::{Fields, add_product, add_transposed, part, part_mut, zeros};
 use super::blocks::{Blocks, Strip};
 use super::cluster_bases::{Cluster, Clusters};
-use super::zone_coupling::Coupled;
+use super::zone_coupling::ZoneCoupling;
 
 /// Which clusters bear loads, and which are asked what comes of them.
 type Awake<'a> = (&'a [bool], &'a [bool]);
 
-impl Coupled {
+impl ZoneCoupling {
     /// `K` times three fields over the zone, at every site whose cluster holds a place that is asked for (`to`); elsewhere
     /// what comes of it is not all.
     ///

@@ -1,4 +1,4 @@
-//! The response of a large skin: exact where sites are near, told from a few chosen sites of each cluster where they are far.
+//! Hierarchical (H2) response of a large skin: near blocks exact, far blocks by skeletons.
 //!
 //! A nested-basis hierarchical matrix (H2; Hackbusch & Boerm 2002) whose bases are rows of the response itself (skeletons;
 //! Cheng et al. 2005), so that any kernel of model layer serves: several thicknesses, cuts, a stiff skin. What is left out of a
@@ -19,6 +19,6 @@ mod displacement;
 mod tests;
 
 pub use cluster_bases::Clusters;
-pub use directional::Directed;
-pub use displacement::Carried;
-pub use zone_coupling::{Coupled, MOST_GIB};
+pub use directional::DirectionalCoupling;
+pub use displacement::FarFieldDisplacement;
+pub use zone_coupling::{MOST_GIB, ZoneCoupling};

@@ -1,4 +1,4 @@
-//! What stands for the inverse of a zone's compliance in conjugate gradients: each smallest cluster, given the sites beside it.
+//! The preconditioner of large zones: a sparse approximate inverse (FSAI), one block of rows per leaf cluster.
 //!
 //! A sparse factor `G` with `G' G` near the inverse (Kolotilina & Yeremin 1993). The rows of a cluster are those that the exact factor
 //! has if only the nearest sites of earlier clusters are in the way (Vecchia 1988; Schaefer, Katzfuss & Owhadi 2021): what lies farther
@@ -10,7 +10,7 @@ use thenar_surface::Vec3;
 
 use super::blocks::Blocks;
 use super::cluster_bases::Clusters;
-use super::hierarchy::{Ground, Hierarchy, Listed};
+use super::hierarchy::{Hierarchy, SiteList, SkinResponse};
 use crate::ContactError;
 
 /// Clusters whose rows are made between two looks at the caller's wish to stop.
@@ -20,11 +20,11 @@ const BESIDE: usize = 64;
 
 /// The factor of a zone, by its smallest clusters.
 #[derive(Debug, Clone, Default)]
-pub struct InverseFactor(pub(super) Vec<Rows>);
+pub struct SparseInverse(pub(super) Vec<FactorRows>);
 
 /// Rows of one cluster.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct FactorRows {
     /// Places among the clusters' sites: those beside, then its own.
     pub columns: Vec<u32>,
     /// How many are its own.
@@ -33,17 +33,17 @@ pub(super) struct Rows {
     transposed: DMatrix<f64>,
 }
 
-impl InverseFactor {
+impl SparseInverse {
     /// Finds what lies beside each cluster; no rows yet.
-    pub fn planned(near: &Blocks, clusters: &Clusters, ground: Ground<'_>) -> InverseFactor {
+    pub fn planned(near: &Blocks, clusters: &Clusters, ground: SkinResponse<'_>) -> SparseInverse {
         let mut earlier: Vec<Vec<usize>> = vec![Vec::new(); clusters.list.len()];
         for pair in near.pairs.iter().filter(|pair| pair.a != pair.b) {
             let (a, b) = (pair.a.min(pair.b), pair.a.max(pair.b));
             earlier[b].push(a);
         }
         let smallest = (0..earlier.len()).filter(|&c| clusters.list[c].children.is_empty());
-        let rows = smallest.map(|c| Rows::planned(c, &mut earlier[c], clusters, ground));
-        InverseFactor(rows.collect())
+        let rows = smallest.map(|c| FactorRows::planned(c, &mut earlier[c], clusters, ground));
+        SparseInverse(rows.collect())
     }
 
     /// Number of entries.
@@ -67,7 +67,7 @@ impl InverseFactor {
     pub fn fill(
         &mut self,
         hierarchy: &Hierarchy,
-        (clusters, ground): (&Clusters, Ground<'_>),
+        (clusters, ground): (&Clusters, SkinResponse<'_>),
         watch: impl Fn(f64) -> Result<(), ContactError>,
     ) -> Result<(), ContactError> {
         let (mut done, all) = (0, self.0.len());
@@ -77,7 +77,7 @@ impl InverseFactor {
                 let sites = rows.columns.iter().map(|&k| clusters.sites[k as usize]);
                 let sites: Vec<u32> = sites.collect();
                 let mut response = vec![0.0; sites.len() * sites.len()];
-                let listed = Listed::new(&sites, ground.sites);
+                let listed = SiteList::new(&sites, ground.sites);
                 hierarchy.block(ground, &sites, &listed, &mut response);
                 rows.transposed = last_rows(&response, rows.own);
             });
@@ -87,13 +87,13 @@ impl InverseFactor {
     }
 }
 
-impl Rows {
+impl FactorRows {
     fn planned(
         cluster: usize,
         earlier: &mut [usize],
         clusters: &Clusters,
-        ground: Ground<'_>,
-    ) -> Rows {
+        ground: SkinResponse<'_>,
+    ) -> FactorRows {
         let members = |c: usize| clusters.list[c].first as u32..clusters.list[c].last as u32;
         let place = |k: u32| ground.sites.rest[clusters.sites[k as usize] as usize].position;
         earlier.sort_unstable();
@@ -113,7 +113,7 @@ impl Rows {
         let mut columns: Vec<u32> = beside.into_iter().map(|b| b.1).collect();
         columns.sort_unstable();
         columns.extend(members(cluster));
-        Rows {
+        FactorRows {
             columns,
             own: own.len(),
             transposed: DMatrix::default(),
@@ -158,8 +158,8 @@ mod tests {
 
     use super::*;
     use crate::Control;
-    use crate::far_field::{Coupled, Directed};
     use crate::far_field::tests::{all, skin};
+    use crate::far_field::{DirectionalCoupling, ZoneCoupling};
     use crate::solve::Symmetric;
 
     #[test]
@@ -174,7 +174,7 @@ mod tests {
         zone.sort_by(|a, b| from_corner(a).total_cmp(&from_corner(b)));
         zone.truncate(60);
         zone.sort_unstable();
-        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let coupled = ZoneCoupling::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
         let smallest = coupled.clusters.list.iter();
         let smallest = smallest.filter(|c| c.children.is_empty()).count();
         assert!(smallest > 2, "{smallest} clusters");
@@ -182,7 +182,7 @@ mod tests {
         let along: Vec<Vec3> = (0..zone.len())
             .map(|k| Vec3::new(0.3, -0.2, 0.9).normalize() * (1.0 + 0.1 * (k % 5) as f64))
             .collect();
-        let directed = Directed::new(&coupled, &along);
+        let directed = DirectionalCoupling::new(&coupled, &along);
         let right: Vec<f64> = (0..zone.len()).map(|k| (0.7 * k as f64).sin()).collect();
         let (mut x, mut image) = (vec![0.0; zone.len()], vec![0.0; zone.len()]);
         let set: Vec<u32> = (0..zone.len() as u32).collect();
@@ -210,9 +210,9 @@ mod tests {
         let skin = skin(26, [6.0; 3], Vec::new());
         let (ground, none) = (skin.ground(), Control::none());
         let zone = all(&skin);
-        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let coupled = ZoneCoupling::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
         let along = vec![Vec3::z(); zone.len()];
-        let directed = Directed::new(&coupled, &along);
+        let directed = DirectionalCoupling::new(&coupled, &along);
         // A round contact in the middle of the zone.
         let from_middle = |&k: &u32| ground.sites.rest[zone[k as usize] as usize].position.norm();
         let places = 0..zone.len() as u32;
@@ -245,11 +245,11 @@ mod tests {
         let skin = skin(72, [3.0, 6.0, 11.0], Vec::new());
         let (ground, none) = (skin.ground(), Control::none());
         let zone = all(&skin);
-        let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
+        let coupled = ZoneCoupling::new(&Hierarchy::of(ground), &zone, ground, &none).unwrap();
         let along: Vec<Vec3> = (0..zone.len())
             .map(|k| Vec3::new((0.01 * k as f64).sin(), 0.3, 1.0) * 0.4)
             .collect();
-        let directed = Directed::new(&coupled, &along);
+        let directed = DirectionalCoupling::new(&coupled, &along);
         let set: Vec<u32> = (0..zone.len() as u32).filter(|k| k % 11 < 8).collect();
         let map = directed.preconditioner(&set);
         let field =

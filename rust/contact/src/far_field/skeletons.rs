@@ -1,4 +1,4 @@
-//! Which rows of a block all its rows can be told from, and how: the interpolative decomposition by pivoted orthogonalization.
+//! Skeletons: the interpolative decomposition of a block by pivoted orthogonalization.
 //!
 //! Cheng, Gimbutas, Martinsson & Rokhlin 2005, by Gram-Schmidt with row pivoting.
 

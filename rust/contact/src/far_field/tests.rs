@@ -1,11 +1,11 @@
-//! The hierarchy of small skins against the direct sum, entry by entry.
+//! Tests of the far field of small skins against the direct sum, entry by entry.
 
 use nalgebra::DMatrix;
 use thenar_surface::{Mesh, Vec3};
 
 use super::block_kernels::{Fields, zeros};
-use super::hierarchy::{Ground, Hierarchy, Listed};
-use super::{Coupled, Directed};
+use super::hierarchy::{Hierarchy, SiteList, SkinResponse};
+use super::{DirectionalCoupling, ZoneCoupling};
 use crate::response::assembly::Load;
 use crate::response::entries::Scratch;
 use crate::skin::prepare::Skin;
@@ -70,12 +70,12 @@ fn loads(skin: &Skin, zone: &[u32]) -> Fields {
 
 /// Row `j` of the response, summed directly.
 fn direct(
-    ground: Ground<'_>,
+    ground: SkinResponse<'_>,
     hierarchy: &Hierarchy,
     (zone, j): (&[u32], u32),
     x: &Fields,
 ) -> [f64; 3] {
-    let listed = Listed::new(zone, ground.sites);
+    let listed = SiteList::new(zone, ground.sites);
     let mut row = vec![0.0; zone.len()];
     hierarchy.fill(ground, &listed, j, (&mut Scratch::default(), &mut row));
     [0, 1, 2].map(|axis| {
@@ -90,7 +90,7 @@ fn direct(
 fn astray(skin: &Skin, zone: &[u32]) -> f64 {
     let (ground, none) = (skin.ground(), Control::none());
     let hierarchy = Hierarchy::of(ground);
-    let coupled = Coupled::new(&hierarchy, zone, ground, &none).unwrap();
+    let coupled = ZoneCoupling::new(&hierarchy, zone, ground, &none).unwrap();
     let x = loads(skin, zone);
     let found = coupled.times(&x, (&vec![true; zone.len()], &vec![true; zone.len()]));
     let (mut worst, mut largest) = (0.0f64, 0.0f64);
@@ -130,7 +130,7 @@ fn near_entries_are_those_of_the_rows() {
     let hierarchy = Hierarchy::of(skin.ground());
     let zone = all(&skin);
     skin.response.make_rows(&zone, &skin.sites);
-    let listed = Listed::new(&zone, &skin.sites);
+    let listed = SiteList::new(&zone, &skin.sites);
     let mut row = vec![0.0; zone.len()];
     for &j in zone.iter().step_by(31) {
         hierarchy.fill(
@@ -156,10 +156,10 @@ fn the_operator_is_symmetric_and_definite() {
     let skin = skin(36, [3.0, 6.0, 11.0], Vec::new());
     let (ground, zone) = (skin.ground(), all(&skin));
     let hierarchy = Hierarchy::of(ground);
-    let coupled = Coupled::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
+    let coupled = ZoneCoupling::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
     let turned = |&i: &u32| Vec3::new((f64::from(i) * 0.01).sin() * 0.3, 0.2, 1.0).normalize();
     let along: Vec<Vec3> = zone.iter().map(turned).collect();
-    let directed = Directed::new(&coupled, &along);
+    let directed = DirectionalCoupling::new(&coupled, &along);
     let n = zone.len();
     let mut dense = DMatrix::zeros(n, n);
     let mut unit = vec![0.0; n];
@@ -180,9 +180,10 @@ fn the_operator_is_symmetric_and_definite() {
 fn some_rows_are_those_of_the_whole_product() {
     let skin = skin(64, [3.0, 6.0, 11.0], Vec::new());
     let (ground, zone) = (skin.ground(), all(&skin));
-    let coupled = Coupled::new(&Hierarchy::of(ground), &zone, ground, &Control::none()).unwrap();
+    let coupled =
+        ZoneCoupling::new(&Hierarchy::of(ground), &zone, ground, &Control::none()).unwrap();
     let along = vec![Vec3::new(0.2, 0.1, 0.9); zone.len()];
-    let directed = Directed::new(&coupled, &along);
+    let directed = DirectionalCoupling::new(&coupled, &along);
     // Loads within 9 mm of the middle; rows about it, and two in it.
     let [x, ..] = loads(&skin, &zone);
     let is_outer = |&k: &u32| x[k as usize] == 0.0 || k % 997 == 3;
@@ -207,7 +208,7 @@ fn threads_leave_no_mark() {
         pool.unwrap().install(|| {
             let hierarchy = Hierarchy::of(ground);
             let none = Control::none();
-            let coupled = Coupled::new(&hierarchy, &zone, ground, &none).unwrap();
+            let coupled = ZoneCoupling::new(&hierarchy, &zone, ground, &none).unwrap();
             let every = vec![true; zone.len()];
             let found = coupled.times(&loads(&skin, &zone), (&every, &every));
             let pressed = |&site: &u32| Load {
@@ -236,7 +237,7 @@ fn a_certificate_is_what_the_direct_sum_says() {
     let skin = skin(64, [5.0; 3], Vec::new());
     let (zone, ground) = (all(&skin), skin.ground());
     let hierarchy = Hierarchy::of(ground);
-    let coupled = Coupled::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
+    let coupled = ZoneCoupling::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
     let some: Vec<Load> = zone[500..900]
         .iter()
         .map(|&site| Load {
@@ -267,16 +268,16 @@ fn memory_is_stated_beforehand_and_refused_in_a_sentence() {
     let skin = skin(64, [6.0; 3], Vec::new());
     let (zone, ground) = (all(&skin), skin.ground());
     let hierarchy = Hierarchy::of(ground);
-    let planned = Coupled::planned(&hierarchy, &zone, ground, &Control::none()).unwrap();
+    let planned = ZoneCoupling::planned(&hierarchy, &zone, ground, &Control::none()).unwrap();
     let stated = planned.needed_gib();
     let refused = planned.check(0.5 * stated).unwrap_err();
     assert!(matches!(refused, ContactError::TooLarge { vertices, .. } if vertices == zone.len()));
     assert!(refused.to_string().contains("GiB"), "{refused}");
-    let made = Coupled::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
+    let made = ZoneCoupling::new(&hierarchy, &zone, ground, &Control::none()).unwrap();
     let entries = made.near.values.capacity() + made.far.values.capacity();
     let bases = made.clusters.list.iter().filter_map(|c| c.basis.as_ref());
     let transfers: usize = bases.map(|b| b.transfer.capacity()).sum();
-    let inverses = made.inverse_factor.made();
+    let inverses = made.sparse_inverse.made();
     let used = (4 * (entries + transfers) + 8 * inverses) as f64 / f64::from(1 << 30);
     assert!(used <= stated, "{used} GiB used, {stated} stated");
     assert!(used > 0.5 * stated);
@@ -295,7 +296,7 @@ fn the_building_can_be_cancelled_at_every_look() {
             cancelled: &cancelled,
             progress: &|_, _| {},
         };
-        Coupled::new(&hierarchy, &zone, ground, &control).map(|_| ())
+        ZoneCoupling::new(&hierarchy, &zone, ground, &control).map(|_| ())
     };
     assert!(until(usize::MAX).is_ok());
     let all = looks.load(std::sync::atomic::Ordering::Relaxed);

@@ -1,9 +1,9 @@
-//! The coupling of a zone: near blocks in full, far blocks between skeletons, and the preconditioner; each pair is stored once.
+//! The coupling of a zone: near blocks, far blocks between skeletons, preconditioner, and the memory they need.
 
 use super::blocks::{Blocks, Pair};
 use super::cluster_bases::Clusters;
-use super::hierarchy::{Ground, Hierarchy, Listed, SEPARATION, gap};
-use super::preconditioner::InverseFactor;
+use super::hierarchy::{Hierarchy, SEPARATION, SiteList, SkinResponse, gap};
+use super::preconditioner::SparseInverse;
 use crate::{ContactError, Control};
 
 /// Most memory for the response of one zone, GiB; a zone that needs more is refused before any is taken.
@@ -11,7 +11,7 @@ pub const MOST_GIB: f64 = 12.0;
 
 /// `K` between the sites of a zone, 1/mm.
 #[derive(Debug, Clone, Default)]
-pub struct Coupled {
+pub struct ZoneCoupling {
     /// The zone's clusters.
     pub clusters: Clusters,
     /// Place in the zone of each of the clusters' sites.
@@ -23,10 +23,10 @@ pub struct Coupled {
     /// `K_ii` in the zone's order.
     pub(super) own: Vec<f64>,
     /// What stands for the inverse.
-    pub(super) inverse_factor: InverseFactor,
+    pub(super) sparse_inverse: SparseInverse,
 }
 
-impl Coupled {
+impl ZoneCoupling {
     /// Makes the blocks of `zone` (ascending).
     ///
     /// # Errors
@@ -34,10 +34,10 @@ impl Coupled {
     pub fn new(
         hierarchy: &Hierarchy,
         zone: &[u32],
-        ground: Ground<'_>,
+        ground: SkinResponse<'_>,
         control: &Control,
-    ) -> Result<Coupled, ContactError> {
-        let mut coupled = Coupled::planned(hierarchy, zone, ground, control)?;
+    ) -> Result<ZoneCoupling, ContactError> {
+        let mut coupled = ZoneCoupling::planned(hierarchy, zone, ground, control)?;
         coupled.check(MOST_GIB)?;
         coupled.fill(hierarchy, ground, control)?;
         coupled.own = coupled.diagonal();
@@ -48,23 +48,23 @@ impl Coupled {
     pub(super) fn planned(
         hierarchy: &Hierarchy,
         zone: &[u32],
-        ground: Ground<'_>,
+        ground: SkinResponse<'_>,
         control: &Control,
-    ) -> Result<Coupled, ContactError> {
+    ) -> Result<ZoneCoupling, ContactError> {
         let clusters = Clusters::new(hierarchy, zone, ground, control)?;
         let find = |site: &u32| zone.partition_point(|z| z < site) as u32;
-        let mut coupled = Coupled {
+        let mut coupled = ZoneCoupling {
             place: clusters.sites.iter().map(find).collect(),
             offset: clusters.offsets(),
             clusters,
-            ..Coupled::default()
+            ..ZoneCoupling::default()
         };
         if !zone.is_empty() {
             coupled.pair(hierarchy, 0, 0);
         }
         coupled.lay_out();
         let (near, clusters) = (&coupled.near, &coupled.clusters);
-        coupled.inverse_factor = InverseFactor::planned(near, clusters, ground);
+        coupled.sparse_inverse = SparseInverse::planned(near, clusters, ground);
         Ok(coupled)
     }
 
@@ -73,7 +73,7 @@ impl Coupled {
         let bases = self.clusters.list.iter().filter_map(|c| c.basis.as_ref());
         let transfers: usize = bases.map(|basis| basis.transfer.len()).sum();
         let singles = self.near.entries + self.far.entries + transfers;
-        let doubles = self.inverse_factor.entries();
+        let doubles = self.sparse_inverse.entries();
         (singles * size_of::<f32>() + doubles * size_of::<f64>()) as f64 / f64::from(1 << 30)
     }
 
@@ -152,7 +152,7 @@ impl Coupled {
     fn fill(
         &mut self,
         hierarchy: &Hierarchy,
-        ground: Ground<'_>,
+        ground: SkinResponse<'_>,
         control: &Control,
     ) -> Result<(), ContactError> {
         let list = &self.clusters.list;
@@ -160,7 +160,7 @@ impl Coupled {
         let members = |c: usize| &sites[list[c].first..list[c].last];
         let chosen = |c: usize| list[c].basis.as_ref().map_or(&[][..], |b| &b.chosen);
         let make = |a: &[u32], b: &[u32], out: &mut [f32]| {
-            hierarchy.block(ground, a, &Listed::new(b, ground.sites), out);
+            hierarchy.block(ground, a, &SiteList::new(b, ground.sites), out);
         };
         let watched = |share: f64| control.step("response", share);
         self.near.fill(
@@ -171,7 +171,7 @@ impl Coupled {
             |p, out| make(chosen(p.a), chosen(p.b), out),
             |s| watched(0.8 + 0.15 * s),
         )?;
-        let factor = &mut self.inverse_factor;
+        let factor = &mut self.sparse_inverse;
         factor.fill(hierarchy, (&self.clusters, ground), |s| {
             watched(0.95 + 0.05 * s)
         })

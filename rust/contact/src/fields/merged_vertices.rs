@@ -1,4 +1,4 @@
-//! Merged vertices in the written result: each is measured where it is written, and put out of the product.
+//! Merged vertices in the result: each is measured where it is written and moved out of the product.
 //!
 //! The vertex that represents them was solved; they lie next to it, so its displacement may leave them inside.
 
@@ -18,10 +18,10 @@ const MOST_MOVES: usize = 3;
 
 /// Puts merged skin of `contact` out of the product, which lies moved by `shift` (mm), and adds what is left of it to the
 /// certificate.
-pub fn put_out(skin: &Skin, press: &Press<'_>, shift: Vec3, contact: &mut Contact) {
+pub fn move_out_of_product(skin: &Skin, press: &Press<'_>, shift: Vec3, contact: &mut Contact) {
     let given = match press.posed {
         Some(posed) => posed,
-        None => &skin.welded.given,
+        None => &skin.merged.given,
     };
     for vertex in merged(skin) {
         let normal = contact.normal[vertex];
@@ -49,7 +49,7 @@ pub fn put_out(skin: &Skin, press: &Press<'_>, shift: Vec3, contact: &mut Contac
 
 /// Skin of the mesh as given that another vertex stands for.
 fn merged(skin: &Skin) -> impl Iterator<Item = usize> + '_ {
-    let welded = &skin.welded;
-    let stands_alone = move |v: usize| welded.source[welded.welded[v] as usize] as usize == v;
+    let welded = &skin.merged;
+    let stands_alone = move |v: usize| welded.source[welded.merged_of[v] as usize] as usize == v;
     (0..welded.given.len()).filter(move |&v| !stands_alone(v) && skin.regions[v] >= 0)
 }

@@ -1,4 +1,4 @@
-//! Stage 5: what a designer reads from the solution.
+//! Stage 5: fields, totals and warnings of a solved contact.
 
 pub mod contact_area;
 pub mod patch_peak;

@@ -1,4 +1,4 @@
-//! The product's side of the contact: nodal forces of the skin spread over the product's vertices, none lost.
+//! Pressure on the product's vertices: nodal forces of the skin, distributed without loss.
 
 use thenar_surface::{Gap, Product, Vec3};
 

@@ -1,4 +1,4 @@
-//! The result of a press: arrays by vertex, totals, the region table, what is left of the equations.
+//! The result of a press: arrays by vertex, totals, region table, residuals, convergence.
 
 use thenar_surface::Vec3;
 

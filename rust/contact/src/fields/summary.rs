@@ -1,4 +1,4 @@
-//! From a solved contact to what the caller reads: arrays by vertex, the region table, totals, warnings.
+//! Builds the result of a press: arrays by vertex, region table, forces, center of pressure, areas.
 
 use thenar_surface::{Gap, Mesh, Product, Vec3};
 
@@ -6,8 +6,8 @@ use super::contact_area::{EdgeData, contact_areas};
 use super::patch_peak::{Field, patch_peak};
 use super::product_pressure::product_pressure;
 use super::result::{Contact, Convergence, RegionResult, Residual};
-use super::warning_rules::{Figures, remarks};
-use crate::interface::pulls::Clinging;
+use super::warning_rules::{CheckedFields, warnings_of};
+use crate::interface::pulls::Adhesion;
 use crate::interface::shear_result::{shear_fields, shear_load};
 use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
@@ -49,13 +49,13 @@ pub fn summarize(
     let peak_pressure = peak_pressure.fold(0.0, |most, p| f64::max(most, *p));
     let patch_peak = fields.patch_peak(skin, posed);
     let regions = region_table(skin, pressed, &fields);
-    let figures = Figures {
+    let figures = CheckedFields {
         displacement: &fields.displacement,
         force: &fields.force,
         pressure: &fields.pressure,
         patch_peak,
     };
-    let warnings = remarks(skin, (posed, product), pressed, &figures);
+    let warnings = warnings_of(skin, (posed, product), pressed, &figures);
     let shear = shear_fields(skin, pressed, &fields.area);
     let solved = &pressed.solved;
     let load_balance = if normal_force > 0.0 {
@@ -69,10 +69,10 @@ pub fn summarize(
         pressure: spread(skin, fields.pressure),
         gap: spread(skin, fields.gap),
         normal: spread(skin, fields.normal),
-        total_force: total_force + shear_force - pressed.clinging.force(),
+        total_force: total_force + shear_force - pressed.adhesion.force(),
         total_moment: touches.iter().map(moment).sum::<Vec3>()
             + shear_moment
-            + pressed.clinging.moment(shift),
+            + pressed.adhesion.moment(shift),
         center_of_pressure: if normal_force > 0.0 {
             center / normal_force
         } else {
@@ -90,7 +90,7 @@ pub fn summarize(
         product_pressure,
         offset,
         direction,
-        adhesion: adhesion_by_vertex(skin, &pressed.clinging),
+        adhesion: adhesion_by_vertex(skin, &pressed.adhesion),
         shear,
         residual: Residual {
             complementarity: solved.complementarity,
@@ -109,31 +109,31 @@ pub fn summarize(
 
 /// Values by vertex of the mesh as given, from those by welded vertex.
 fn spread<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
-    if skin.welded.merged() == 0 {
+    if skin.merged.merged() == 0 {
         return values;
     }
-    let welded = skin.welded.welded.iter();
+    let welded = skin.merged.merged_of.iter();
     welded.map(|&w| values[w as usize]).collect()
 }
 
 /// Nodal forces of the mesh as given: merged vertices bear none, the one that stands for them bears all.
 fn force_by_vertex(skin: &Skin, force: Vec<f64>) -> Vec<f64> {
-    if skin.welded.merged() == 0 {
+    if skin.merged.merged() == 0 {
         return force;
     }
     let mut by_vertex = vec![0.0; skin.vertices()];
-    for (&source, f) in skin.welded.source.iter().zip(&force) {
+    for (&source, f) in skin.merged.source.iter().zip(&force) {
         by_vertex[source as usize] = *f;
     }
     by_vertex
 }
 
 /// Attraction of every vertex of the mesh as given, N; merged vertices bear none.
-fn adhesion_by_vertex(skin: &Skin, clinging: &Clinging) -> Vec<f64> {
+fn adhesion_by_vertex(skin: &Skin, adhesion: &Adhesion) -> Vec<f64> {
     let mut force = vec![0.0; skin.vertices()];
-    for pull in &clinging.pulls {
+    for pull in &adhesion.pulls {
         let vertex = skin.sites.vertex[pull.site as usize] as usize;
-        force[skin.welded.source[vertex] as usize] = pull.newton;
+        force[skin.merged.source[vertex] as usize] = pull.newton;
     }
     force
 }
@@ -152,7 +152,7 @@ pub struct Totals {
 pub fn totals(skin: &Skin, posed: &Mesh, pressed: &Pressed) -> Totals {
     let fields = Fields::new(skin, posed, pressed);
     let table = region_table(skin, pressed, &fields);
-    let pressed = skin.welded.welded.iter().enumerate();
+    let pressed = skin.merged.merged_of.iter().enumerate();
     Totals {
         region_area: table.iter().map(|row| row.area).collect(),
         region_force: table.iter().map(|row| row.force).collect(),
@@ -206,7 +206,7 @@ impl Fields {
                     2.0 * pressed.modulus_at[site as usize] / (1.0 - material.poisson_ratio);
             }
         }
-        if !pressed.clinging.pulls.is_empty() {
+        if !pressed.adhesion.pulls.is_empty() {
             // The law that places the edge between vertices is that of contact without attraction.
             slack.fill(f64::NAN);
         }

@@ -1,4 +1,4 @@
-//! Remarks on a press: where the model was stretched, and what could not be right.
+//! The conditions under which a press gets each warning, and their thresholds.
 
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -30,7 +30,7 @@ const HELD_SHARE: f64 = 0.1;
 const BALANCED_SHARE: f64 = 0.25;
 
 /// Numbers of a result that remarks look at; by welded vertex.
-pub struct Figures<'a> {
+pub struct CheckedFields<'a> {
     /// mm.
     pub displacement: &'a [Vec3],
     /// N.
@@ -42,11 +42,11 @@ pub struct Figures<'a> {
 }
 
 /// Everything there is to say about a press.
-pub fn remarks(
+pub fn warnings_of(
     skin: &Skin,
     (posed, product): (&Mesh, &Product),
     pressed: &Pressed,
-    figures: &Figures<'_>,
+    figures: &CheckedFields<'_>,
 ) -> Vec<Warning> {
     let of_meshes = skin.warnings().iter().chain(product.warnings());
     let mut said: Vec<Warning> = of_meshes.cloned().map(Warning::Note).collect();
@@ -64,7 +64,7 @@ pub fn remarks(
         said.extend(crease(skin, pressed, figures));
         said.extend(balance(pressed));
     }
-    if !pressed.clinging.is_settled {
+    if !pressed.adhesion.is_settled {
         said.push(Warning::AdhesionUnsettled);
     }
     if !pressed.solved.convergence.has_converged {
@@ -123,7 +123,7 @@ fn size(posed: &Mesh) -> Option<Warning> {
     (extent < CREDIBLE_SIZE.0 || extent > CREDIBLE_SIZE.1).then_some(Warning::HandSize { extent })
 }
 
-fn few(skin: &Skin, figures: &Figures<'_>) -> Option<Warning> {
+fn few(skin: &Skin, figures: &CheckedFields<'_>) -> Option<Warning> {
     let vertices = figures.force.iter().filter(|f| **f > 0.0).count();
     (vertices < FEW).then_some(Warning::FewVertices {
         vertices,
@@ -131,18 +131,18 @@ fn few(skin: &Skin, figures: &Figures<'_>) -> Option<Warning> {
     })
 }
 
-fn edge(figures: &Figures<'_>) -> Option<Warning> {
+fn edge(figures: &CheckedFields<'_>) -> Option<Warning> {
     let patch_peak = figures.patch_peak;
     (patch_peak > MOST_PATCH).then_some(Warning::Edge { patch_peak })
 }
 
 /// The peak on skin that the posture has folded together, where force over posed area says little.
-fn crease(skin: &Skin, pressed: &Pressed, figures: &Figures<'_>) -> Option<Warning> {
+fn crease(skin: &Skin, pressed: &Pressed, figures: &CheckedFields<'_>) -> Option<Warning> {
     let by_pressure = |a: &usize, b: &usize| figures.pressure[*a].total_cmp(&figures.pressure[*b]);
     let peak = (0..figures.pressure.len()).max_by(by_pressure)?;
     let share = pressed.detection.areas[peak] / skin.rest_area[peak];
     (share < CREASED).then(|| Warning::Crease {
-        vertex: skin.welded.source[peak] as usize,
+        vertex: skin.merged.source[peak] as usize,
         share,
     })
 }
@@ -161,16 +161,16 @@ fn balance(pressed: &Pressed) -> Option<Warning> {
 }
 
 /// Skin that moved farther than anything overlapped, unless the tissue's memory, a drag or attraction moves it as well.
-fn runaway(skin: &Skin, pressed: &Pressed, figures: &Figures<'_>) -> Option<Warning> {
+fn runaway(skin: &Skin, pressed: &Pressed, figures: &CheckedFields<'_>) -> Option<Warning> {
     let is_moved =
-        pressed.shear.is_some() || pressed.recalled.is_some() || !pressed.clinging.pulls.is_empty();
+        pressed.shear.is_some() || pressed.recalled.is_some() || !pressed.adhesion.pulls.is_empty();
     let squared = |(v, u): (usize, &Vec3)| (v, u.norm_squared());
     let moved = figures.displacement.iter().enumerate().map(squared);
     let (vertex, moved) = moved.max_by(|a, b| a.1.total_cmp(&b.1))?;
     let moved = moved.sqrt();
     let overlap = pressed.detection.deepest();
     (!is_moved && moved > overlap + MOST_BEYOND).then(|| Warning::Runaway {
-        vertex: skin.welded.source[vertex] as usize,
+        vertex: skin.merged.source[vertex] as usize,
         moved,
         overlap,
     })
@@ -180,7 +180,7 @@ fn runaway(skin: &Skin, pressed: &Pressed, figures: &Figures<'_>) -> Option<Warn
 fn bare(skin: &Skin, pressed: &Pressed) -> Option<Warning> {
     let mut deepest = (0.0, 0);
     let distances = &pressed.detection.distances;
-    for (&source, distance) in skin.welded.source.iter().zip(distances) {
+    for (&source, distance) in skin.merged.source.iter().zip(distances) {
         let depth = -distance;
         if depth > deepest.0 && skin.regions[source as usize] < 0 {
             deepest = (depth, source);

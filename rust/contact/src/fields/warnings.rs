@@ -1,4 +1,4 @@
-//! What a result has to say besides its numbers, and how grave each of it is.
+//! Warnings of a result: their numbers, wording and grade.
 
 use std::fmt;
 

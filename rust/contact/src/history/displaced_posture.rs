@@ -1,12 +1,12 @@
-//! A press of tissue that remembers: the posture moved by what is remembered before the solve, the forces scaled after it.
+//! The posture displaced by remembered loads before a solve, and the solution scaled back after it.
 
 use std::sync::Arc;
 
 use thenar_surface::{Product, Vec3};
 
-use super::tissue_memory::Recall;
+use super::tissue_memory::MemoryStep;
 use crate::detection::gaps::{Detection, distances_of, limits};
-use crate::press::solution::Solved;
+use crate::press::solution::SolvedContact;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
@@ -18,16 +18,16 @@ const NEAR: f64 = 2.0;
 const EDGE_SHARES: (f64, f64) = (0.02, 50.0);
 
 /// The posture as the memory leaves it.
-pub struct Moved {
+pub struct DisplacedPosture {
     /// Detection there; the largest penetrations stay those of the true posture.
     pub detection: Detection,
     /// Displacement that memory brings, by site, mm.
     field: Vec<Vec3>,
 }
 
-impl Moved {
+impl DisplacedPosture {
     /// Adds to a solution of the moved posture what moved it.
-    pub fn add_to(&self, solved: &mut Solved) {
+    pub fn add_to(&self, solved: &mut SolvedContact) {
         for (u, moved) in solved.displacement.iter_mut().zip(&self.field) {
             *u += moved;
         }
@@ -43,7 +43,7 @@ pub fn moved(
     product: &Product,
     (truth, loads): (&Detection, &[(u32, Vec3)]),
     (weight, control): (&[f64], &Control),
-) -> Result<Moved, ContactError> {
+) -> Result<DisplacedPosture, ContactError> {
     let load = |&(site, load): &(u32, Vec3)| Load {
         site,
         load: load * weight[site as usize],
@@ -83,7 +83,7 @@ pub fn moved(
         gaps: Arc::new(gaps),
         max_penetration: truth.max_penetration.clone(),
     };
-    Ok(Moved { detection, field })
+    Ok(DisplacedPosture { detection, field })
 }
 
 /// Turns the solution of the moved posture into that of the true one; returns what each site of the zone bears in the
@@ -94,9 +94,9 @@ pub fn moved(
 /// moves inward only what happened last counts, and that is elastic.
 pub fn restore(
     skin: &Skin,
-    solved: &mut Solved,
+    solved: &mut SolvedContact,
     modulus: &mut [f64],
-    recall: &Recall,
+    recall: &MemoryStep,
 ) -> Vec<(u32, Vec3)> {
     let mut bearing = Vec::with_capacity(solved.zone.len());
     for (k, &site) in solved.zone.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Where a product that moves along a direction first touches the skin.
+//! First touch: the travel along a direction at which the product reaches the skin.
 
 use thenar_surface::{GapLimits, Mesh, Product, Vec3, vertex_normals};
 

@@ -1,4 +1,4 @@
-//! Cycles of a course: what pressing and letting go put into the skin, and what of it did not come back.
+//! Loading cycles of a protocol: work put in and energy lost.
 
 use super::protocol_result::Course;
 

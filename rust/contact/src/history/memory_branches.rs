@@ -1,4 +1,4 @@
-//! The branches of memory that the effects ask for, each fading by a clock of its own.
+//! Memory branches of the tissue (generalized Maxwell), each with its clock: time, drainage or travel.
 
 use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect, drainage, rate_independent_loss, relaxation};

@@ -1,4 +1,4 @@
-//! What the tissue remembers: presses that follow one another in time, by a protocol.
+//! Protocols and tissue memory: presses that follow one another in time.
 //!
 //! The force on a site is `f = g * d f_e` (quasi-linear viscoelasticity, Fung 1993, 7.6) with f_e the force an elastic tissue
 //! would bear and `u = R f_e`. Over one step, with f_e a ramp, `f = a f_e + b`: a and b follow from the branches. With the

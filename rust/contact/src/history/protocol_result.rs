@@ -1,4 +1,4 @@
-//! What comes out of a protocol: force, area and pressure against time.
+//! The result of a protocol: force, area and pressure against time.
 
 use thenar_surface::Vec3;
 

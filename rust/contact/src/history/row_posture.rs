@@ -1,4 +1,4 @@
-//! Where hand and product stand at one row: the posture in the product's own frame, and how skin has turned since the last.
+//! Posture and product of one protocol row, in the product's frame; rotation of the skin since the row before.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3};
 use rayon::prelude::*;

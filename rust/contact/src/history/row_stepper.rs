@@ -1,4 +1,4 @@
-//! A protocol followed one row at a time: posture and product may move between rows, and the tissue remembers.
+//! Steps through a protocol row by row; posture and product may move between rows, tissue and friction keep their memory.
 
 use std::borrow::Cow;
 
@@ -8,20 +8,20 @@ use super::first_touch::first_touch;
 use super::protocol::{Demand, Row};
 use super::protocol_result::{Keep, Step};
 use super::row_posture::{Stand, carried, seen, turns};
-use super::tissue_memory::History;
+use super::tissue_memory::TissueMemory;
 use crate::api::{Drag, ForceTarget};
 use crate::fields::summary::{summarize, totals};
 use crate::fields::warnings::Warning;
 use crate::instrument::loads_of;
 use crate::interface::friction;
-use crate::interface::friction_state::Grasp;
-use crate::interface::stick_slip::Dragged;
+use crate::interface::friction_state::FrictionMemory;
+use crate::interface::stick_slip::StickSlipStep;
 use crate::press::at_position::press_at;
 use crate::press::force_control::{find_offset, mean_normal};
 use crate::press::pressed::Pressed;
 use crate::press::stage_times::Seconds;
 use crate::skin::prepare::Skin;
-use crate::workspace::warm_start::Trail;
+use crate::workspace::warm_start::WarmStart;
 use crate::{ActiveEffect, Contact, ContactError, Control};
 
 /// How far the product is taken off the skin where no force is asked for, mm.
@@ -38,16 +38,16 @@ pub struct Walk {
     touch: Option<f64>,
     /// The last posture, in the product's frame.
     posed: Option<Mesh>,
-    history: Option<History>,
-    grasp: Grasp,
-    trail: Trail,
+    history: Option<TissueMemory>,
+    friction_memory: FrictionMemory,
+    warm_start: WarmStart,
     rows: usize,
-    last: Option<Taken>,
+    last: Option<LastRow>,
 }
 
 /// The last row.
 #[derive(Clone)]
-struct Taken {
+struct LastRow {
     row: Row,
     step: Step,
     pressed: Pressed,
@@ -74,13 +74,13 @@ impl Walk {
             direction: direction.map(unit).transpose()?,
             touch: None,
             posed: None,
-            history: History::new(
+            history: TissueMemory::new(
                 skin.effects(),
                 skin.tissue.materials.len(),
                 skin.sites.len(),
             ),
-            grasp: Grasp::default(),
-            trail: Trail::default(),
+            friction_memory: FrictionMemory::default(),
+            warm_start: WarmStart::default(),
             rows: 0,
             last: None,
         })
@@ -139,7 +139,7 @@ impl Walk {
             return Ok(());
         }
         let vertex = skin.sites.vertex.iter().map(|v| *v as usize);
-        self.grasp.strays = vertex
+        self.friction_memory.strays = vertex
             .map(|v| before.positions()[v] - posed.positions()[v])
             .collect();
         if let Some(history) = &mut self.history {
@@ -215,7 +215,7 @@ impl Walk {
             Demand::Force(0.0) => touch - CLEARANCE,
             Demand::Force(newton) => {
                 if let Some(last) = &self.last {
-                    skin.memory.trail.offset =
+                    skin.workspace.warm_start.offset =
                         last.step.offset + last.pace * (row.time_s - last.row.time_s);
                 }
                 let target = ForceTarget {
@@ -237,7 +237,7 @@ impl Walk {
     fn keep(&self, skin: &mut Skin, row: &Row, (offset, pressed): (f64, &Pressed)) -> Option<Step> {
         let totals = totals(skin, self.posed.as_ref()?, pressed);
         let sheared = pressed.shear.as_ref().map(|shear| &shear.end);
-        let shear = sheared.map_or_else(Vec3::zeros, Dragged::force);
+        let shear = sheared.map_or_else(Vec3::zeros, StickSlipStep::force);
         if let (Some(history), Some(recalled)) = (skin.history.as_mut(), &pressed.recalled) {
             let place = (&skin.sites, &totals.region_area[..]);
             let borne = (&recalled.bearing[..], &recalled.clings[..]);
@@ -317,10 +317,10 @@ impl Skin {
         control: &Control,
     ) -> Result<Step, ContactError> {
         std::mem::swap(&mut self.history, &mut walk.history);
-        std::mem::swap(&mut self.memory.trail, &mut walk.trail);
+        std::mem::swap(&mut self.workspace.warm_start, &mut walk.warm_start);
         let step = self.step(walk, place, control);
         std::mem::swap(&mut self.history, &mut walk.history);
-        std::mem::swap(&mut self.memory.trail, &mut walk.trail);
+        std::mem::swap(&mut self.workspace.warm_start, &mut walk.warm_start);
         let row = walk.rows;
         let step = step.map_err(|error| match error {
             ContactError::Cancelled => error,
@@ -344,15 +344,15 @@ impl Skin {
             progress: &|_, _| {},
         };
         if walk.last.is_none() {
-            walk.grasp.travel = row.slide;
+            walk.friction_memory.travel = row.slide;
         }
         let (offset, mut pressed) = walk.press(self, (product, row), &quiet)?;
         let motion = Drag::Motion {
             travel: row.slide,
             turn: Vec3::zeros(),
         };
-        friction::drag(self, &mut pressed, (motion, &walk.grasp), &quiet)?;
-        walk.grasp = friction::grasp(&pressed, row.slide);
+        friction::drag(self, &mut pressed, (motion, &walk.friction_memory), &quiet)?;
+        walk.friction_memory = friction::friction_memory(&pressed, row.slide);
         pressed.start_next(self, offset);
         let step = walk
             .keep(self, row, (offset, &pressed))
@@ -365,7 +365,7 @@ impl Skin {
         let pace = held.map_or(0.0, |last| {
             (offset - last.step.offset) / (row.time_s - last.row.time_s)
         });
-        walk.last = Some(Taken {
+        walk.last = Some(LastRow {
             row: *row,
             step: step.clone(),
             pressed,

@@ -1,4 +1,4 @@
-//! Conducts a protocol: one press a row in one posture, each in the light of those before it.
+//! Conducts a whole protocol in one posture.
 
 use thenar_surface::{Product, Vec3};
 

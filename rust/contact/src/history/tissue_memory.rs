@@ -1,4 +1,4 @@
-//! The state of memory: elastic load and fading load of every branch, by site; softening, depth and contact radius by region.
+//! Internal variables of the tissue: elastic and fading loads by site; softening, depth and contact radius by region.
 
 use nalgebra::Rotation3;
 use thenar_surface::Vec3;
@@ -16,7 +16,7 @@ const FAINT: f64 = 1e-10;
 
 /// What the tissue remembers.
 #[derive(Debug, Clone)]
-pub struct History {
+pub struct TissueMemory {
     branches: Vec<Branch>,
     /// Share that never fades, by region.
     lasting: Vec<f64>,
@@ -46,7 +46,7 @@ struct Softening {
 
 /// What the memory means for the step being taken.
 #[derive(Debug, Clone)]
-pub struct Recall {
+pub struct MemoryStep {
     /// Share of the elastic load that is borne at once, by region.
     pub at_once: Vec<f64>,
     /// Factor of the modulus, by region.
@@ -61,7 +61,7 @@ pub struct Recall {
     depth: Vec<f64>,
 }
 
-impl Recall {
+impl MemoryStep {
     /// Multiplies the moduli by region with what use has left of them.
     pub fn soften(&self, shear_modulus: &mut [f64]) {
         shear_modulus
@@ -78,9 +78,9 @@ impl Recall {
     }
 }
 
-impl History {
+impl TissueMemory {
     /// Tissue that was never pressed. None if no effect remembers anything.
-    pub fn new(effects: &[ActiveEffect], regions: usize, sites: usize) -> Option<History> {
+    pub fn new(effects: &[ActiveEffect], regions: usize, sites: usize) -> Option<TissueMemory> {
         let (branches, lasting) = branches(effects, regions);
         let softening: Vec<Softening> = in_order(effects)
             .into_iter()
@@ -93,7 +93,7 @@ impl History {
         if branches.is_empty() && softening.is_empty() {
             return None;
         }
-        Some(History {
+        Some(TissueMemory {
             fading: vec![vec![Vec3::zeros(); sites]; branches.len()],
             branches,
             lasting,
@@ -108,7 +108,7 @@ impl History {
     }
 
     /// What the memory means for a step that brings the regions to `depth` (mm).
-    pub fn recall(&self, depth: &[f64], sites: &Sites) -> Recall {
+    pub fn recall(&self, depth: &[f64], sites: &Sites) -> MemoryStep {
         let fade: Vec<Vec<(f64, f64)>> = self
             .branches
             .iter()
@@ -152,7 +152,7 @@ impl History {
             .filter(|l| l.1 != Vec3::zeros())
             .collect();
         let is_left = |(now, last): (&f64, &f64)| now < last;
-        Recall {
+        MemoryStep {
             is_left: depth.iter().zip(&self.depth).map(is_left).collect(),
             loads,
             at_once,
@@ -167,7 +167,7 @@ impl History {
     /// attraction held it, `area` the contact area by region (mm2).
     pub fn commit(
         &mut self,
-        recall: &Recall,
+        recall: &MemoryStep,
         (bearing, clings): (&[(u32, Vec3)], &[bool]),
         (sites, area): (&Sites, &[f64]),
     ) {

@@ -1,4 +1,4 @@
-//! Effect `dead_cells`: sensels that show less than they bear, or nothing, painted on the mat.
+//! Effect `dead_cells`: sensels that read low or nothing, painted on the mat.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, Sign, Stage};

@@ -1,4 +1,4 @@
-//! Effect `drift`: a zero that wanders with time, or a sensitivity that creeps up with it.
+//! Effect `drift`: zero drift, or creep of the sensitivity, with time.
 //!
 //! zero: `y' = y + amplitude * rate * t`; sensitivity: `y' = y (1 + amplitude * creep * log10(1 + t / 1 s))`, both with t from
 //! the first instant. Neither needs contact to go on.

@@ -1,4 +1,4 @@
-//! Effect `gain`: readings that are all too large or too small by one factor, or each sensel by its own.
+//! Effect `gain`: readings off by a factor, common or per sensel.
 //!
 //! `y' = y (1 + amplitude * error)`; painted, each sensel has its own error.
 

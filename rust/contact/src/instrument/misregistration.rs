@@ -1,4 +1,4 @@
-//! Effect `misregistration`: a mat that lies beside where it is said to lie, shifted in its two directions and turned.
+//! Effect `misregistration`: a mat shifted and rotated against its stated placement.
 
 use super::mat::placement::Placement;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};

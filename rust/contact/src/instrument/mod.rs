@@ -1,4 +1,4 @@
-//! What a measuring set-up makes of a contact: mats of sensels, and the faults of sensors, fixtures and clocks.
+//! The measuring set-up: mats of sensels, and the errors of sensors, fixtures and clocks.
 //!
 //! Instrument effects act on predictions, never on the skin. [`observe`] applies them in a fixed order: `fixture_compliance`
 //! (on the motion), `misregistration`, averaging over each sensel ([`Mat`]), `crosstalk`, `gain`, `offset`, `drift`,

@@ -1,4 +1,4 @@
-//! Conducts what a set-up makes of a contact's signals: its effects, one after the other in their fixed order.
+//! Conducts an observation: applies the instrument effects to predicted signals in their fixed order.
 
 use super::mat::Mat;
 use super::mat::placement::Placement;

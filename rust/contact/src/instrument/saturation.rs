@@ -1,4 +1,4 @@
-//! Effect `saturation`: readings that stop at a ceiling.
+//! Effect `saturation`: readings clipped at a ceiling.
 
 use super::channel;
 use super::channel::CHANNEL;

@@ -1,4 +1,4 @@
-//! Effect `threshold`: readings below a floor that are shown as nothing.
+//! Effect `threshold`: readings below a floor are shown as zero.
 
 use super::channel;
 use super::channel::CHANNEL;

@@ -1,4 +1,4 @@
-//! Effect `timing`: channels whose clocks are apart, so that one shows later what another shows now.
+//! Effect `timing`: a time lag between channels.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};

@@ -1,4 +1,4 @@
-//! Adhesion: attraction by gap, found together with the contact by iterating the solver from one side.
+//! Adhesion: attraction by gap, iterated with the contact solver from the attracted side.
 //!
 //! The attraction moves the posture before the solve, as loads do; the certified contact solver then finds the repulsion in
 //! the moved posture, and the gaps it leaves give the next attraction. More attraction means smaller gaps, so from the
@@ -12,7 +12,7 @@ use crate::detection::gaps::{Detection, limits};
 use crate::effects::{ActiveEffect, Effect, adhesion};
 use crate::press::effective_modulus::rest_weights;
 use crate::press::setting::vertex;
-use crate::press::solution::Solved;
+use crate::press::solution::SolvedContact;
 use crate::skin::prepare::Skin;
 
 /// Largest attraction of a vertex over `sqrt(2 w A / a)`, with A its area and a its own compliance.
@@ -33,17 +33,17 @@ const TOLERANCE: f64 = 1e-5;
 pub const MOST_SOLVES: usize = 400;
 
 /// The law of every site of a skin.
-pub(crate) struct Attraction {
+pub(crate) struct AdhesionLaw {
     /// Largest attraction, N, and gap at which it ends, mm; by site, zero where there is none.
     law: Vec<(f64, f64)>,
     most: f64,
     farthest: f64,
 }
 
-impl Attraction {
+impl AdhesionLaw {
     /// The law of the skin by its response weights in rest, so that it stays the same whatever is pressed: attraction that
     /// changed with the posture would do work of its own. None without adhesion.
-    pub fn new(skin: &Skin) -> Option<Attraction> {
+    pub fn new(skin: &Skin) -> Option<AdhesionLaw> {
         let active: Vec<&ActiveEffect> = skin
             .effects()
             .iter()
@@ -76,7 +76,7 @@ impl Attraction {
             }
         };
         let law: Vec<(f64, f64)> = (0..skin.sites.len()).map(law_at).collect();
-        Some(Attraction {
+        Some(AdhesionLaw {
             most: law.iter().fold(0.0, |most, l| f64::max(most, l.0)),
             farthest: law.iter().fold(0.0, |most, l| f64::max(most, l.1)),
             law,
@@ -91,7 +91,7 @@ impl Attraction {
         &self,
         skin: &Skin,
         (product, detection): (&Product, &Detection),
-        solved: &Solved,
+        solved: &SolvedContact,
     ) -> Vec<Pull> {
         let mut pulls = Vec::new();
         let (mut apart, mut points): (Vec<(usize, Gap)>, Vec<Vec3>) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! The friction problem of a dense matrix that somebody else made.
+//! The friction problem of a dense matrix given by the caller.
 
 use super::disc_solver::solve_discs;
 use super::shear_matrix::ShearMatrix;

@@ -1,8 +1,8 @@
-//! The search for the travel at which a dragged product pulls as hard as wanted.
+//! Searches the travel at which a dragged product reaches a shear force.
 
 use thenar_surface::Vec3;
 
-use super::stick_slip::{Dragged, Grip};
+use super::stick_slip::{StickSlipProblem, StickSlipStep};
 use crate::Control;
 
 /// Share of a force target within which the search ends.
@@ -11,9 +11,9 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 const MOST_SOLVES: usize = 60;
 
 /// The search for the travel at which a force is reached.
-pub struct Travel<'a, 'c> {
+pub struct DragSearch<'a, 'c> {
     /// The contact.
-    pub grip: &'a Grip<'a>,
+    pub grip: &'a StickSlipProblem<'a>,
     /// Travel of the product before, by site, mm.
     pub from: &'a [Vec3],
     /// Where it goes, by site, per unit of travel.
@@ -28,8 +28,8 @@ pub struct Travel<'a, 'c> {
     pub before: Vec<f64>,
 }
 
-impl Travel<'_, '_> {
-    fn at(&mut self, travel: f64) -> (f64, Dragged) {
+impl DragSearch<'_, '_> {
+    fn at(&mut self, travel: f64) -> (f64, StickSlipStep) {
         let to: Vec<Vec3> = self
             .from
             .iter()
@@ -45,7 +45,7 @@ impl Travel<'_, '_> {
     }
 
     /// Secant within a bracket (Illinois); the force grows with the travel, ever more slowly.
-    pub fn find(&mut self, newton: f64) -> (f64, Dragged) {
+    pub fn find(&mut self, newton: f64) -> (f64, StickSlipStep) {
         let (force, mut end) = self.at(0.0);
         let mut low = (0.0, force - newton);
         if low.1 == 0.0 {
@@ -87,7 +87,7 @@ impl Travel<'_, '_> {
     }
 }
 
-impl Grip<'_> {
+impl StickSlipProblem<'_> {
     /// Drags along `direction` (by site, per unit of travel) until the shear force along it is `newton`.
     ///
     /// Returns the travel and the step, or None if friction cannot hold that much.
@@ -96,7 +96,7 @@ impl Grip<'_> {
         from: &[Vec3],
         (direction, along, newton): (&[Vec3], Vec3, f64),
         control: &Control,
-    ) -> Option<(f64, Dragged)> {
+    ) -> Option<(f64, StickSlipStep)> {
         let start = self.start();
         let before = self.slip_before(&start, from);
         let most: f64 = self
@@ -108,7 +108,7 @@ impl Grip<'_> {
         if newton >= most {
             return None;
         }
-        let mut search = Travel {
+        let mut search = DragSearch {
             grip: self,
             from,
             direction,

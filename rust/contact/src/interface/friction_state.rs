@@ -1,13 +1,13 @@
-//! Friction's state: the shear of one press, and what the next step of a protocol needs of it.
+//! Friction's state: the shear of one press, and the part of it that the next protocol row needs.
 
 use thenar_surface::Vec3;
 
 use super::shear_response::Place;
-use super::stick_slip::{Dragged, Trace};
+use super::stick_slip::{SiteFriction, StickSlipStep};
 
 /// Shear of a press, by site in contact.
 #[derive(Debug, Clone)]
-pub(crate) struct Sheared {
+pub(crate) struct ShearState {
     /// Index into the zone of the press.
     pub at: Vec<usize>,
     /// Where each is.
@@ -19,14 +19,14 @@ pub(crate) struct Sheared {
     /// Turn of the product about the center of the contact, rad.
     pub turn: Vec3,
     /// The end of the step.
-    pub end: Dragged,
+    pub end: StickSlipStep,
 }
 
 /// What friction remembers from step to step.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Grasp {
+pub(crate) struct FrictionMemory {
     /// Memory of each site that was in contact, ascending by site.
-    pub traces: Vec<(u32, Trace)>,
+    pub traces: Vec<(u32, SiteFriction)>,
     /// Travel of the product so far, mm.
     pub travel: Vec3,
     /// Its turn about the center of the contact so far, rad.

@@ -1,4 +1,4 @@
-//! What happens in the plane of the contact and across it: friction and adhesion.
+//! Forces between skin and product beyond normal contact: friction and adhesion.
 
 pub mod shear_kernel;
 pub mod shear_matrix;

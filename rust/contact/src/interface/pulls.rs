@@ -1,4 +1,4 @@
-//! The adhesive attraction of a press: one pull a site, their sum and moment.
+//! Adhesive attraction of a press: the pull at each site, sum and moment.
 
 use thenar_surface::Vec3;
 
@@ -46,17 +46,17 @@ pub fn steady(before: &[Pull], after: &mut [Pull], solve: usize) {
 
 /// The attraction of a press.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Clinging {
+pub(crate) struct Adhesion {
     /// By site, ascending.
     pub pulls: Vec<Pull>,
     /// True if it was found to the tolerance.
     pub is_settled: bool,
 }
 
-impl Clinging {
+impl Adhesion {
     /// No attraction.
-    pub fn none() -> Clinging {
-        Clinging {
+    pub fn none() -> Adhesion {
+        Adhesion {
             pulls: Vec::new(),
             is_settled: true,
         }

@@ -1,4 +1,4 @@
-//! The symmetric compliance of contact sites in their tangent planes: one 2 x 2 block a pair, stored once.
+//! The symmetric tangential compliance of contact sites: one 2 x 2 block a pair, stored once.
 
 use thenar_surface::Vec3;
 

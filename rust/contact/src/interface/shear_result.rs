@@ -1,4 +1,4 @@
-//! Shear of a press by vertex of the mesh as given, as the caller reads it.
+//! Shear fields of a press by vertex of the mesh as given.
 
 use thenar_surface::Vec3;
 
@@ -9,7 +9,7 @@ use crate::skin::prepare::Skin;
 /// The shear of a press; None if no product was dragged over skin with friction. `area` by welded vertex, mm2.
 pub(crate) fn shear_fields(skin: &Skin, pressed: &Pressed, area: &[f64]) -> Option<Shear> {
     let sheared = pressed.shear.as_ref()?;
-    let n = skin.welded.source.len();
+    let n = skin.merged.source.len();
     let (mut force, mut slip) = (vec![Vec3::zeros(); n], vec![Vec3::zeros(); n]);
     let (mut traction, mut margin) = (vec![0.0; n], vec![f64::NAN; n]);
     let mut is_sticking = vec![false; n];
@@ -25,10 +25,10 @@ pub(crate) fn shear_fields(skin: &Skin, pressed: &Pressed, area: &[f64]) -> Opti
             0.0
         };
     }
-    let welded = &skin.welded.welded;
+    let welded = &skin.merged.merged_of;
     // Merged vertices bear no force: the one that stands for them bears all.
     let mut by_vertex = vec![Vec3::zeros(); skin.vertices()];
-    for (&source, force) in skin.welded.source.iter().zip(&force) {
+    for (&source, force) in skin.merged.source.iter().zip(&force) {
         by_vertex[source as usize] = *force;
     }
     Some(Shear {

@@ -1,4 +1,4 @@
-//! One step of a contact that a product drags along: which skin sticks, which slips, and what the sites remember.
+//! One stick-slip step of a contact under a drag (Coulomb's law by increments), and the state of each site after it.
 //!
 //! Coulomb's law by increments: the shear force on the skin stays within `mu p`, and where it is `mu p` the skin slips against
 //! it. Given the normal forces, a step is one convex problem over discs; backward Euler, so no closed path gives energy.
@@ -13,7 +13,7 @@ use crate::Control;
 const RIM: f64 = 1.0 - 1e-9;
 /// What a site in contact remembers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trace {
+pub struct SiteFriction {
     /// Shear force on the skin, N.
     pub force: Vec3,
     /// Slip of the skin over the product so far, mm.
@@ -24,7 +24,7 @@ pub struct Trace {
 
 /// The contact of one step: sites with their compliance, planes and limits.
 #[derive(Debug, Clone, Copy)]
-pub struct Grip<'a> {
+pub struct StickSlipProblem<'a> {
     /// Compliance in the tangent planes.
     pub matrix: &'a ShearMatrix<f32>,
     /// The plane of each site.
@@ -32,14 +32,14 @@ pub struct Grip<'a> {
     /// Largest shear force of each site, N.
     pub limit: &'a [f64],
     /// What each site remembers; None for those that were not in contact.
-    pub before: &'a [Option<Trace>],
+    pub before: &'a [Option<SiteFriction>],
 }
 
 /// The end of a step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dragged {
+pub struct StickSlipStep {
     /// Memory of every site.
-    pub traces: Vec<Trace>,
+    pub traces: Vec<SiteFriction>,
     /// Displacement of the skin in the plane of each site, mm.
     pub displacement: Vec<Vec3>,
     /// True where the force is within its limit.
@@ -56,18 +56,18 @@ pub struct Dragged {
     pub products: usize,
 }
 
-impl Dragged {
+impl StickSlipStep {
     /// Sum of the shear forces on the skin, N.
     pub fn force(&self) -> Vec3 {
         self.traces.iter().map(|t| t.force).sum()
     }
 }
 
-impl Grip<'_> {
+impl StickSlipProblem<'_> {
     /// Drags the product from the travel `from` to the travel `to` (mm, each by site).
     ///
     /// A site that was not in contact starts without slip where it then was.
-    pub fn drag(&self, from: &[Vec3], to: &[Vec3], control: &Control) -> Dragged {
+    pub fn drag(&self, from: &[Vec3], to: &[Vec3], control: &Control) -> StickSlipStep {
         let start = self.start();
         let before = self.slip_before(&start, from);
         self.drag_on((&before, &start), to, control)
@@ -78,7 +78,7 @@ impl Grip<'_> {
         (before, start): (&[f64], &[f64]),
         to: &[Vec3],
         control: &Control,
-    ) -> Dragged {
+    ) -> StickSlipStep {
         let offset: Vec<f64> = self
             .flat(to)
             .iter()
@@ -89,13 +89,13 @@ impl Grip<'_> {
         self.dragged((&offset, before), solution)
     }
 
-    fn dragged(&self, (offset, before): (&[f64], &[f64]), solution: DiscSolution) -> Dragged {
+    fn dragged(&self, (offset, before): (&[f64], &[f64]), solution: DiscSolution) -> StickSlipStep {
         let n = self.limit.len();
         let DiscSolution { force, slip, .. } = solution;
         let point = |field: &[f64], i: usize| {
             self.tangents[i][0] * field[i] + self.tangents[i][1] * field[n + i]
         };
-        let trace = |i: usize| Trace {
+        let trace = |i: usize| SiteFriction {
             force: point(&force, i),
             slip: point(&slip, i) + point(before, i),
             strayed: Vec3::zeros(),
@@ -103,7 +103,7 @@ impl Grip<'_> {
         let dissipated = -(0..2 * n).map(|k| force[k] * slip[k]).sum::<f64>();
         let moved: Vec<f64> = slip.iter().zip(offset).map(|(s, b)| s - b).collect();
         let stored = 0.5 * force.iter().zip(&moved).map(|(q, u)| q * u).sum::<f64>();
-        Dragged {
+        StickSlipStep {
             traces: (0..n).map(trace).collect(),
             displacement: (0..n).map(|i| point(&moved, i)).collect(),
             is_sticking: (0..n)

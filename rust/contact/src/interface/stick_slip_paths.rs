@@ -1,10 +1,10 @@
-//! Tests of stick and slip over paths: Mindlin and Deresiewicz's loop, passivity, and the ends of both.
+//! Tests of stick-slip over load paths: Mindlin and Deresiewicz's loop, passivity, limits.
 
 use thenar_surface::Vec3;
 
 use super::shear_kernel::LATTICE;
 use super::shear_matrix::ShearMatrix;
-use super::stick_slip::{Grip, Trace};
+use super::stick_slip::{SiteFriction, StickSlipProblem};
 use crate::Control;
 
 const SHEAR_MODULUS: f64 = 0.02;
@@ -65,13 +65,13 @@ fn mindlin(share: f64) -> f64 {
 fn grip<'a>(
     disc: &'a Disc,
     planes: &'a [[Vec3; 2]],
-    memory: (&'a [f64], &'a [Option<Trace>]),
-) -> Grip<'a> {
-    Grip {
+    workspace: (&'a [f64], &'a [Option<SiteFriction>]),
+) -> StickSlipProblem<'a> {
+    StickSlipProblem {
         matrix: &disc.matrix,
         tangents: planes,
-        limit: memory.0,
-        before: memory.1,
+        limit: workspace.0,
+        before: workspace.1,
     }
 }
 

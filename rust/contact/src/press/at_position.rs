@@ -1,24 +1,24 @@
-//! One press with the product at one position: detection, response, then active zone and solve; memory and adhesion move the posture.
+//! One press at a fixed position: detection, response weights, active zone, solve; memory and adhesion displace the posture.
 
 use std::time::Instant;
 
 use thenar_surface::{Mesh, Product, Vec3};
 
 use super::effective_modulus::{region_moduli, site_response};
-use super::pressed::{Pressed, Recalled};
+use super::pressed::{PressMemory, Pressed};
 use super::relinearize::solve;
-use super::setting::Setting;
-use super::solution::Solved;
+use super::setting::SolveSetting;
+use super::solution::SolvedContact;
 use super::stage_times::{Seconds, add_time};
-use crate::detection::active_zone::{check_resolution, serving};
+use crate::detection::active_zone::{active_zone, check_resolution};
 use crate::detection::gaps::{Detection, detect};
-use crate::history::displaced_posture::{Moved, moved, restore};
-use crate::history::tissue_memory::Recall;
-use crate::interface::adhesion::{Attraction, MOST_SOLVES};
-use crate::interface::pulls::{Clinging, Pull, steady};
+use crate::history::displaced_posture::{DisplacedPosture, moved, restore};
+use crate::history::tissue_memory::MemoryStep;
+use crate::interface::adhesion::{AdhesionLaw, MOST_SOLVES};
+use crate::interface::pulls::{Adhesion, Pull, steady};
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::warm_start::Last;
+use crate::workspace::warm_start::StartContact;
 use crate::{ContactError, Control};
 
 /// One position of the product, measured.
@@ -27,7 +27,7 @@ struct Position<'a> {
     /// Gaps of the true posture.
     detection: &'a Detection,
     /// What the tissue remembers, if a protocol is followed.
-    recall: Option<&'a Recall>,
+    recall: Option<&'a MemoryStep>,
     /// Response weight by site.
     weight: &'a [f64],
 }
@@ -55,7 +55,7 @@ pub fn press_at(
         recall.soften(&mut shear_modulus);
     }
     let mut response = site_response(skin, &shear_modulus, &detection);
-    let attraction = Attraction::new(skin);
+    let attraction = AdhesionLaw::new(skin);
     add_time(seconds, "response", started);
     // 2 Active zone and 4 solve, with adhesion as often as it takes.
     let started = Instant::now();
@@ -65,19 +65,19 @@ pub fn press_at(
         recall: recall.as_ref(),
         weight: &response.weight,
     };
-    let (mut solved, clinging) = match &attraction {
-        None => (solve_zone(skin, &position, &[], control)?, Clinging::none()),
+    let (mut solved, adhesion) = match &attraction {
+        None => (solve_zone(skin, &position, &[], control)?, Adhesion::none()),
         Some(attraction) => solve_adhesive(skin, attraction, &position, control)?,
     };
     let modulus_at = &mut response.modulus;
     let recalled = recall.map(|recall| {
         let mut bearing = restore(skin, &mut solved, modulus_at, &recall);
         let mut clings = vec![false; recall.at_once.len()];
-        for pull in &clinging.pulls {
+        for pull in &adhesion.pulls {
             bearing.push(elastic(skin, pull, &recall));
             clings[skin.sites.home_region(pull.site as usize) as usize] = true;
         }
-        Recalled {
+        PressMemory {
             recall,
             bearing,
             clings,
@@ -90,13 +90,13 @@ pub fn press_at(
         shear_modulus,
         modulus_at: response.modulus,
         recalled,
-        clinging,
+        adhesion,
         shear: None,
     })
 }
 
 /// What the tissue remembers of the steps before, if a protocol is followed.
-fn recall(skin: &Skin, detection: &Detection) -> Option<Recall> {
+fn recall(skin: &Skin, detection: &Detection) -> Option<MemoryStep> {
     let history = skin.history.as_ref()?;
     Some(history.recall(&detection.max_penetration, &skin.sites))
 }
@@ -107,33 +107,33 @@ fn solve_zone(
     position: &Position<'_>,
     pulls: &[Pull],
     control: &Control,
-) -> Result<Solved, ContactError> {
+) -> Result<SolvedContact, ContactError> {
     let moved = displaced(skin, position, pulls, control)?;
     let detection = moved
         .as_ref()
         .map_or(position.detection, |moved| &moved.detection);
-    let zone = serving(skin, detection);
+    let zone = active_zone(skin, detection);
     check_resolution(skin, &zone)?;
-    let last = std::mem::take(&mut skin.memory.trail.last);
-    let elastic = position.recall.map(|recall| Last {
+    let last = std::mem::take(&mut skin.workspace.warm_start.last);
+    let elastic = position.recall.map(|recall| StartContact {
         force: recall.elastic(&last.force, &skin.sites),
         travel: Vec::new(),
     });
     let start = elastic.as_ref().unwrap_or(&last);
-    let setting = Setting {
+    let setting = SolveSetting {
         product: position.product,
         detection,
         weight: position.weight,
         start: (start.force.len() == skin.sites.len()).then_some(start),
         // What moves besides the product is solved to the end.
         accuracy: match &moved {
-            None => skin.memory.trail.accuracy,
+            None => skin.workspace.warm_start.accuracy,
             Some(_) => Accuracy::Full,
         },
         spacing: skin.spacing,
     };
     let solved = solve(skin, zone, &setting, control);
-    skin.memory.trail.last = last;
+    skin.workspace.warm_start.last = last;
     let mut solved = solved?;
     if let Some(moved) = &moved {
         moved.add_to(&mut solved);
@@ -147,7 +147,7 @@ fn displaced(
     position: &Position<'_>,
     pulls: &[Pull],
     control: &Control,
-) -> Result<Option<Moved>, ContactError> {
+) -> Result<Option<DisplacedPosture>, ContactError> {
     if position.recall.is_none() && pulls.is_empty() {
         return Ok(None);
     }
@@ -177,7 +177,7 @@ fn displaced(
 }
 
 /// What an attraction is in the elastic tissue's terms: borne at once by what has not yet faded, N.
-fn elastic(skin: &Skin, pull: &Pull, recall: &Recall) -> (u32, Vec3) {
+fn elastic(skin: &Skin, pull: &Pull, recall: &MemoryStep) -> (u32, Vec3) {
     let region = skin.sites.home_region(pull.site as usize) as usize;
     (pull.site, pull.load() / recall.at_once[region])
 }
@@ -185,22 +185,22 @@ fn elastic(skin: &Skin, pull: &Pull, recall: &Recall) -> (u32, Vec3) {
 /// Finds attraction and contact together, from the attraction of the step before.
 fn solve_adhesive(
     skin: &mut Skin,
-    attraction: &Attraction,
+    attraction: &AdhesionLaw,
     position: &Position<'_>,
     control: &Control,
-) -> Result<(Solved, Clinging), ContactError> {
-    let mut pulls = skin.memory.trail.pulls.clone();
+) -> Result<(SolvedContact, Adhesion), ContactError> {
+    let mut pulls = skin.workspace.warm_start.pulls.clone();
     for solve in 1.. {
         let solved = solve_zone(skin, position, &pulls, control)?;
         let mut next = attraction.pulls(skin, (position.product, position.detection), &solved);
         steady(&pulls, &mut next, solve);
         let is_settled = attraction.is_settled(&pulls, &next);
         if is_settled || solve == MOST_SOLVES {
-            return Ok((solved, Clinging { pulls, is_settled }));
+            return Ok((solved, Adhesion { pulls, is_settled }));
         }
         pulls = next;
         if position.recall.is_none() {
-            skin.memory.trail.last = Last {
+            skin.workspace.warm_start.last = StartContact {
                 travel: Vec::new(),
                 ..solved.to_start(skin.sites.len())
             };

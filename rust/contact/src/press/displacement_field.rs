@@ -1,12 +1,12 @@
-//! Where the solved forces carry the skin: the displacement of every site, in the zone of the solve and outside.
+//! Displacement of every site under the solved forces, inside the active zone and outside.
 
 use thenar_surface::{Gap, Vec3};
 
 use super::paper_model;
-use super::setting::{Setting, vertex};
-use super::solution::Found;
+use super::setting::{SolveSetting, vertex};
+use super::solution::ZoneSolution;
 use crate::detection::gaps::limits;
-use crate::far_field::Carried;
+use crate::far_field::FarFieldDisplacement;
 use crate::press::live::extrapolation::can_reach;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
@@ -22,8 +22,8 @@ const WAITING: f64 = 1e-5;
 /// [`ContactError::Cancelled`].
 pub fn field(
     skin: &mut Skin,
-    setting: &Setting<'_>,
-    found: &Found<'_>,
+    setting: &SolveSetting<'_>,
+    found: &ZoneSolution<'_>,
     control: &Control,
 ) -> Result<(Vec<Vec3>, f64), ContactError> {
     if skin.model == Model::Paper {
@@ -41,11 +41,11 @@ pub fn field(
             });
         }
     }
-    let Carried {
+    let FarFieldDisplacement {
         mut field,
         certificate,
     } = if setting.accuracy == Accuracy::Rough && skin.hierarchy.is_none() {
-        Carried {
+        FarFieldDisplacement {
             field: carry_changes(skin, loads),
             certificate: 0.0,
         }
@@ -60,50 +60,58 @@ pub fn field(
 
 /// Where loads carry the skin, from where those of the last live press did: loads that hardly changed wait until they have.
 fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
-    let mut shown = std::mem::take(&mut skin.memory.shown);
+    let mut live_field = std::mem::take(&mut skin.workspace.live_field);
     let sites = skin.sites.len();
-    if !shown.is_of(sites) {
-        shown.load = vec![Vec3::zeros(); sites];
-        shown.field = vec![Vec3::zeros(); sites];
-        shown.load_change = vec![Vec3::zeros(); sites];
-        shown.field_change = vec![Vec3::zeros(); sites];
+    if !live_field.is_of(sites) {
+        live_field.load = vec![Vec3::zeros(); sites];
+        live_field.field = vec![Vec3::zeros(); sites];
+        live_field.load_change = vec![Vec3::zeros(); sites];
+        live_field.field_change = vec![Vec3::zeros(); sites];
     }
     let largest = loads.iter().fold(0.0, |m, l| f64::max(m, l.load.norm()));
     let mut left = vec![Vec3::zeros(); sites];
     loads.iter().for_each(|l| left[l.site as usize] = l.load);
     let mut changes = Vec::new();
     let least = WAITING * largest;
-    for (site, (now, before)) in left.iter().zip(&mut shown.load).enumerate() {
+    for (site, (now, before)) in left.iter().zip(&mut live_field.load).enumerate() {
         let load = now - *before;
         if load.norm_squared() > least * least {
-            let change = &mut shown.load_change[site];
+            let change = &mut live_field.load_change[site];
             *change += load;
             let site = site as u32;
             changes.push(Load { site, load });
             *before = *now;
         }
     }
-    let (ground, rows) = ((&skin.response, &skin.sites), &mut skin.memory.rounded);
+    let (ground, rows) = ((&skin.response, &skin.sites), &mut skin.workspace.quantized);
     rows.make(changes.iter().map(|change| change.site), ground);
     let more = rows.displacements(ground, &changes);
-    let sums = shown.field.iter_mut().zip(&mut shown.field_change);
+    let sums = live_field
+        .field
+        .iter_mut()
+        .zip(&mut live_field.field_change);
     for ((sum, change), more) in sums.zip(&more) {
         *sum += more;
         *change += more;
     }
     if loads.is_empty() {
         // Sums of single precision leave a trace; skin that nothing presses has none.
-        shown.field.fill(Vec3::zeros());
+        live_field.field.fill(Vec3::zeros());
     }
-    let field = shown.field.clone();
-    skin.memory.shown = shown;
+    let field = live_field.field.clone();
+    skin.workspace.live_field = live_field;
     field
 }
 
 /// Puts skin in contact, and what the field would carry into the product, where the solve left it: along its direction.
 ///
 /// Other skin follows the field in full, in the zone or outside, so that the zone's margin leaves no mark.
-pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &mut [Vec3]) {
+pub fn keep_out(
+    skin: &Skin,
+    setting: &SolveSetting<'_>,
+    found: &ZoneSolution<'_>,
+    field: &mut [Vec3],
+) {
     if skin.model == Model::Paper {
         return;
     }
@@ -141,7 +149,7 @@ pub fn keep_out(skin: &Skin, setting: &Setting<'_>, found: &Found<'_>, field: &m
 /// Skin outside the zone that the displacement carries into the product, and how deep, mm.
 pub fn lifted_sites(
     skin: &Skin,
-    setting: &Setting<'_>,
+    setting: &SolveSetting<'_>,
     (field, zone): (&[Vec3], &[u32]),
     tolerance: f64,
 ) -> (f64, Vec<u32>) {

@@ -1,4 +1,4 @@
-//! Effective shear moduli of a press and the response weights that follow from them; deep presses soften by `kept_stiffness`.
+//! Effective shear moduli of a press and the response weights from them; deep presses soften (`kept_stiffness`).
 
 use crate::Model;
 use crate::detection::gaps::Detection;

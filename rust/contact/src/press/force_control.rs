@@ -1,4 +1,4 @@
-//! Moves the product until the normal force along a direction is what was asked for.
+//! Force control: moves the product until the normal force along a direction meets its target.
 
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
@@ -8,7 +8,7 @@ use super::stage_times::Seconds;
 use crate::api::ForceTarget;
 use crate::detection::gaps::limits;
 use crate::skin::prepare::Skin;
-use crate::workspace::warm_start::Last;
+use crate::workspace::warm_start::StartContact;
 use crate::{ContactError, Control};
 
 /// Force within this share of the target ends the search.
@@ -48,7 +48,7 @@ pub(crate) fn find_offset(
         None => Some(mean_normal(skin, posed, product)?),
     };
     let direction = direction.ok_or(ContactError::Direction)?;
-    let start = skin.memory.trail.offset;
+    let start = skin.workspace.warm_start.offset;
     let mut search = Search {
         skin,
         posed,
@@ -63,7 +63,7 @@ pub(crate) fn find_offset(
         share: 0.0,
     };
     let offset = search.run(start)?;
-    search.skin.memory.trail.slope = search.slope();
+    search.skin.workspace.warm_start.slope = search.slope();
     match search.last {
         Some((at, pressed)) if at == offset => Ok((offset, direction, pressed)),
         _ => {
@@ -144,7 +144,7 @@ impl Search<'_, '_> {
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
-        self.skin.memory.trail.last = Last {
+        self.skin.workspace.warm_start.last = StartContact {
             travel: Vec::new(),
             ..pressed.solved.to_start(self.skin.sites.len())
         };
@@ -178,7 +178,7 @@ impl Search<'_, '_> {
         let tried = self.probes.windows(2).last();
         let slope = tried.map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
         slope
-            .or(self.skin.memory.trail.slope)
+            .or(self.skin.workspace.warm_start.slope)
             .filter(|s| s.is_finite() && *s > 0.0)
     }
 
@@ -223,7 +223,7 @@ impl Search<'_, '_> {
     }
 
     fn run(&mut self, start: f64) -> Result<f64, ContactError> {
-        let guess = match self.skin.memory.trail.slope {
+        let guess = match self.skin.workspace.warm_start.slope {
             Some(slope) => self.by_slope(start, slope)?,
             None => Guess::Near(start),
         };

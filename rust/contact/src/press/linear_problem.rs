@@ -1,18 +1,18 @@
-//! The linear contact problem of a zone: its compliance along directions, in whole or for the places that are not held.
+//! The linear contact problem of one pass: the zone's compliance along press directions, for the sites that are solved.
 
 use thenar_surface::Vec3;
 
-use super::live::extrapolation::Beyond;
-use super::setting::Setting;
-use super::zone_state::State;
+use super::live::extrapolation::OuterLoads;
+use super::setting::SolveSetting;
+use super::zone_state::ZoneState;
 use crate::response::assembly::compliance;
-use crate::response::near_field::directional::NearAlong;
+use crate::response::near_field::directional::DirectionalNearField;
 use crate::skin::prepare::Skin;
-use crate::solve::{Accuracy, Along, Axes, Compliance, Part, solve_contact};
+use crate::solve::{Accuracy, Axes, Compliance, DirectionalCompliance, Part, solve_contact};
 use crate::{ContactError, Control, Model};
 
 /// Directions, weights and likely contacts of the places that are solved, and the part of their compliance that is stored.
-pub(crate) struct Turned {
+pub(crate) struct DirectionalProblem {
     /// Places of the zone.
     places: Vec<u32>,
     axes: Axes,
@@ -25,9 +25,9 @@ pub(crate) struct Turned {
     push: Vec<f64>,
 }
 
-impl State {
+impl ZoneState {
     /// What the compliance is made of besides the coupling; nothing stored yet.
-    pub(crate) fn turned(&self, skin: &Skin) -> Turned {
+    pub(crate) fn directional_problem(&self, skin: &Skin) -> DirectionalProblem {
         let places: Vec<u32> = self.solved().into_iter().map(|k| k as u32).collect();
         let direction: Vec<Vec3> = match skin.model {
             Model::Layer => places.iter().map(|&k| self.direction[k as usize]).collect(),
@@ -39,10 +39,10 @@ impl State {
         };
         let axes = Axes::new(&direction);
         let near = match self.beyond {
-            Beyond::Nothing => Vec::new(),
-            _ => skin.memory.near.now().turn(&axes),
+            OuterLoads::Nothing => Vec::new(),
+            _ => skin.workspace.near.now().turn(&axes),
         };
-        Turned {
+        DirectionalProblem {
             axes,
             near,
             weight: Vec::new(),
@@ -55,46 +55,52 @@ impl State {
 
     /// What the last live press shows at the solved places, less what these did to themselves and each other nearby.
     fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
-        let (shown, near) = (&skin.memory.shown, skin.memory.near.now());
-        if self.beyond == Beyond::Nothing || !shown.is_of(skin.sites.len()) {
+        let (live_field, near) = (&skin.workspace.live_field, skin.workspace.near.now());
+        if self.beyond == OuterLoads::Nothing || !live_field.is_of(skin.sites.len()) {
             return Vec::new();
         }
         let ahead = match self.beyond {
-            Beyond::Trend => 1.0,
+            OuterLoads::Trend => 1.0,
             _ => 0.0,
         };
-        let load =
-            |&site: &u32| shown.load[site as usize] + shown.load_change[site as usize] * ahead;
+        let load = |&site: &u32| {
+            live_field.load[site as usize] + live_field.load_change[site as usize] * ahead
+        };
         let loads: Vec<Vec3> = near.sites().iter().map(load).collect();
         let own = near.field(&loads);
         let push = |((&k, t), own): ((&u32, &Vec3), &Vec3)| {
             let site = self.zone[k as usize] as usize;
-            t.dot(&(shown.field[site] + shown.field_change[site] * ahead - own))
+            t.dot(&(live_field.field[site] + live_field.field_change[site] * ahead - own))
         };
         places.iter().zip(direction).zip(&own).map(push).collect()
     }
 
     /// Compliance along the directions, seen along the normals: as weights, or written out into the skin's memory.
-    pub(crate) fn matrix(&self, skin: &mut Skin, setting: &Setting<'_>, turned: &mut Turned) {
+    pub(crate) fn matrix(
+        &self,
+        skin: &mut Skin,
+        setting: &SolveSetting<'_>,
+        problem: &mut DirectionalProblem,
+    ) {
         let weight =
             |&k: &u32| setting.weight[self.zone[k as usize] as usize] * self.cosine[k as usize];
-        turned.weight = turned.places.iter().map(weight).collect();
-        let memory = &mut skin.memory;
+        problem.weight = problem.places.iter().map(weight).collect();
+        let workspace = &mut skin.workspace;
         let direction = |&k: &u32| match skin.model {
             Model::Layer => self.direction[k as usize],
             Model::Paper => Vec3::x(),
         };
         if skin.hierarchy.is_some() {
-            let along = turned.weight.iter().zip(&turned.places);
-            memory.along = along
+            let along = problem.weight.iter().zip(&problem.places);
+            workspace.problem.along = along
                 .map(|(w, k)| self.direction[*k as usize] * *w)
                 .collect();
-        } else if self.beyond == Beyond::Nothing && memory.coupling.is_large() {
-            let directions: Vec<Vec3> = turned.places.iter().map(direction).collect();
+        } else if self.beyond == OuterLoads::Nothing && workspace.problem.coupling.is_large() {
+            let directions: Vec<Vec3> = problem.places.iter().map(direction).collect();
             compliance(
-                &memory.coupling,
-                (&turned.weight, &directions),
-                &mut memory.compliance,
+                &workspace.problem.coupling,
+                (&problem.weight, &directions),
+                &mut workspace.problem.compliance,
             );
         }
     }
@@ -103,37 +109,38 @@ impl State {
     pub(crate) fn solve(
         &mut self,
         skin: &Skin,
-        turned: &Turned,
+        problem: &DirectionalProblem,
         how: (Accuracy, &Control),
     ) -> Result<(), ContactError> {
-        let memory = &skin.memory;
-        if let Some(matrix) = skin.directed() {
-            return self.solve_linear(&matrix, turned, how);
+        let workspace = &skin.workspace;
+        if let Some(matrix) = skin.far_field_compliance() {
+            return self.solve_linear(&matrix, problem, how);
         }
-        if self.beyond != Beyond::Nothing {
-            let near = NearAlong::new(memory.near.now(), &turned.near, &turned.weight);
-            return self.solve_linear(&near, turned, how);
+        if self.beyond != OuterLoads::Nothing {
+            let near =
+                DirectionalNearField::new(workspace.near.now(), &problem.near, &problem.weight);
+            return self.solve_linear(&near, problem, how);
         }
-        if memory.coupling.is_large() {
-            return self.solve_linear(&memory.compliance, turned, how);
+        if workspace.problem.coupling.is_large() {
+            return self.solve_linear(&workspace.problem.compliance, problem, how);
         }
-        let along = Along::new(
-            (&memory.coupling, &turned.axes),
-            (&turned.weight, &turned.likely),
-            &turned.part,
+        let along = DirectionalCompliance::new(
+            (&workspace.problem.coupling, &problem.axes),
+            (&problem.weight, &problem.likely),
+            &problem.part,
         );
-        self.solve_linear(&along, turned, how)
+        self.solve_linear(&along, problem, how)
     }
 
     fn solve_linear<M: Compliance>(
         &mut self,
         matrix: &M,
-        turned: &Turned,
+        problem: &DirectionalProblem,
         (accuracy, control): (Accuracy, &Control),
     ) -> Result<(), ContactError> {
-        let place = |i: usize| turned.places[i] as usize;
-        let solved = 0..turned.places.len();
-        let push = |i: usize| turned.push.get(i).map_or(0.0, |p| p * turned.weight[i]);
+        let place = |i: usize| problem.places[i] as usize;
+        let solved = 0..problem.places.len();
+        let push = |i: usize| problem.push.get(i).map_or(0.0, |p| p * problem.weight[i]);
         let gap: Vec<f64> = solved
             .clone()
             .map(|i| {

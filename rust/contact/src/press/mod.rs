@@ -1,4 +1,4 @@
-//! Conducts a press: force control or one position, drag, fields. One position (`at_position`) is detection, response, zone, solve.
+//! Conducts a press: position or force control, drag, fields. `at_position` holds the stages of one position.
 
 pub mod at_position;
 pub mod displacement_field;
@@ -20,15 +20,15 @@ use std::time::Instant;
 use thenar_surface::Vec3;
 
 use crate::api::{Press, Start, Unsolved};
-use crate::fields::merged_vertices::put_out;
+use crate::fields::merged_vertices::move_out_of_product;
 use crate::fields::result::Contact;
 use crate::fields::summary::summarize;
 use crate::fields::warnings::Warning;
 use crate::interface::friction;
-use crate::interface::friction_state::Grasp;
+use crate::interface::friction_state::FrictionMemory;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::warm_start::Trail;
+use crate::workspace::warm_start::WarmStart;
 use crate::{ContactError, Control};
 use at_position::press_at;
 use force_control::find_offset;
@@ -45,10 +45,10 @@ impl Skin {
     /// or `Cancelled`. The prepared skin stays usable after any of them.
     pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
         if press.start == Start::Fresh {
-            self.memory.trail = Trail::default();
+            self.workspace.warm_start = WarmStart::default();
         }
-        self.memory.trail.pulls.clear();
-        self.memory.trail.accuracy = match press.start {
+        self.workspace.warm_start.pulls.clear();
+        self.workspace.warm_start.accuracy = match press.start {
             Start::Live => Accuracy::Rough,
             Start::Fresh | Start::Warm => Accuracy::Full,
         };
@@ -75,12 +75,12 @@ impl Skin {
             && let Some(refusal) = pressed.solved.refusal(self)
         {
             // What is known of it starts no other press.
-            self.memory.trail = Trail::default();
+            self.workspace.warm_start = WarmStart::default();
             return Err(refusal);
         }
         if let Some(drag) = press.drag {
             let started = Instant::now();
-            let from_rest = (drag, &Grasp::default());
+            let from_rest = (drag, &FrictionMemory::default());
             friction::drag(self, &mut pressed, from_rest, control)?;
             friction::move_skin(self, press.product, &mut pressed);
             add_time(&mut seconds, "friction", started);
@@ -88,7 +88,7 @@ impl Skin {
         control.step("fields", 0.0)?;
         let started = Instant::now();
         let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
-        put_out(self, press, direction * offset, &mut contact);
+        move_out_of_product(self, press, direction * offset, &mut contact);
         add_time(&mut seconds, "fields", started);
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);

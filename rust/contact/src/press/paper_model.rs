@@ -1,4 +1,4 @@
-//! The paper's model where it differs: an active zone around the contact, and swelling added after the solve.
+//! Model `paper`: the active zone of Xie et al. and swelling added after the solve.
 //!
 //! Swelling must not stand inside the complementarity problem: with the paper's own upper palm moduli the matrix turns
 //! indefinite and Lemke's method ends on secondary rays. Forces are solved without it (Xie Eq. 9 with the response of
@@ -7,7 +7,7 @@
 
 use thenar_surface::Vec3;
 
-use super::setting::Setting;
+use super::setting::SolveSetting;
 use crate::response::assembly::{Load, displacements};
 use crate::skin::arc_length::arc_length;
 use crate::skin::prepare::Skin;
@@ -18,7 +18,7 @@ const GAUSSIAN_REACH: f64 = 5.7;
 /// Displacement of every site, mm: the pressed zone by its `travel`, the rest of the active zone by response and swelling.
 pub fn displacement(
     skin: &Skin,
-    setting: &Setting<'_>,
+    setting: &SolveSetting<'_>,
     (zone, force, travel): (&[u32], &[f64], &[f64]),
 ) -> Vec<Vec3> {
     let sites = &skin.sites;
@@ -66,7 +66,7 @@ pub fn displacement(
 }
 
 /// a(dmax) = a0 G0 / G(dmax) of every region, mm/N (Xie Eq. 6).
-fn swelling_heights(skin: &Skin, setting: &Setting<'_>) -> Vec<f64> {
+fn swelling_heights(skin: &Skin, setting: &SolveSetting<'_>) -> Vec<f64> {
     let depths = &setting.detection.max_penetration;
     let height = |(m, depth): (&crate::Material, &f64)| {
         m.swelling.height_mm_per_n * m.g0_mpa / m.shear_modulus(*depth)

@@ -1,14 +1,14 @@
-//! Stage 4's outer loop: the contact problem is linear in the gap, the product is not; repeat until the written surface fits.
+//! Stage 4, outer loop: solves the linear contact problem and re-linearizes the gap until the written surface fits the product.
 
 use thenar_surface::Vec3;
 
 use super::displacement_field::{field, keep_out, lifted_sites};
 use super::live::extrapolation;
-use super::live::extrapolation::Beyond;
-use super::live::reused_sites::{held, keep, strays};
-use super::setting::Setting;
-use super::solution::Solved;
-use super::zone_state::State;
+use super::live::extrapolation::OuterLoads;
+use super::live::reused_sites::{keep, reused_sites, strays};
+use super::setting::SolveSetting;
+use super::solution::SolvedContact;
+use super::zone_state::ZoneState;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
 use crate::{ContactError, Control, Model};
@@ -39,10 +39,10 @@ const MOST_ROUNDS: usize = 4;
 pub fn solve(
     skin: &mut Skin,
     zone: Vec<u32>,
-    setting: &Setting<'_>,
+    setting: &SolveSetting<'_>,
     control: &Control,
-) -> Result<Solved, ContactError> {
-    let mut state = State::new(extrapolation::with_foreseen(skin, setting, zone));
+) -> Result<SolvedContact, ContactError> {
+    let mut state = ZoneState::new(extrapolation::extrapolated_zone(skin, setting, zone));
     let deepest = setting.detection.deepest();
     let tolerance = match setting.accuracy {
         Accuracy::Full => OUTER_TOLERANCE.min(OUTER_SHARE * deepest),
@@ -50,28 +50,28 @@ pub fn solve(
     };
     let mut strayed = Vec::new();
     for round in 1.. {
-        skin.memory.near.turn_to(round);
+        skin.workspace.near.turn_to(round);
         let again = (round > 1).then_some(&strayed[..]);
-        state.held = held(skin, setting, &state.zone, again);
+        state.is_reused = reused_sites(skin, setting, &state.zone, again);
         state.beyond = extrapolation::beyond(skin, setting, round);
         match state.beyond {
-            Beyond::Nothing => skin.couple(&state.solved_sites(), control)?,
+            OuterLoads::Nothing => skin.couple(&state.solved_sites(), control)?,
             _ => extrapolation::couple(skin, (&state.zone, &state.solved_sites()), control)?,
         }
-        skin.memory.zone.clone_from(&state.zone);
+        skin.workspace.problem.zone.clone_from(&state.zone);
         state.open(skin, setting);
         state.passes(skin, setting, (tolerance, control))?;
         if round == 1 {
-            skin.memory.shown.begin();
+            skin.workspace.live_field.begin();
         }
         let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
         let (stray, far) = match state.beyond {
-            Beyond::Nothing => (0.0, Vec::new()),
+            OuterLoads::Nothing => (0.0, Vec::new()),
             _ => strays(&state.found(), &field, deepest),
         };
         keep_out(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
-        let left = (&state.slack[..], &state.sums[..], &state.held[..]);
+        let left = (&state.slack[..], &state.sums[..], &state.is_reused[..]);
         keep(skin, setting, &state.found(), left);
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
@@ -81,7 +81,7 @@ pub fn solve(
         strayed.extend(far);
         state.extend(match setting.accuracy {
             Accuracy::Full => lifted,
-            Accuracy::Rough => extrapolation::ringed(skin, setting, &state.zone, lifted),
+            Accuracy::Rough => extrapolation::with_neighbors(skin, setting, &state.zone, lifted),
         });
     }
     Err(ContactError::Cancelled)
@@ -98,7 +98,7 @@ struct Best {
 
 impl Best {
     /// Takes over a state that fits better; whether it does.
-    fn take(&mut self, state: &State) -> bool {
+    fn take(&mut self, state: &ZoneState) -> bool {
         let is_better = self.misfit.is_none_or(|best| state.misfit < best);
         if is_better {
             self.misfit = Some(state.misfit);
@@ -116,28 +116,28 @@ impl Best {
     }
 }
 
-impl State {
+impl ZoneState {
     /// Re-linearizes until the zone fits the product: roughly at first, to the end once it does.
     fn passes(
         &mut self,
         skin: &mut Skin,
-        setting: &Setting<'_>,
+        setting: &SolveSetting<'_>,
         (tolerance, control): (f64, &Control),
     ) -> Result<(), ContactError> {
-        let mut turned = self.turned(skin);
-        self.matrix(skin, setting, &mut turned);
+        let mut problem = self.directional_problem(skin);
+        self.matrix(skin, setting, &mut problem);
         let (mut best, mut is_along_walls) = (Best::default(), false);
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
             self.convergence.passes = pass + 1;
             let before: Vec<(f64, f64)> = self.measured().collect();
-            self.solve(skin, &turned, (Accuracy::Rough, control))?;
+            self.solve(skin, &problem, (Accuracy::Rough, control))?;
             self.place(skin, setting);
             let has_improved = best.take(self);
             let is_stuck = best.is_stuck() && is_along_walls;
             let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || is_stuck;
             if is_last && setting.accuracy != Accuracy::Rough {
-                self.solve(skin, &turned, (setting.accuracy, control))?;
+                self.solve(skin, &problem, (setting.accuracy, control))?;
                 self.place(skin, setting);
             }
             if self.misfit <= tolerance || is_stuck {
@@ -146,7 +146,7 @@ impl State {
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
                 self.see_along_normals(skin);
-                self.matrix(skin, setting, &mut turned);
+                self.matrix(skin, setting, &mut problem);
             }
             if pass >= PLAIN_PASSES || !has_improved {
                 self.take_secants(&before, tolerance);
@@ -154,12 +154,12 @@ impl State {
                     is_along_walls = true;
                     // What does not fit along the averaged direction yields along the normal of its own wall.
                     self.yield_along_walls(skin, setting, tolerance);
-                    turned = self.turned(skin);
+                    problem = self.directional_problem(skin);
                     best = Best::default();
                 } else if !has_improved {
                     self.step_back(skin, setting, (&best.travel, &best.misfits));
                 }
-                self.matrix(skin, setting, &mut turned);
+                self.matrix(skin, setting, &mut problem);
             }
         }
         Ok(())
@@ -170,7 +170,7 @@ impl State {
         (displacement, far_field): (Vec<Vec3>, f64),
         (worst, lifted): (f64, Vec<u32>),
         (tolerance, certificate): (f64, f64),
-    ) -> Solved {
+    ) -> SolvedContact {
         let is_fit = self.misfit <= tolerance && (lifted.is_empty() || worst <= MOST_LIFTED);
         let is_solved = is_fit && self.complementarity <= certificate;
         self.convergence.has_converged = is_solved && far_field <= FAR_FIELD_TOLERANCE;
@@ -185,7 +185,7 @@ impl State {
         }
         let deepest = self.touch.iter().map(|g| -g.distance).fold(worst, f64::max);
         let bearing = self.direction.iter().zip(&self.cosine);
-        Solved {
+        SolvedContact {
             bearing: bearing.map(|(d, c)| d * *c).collect(),
             zone: self.zone,
             force: self.force,

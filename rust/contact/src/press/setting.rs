@@ -1,14 +1,14 @@
-//! What stays fixed while a contact is solved: product, gaps, response weights, start and accuracy.
+//! Constants of one solve: product, gaps, response weights, start and accuracy.
 
 use thenar_surface::Product;
 
 use crate::detection::gaps::Detection;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::warm_start::Last;
+use crate::workspace::warm_start::StartContact;
 
 /// What does not change within a solve.
-pub struct Setting<'a> {
+pub struct SolveSetting<'a> {
     /// The product.
     pub product: &'a Product,
     /// Detection of this posture.
@@ -16,7 +16,7 @@ pub struct Setting<'a> {
     /// Response weight s = sqrt((1 - nu) / (2 pi G)) of every site.
     pub weight: &'a [f64],
     /// What to start from.
-    pub start: Option<&'a Last>,
+    pub start: Option<&'a StartContact>,
     /// How far the last linear problem is solved.
     pub accuracy: Accuracy,
     /// Median edge, mm.

@@ -1,4 +1,4 @@
-//! A solved contact by site: of one linear problem while it is iterated, and of the whole press.
+//! The solved contact by site: of one linear problem, and of the whole press.
 
 use thenar_surface::{Gap, Vec3};
 
@@ -6,10 +6,10 @@ use super::setting::vertex;
 use crate::ContactError;
 use crate::fields::result::Convergence;
 use crate::skin::prepare::Skin;
-use crate::workspace::warm_start::Last;
+use crate::workspace::warm_start::StartContact;
 
 /// What a solve found, by site of its zone.
-pub struct Found<'a> {
+pub struct ZoneSolution<'a> {
     /// Sites, ascending.
     pub zone: &'a [u32],
     /// Normal force, N.
@@ -26,7 +26,7 @@ pub struct Found<'a> {
 
 /// The solved contact, in the product's frame.
 #[derive(Clone)]
-pub struct Solved {
+pub struct SolvedContact {
     /// Sites that could touch, ascending.
     pub zone: Vec<u32>,
     /// Normal force on each, N.
@@ -54,13 +54,13 @@ pub struct Solved {
     pub left: f64,
 }
 
-impl Solved {
+impl SolvedContact {
     /// The error that names where the contact did not reach its tolerances; None where it did.
     pub fn refusal(&self, skin: &Skin) -> Option<ContactError> {
         if self.convergence.has_converged {
             return None;
         }
-        let source = |site: &u32| skin.welded.source[vertex(skin, *site)] as usize;
+        let source = |site: &u32| skin.merged.source[vertex(skin, *site)] as usize;
         let region = self
             .unfit
             .first()
@@ -77,12 +77,12 @@ impl Solved {
     }
 
     /// What the next solve starts from, on a skin of so many sites.
-    pub fn to_start(&self, sites: usize) -> Last {
+    pub fn to_start(&self, sites: usize) -> StartContact {
         let (mut force, mut travel) = (vec![0.0; sites], vec![0.0; sites]);
         for (k, &site) in self.zone.iter().enumerate() {
             force[site as usize] = self.force[k];
             travel[site as usize] = self.travel[k];
         }
-        Last { force, travel }
+        StartContact { force, travel }
     }
 }

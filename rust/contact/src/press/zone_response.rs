@@ -1,7 +1,9 @@
-//! Where a skin uses its hierarchy, and where its rows in memory.
+//! Coupling and displacement of a zone: by rows in memory, or by the far field of a large skin.
 
 use crate::far_field::block_kernels::zeros;
-use crate::far_field::{Carried, Clusters, Coupled, Directed, MOST_GIB};
+use crate::far_field::{
+    Clusters, DirectionalCoupling, FarFieldDisplacement, MOST_GIB, ZoneCoupling,
+};
 use crate::response::assembly::{Load, coupling, displacements};
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
@@ -13,25 +15,29 @@ impl Skin {
     /// # Errors
     /// [`ContactError::TooLarge`] before memory is taken, or `Cancelled`.
     pub(crate) fn couple(&mut self, zone: &[u32], control: &Control) -> Result<(), ContactError> {
-        if self.memory.between == zone && !zone.is_empty() {
+        if self.workspace.problem.coupled_sites == zone && !zone.is_empty() {
             return Ok(());
         }
         control.step("response", 0.0)?;
         if let Some(hierarchy) = &self.hierarchy {
             // What the last zone held is given back before the next is made.
-            (self.memory.coupled, self.memory.between) = (Coupled::default(), Vec::new());
-            self.memory.coupled = Coupled::new(hierarchy, zone, self.ground(), control)?;
+            (
+                self.workspace.problem.coupled,
+                self.workspace.problem.coupled_sites,
+            ) = (ZoneCoupling::default(), Vec::new());
+            self.workspace.problem.coupled =
+                ZoneCoupling::new(hierarchy, zone, self.ground(), control)?;
         } else {
             self.make_rows(zone, control)?;
             // Until it is made, it is that of no sites: its storage is used again.
-            self.memory.between.clear();
+            self.workspace.problem.coupled_sites.clear();
             coupling(
                 (&self.response, &self.sites),
                 zone,
-                &mut self.memory.coupling,
+                &mut self.workspace.problem.coupling,
             );
         }
-        self.memory.between = zone.to_vec();
+        self.workspace.problem.coupled_sites = zone.to_vec();
         Ok(())
     }
 
@@ -60,10 +66,11 @@ impl Skin {
     }
 
     /// The compliance that a large skin is solved with; None where the matrix in memory is.
-    pub(crate) fn directed(&self) -> Option<Directed<'_>> {
-        let memory = &self.memory;
+    pub(crate) fn far_field_compliance(&self) -> Option<DirectionalCoupling<'_>> {
+        let workspace = &self.workspace;
         let is_large = self.hierarchy.is_some();
-        is_large.then(|| Directed::new(&memory.coupled, &memory.along))
+        is_large
+            .then(|| DirectionalCoupling::new(&workspace.problem.coupled, &workspace.problem.along))
     }
 
     /// Where loads carry the skin. Without a hierarchy, their sites must have their rows.
@@ -74,9 +81,9 @@ impl Skin {
         &self,
         mut loads: Vec<Load>,
         control: &Control,
-    ) -> Result<Carried, ContactError> {
+    ) -> Result<FarFieldDisplacement, ContactError> {
         let Some(hierarchy) = &self.hierarchy else {
-            return Ok(Carried {
+            return Ok(FarFieldDisplacement {
                 field: displacements(&self.response, &loads, &self.sites),
                 certificate: 0.0,
             });
@@ -87,7 +94,7 @@ impl Skin {
             load: same.iter().map(|load| load.load).sum::<Vec3>(),
         };
         let loads: Vec<Load> = loads.chunk_by(|a, b| a.site == b.site).map(sum).collect();
-        let zone = &self.memory.between;
+        let zone = &self.workspace.problem.coupled_sites;
         let mut known = vec![None; self.sites.len()];
         if !loads
             .iter()
@@ -98,7 +105,7 @@ impl Skin {
             return hierarchy.carry((&loads, &clusters), &known, self.ground(), control);
         }
         // Within the zone the field is a product of the solver's own operator.
-        let coupled = &self.memory.coupled;
+        let coupled = &self.workspace.problem.coupled;
         let mut fields = zeros(zone.len());
         let (mut from, to) = (vec![false; zone.len()], vec![true; zone.len()]);
         for load in &loads {

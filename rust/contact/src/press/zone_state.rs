@@ -1,28 +1,28 @@
-//! A zone while its contact is found: forces, touches and travels of its sites, measured against the product.
+//! The state of a zone while its contact is iterated: forces, directions, travels, measured distances.
 
 use thenar_surface::{Gap, GapLimits, Vec3};
 
 use super::live::extrapolation;
-use super::setting::{Setting, vertex};
-use super::solution::Found;
+use super::setting::{SolveSetting, vertex};
+use super::solution::ZoneSolution;
 use crate::Model;
 use crate::detection::gaps::limits;
-use crate::detection::press_direction::{LEAST_COSINE, Sums, yielding_directions};
+use crate::detection::press_direction::{LEAST_COSINE, Sums, press_directions};
 use crate::fields::result::Convergence;
-use crate::press::live::extrapolation::Beyond;
+use crate::press::live::extrapolation::OuterLoads;
 use crate::skin::prepare::Skin;
-use crate::workspace::live_cache::Met;
+use crate::workspace::live_cache::ReusedSite;
 
 /// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most (tests
 /// pass up to 0.1).
 const LITTLE_WAY: f64 = 1e-2;
 
 /// What is known so far, by place in the zone.
-pub(crate) struct State {
+pub(crate) struct ZoneState {
     pub zone: Vec<u32>,
     /// Which hold on to what they met in the last live solve; empty if all are solved.
-    pub held: Vec<bool>,
-    pub beyond: Beyond,
+    pub is_reused: Vec<bool>,
+    pub beyond: OuterLoads,
     pub force: Vec<f64>,
     pub touch: Vec<Gap>,
     pub slack: Vec<f64>,
@@ -42,7 +42,7 @@ pub(crate) struct State {
     pub convergence: Convergence,
 }
 
-impl State {
+impl ZoneState {
     pub(crate) fn new(zone: Vec<u32>) -> Self {
         let convergence = Convergence {
             has_converged: false,
@@ -50,10 +50,10 @@ impl State {
             pivots: 0,
             cg_steps: 0,
         };
-        State {
+        ZoneState {
             zone,
-            held: Vec::new(),
-            beyond: Beyond::Nothing,
+            is_reused: Vec::new(),
+            beyond: OuterLoads::Nothing,
             force: Vec::new(),
             touch: Vec::new(),
             slack: Vec::new(),
@@ -70,7 +70,7 @@ impl State {
     }
 
     /// Takes gaps, normals and directions of the undeformed posture.
-    pub(crate) fn open(&mut self, skin: &Skin, setting: &Setting<'_>) {
+    pub(crate) fn open(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
         let gap_of =
             |&site: &u32| setting.detection.gaps[skin.sites.vertex[site as usize] as usize];
         self.touch = self.zone.iter().filter_map(gap_of).collect();
@@ -88,7 +88,7 @@ impl State {
             // Little has moved: the product is met where the skin lay last.
             self.travel = self.zone.iter().map(|&s| travel[s as usize]).collect();
         }
-        if self.beyond == Beyond::Trend {
+        if self.beyond == OuterLoads::Trend {
             self.carry_travel_on(skin, setting);
         }
         self.take_held(skin);
@@ -97,7 +97,11 @@ impl State {
             self.place(skin, setting);
         }
         self.see_along_normals(skin);
-        self.slack = self.held_or(skin, |met| met.slack, vec![0.0; self.zone.len()]);
+        self.slack = self.held_or(
+            skin,
+            |reused_site| reused_site.slack,
+            vec![0.0; self.zone.len()],
+        );
         let carried = std::mem::take(&mut self.force);
         self.force = if carried.len() == self.zone.len() {
             carried
@@ -108,35 +112,36 @@ impl State {
                 .collect()
         };
         let mut force = std::mem::take(&mut self.force);
-        if self.beyond == Beyond::Trend {
+        if self.beyond == OuterLoads::Trend {
             self.carry_forces_on(skin, setting, &mut force);
         }
-        self.force = self.held_or(skin, |met| met.force, force);
+        self.force = self.held_or(skin, |reused_site| reused_site.force, force);
     }
 
     /// Changes travels as the last live press did: a drag goes on more often than not.
-    fn carry_travel_on(&mut self, skin: &Skin, setting: &Setting<'_>) {
+    fn carry_travel_on(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
         for (k, &site) in self.zone.iter().enumerate() {
             // What joins the zone lay where the field carried it.
-            self.travel[k] = match skin.memory.held.of(site) {
+            self.travel[k] = match skin.workspace.live_contact.of(site) {
                 Some(_) => {
                     self.travel[k]
-                        + extrapolation::goes_on(skin, setting, site).dot(&self.direction[k])
+                        + extrapolation::extrapolated_change(skin, setting, site)
+                            .dot(&self.direction[k])
                 }
-                None => extrapolation::ahead(skin, setting, site).dot(&self.direction[k]),
+                None => extrapolation::extrapolated(skin, setting, site).dot(&self.direction[k]),
             };
         }
     }
 
     /// The same of forces.
-    fn carry_forces_on(&self, skin: &Skin, setting: &Setting<'_>, force: &mut [f64]) {
-        let shown = &skin.memory.shown;
-        if !shown.is_of(skin.sites.len()) {
+    fn carry_forces_on(&self, skin: &Skin, setting: &SolveSetting<'_>, force: &mut [f64]) {
+        let live_field = &skin.workspace.live_field;
+        if !live_field.is_of(skin.sites.len()) {
             return;
         }
         for (k, (force, &site)) in force.iter_mut().zip(&self.zone).enumerate() {
             if *force > 0.0 {
-                let change = shown.load_change[site as usize].dot(&self.direction[k]);
+                let change = live_field.load_change[site as usize].dot(&self.direction[k]);
                 let per_newton = setting.weight[site as usize] * self.cosine[k];
                 *force = (*force + change / per_newton).max(0.0);
             }
@@ -144,32 +149,37 @@ impl State {
     }
 
     /// What a place holds on to.
-    fn met<'a>(&self, skin: &'a Skin, k: usize) -> Option<&'a Met> {
-        let is_held = self.held.get(k) == Some(&true);
-        is_held.then(|| skin.memory.held.of(self.zone[k]))?
+    fn reused_site<'a>(&self, skin: &'a Skin, k: usize) -> Option<&'a ReusedSite> {
+        let is_held = self.is_reused.get(k) == Some(&true);
+        is_held.then(|| skin.workspace.live_contact.of(self.zone[k]))?
     }
 
     /// `values` by place in the zone, with those of held sites in their places.
-    fn held_or(&self, skin: &Skin, value: impl Fn(&Met) -> f64, mut values: Vec<f64>) -> Vec<f64> {
+    fn held_or(
+        &self,
+        skin: &Skin,
+        value: impl Fn(&ReusedSite) -> f64,
+        mut values: Vec<f64>,
+    ) -> Vec<f64> {
         for (k, own) in values.iter_mut().enumerate() {
-            *own = self.met(skin, k).map_or(*own, &value);
+            *own = self.reused_site(skin, k).map_or(*own, &value);
         }
         values
     }
 
     /// Takes over what is held; before the rest is measured where it lay last.
     fn take_held(&mut self, skin: &Skin) {
-        for k in 0..self.held.len() {
-            if let Some(met) = self.met(skin, k) {
-                (self.touch[k], self.direction[k]) = (met.touch, met.direction);
-                self.travel[k] = met.travel;
+        for k in 0..self.is_reused.len() {
+            if let Some(reused_site) = self.reused_site(skin, k) {
+                (self.touch[k], self.direction[k]) = (reused_site.touch, reused_site.direction);
+                self.travel[k] = reused_site.travel;
             }
         }
     }
 
     /// Places in the zone that are solved.
     pub(crate) fn solved(&self) -> Vec<usize> {
-        let is_solved = |k: &usize| self.held.get(*k) != Some(&true);
+        let is_solved = |k: &usize| self.is_reused.get(*k) != Some(&true);
         (0..self.zone.len()).filter(is_solved).collect()
     }
 
@@ -183,7 +193,7 @@ impl State {
     fn averaged_directions(
         &mut self,
         skin: &Skin,
-        setting: &Setting<'_>,
+        setting: &SolveSetting<'_>,
         normal: &[Vec3],
     ) -> Vec<Vec3> {
         let inside: Vec<usize> = (0..self.zone.len())
@@ -192,10 +202,13 @@ impl State {
         let sites: Vec<u32> = inside.iter().map(|&k| self.zone[k]).collect();
         let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
         let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
-        let sums = |&k: &usize| self.met(skin, k).map(|met| met.sums);
+        let sums = |&k: &usize| {
+            self.reused_site(skin, k)
+                .map(|reused_site| reused_site.sums)
+        };
         let known: Vec<Option<Sums>> = inside.iter().map(sums).collect();
         let around = (&skin.sites, &skin.adjacency, setting.spacing);
-        let (averaged, sums) = yielding_directions(&sites, (&normals, &gaps), &known, around);
+        let (averaged, sums) = press_directions(&sites, (&normals, &gaps), &known, around);
         let mut direction = normal.to_vec();
         for ((k, average), sums) in inside.into_iter().zip(averaged).zip(sums) {
             (direction[k], self.sums[k]) = (average, sums);
@@ -208,15 +221,15 @@ impl State {
         let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
         let cosines = self.touch.iter().zip(&self.direction).map(cosine);
         let cosines = cosines.map(|c| c.max(LEAST_COSINE)).collect();
-        self.cosine = self.held_or(skin, |met| met.cosine, cosines);
+        self.cosine = self.held_or(skin, |reused_site| reused_site.cosine, cosines);
     }
 
     /// Measures the displaced zone against the product; in a live press, what hardly travelled since it was measured is only
     /// carried on.
-    pub(crate) fn place(&mut self, skin: &Skin, setting: &Setting<'_>) {
+    pub(crate) fn place(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
         let positions = &setting.detection.positions;
         let mut places = self.solved();
-        if self.beyond != Beyond::Nothing {
+        if self.beyond != OuterLoads::Nothing {
             places.retain(|&k| !self.is_carried_on(k));
         }
         let written =
@@ -241,7 +254,7 @@ impl State {
     /// Measures again, as far as it takes, what has left the reach of the query: it is outside, never where it was before.
     fn found_again(
         &self,
-        setting: &Setting<'_>,
+        setting: &SolveSetting<'_>,
         written: &[Vec3],
         mut gaps: Vec<Option<Gap>>,
     ) -> Vec<Option<Gap>> {
@@ -286,7 +299,12 @@ impl State {
     }
 
     /// Lets what does not fit yield along the normal of the wall that it was detected at, from where it was posed.
-    pub(crate) fn yield_along_walls(&mut self, skin: &Skin, setting: &Setting<'_>, tolerance: f64) {
+    pub(crate) fn yield_along_walls(
+        &mut self,
+        skin: &Skin,
+        setting: &SolveSetting<'_>,
+        tolerance: f64,
+    ) {
         let misfits = self.misfits();
         for k in (0..self.travel.len()).filter(|&k| misfits[k] > tolerance) {
             self.direction[k] = self.wall[k];
@@ -301,7 +319,7 @@ impl State {
     pub(crate) fn step_back(
         &mut self,
         skin: &Skin,
-        setting: &Setting<'_>,
+        setting: &SolveSetting<'_>,
         (travel, misfits): (&[f64], &[f64]),
     ) {
         let now = self.misfits();
@@ -334,8 +352,8 @@ impl State {
             .fold(0.0, f64::max)
     }
 
-    pub(crate) fn found(&self) -> Found<'_> {
-        Found {
+    pub(crate) fn found(&self) -> ZoneSolution<'_> {
+        ZoneSolution {
             zone: &self.zone,
             force: &self.force,
             direction: &self.direction,

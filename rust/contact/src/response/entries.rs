@@ -1,4 +1,4 @@
-//! Entries of the response between any sites: the very ones that its rows hold.
+//! Single entries of the response between any sites, bit for bit those of its rows; bounds and memory of rows.
 
 use super::rows::Response;
 use crate::skin::arc_length::{Site, arc_lengths};

@@ -1,4 +1,4 @@
-//! Where the tables of kernels have their knots, and over which wave numbers they are summed.
+//! Knots and quadrature nodes of the kernel tables.
 
 use super::bonded_layer::Layer;
 

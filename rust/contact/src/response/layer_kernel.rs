@@ -1,4 +1,4 @@
-//! Response of the surface to a point force, as tables over distance: `u = (1 - nu) / (2 pi G) [1/r - Psi(r)] P`.
+//! The layer kernel, tabulated over distance: `u = (1 - nu) / (2 pi G) [1/r - Psi(r)] P`.
 //!
 //! Where thickness varies over the skin the kernel between two places with transfer functions K_a and K_b is
 //! `Psi_ab(r) = integral of (1 - sqrt(K_a K_b)) J0(k r) dk`. For each k this is a congruence of `J0(k r)`, a definite

@@ -1,4 +1,4 @@
-//! A thin stiff skin that is bonded to a layer: the transfer function of both together.
+//! A thin stiff plate bonded to a layer: the transfer function of both together.
 //!
 //! A plate on top has a bending stiffness D, a stiffness M against stretch (force per width and strain), a tension N, and lies with its
 //! middle c above the layer's surface (Timoshenko & Woinowsky-Krieger 1959, 1 and 8; Kirchhoff). With K, Z and R of the layer (the sibling

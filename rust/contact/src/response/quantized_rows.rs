@@ -1,4 +1,4 @@
-//! Rows of the response as whole numbers of 16 bits, for live presses: what they take is reading rows, and these are half as long.
+//! Response rows quantized to int16 for Live; row reads are the bottleneck, and these are half as long.
 //!
 //! An entry is off by 1/64000 of the largest of its row; where a site answers itself, it is kept apart as it is.
 
@@ -27,11 +27,11 @@ pub struct Row {
 
 /// Rows that were needed so far.
 #[derive(Debug, Clone, Default)]
-pub struct Rounded {
+pub struct QuantizedRows {
     rows: Vec<Row>,
 }
 
-impl Rounded {
+impl QuantizedRows {
     /// Makes the rows of `wanted` that are missing, of those of the response, which are made.
     pub fn make(
         &mut self,
@@ -194,7 +194,7 @@ mod tests {
     fn fields_are_those_of_the_rows_but_for_the_rounding_of_entries() {
         let (skin, pressed) = sheet();
         let ground = (&skin.response, &skin.sites);
-        let mut rows = Rounded::default();
+        let mut rows = QuantizedRows::default();
         rows.make(pressed.iter().copied(), ground);
         let load = |&site: &u32| {
             let site_f64 = f64::from(site);

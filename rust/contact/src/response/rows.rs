@@ -1,4 +1,4 @@
-//! The response of the skin between its sites, row by row, made when first needed and kept for every later posture.
+//! Response rows between sites, computed when first needed and kept for every later posture.
 //!
 //! A row holds `K(r_ij)` (1/mm), so that `u_i = s_i s_j K_ij P_j` with `s = sqrt((1 - nu) / (2 pi G))`. It depends on the rest
 //! mesh and on thicknesses alone. The operator is symmetric: both members of a pair are computed by the same operations.

@@ -1,4 +1,4 @@
-//! Response of a layer under a thin stiff skin that is bonded to it, as tables over distance.
+//! The kernel of a layer under a bonded stiff skin, tabulated over distance.
 //!
 //! The kernel of layer and plate (the sibling `plate_on_layer`) is finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For
 //! two places with different transfer functions their geometric mean counts, as in the sibling `layer_kernel`, and the response stays definite.

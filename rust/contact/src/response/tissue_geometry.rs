@@ -1,4 +1,4 @@
-//! What the response depends on besides the skin's shape: layers, stiff plates and cuts; and how a site mixes two layers.
+//! What the response depends on besides the skin's shape: layers, stiff plates, cuts; and the mix of two layers at a site.
 
 use super::bonded_layer::Layer;
 use super::plate_on_layer::Sheet;

@@ -1,4 +1,4 @@
-//! Vertices that lie on one another, as at the seams of unwelded meshes, or all but so, made one.
+//! Merges coincident vertices (seams of unwelded meshes) and vertices too close for the response.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -10,18 +10,18 @@ const MERGE_SHARE: f64 = 0.25;
 
 /// A mesh without coincident vertices, and which of its vertices stands for each original one.
 #[derive(Debug, Clone)]
-pub struct Welded {
+pub struct MergedMesh {
     /// The welded mesh.
     pub mesh: Mesh,
     /// Original vertex that each welded vertex takes its position from.
     pub source: Vec<u32>,
     /// Welded vertex of each original vertex.
-    pub welded: Vec<u32>,
+    pub merged_of: Vec<u32>,
     /// Positions of the mesh as given, mm; empty where nothing was merged.
     pub given: Vec<Vec3>,
 }
 
-impl Welded {
+impl MergedMesh {
     /// Merges vertices nearer to each other than a quarter of the mean edge around either.
     ///
     /// # Errors
@@ -39,10 +39,10 @@ impl Welded {
         }
         let welded: Vec<u32> = welded.iter().map(|&w| number[w as usize]).collect();
         if source.len() == positions.len() {
-            return Ok(Welded {
+            return Ok(MergedMesh {
                 mesh: mesh.clone(),
                 source,
-                welded,
+                merged_of: welded,
                 given: Vec::new(),
             });
         }
@@ -54,17 +54,17 @@ impl Welded {
         let triangles = triangles
             .filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
             .collect();
-        Ok(Welded {
+        Ok(MergedMesh {
             mesh: Mesh::new(kept, triangles)?,
             source,
-            welded,
+            merged_of: welded,
             given: positions.to_vec(),
         })
     }
 
     /// Number of original vertices that were merged into another.
     pub fn merged(&self) -> usize {
-        self.welded.len() - self.source.len()
+        self.merged_of.len() - self.source.len()
     }
 }
 
@@ -153,9 +153,9 @@ mod tests {
             p(1.0, 1.0),
         ];
         let mesh = Mesh::new(positions, vec![[0, 1, 2], [3, 5, 4]]).unwrap();
-        let welded = Welded::new(&mesh).unwrap();
+        let welded = MergedMesh::new(&mesh).unwrap();
         assert_eq!(welded.merged(), 2);
-        assert_eq!(welded.welded, [0, 1, 2, 1, 2, 3]);
+        assert_eq!(welded.merged_of, [0, 1, 2, 1, 2, 3]);
         assert_eq!(welded.mesh.triangles(), [[0, 1, 2], [1, 3, 2]]);
     }
 }

@@ -1,4 +1,4 @@
-//! The prepared hand: vertices of the skin, regions, materials and the tissue that the effects leave.
+//! The prepared hand: sites, regions, materials, and the tissue after effects.
 
 pub mod arc_length;
 pub mod materials;

@@ -1,15 +1,15 @@
-//! A hand prepared once for every posture and product.
+//! The prepared skin: built once from a rest mesh, regions and materials; effects and materials may be changed.
 
 use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
 
-use super::merged_vertices::Welded;
+use super::merged_vertices::MergedMesh;
 use super::sites::Sites;
 use super::tissue::{Place, Tissue};
-use crate::far_field::hierarchy::{Ground, Hierarchy};
-use crate::history::tissue_memory::History;
+use crate::far_field::hierarchy::{Hierarchy, SkinResponse};
+use crate::history::tissue_memory::TissueMemory;
 use crate::response::kernel_grid::RANGE_IN_THICKNESSES;
 use crate::response::rows::Response;
-use crate::workspace::Memory;
+use crate::workspace::Workspace;
 use crate::{ActiveEffect, ContactError, Control, Material, Model, SkinInput};
 
 /// Spacing below which the paper's r0 makes its matrix indefinite, mm.
@@ -26,7 +26,7 @@ pub struct Skin {
     pub(crate) tissue: Tissue,
     pub(crate) regions: Vec<i32>,
     region_names: Vec<String>,
-    pub(crate) welded: Welded,
+    pub(crate) merged: MergedMesh,
     pub(crate) adjacency: Adjacency,
     pub(crate) metric: SkinDistance,
     /// Range of the metric, mm.
@@ -38,9 +38,9 @@ pub struct Skin {
     pub(crate) response: Response,
     /// In a large skin, what stands for the response's rows.
     pub(crate) hierarchy: Option<Hierarchy>,
-    pub(crate) memory: Memory,
+    pub(crate) workspace: Workspace,
     /// What the tissue remembers, while a protocol is followed.
-    pub(crate) history: Option<History>,
+    pub(crate) history: Option<TissueMemory>,
     warnings: Vec<String>,
 }
 
@@ -75,7 +75,7 @@ impl Skin {
         check_regions(&regions, (&materials, &region_names), vertices)?;
         control.step("preparing", 0.0)?;
         let (mesh, mut warnings) = audited(mesh)?;
-        let welded = Welded::new(&mesh).map_err(ContactError::Hand)?;
+        let welded = MergedMesh::new(&mesh).map_err(ContactError::Hand)?;
         let spacing = median_edge_length(&welded.mesh);
         if welded.merged() > 0 {
             warnings.push(format!(
@@ -104,14 +104,14 @@ impl Skin {
         control.step("preparing", 0.8)?;
         let tissue = Tissue::bare(&materials);
         let response = Response::new(model, &tissue.geometry, &sites, &metric);
-        let ground = Ground {
+        let ground = SkinResponse {
             response: &response,
             sites: &sites,
         };
         let hierarchy = Hierarchy::new(model, ground);
         control.step("preparing", 1.0)?;
         let rest_area = vertex_areas(&welded.mesh);
-        let memory = Memory::default();
+        let workspace = Workspace::default();
         Ok(Skin {
             model,
             base: materials,
@@ -120,7 +120,7 @@ impl Skin {
             range,
             regions,
             region_names,
-            welded,
+            merged: welded,
             adjacency,
             metric,
             sites,
@@ -128,7 +128,7 @@ impl Skin {
             spacing,
             response,
             hierarchy,
-            memory,
+            workspace,
             history: None,
             warnings,
         })
@@ -202,7 +202,7 @@ impl Skin {
                 self.tissue.thickness(site as usize, region)
             }
         };
-        self.welded.welded.iter().map(at).collect()
+        self.merged.merged_of.iter().map(at).collect()
     }
 
     /// Switches effects on, in place of those before. The response is prepared again only where they change it.
@@ -221,26 +221,26 @@ impl Skin {
         let place = Place {
             sites: &self.sites,
             metric: &self.metric,
-            source: &self.welded.source,
+            source: &self.merged.source,
         };
         let tissue = Tissue::new(&self.base, &effects, &place)?;
         if tissue.geometry != self.tissue.geometry {
             control.step("preparing", 0.0)?;
             let range = range(self.model, tissue.thickest());
             if range > self.range {
-                self.metric = SkinDistance::new(&self.welded.mesh, &self.adjacency, range);
+                self.metric = SkinDistance::new(&self.merged.mesh, &self.adjacency, range);
                 self.range = range;
             }
             self.response = Response::new(self.model, &tissue.geometry, &self.sites, &self.metric);
             self.hierarchy = Hierarchy::new(self.model, self.ground());
-            self.memory = Memory::default();
+            self.workspace = Workspace::default();
         }
         (self.tissue, self.effects) = (tissue, effects);
         control.step("preparing", 1.0)
     }
 
-    pub(crate) fn ground(&self) -> Ground<'_> {
-        Ground {
+    pub(crate) fn ground(&self) -> SkinResponse<'_> {
+        SkinResponse {
             response: &self.response,
             sites: &self.sites,
         }
@@ -252,7 +252,7 @@ impl Skin {
     /// [`ContactError::PosedCount`] or [`ContactError::PosedNotFinite`].
     pub(crate) fn posed(&self, posed: Option<&[Vec3]>) -> Result<Mesh, ContactError> {
         let Some(posed) = posed else {
-            return Ok(self.welded.mesh.clone());
+            return Ok(self.merged.mesh.clone());
         };
         if posed.len() != self.regions.len() {
             return Err(ContactError::PosedCount {
@@ -264,12 +264,12 @@ impl Skin {
             return Err(ContactError::PosedNotFinite { vertex });
         }
         let positions = self
-            .welded
+            .merged
             .source
             .iter()
             .map(|&v| posed[v as usize])
             .collect();
-        self.welded
+        self.merged
             .mesh
             .with_positions(positions)
             .map_err(ContactError::Hand)

@@ -1,4 +1,4 @@
-//! The skin in rest, ready for every posture: sites in patch order, their areas, regions and blends over creases.
+//! Sites: skin vertices in patch order, with rest positions, areas, regions and blends over creases.
 
 use thenar_surface::{Adjacency, Mesh, SkinDistance, vertex_areas, vertex_normals};
 

@@ -1,4 +1,4 @@
-//! What the effects that act at all times make of the tissue, worked out once when effects are set.
+//! The tissue after effects: materials, layers, plates, cuts and moduli, composed once when effects are set.
 
 use thenar_surface::SkinDistance;
 

@@ -1,4 +1,4 @@
-//! Conjugate gradients on a principal submatrix, with the preconditioner that the matrix gives for it.
+//! Preconditioned conjugate gradients on a principal submatrix.
 
 use super::symmetric::Symmetric;
 

@@ -1,4 +1,4 @@
-//! The compliance along directions, `A_ij = w_i w_j K_ij t_i.t_j`: entries are made where they are needed, weights stay outside.
+//! The compliance along press directions, `A_ij = w_i w_j K_ij t_i.t_j`, computed on demand; weights stay outside.
 //!
 //! So nothing is made anew where weights alone change, and only what contact sets are solved on is ever stored.
 
@@ -8,9 +8,9 @@ use std::rc::Rc;
 use thenar_surface::Vec3;
 
 use super::lcp::Compliance;
-use super::packed::Half;
-use super::row_runs::Rows;
-use super::submatrix::Kept;
+use super::packed::PackedSymmetric;
+use super::row_runs::RowRuns;
+use super::submatrix::Submatrix;
 use super::symmetric::Symmetric;
 
 /// Unit directions by axis.
@@ -47,11 +47,11 @@ impl Axes {
 }
 
 /// The part of `K t.t` that was stored last, for as long as coupling and directions stay.
-pub type Part = RefCell<Option<(Vec<u32>, Rc<Half<f32>>)>>;
+pub type Part = RefCell<Option<(Vec<u32>, Rc<PackedSymmetric<f32>>)>>;
 
 /// A compliance along directions, mm/N.
-pub struct Along<'a> {
-    coupling: &'a Rows<f32>,
+pub struct DirectionalCompliance<'a> {
+    coupling: &'a RowRuns<f32>,
     axes: &'a Axes,
     weight: &'a [f64],
     /// Which unknowns are likely to be in contact: they are stored with the first set.
@@ -60,10 +60,10 @@ pub struct Along<'a> {
     diagonal: Vec<f64>,
 }
 
-impl<'a> Along<'a> {
+impl<'a> DirectionalCompliance<'a> {
     /// Of the `coupling` (1/mm) along `axes` with `weight` by unknown; `part` must have been made with the same two, or be empty.
     pub fn new(
-        (coupling, axes): (&'a Rows<f32>, &'a Axes),
+        (coupling, axes): (&'a RowRuns<f32>, &'a Axes),
         (weight, likely): (&'a [f64], &'a [bool]),
         part: &'a Part,
     ) -> Self {
@@ -72,7 +72,7 @@ impl<'a> Along<'a> {
             let entry = (coupling.diagonal()[i] * dot(t, t)) as f32;
             f64::from(entry) * w * w
         };
-        Along {
+        DirectionalCompliance {
             coupling,
             axes,
             weight,
@@ -83,7 +83,7 @@ impl<'a> Along<'a> {
     }
 }
 
-impl Symmetric for Along<'_> {
+impl Symmetric for DirectionalCompliance<'_> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
@@ -94,7 +94,7 @@ impl Symmetric for Along<'_> {
     }
 }
 
-impl Compliance for Along<'_> {
+impl Compliance for DirectionalCompliance<'_> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
         let weighted: Vec<f64> = x.iter().zip(self.weight).map(|(x, w)| x * w).collect();
         multiply((self.coupling, self.axes), rows, &weighted, out);
@@ -120,7 +120,7 @@ impl Compliance for Along<'_> {
             .fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    fn kept(&self, set: &[u32], _is_rough: bool) -> Kept<'_> {
+    fn submatrix(&self, set: &[u32], _is_rough: bool) -> Submatrix<'_> {
         let mut part = self.part.borrow_mut();
         let (rows, half) = match part.take() {
             Some((rows, half)) if super::submatrix::holds(&rows, set) => (rows, half),
@@ -134,9 +134,10 @@ impl Compliance for Along<'_> {
                     .filter(|&i| wanted[i as usize])
                     .collect();
                 let axes = self.axes.of(&rows);
-                let half = Half::stretched(self.coupling, &rows, |i, first, values, out| {
-                    turn_entries(axes.at(i), axes.columns(first, values.len()), (values, out));
-                });
+                let half =
+                    PackedSymmetric::stretched(self.coupling, &rows, |i, first, values, out| {
+                        turn_entries(axes.at(i), axes.columns(first, values.len()), (values, out));
+                    });
                 (rows, Rc::new(half))
             }
         };
@@ -147,7 +148,7 @@ impl Compliance for Along<'_> {
             weight,
             diagonal,
         };
-        let kept = Kept::of(rows.clone(), Box::new(matrix));
+        let kept = Submatrix::of(rows.clone(), Box::new(matrix));
         *part = Some((rows, half));
         kept
     }
@@ -159,7 +160,7 @@ impl Compliance for Along<'_> {
 
 /// A stored part with its weights.
 struct Weighted {
-    half: Rc<Half<f32>>,
+    half: Rc<PackedSymmetric<f32>>,
     weight: Vec<f64>,
     diagonal: Vec<f64>,
 }
@@ -194,7 +195,7 @@ fn turn_entries(row: [f64; 3], columns: [&[f64]; 3], (values, out): (&[f32], &mu
 
 /// Rows of `K t.t` times `x`.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply((coupling, axes): (&Rows<f32>, &Axes), rows: &[u32], x: &[f64], out: &mut [f64]) {
+fn multiply((coupling, axes): (&RowRuns<f32>, &Axes), rows: &[u32], x: &[f64], out: &mut [f64]) {
     for (&i, out) in rows.iter().zip(out) {
         let (runs, values) = coupling.row(i as usize);
         let own = axes.at(i as usize);
@@ -240,8 +241,8 @@ mod tests {
     use crate::solve::{Accuracy, solve_contact};
 
     /// A coupling like the half space's on a strip, in two runs a row, and directions that turn along it.
-    fn strip(n: usize) -> (Rows<f32>, Vec<Vec3>, Vec<f64>) {
-        let mut rows = Rows::new();
+    fn strip(n: usize) -> (RowRuns<f32>, Vec<Vec3>, Vec<f64>) {
+        let mut rows = RowRuns::new();
         for i in 0..n {
             let entry = |j: usize| {
                 if i == j {
@@ -262,7 +263,7 @@ mod tests {
     }
 
     /// The same matrix, entry by entry.
-    fn dense(rows: &Rows<f32>, directions: &[Vec3], weights: &[f64]) -> Rows<f64> {
+    fn dense(rows: &RowRuns<f32>, directions: &[Vec3], weights: &[f64]) -> RowRuns<f64> {
         let n = weights.len();
         let entry = |k: usize| {
             let (i, j) = (k / n, k % n);
@@ -271,7 +272,7 @@ mod tests {
                 * weights[i]
                 * weights[j]
         };
-        Rows::dense((0..n * n).map(entry).collect(), n)
+        RowRuns::dense((0..n * n).map(entry).collect(), n)
     }
 
     #[test]
@@ -279,7 +280,7 @@ mod tests {
         let (rows, directions, weights) = strip(101);
         let (axes, part) = (Axes::new(&directions), Part::default());
         let likely = vec![false; 101];
-        let along = Along::new((&rows, &axes), (&weights, &likely), &part);
+        let along = DirectionalCompliance::new((&rows, &axes), (&weights, &likely), &part);
         let written = dense(&rows, &directions, &weights);
         let x: Vec<f64> = (0..101).map(|i| f64::from(i).cos()).collect();
         let (mut ours, mut theirs) = (vec![0.0; 101], vec![0.0; 101]);
@@ -304,7 +305,7 @@ mod tests {
         let (axes, part) = (Axes::new(&directions), Part::default());
         for factor in [1.0, 0.7] {
             let weights: Vec<f64> = weights.iter().map(|w| w * factor).collect();
-            let along = Along::new((&rows, &axes), (&weights, &likely), &part);
+            let along = DirectionalCompliance::new((&rows, &axes), (&weights, &likely), &part);
             let control = Control::none();
             let ours = solve_contact(&along, &gap, None, (Accuracy::Full, &control));
             let written = dense(&rows, &directions, &weights);

@@ -2,8 +2,8 @@
 //!
 //! What a solver needs of the matrix `A`, how accurately it solves, and what it returns.
 
-use super::row_runs::{Entry, Rows};
-use super::submatrix::Kept;
+use super::row_runs::{Entry, RowRuns};
+use super::submatrix::Submatrix;
 use super::symmetric::Symmetric;
 
 /// Residual from which a level is loose.
@@ -22,20 +22,20 @@ pub trait Compliance: Symmetric {
     fn norm_bound(&self) -> f64;
 
     /// The part that a contact set (ascending) is solved on; a rough solution may be had with less precision.
-    fn kept(&self, set: &[u32], is_rough: bool) -> Kept<'_>;
+    fn submatrix(&self, set: &[u32], is_rough: bool) -> Submatrix<'_>;
 
     /// Whether that part has less precision than the matrix.
     fn is_narrow(&self, is_rough: bool) -> bool;
 
     /// Whether products are what a solution's time goes to, whatever else is done.
-    fn is_dear(&self) -> bool {
+    fn is_costly(&self) -> bool {
         false
     }
 }
 
-impl<T: Entry> Compliance for Rows<T> {
+impl<T: Entry> Compliance for RowRuns<T> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
-        Rows::times_rows(self, rows, x, out);
+        RowRuns::times_rows(self, rows, x, out);
     }
 
     /// Gershgorin's.
@@ -45,8 +45,8 @@ impl<T: Entry> Compliance for Rows<T> {
             .fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    fn kept(&self, set: &[u32], is_rough: bool) -> Kept<'_> {
-        Kept::new(self, set, Compliance::is_narrow(self, is_rough))
+    fn submatrix(&self, set: &[u32], is_rough: bool) -> Submatrix<'_> {
+        Submatrix::new(self, set, Compliance::is_narrow(self, is_rough))
     }
 
     fn is_narrow(&self, is_rough: bool) -> bool {
@@ -69,11 +69,11 @@ impl Accuracy {
     ///
     /// Where products are dear, the set is looked at on the way to the certificate, not only at its end, and not before a rough
     /// solution: steps are few, and each look costs two products.
-    pub(super) fn levels(self, is_dear: bool) -> &'static [f64] {
+    pub(super) fn levels(self, is_costly: bool) -> &'static [f64] {
         match self {
-            Accuracy::Rough if is_dear => &[ROUGH],
+            Accuracy::Rough if is_costly => &[ROUGH],
             Accuracy::Rough => &[1e-2, ROUGH],
-            Accuracy::Full if is_dear => &[FINE, EXACT],
+            Accuracy::Full if is_costly => &[FINE, EXACT],
             Accuracy::Full => &[EXACT],
         }
     }

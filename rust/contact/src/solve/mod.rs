@@ -1,4 +1,4 @@
-//! Stage 4: the contact problem and its solvers.
+//! Stage 4: the linear contact problem and its solvers.
 
 pub mod row_runs;
 
@@ -14,8 +14,8 @@ mod mprgp;
 
 pub use block_pivoting::solve_contact;
 pub use dense::solve_dense;
-pub use directional::{Along, Axes, Part};
+pub use directional::{Axes, DirectionalCompliance, Part};
 pub use lcp::Compliance;
 pub use lcp::{Accuracy, Solution};
-pub use submatrix::Kept;
+pub use submatrix::Submatrix;
 pub use symmetric::{Preconditioner, Symmetric};

@@ -1,4 +1,4 @@
-//! The solver that always ends: modified proportioning with reduced gradient projections (MPRGP, Dostal & Schoeberl 2005).
+//! The fallback solver: modified proportioning with reduced gradient projections (MPRGP, Dostal & Schoeberl 2005); it always ends.
 
 use super::lcp::Compliance;
 use crate::Control;

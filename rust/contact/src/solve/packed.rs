@@ -1,20 +1,20 @@
-//! The lower half of a symmetric matrix: half the memory to read in a product, which is what a product's time goes to.
+//! Packed symmetric matrix: the lower triangle alone, since products are limited by memory reads.
 
-use super::row_runs::{Entry, Rows, Run};
+use super::row_runs::{Entry, RowRuns, Run};
 use super::symmetric::Symmetric;
 
 /// Rows of runs of columns left of the diagonal, and the diagonal.
 #[derive(Debug, Clone)]
-pub struct Half<T> {
+pub struct PackedSymmetric<T> {
     run_ends: Vec<u32>,
     runs: Vec<Run>,
     values: Vec<T>,
     diagonal: Vec<f64>,
 }
 
-impl<T: Entry> Half<T> {
+impl<T: Entry> PackedSymmetric<T> {
     /// The half of the principal submatrix of the rows `keep` (ascending) of `matrix`.
-    pub fn of<S: Entry>(matrix: &Rows<S>, keep: &[u32], convert: impl Fn(S) -> T) -> Self {
+    pub fn of<S: Entry>(matrix: &RowRuns<S>, keep: &[u32], convert: impl Fn(S) -> T) -> Self {
         // rank[c]: how many kept columns lie before column c.
         let mut rank = vec![0u32; matrix.len() + 1];
         for &k in keep {
@@ -23,7 +23,7 @@ impl<T: Entry> Half<T> {
         for c in 0..matrix.len() {
             rank[c + 1] += rank[c];
         }
-        let mut half = Half {
+        let mut half = PackedSymmetric {
             run_ends: Vec::with_capacity(keep.len()),
             runs: Vec::new(),
             values: Vec::with_capacity(keep.len() * keep.len() / 2),
@@ -55,17 +55,17 @@ impl<T: Entry> Half<T> {
     }
 }
 
-impl Half<f32> {
+impl PackedSymmetric<f32> {
     /// The half of the principal submatrix of the rows `keep` (ascending) of `matrix`, its entries replaced by
     /// `run(row, first column, values, out)`, both counted in `keep`.
     pub fn stretched(
-        matrix: &Rows<f32>,
+        matrix: &RowRuns<f32>,
         keep: &[u32],
         run: impl Fn(usize, usize, &[f32], &mut [f32]),
     ) -> Self {
         let stretches = stretches(keep);
         let most = keep.len() * (keep.len() + 1) / 2;
-        let mut half = Half {
+        let mut half = PackedSymmetric {
             run_ends: Vec::with_capacity(keep.len()),
             runs: Vec::new(),
             values: Vec::with_capacity(most.min(matrix.entries())),
@@ -83,7 +83,7 @@ impl Half<f32> {
     /// Appends what of row `i` lies left of the diagonal within the stretches of kept columns.
     fn push_row(
         &mut self,
-        matrix: &Rows<f32>,
+        matrix: &RowRuns<f32>,
         (row, i): (usize, u32),
         (stretches, run): (&[Stretch], &impl Fn(usize, usize, &[f32], &mut [f32])),
     ) {
@@ -149,7 +149,7 @@ fn stretches(keep: &[u32]) -> Vec<Stretch> {
     stretches
 }
 
-impl<T: Entry> Symmetric for Half<T> {
+impl<T: Entry> Symmetric for PackedSymmetric<T> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
@@ -160,7 +160,7 @@ impl<T: Entry> Symmetric for Half<T> {
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply<T: Entry>(matrix: &Half<T>, x: &[f64], out: &mut [f64]) {
+fn multiply<T: Entry>(matrix: &PackedSymmetric<T>, x: &[f64], out: &mut [f64]) {
     let (mut from, mut offset) = (0, 0);
     for (i, &to) in matrix.run_ends.iter().enumerate() {
         let mut sums = [0.0; 32];
@@ -203,9 +203,9 @@ mod tests {
     fn half_multiplies_like_the_rows_it_was_taken_from() {
         let n = 90;
         let entry = |i: usize, j: usize| 1.0 / (1.0 + (i as f64 - j as f64).abs());
-        let rows = Rows::dense((0..n * n).map(|k| entry(k / n, k % n)).collect(), n);
+        let rows = RowRuns::dense((0..n * n).map(|k| entry(k / n, k % n)).collect(), n);
         let keep: Vec<u32> = (0..n as u32).filter(|i| i % 7 != 3).collect();
-        let half = Half::of(&rows, &keep, |value| value);
+        let half = PackedSymmetric::of(&rows, &keep, |value| value);
         let x: Vec<f64> = keep.iter().map(|&i| f64::from(i).sin()).collect();
         let mut out = vec![f64::NAN; keep.len()];
         half.times(&x, &mut out);

@@ -1,4 +1,4 @@
-//! A symmetric compliance stored by rows of runs: dense where places are near, nothing where they do not feel each other.
+//! Symmetric matrix stored by rows of contiguous column runs: dense where sites are near, empty beyond the range.
 
 use rayon::prelude::*;
 
@@ -46,7 +46,7 @@ pub struct Run {
 
 /// A symmetric positive definite matrix (mm/N): runs of columns by row. Entries outside the runs are zero.
 #[derive(Debug, Clone, Default)]
-pub struct Rows<T> {
+pub struct RowRuns<T> {
     run_ends: Vec<u32>,
     runs: Vec<Run>,
     value_ends: Vec<usize>,
@@ -54,10 +54,10 @@ pub struct Rows<T> {
     diagonal: Vec<f64>,
 }
 
-impl<T: Entry> Rows<T> {
-    /// An empty matrix to be filled by [`Rows::push`].
+impl<T: Entry> RowRuns<T> {
+    /// An empty matrix to be filled by [`RowRuns::push`].
     pub fn new() -> Self {
-        Rows {
+        RowRuns {
             run_ends: Vec::new(),
             runs: Vec::new(),
             value_ends: Vec::new(),
@@ -166,8 +166,8 @@ impl<T: Entry> Rows<T> {
     }
 
     /// The matrix in single precision.
-    pub fn narrow(&self) -> Rows<f32> {
-        Rows {
+    pub fn narrow(&self) -> RowRuns<f32> {
+        RowRuns {
             run_ends: self.run_ends.clone(),
             runs: self.runs.clone(),
             value_ends: self.value_ends.clone(),
@@ -177,16 +177,16 @@ impl<T: Entry> Rows<T> {
     }
 
     /// The principal submatrix of the rows in `keep` (ascending), in single precision.
-    pub fn principal_narrow(&self, keep: &[u32]) -> Rows<f32> {
+    pub fn principal_narrow(&self, keep: &[u32]) -> RowRuns<f32> {
         self.principal_of(keep, Entry::narrow)
     }
 
     /// The principal submatrix of the rows in `keep` (ascending).
-    pub fn principal(&self, keep: &[u32]) -> Rows<T> {
+    pub fn principal(&self, keep: &[u32]) -> RowRuns<T> {
         self.principal_of(keep, |value| value)
     }
 
-    fn principal_of<S: Entry>(&self, keep: &[u32], convert: impl Fn(T) -> S) -> Rows<S> {
+    fn principal_of<S: Entry>(&self, keep: &[u32], convert: impl Fn(T) -> S) -> RowRuns<S> {
         // rank[c]: how many kept columns lie before column c.
         let mut rank = vec![0u32; self.len() + 1];
         for &k in keep {
@@ -195,7 +195,7 @@ impl<T: Entry> Rows<T> {
         for c in 0..self.len() {
             rank[c + 1] += rank[c];
         }
-        let mut kept = Rows::new();
+        let mut kept = RowRuns::new();
         for &i in keep {
             let (runs, values) = self.row(i as usize);
             let mut offset = 0usize;
@@ -224,11 +224,11 @@ impl<T: Entry> Rows<T> {
     }
 }
 
-impl Rows<f64> {
+impl RowRuns<f64> {
     /// A dense matrix, row by row.
     pub fn dense(matrix: Vec<f64>, n: usize) -> Self {
         debug_assert_eq!(matrix.len(), n * n);
-        Rows {
+        RowRuns {
             run_ends: (1..=n as u32).collect(),
             runs: vec![
                 Run {
@@ -245,7 +245,7 @@ impl Rows<f64> {
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
-fn multiply<T: Entry>(matrix: &Rows<T>, rows: &[u32], x: &[f64], out: &mut [f64]) {
+fn multiply<T: Entry>(matrix: &RowRuns<T>, rows: &[u32], x: &[f64], out: &mut [f64]) {
     for (&i, out) in rows.iter().zip(out) {
         let (runs, values) = matrix.row(i as usize);
         // Four chains of eight: one chain would wait for each of its own additions.
@@ -286,9 +286,9 @@ fn multiply<T: Entry>(matrix: &Rows<T>, rows: &[u32], x: &[f64], out: &mut [f64]
 mod tests {
     use super::*;
 
-    fn banded(n: usize) -> (Vec<f64>, Rows<f64>) {
+    fn banded(n: usize) -> (Vec<f64>, RowRuns<f64>) {
         let mut dense = vec![0.0; n * n];
-        let mut rows = Rows::new();
+        let mut rows = RowRuns::new();
         for i in 0..n {
             let (start, end) = (i.saturating_sub(11), (i + 12).min(n));
             let values: Vec<f64> = (start..end)

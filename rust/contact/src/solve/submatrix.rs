@@ -1,14 +1,14 @@
-//! The part of a matrix that contact sets are solved on.
+//! The principal submatrix on which contact sets are solved.
 
-use super::packed::Half;
-use super::row_runs::{Entry, Rows};
+use super::packed::PackedSymmetric;
+use super::row_runs::{Entry, RowRuns};
 use super::symmetric::Symmetric;
 
 /// Share of the unknowns above which the set of a large problem is solved in place instead of copied out.
 const COPY_SHARE: f64 = 0.6;
 
 /// The part of the matrix that sets are solved on, kept while they lie within it.
-pub struct Kept<'a> {
+pub struct Submatrix<'a> {
     /// Its rows, ascending.
     pub rows: Vec<u32>,
     /// The matrix on them.
@@ -19,14 +19,14 @@ pub struct Kept<'a> {
     answers: Option<Vec<bool>>,
 }
 
-impl<'a> Kept<'a> {
+impl<'a> Submatrix<'a> {
     /// The part for a set (ascending); all of a large matrix where the set is most of it.
-    pub fn new<T: Entry>(matrix: &'a Rows<T>, set: &[u32], is_narrow: bool) -> Self {
+    pub fn new<T: Entry>(matrix: &'a RowRuns<T>, set: &[u32], is_narrow: bool) -> Self {
         let rows = set.to_vec();
         let matrix: Box<dyn Symmetric + 'a> = if matrix.is_large() {
             if set.len() as f64 > COPY_SHARE * matrix.len() as f64 {
                 let rows = (0..matrix.len() as u32).collect();
-                return Kept {
+                return Submatrix {
                     rows,
                     matrix: Box::new(matrix),
                     is_narrow,
@@ -39,11 +39,11 @@ impl<'a> Kept<'a> {
                 Box::new(matrix.principal(set))
             }
         } else if is_narrow {
-            Box::new(Half::of(matrix, set, Entry::narrow))
+            Box::new(PackedSymmetric::of(matrix, set, Entry::narrow))
         } else {
-            Box::new(Half::of(matrix, set, |value| value))
+            Box::new(PackedSymmetric::of(matrix, set, |value| value))
         };
-        Kept {
+        Submatrix {
             rows,
             matrix,
             is_narrow,
@@ -53,7 +53,7 @@ impl<'a> Kept<'a> {
 
     /// These rows (ascending) and the matrix on them.
     pub fn of(rows: Vec<u32>, matrix: Box<dyn Symmetric + 'a>) -> Self {
-        Kept {
+        Submatrix {
             rows,
             matrix,
             is_narrow: false,
@@ -65,7 +65,7 @@ impl<'a> Kept<'a> {
     pub fn in_place(unknowns: usize, set: &[u32], matrix: Box<dyn Symmetric + 'a>) -> Self {
         let mut answers = vec![false; unknowns];
         set.iter().for_each(|&i| answers[i as usize] = true);
-        Kept {
+        Submatrix {
             rows: (0..unknowns as u32).collect(),
             matrix,
             is_narrow: false,

@@ -1,6 +1,6 @@
-//! Symmetric matrices as linear maps, and preconditioners; Jacobi's where nothing better is at hand.
+//! Symmetric matrices as linear maps, and preconditioners; Jacobi by default.
 
-use super::row_runs::{Entry, Rows};
+use super::row_runs::{Entry, RowRuns};
 
 /// A symmetric matrix as a linear map.
 pub trait Symmetric {
@@ -34,13 +34,13 @@ impl Preconditioner for PerDiagonal {
     }
 }
 
-impl<T: Entry> Symmetric for Rows<T> {
+impl<T: Entry> Symmetric for RowRuns<T> {
     fn diagonal(&self) -> &[f64] {
-        Rows::diagonal(self)
+        RowRuns::diagonal(self)
     }
 
     fn times(&self, x: &[f64], out: &mut [f64]) {
-        Rows::times(self, x, out);
+        RowRuns::times(self, x, out);
     }
 }
 

@@ -1,4 +1,4 @@
-//! The stretch of a stiff skin that is pressed deep: a plate of large deflections (von Karman; Timoshenko & Woinowsky-Krieger 1959, 96).
+//! Membrane tension of a stiff skin at large deflection (von Karman plate; Timoshenko & Woinowsky-Krieger 1959, 96).
 //!
 //! Outwards the skin carries `N = M (v' + v / 2r + w'^2 / 2)` per width, v how far its middle moves outwards and w how far down; under a
 //! slope w' this tension bears `-(r N w')' / r` of the pressure, and pulls the skin along by the tension of `w'^2 / 2`. Both are found
@@ -18,7 +18,7 @@ const SAME: f64 = 1e-4;
 const TURNS: usize = 60;
 
 /// What pressures on rings, and tensions of `w'^2 / 2` at their edges, do: matrices, for G = 1.
-pub struct Stretching {
+pub struct MembraneTension {
     /// How far down rings move: under pressures, and under tensions.
     sunk: [DMatrix<f64>; 2],
     /// Slopes at the edges.
@@ -45,9 +45,9 @@ struct State {
     own: DVector<f64>,
 }
 
-impl Stretching {
+impl MembraneTension {
     /// Of a layer of which the skin is the uppermost part.
-    pub fn new(rings: &Rings, layer: Layer, skin: StiffSkin) -> Stretching {
+    pub fn new(rings: &Rings, layer: Layer, skin: StiffSkin) -> MembraneTension {
         let down = [
             rings.under_pressure(|k| moved(layer, skin, k).sinks),
             rings.under_tension(|k| moved(layer, skin, k).sinks_along),
@@ -56,7 +56,7 @@ impl Stretching {
             rings.under_pressure(|k| moved(layer, skin, k).sinks_along),
             rings.under_tension(|k| moved(layer, skin, k).middle_along),
         ];
-        Stretching {
+        MembraneTension {
             sunk: down.each_ref().map(|waves| rings.sunk(waves)),
             slopes: down.each_ref().map(|waves| rings.slopes(waves)),
             strains: along.map(|waves| rings.strains(&waves)),
@@ -143,7 +143,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// What the layers store, what the stretch of `w'^2 / 2` stores by itself, and what it stores against the strain of the motion along.
-    fn stored(of: &Stretching, rings: &Rings, pressed: &Pressed) -> f64 {
+    fn stored(of: &MembraneTension, rings: &Rings, pressed: &Pressed) -> f64 {
         let sunk = &of.sunk[0] * &pressed.rest + &of.sunk[1] * &pressed.own;
         let strain = of.along(pressed);
         let by_ring = |i: usize| TAU * rings.half_area(i) * pressed.rest[i] * sunk[i];
@@ -174,7 +174,7 @@ mod tests {
                 thickness_mm,
                 ratio,
             };
-            let stretching = Stretching::new(&rings, layer, skin);
+            let stretching = MembraneTension::new(&rings, layer, skin);
             let presses = stretching.presses(&rings, radius, &depths).unwrap();
             let force = |p: &Pressed| rings.force(&p.pressure);
             let stored = |p: &Pressed| stored(&stretching, &rings, p);

@@ -1,4 +1,4 @@
-//! A ball that is pressed into a flat layer, with or without a stiff skin that stretches: round, and so a matter of rings.
+//! Indentation of a flat layer by a sphere, with or without a stiff skin that stretches: an axisymmetric model on rings.
 //!
 //! Without a skin it is as exact as its rings: on a half space within 0.2 % of Sneddon's sphere (1965), from a fifteenth of the deepest depth.
 //! The contact model on meshes takes a stiff skin for a plate at small strains. Here the skin gives way through its own thickness

@@ -1,4 +1,4 @@
-//! Contact of rings: the pressures under which touching rings keep their gaps, by exchange of the contact set.
+//! Contact of rings: pressures that keep touching rings at their gaps, by exchange of the contact set.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! Rings about a ball's axis, and the sums over wave numbers between what bears on some and what moves at others.
+//! Rings about the axis, and the Hankel quadrature between loads and displacements on them.
 //!
 //! A pressure is even over each ring; slopes, tension and stretch stand at the rings' edges. Fields that are even all around are sums of
 //! waves J0(k r), what points outwards of waves J1(k r) (Hankel's transform).

@@ -1,6 +1,6 @@
 //! The sphere pressed into a layer: forces at given depths, with or without a stiff skin.
 
-use super::membrane_tension::Stretching;
+use super::membrane_tension::MembraneTension;
 use super::ring_contact::touch;
 use super::ring_quadrature::Rings;
 use super::stiff_skin::StiffSkin;
@@ -46,7 +46,7 @@ impl Ball {
     pub fn forces(&self, skin: Option<StiffSkin>, depths_mm: &[f64]) -> Option<Vec<f64>> {
         let rings = &self.rings;
         if let Some(skin) = skin {
-            let stretching = Stretching::new(rings, self.layer, skin);
+            let stretching = MembraneTension::new(rings, self.layer, skin);
             return stretching.forces(rings, self.radius_mm, depths_mm);
         }
         let compliance = rings.sunk(&rings.under_pressure(|k| wave_response::bare(self.layer, k)));

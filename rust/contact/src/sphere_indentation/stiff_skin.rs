@@ -1,4 +1,4 @@
-//! A stiff skin over pulp: its thickness and modulus, and the thin plate that stands for it.
+//! A stiff skin over pulp: thickness and modulus ratio, and the equivalent thin plate.
 
 use crate::response::plate_on_layer::Sheet;
 

@@ -1,4 +1,4 @@
-//! A stiff skin bonded to a layer: how both answer a load of one wave number. The layer's modulus G is 1.
+//! Response of a stiff skin on a layer to a load of one wave number. The layer's modulus G is 1.
 //!
 //! How far they sink under a pressure is exact: Navier's equations through the skin's own thickness, which lies on the layer's surface
 //! compliance `C = (1 - nu) / k [[K, Z], [Z, R]]` (`response::bonded_layer`). What a force along the skin moves, and how far the skin's
@@ -12,7 +12,7 @@ use crate::response::bonded_layer::Layer;
 
 /// What a pressure p and a force along the skin f of one wave number move: downwards w, and along itself the skin's middle v.
 #[derive(Debug, Clone, Copy)]
-pub struct Moved {
+pub struct WaveResponse {
     /// w under p, 1/k.
     pub sinks: f64,
     /// w under f, and v under p.
@@ -22,13 +22,13 @@ pub struct Moved {
 }
 
 /// How a layer of which the skin is the uppermost part answers at wave number `k`, 1/mm.
-pub fn moved(layer: Layer, skin: StiffSkin, k: f64) -> Moved {
+pub fn moved(layer: Layer, skin: StiffSkin, k: f64) -> WaveResponse {
     let sheet = skin.sheet(layer.poisson_ratio);
     let [sinks_under, coupled, along] = sheet.moves(&layer, k).map(|part| per(layer, k) * part);
     // The skin's middle lies half a thickness above the layer's surface.
     let turn = sheet.middle * k;
     let sinks_along = coupled - turn * sinks_under;
-    Moved {
+    WaveResponse {
         sinks: sinks(layer, skin, k),
         sinks_along,
         middle_along: along - turn * (coupled + sinks_along),

@@ -1,13 +1,13 @@
-//! The cache of live presses: the last displacement field, the sites of the last solution, the near-field couplings.
+//! The cache of live presses: last displacement field, last solution by site, near-field couplings.
 
 use thenar_surface::{Gap, Vec3};
 
 use crate::detection::press_direction::Sums;
-use crate::response::near_field::Near;
+use crate::response::near_field::NearField;
 
 /// Where loads carried the skin: a change of some is added to it.
 #[derive(Debug, Clone, Default)]
-pub struct Shown {
+pub struct LiveField {
     /// Load at every site, weight and direction in it.
     pub load: Vec<Vec3>,
     /// `sum_j K_ij load_j` at every site.
@@ -17,7 +17,7 @@ pub struct Shown {
     pub field_change: Vec<Vec3>,
 }
 
-impl Shown {
+impl LiveField {
     /// Whether there is something for a skin of so many sites.
     pub fn is_of(&self, sites: usize) -> bool {
         self.load.len() == sites
@@ -32,7 +32,7 @@ impl Shown {
 
 /// Where a site met the product in the last live solve.
 #[derive(Debug, Clone)]
-pub struct Met {
+pub struct ReusedSite {
     /// Its gap before deformation, and its response weight.
     pub gap: Option<Gap>,
     pub weight: f64,
@@ -49,40 +49,40 @@ pub struct Met {
 
 /// The last live solve.
 #[derive(Debug, Clone, Default)]
-pub struct Held {
+pub struct LiveContact {
     /// Its zone, ascending.
     pub zone: Vec<u32>,
     /// What each of them met, by site, so that what is held on to stays where it is.
-    pub met: Vec<Option<Met>>,
+    pub met: Vec<Option<ReusedSite>>,
 }
 
-impl Held {
+impl LiveContact {
     /// What a site met, if it was in the zone.
-    pub fn of(&self, site: u32) -> Option<&Met> {
+    pub fn of(&self, site: u32) -> Option<&ReusedSite> {
         self.met.get(site as usize)?.as_ref()
     }
 }
 
 /// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
 #[derive(Debug, Clone, Default)]
-pub struct Nears {
-    of_rounds: [Near; 2],
+pub struct NearFields {
+    of_rounds: [NearField; 2],
     now: usize,
 }
 
-impl Nears {
+impl NearFields {
     /// Takes the one of a `round`, from 1.
     pub fn turn_to(&mut self, round: usize) {
         self.now = usize::from(round > 1);
     }
 
     /// The one of this round.
-    pub fn now(&self) -> &Near {
+    pub fn now(&self) -> &NearField {
         &self.of_rounds[self.now]
     }
 
     /// The same, to be made anew.
-    pub fn now_mut(&mut self) -> &mut Near {
+    pub fn now_mut(&mut self) -> &mut NearField {
         &mut self.of_rounds[self.now]
     }
 }

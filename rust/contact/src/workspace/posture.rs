@@ -1,28 +1,28 @@
-//! The last posture and what was measured of it: vertices that have not moved are not measured again.
+//! Posture cache: the last posed positions with normals, areas and gaps; what has not moved is not measured again.
 
 use thenar_surface::{Mesh, Readings, Vec3, renew_shape, vertex_areas, vertex_normals};
 
 /// A posture and what was measured of it: what has not moved need not be measured again.
 #[derive(Debug, Clone, Default)]
-pub struct Seen {
+pub struct PostureCache {
     /// Posed positions of the welded vertices, mm.
     posed: Vec<Vec3>,
-    shape: Shape,
+    shape: PostureShape,
     /// Their gaps to the product.
     pub readings: Readings,
 }
 
 /// What follows from a posture alone, by welded vertex.
 #[derive(Debug, Clone, Default)]
-pub struct Shape {
+pub struct PostureShape {
     pub normals: Vec<Vec3>,
     /// mm2.
     pub areas: Vec<f64>,
 }
 
-impl Seen {
+impl PostureCache {
     /// Normals and areas of the welded mesh in its next posture.
-    pub fn shape(&mut self, mesh: &Mesh) -> Shape {
+    pub fn shape(&mut self, mesh: &Mesh) -> PostureShape {
         let (before, shape) = (&mut self.posed, &mut self.shape);
         if before.len() == mesh.positions().len() {
             let pairs = before.iter().zip(mesh.positions());

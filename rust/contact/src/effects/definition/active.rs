@@ -1,4 +1,4 @@
-//! One effect switched on: amplitude, shape numbers, forms chosen, and where it acts.
+//! One effect switched on: amplitude, shape numbers, choices, regions, painted values.
 
 use super::entry::Effect;
 use super::entry::Entry;

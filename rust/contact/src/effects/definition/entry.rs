@@ -1,4 +1,4 @@
-//! What the catalogue says of one effect: its numbers with their sources, and the signs it must leave in data.
+//! The catalogue entry of an effect: names, shape numbers with sources, checks, and the signs it leaves in recordings.
 
 /// An effect of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,4 +1,4 @@
-//! What an effect is: its entry in the catalogue, and one that is switched on.
+//! What defines an effect: its catalogue entry, and an effect that is switched on.
 
 pub mod active;
 pub mod entry;

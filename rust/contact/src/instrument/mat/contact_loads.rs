@@ -1,4 +1,4 @@
-//! A solved contact as loads on a mat, in the product's frame.
+//! A solved contact as point loads on a mat, in the product's frame.
 
 use thenar_surface::Vec3;
 

@@ -1,4 +1,4 @@
-//! How the sensels of a mat lie: normals, directions carried from sensel to sensel, neighbors, and the mat unrolled.
+//! Sensel layout: normals, mat directions by parallel transport, neighbors, the unrolled mat.
 
 use nalgebra::{Matrix3, SymmetricEigen};
 use thenar_surface::Vec3;
@@ -18,7 +18,7 @@ pub const WAYS: [(usize, f64); 4] = [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)];
 
 /// How a mat lies.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lie {
+pub struct SensorGrid {
     /// Unit normals.
     pub normals: Vec<Vec3>,
     /// The mat's two directions at each sensel.
@@ -33,9 +33,14 @@ pub struct Lie {
     pub flat: Vec<[f64; 2]>,
 }
 
-impl Lie {
+impl SensorGrid {
     /// Works it out. `normals` is empty or one each; `along` says which way of the grid comes first.
-    pub fn new(centers: &[Vec3], normals: &[Vec3], areas: &[f64], along: Option<Vec3>) -> Lie {
+    pub fn new(
+        centers: &[Vec3],
+        normals: &[Vec3],
+        areas: &[f64],
+        along: Option<Vec3>,
+    ) -> SensorGrid {
         let is_given = !normals.is_empty();
         let mut normals = match is_given {
             true => normals.to_vec(),
@@ -58,7 +63,7 @@ impl Lie {
             .collect();
         let ratio = (pitch[0] / pitch[1]).sqrt();
         let sides = |area: &f64| [area.sqrt() * ratio, area.sqrt() / ratio];
-        let mut lie = Lie {
+        let mut lie = SensorGrid {
             sides: areas.iter().map(sides).collect(),
             flat: vec![[0.0; 2]; centers.len()],
             normals,

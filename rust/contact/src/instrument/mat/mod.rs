@@ -1,4 +1,4 @@
-//! A mat of sensels on any surface, and what it reads of a contact: each sensel averages over its own area.
+//! A mat of sensels on any surface and its reading of a contact: the mean pressure over each sensel.
 
 pub mod contact_loads;
 pub mod layout;
@@ -7,7 +7,7 @@ pub mod placement;
 use thenar_surface::Vec3;
 
 use crate::ContactError;
-use crate::instrument::mat::layout::{Lie, WAYS};
+use crate::instrument::mat::layout::{SensorGrid, WAYS};
 use crate::instrument::mat::placement::{Placement, Spot};
 
 /// kPa in 1 MPa.
@@ -54,7 +54,7 @@ pub struct PointLoad {
 pub struct Mat {
     centers: Vec<Vec3>,
     areas: Vec<f64>,
-    lie: Lie,
+    lie: SensorGrid,
 }
 
 impl Mat {
@@ -70,7 +70,7 @@ impl Mat {
             along,
             ..
         } = layout;
-        let lie = Lie::new(&centers, &normals, &areas, along);
+        let lie = SensorGrid::new(&centers, &normals, &areas, along);
         Ok(Mat {
             centers,
             areas,

@@ -1,8 +1,8 @@
-//! A mat that lies otherwise than it should: shifted along itself and turned about its middle, flat or wrapped.
+//! Placement error of a mat: shift along itself and rotation about its middle, flat or wrapped.
 
 use thenar_surface::Vec3;
 
-use super::layout::Lie;
+use super::layout::SensorGrid;
 
 /// How a mat lies otherwise than it should.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,7 @@ impl Placement {
     }
 
     /// Where a load lies as the misplaced mat sees it.
-    pub(super) fn moved(&self, (lie, centers): (&Lie, &[Vec3]), spot: Spot) -> Spot {
+    pub(super) fn moved(&self, (lie, centers): (&SensorGrid, &[Vec3]), spot: Spot) -> Spot {
         let flat = lie.flat[spot.sensel];
         let [x, y] = [0, 1].map(|axis| flat[axis] + spot.at[axis]);
         let (sin, cos) = self.turn_rad.sin_cos();
@@ -44,7 +44,7 @@ impl Placement {
 }
 
 /// The same place seen from the sensel nearest to it, reached from neighbor to neighbor.
-fn settled((lie, centers): (&Lie, &[Vec3]), mut spot: Spot) -> Spot {
+fn settled((lie, centers): (&SensorGrid, &[Vec3]), mut spot: Spot) -> Spot {
     let far = |at: [f64; 2]| at[0].hypot(at[1]);
     loop {
         let seen = lie.neighbors(spot.sensel).map(|sensel| {

@@ -1,11 +1,11 @@
-//! What a live press foresees of its next frame, and the part of the problem that it solves.
+//! Live presses: extrapolation of the last frame, the zone that follows from it, and the tolerance of a live solve.
 
 use thenar_surface::{Gap, Vec3};
 
-use crate::press::setting::{Setting, vertex};
+use crate::press::setting::{SolveSetting, vertex};
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
-use crate::workspace::live_cache::Shown;
+use crate::workspace::live_cache::LiveField;
 use crate::{ContactError, Control, Model};
 
 /// Sites whose patches are farther apart than this answer each other as they did last, mm: 3 thicknesses of a finger's tissue.
@@ -22,7 +22,7 @@ const MISFIT_SHARE: f64 = 2.5e-3;
 
 /// What acts on the sites that are solved besides the coupling among them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Beyond {
+pub(crate) enum OuterLoads {
     /// Nothing: all that bears forces is solved, and all of it is coupled.
     Nothing,
     /// What does by the forces shown last.
@@ -37,46 +37,52 @@ pub fn can_reach(u: &Vec3, distance: f64) -> bool {
 }
 
 /// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
-pub fn ahead(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
-    moved(skin, setting, site, |shown, site| {
-        shown.field[site] + shown.field_change[site]
+pub fn extrapolated(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
+    moved(skin, setting, site, |live_field, site| {
+        live_field.field[site] + live_field.field_change[site]
     })
 }
 
 /// How the displacement of a site changes if it does as it did last, mm; zero if not known.
-pub fn goes_on(skin: &Skin, setting: &Setting<'_>, site: u32) -> Vec3 {
-    moved(skin, setting, site, |shown, site| shown.field_change[site])
+pub fn extrapolated_change(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
+    moved(skin, setting, site, |live_field, site| {
+        live_field.field_change[site]
+    })
 }
 
 /// What a `field` of the last live press is at a site, mm.
 fn moved(
     skin: &Skin,
-    setting: &Setting<'_>,
+    setting: &SolveSetting<'_>,
     site: u32,
-    field: impl Fn(&Shown, usize) -> Vec3,
+    field: impl Fn(&LiveField, usize) -> Vec3,
 ) -> Vec3 {
-    let (shown, site) = (&skin.memory.shown, site as usize);
-    if !shown.is_of(skin.sites.len()) {
+    let (live_field, site) = (&skin.workspace.live_field, site as usize);
+    if !live_field.is_of(skin.sites.len()) {
         return Vec3::zeros();
     }
-    field(shown, site) * (setting.weight[site] * skin.sites.follow[site])
+    field(live_field, site) * (setting.weight[site] * skin.sites.follow[site])
 }
 
 /// A `zone` (ascending) without skin that stays clear of the product if what changed last goes on, and with skin beyond it that is
 /// then carried in, and its neighbors.
 ///
 /// What is left out is looked after all the same: skin outside the zone that is carried into the product joins it.
-pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
-    if !is_live(skin, setting) || zone.is_empty() || !skin.memory.shown.is_of(skin.sites.len()) {
+pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
+    if !is_live(skin, setting)
+        || zone.is_empty()
+        || !skin.workspace.live_field.is_of(skin.sites.len())
+    {
         return zone;
     }
     let gap = |site: u32| setting.detection.gaps[vertex(skin, site)].as_ref();
     let clearance = |site: u32| {
-        let comes_by = |gap: &Gap| gap.distance + gap.normal.dot(&ahead(skin, setting, site));
+        let comes_by =
+            |gap: &Gap| gap.distance + gap.normal.dot(&extrapolated(skin, setting, site));
         gap(site).map_or(f64::INFINITY, comes_by)
     };
     zone.retain(|&site| {
-        let most = match skin.memory.held.of(site) {
+        let most = match skin.workspace.live_contact.of(site) {
             Some(_) => 2.0 * CLEAR,
             None => CLEAR,
         };
@@ -85,30 +91,30 @@ pub fn with_foreseen(skin: &Skin, setting: &Setting<'_>, mut zone: Vec<u32>) -> 
     let is_carried_in = |site: &u32| {
         let distance = setting.detection.distances[vertex(skin, *site)];
         distance < f64::INFINITY
-            && can_reach(&ahead(skin, setting, *site), distance)
+            && can_reach(&extrapolated(skin, setting, *site), distance)
             && clearance(*site) < CLEARANCE
             && skin.sites.is_skin(*site as usize)
             && zone.binary_search(site).is_err()
     };
     let carried_in = (0..skin.sites.len() as u32).filter(is_carried_in);
-    let more = ringed(skin, setting, &zone, carried_in.collect());
+    let more = with_neighbors(skin, setting, &zone, carried_in.collect());
     zone.extend(more);
     zone.sort();
     zone
 }
 
 /// Whether a press is live, on skin whose response is kept row by row.
-pub fn is_live(skin: &Skin, setting: &Setting<'_>) -> bool {
+pub fn is_live(skin: &Skin, setting: &SolveSetting<'_>) -> bool {
     let is_rough = setting.accuracy == Accuracy::Rough;
     is_rough && skin.model == Model::Layer && skin.hierarchy.is_none()
 }
 
 /// What acts on the sites that are solved in a `round` besides the coupling among them.
-pub fn beyond(skin: &Skin, setting: &Setting<'_>, round: usize) -> Beyond {
+pub fn beyond(skin: &Skin, setting: &SolveSetting<'_>, round: usize) -> OuterLoads {
     match is_live(skin, setting) {
-        false => Beyond::Nothing,
-        true if round == 1 && !skin.memory.held.zone.is_empty() => Beyond::Trend,
-        true => Beyond::Last,
+        false => OuterLoads::Nothing,
+        true if round == 1 && !skin.workspace.live_contact.zone.is_empty() => OuterLoads::Trend,
+        true => OuterLoads::Last,
     }
 }
 
@@ -123,25 +129,30 @@ pub fn couple(
     control: &Control,
 ) -> Result<(), ContactError> {
     // Without a last live press nothing is known of what lies farther off: all of it is coupled.
-    let range = match skin.memory.shown.is_of(skin.sites.len()) {
+    let range = match skin.workspace.live_field.is_of(skin.sites.len()) {
         true => NEAR,
         false => f64::INFINITY,
     };
-    if skin.memory.near.now().is_of(open, range) {
+    if skin.workspace.near.now().is_of(open, range) {
         return Ok(());
     }
     control.step("response", 0.0)?;
     skin.make_rows(open, control)?;
     let ground = (&skin.response, &skin.sites);
-    let memory = &mut skin.memory;
-    memory.rounded.make(open.iter().copied(), ground);
-    let near = memory.near.now_mut();
-    near.take_up((zone, open), &memory.rounded, ground, range);
+    let workspace = &mut skin.workspace;
+    workspace.quantized.make(open.iter().copied(), ground);
+    let near = workspace.near.now_mut();
+    near.take_up((zone, open), &workspace.quantized, ground, range);
     Ok(())
 }
 
 /// Sites lifted into the product with their neighbors beyond the zone, ascending: where skin rolls on, these are next.
-pub fn ringed(skin: &Skin, setting: &Setting<'_>, zone: &[u32], mut lifted: Vec<u32>) -> Vec<u32> {
+pub fn with_neighbors(
+    skin: &Skin,
+    setting: &SolveSetting<'_>,
+    zone: &[u32],
+    mut lifted: Vec<u32>,
+) -> Vec<u32> {
     let beside = |&site: &u32| skin.adjacency.neighbors(vertex(skin, site));
     let ring = lifted.iter().flat_map(beside);
     let ring = ring.map(|&v| skin.sites.of_vertex[v as usize]);
@@ -169,7 +180,7 @@ mod tests {
     use crate::detection::gaps::detect;
     use crate::detection::press_direction::Sums;
     use crate::press::live::reused_sites::keep;
-    use crate::press::solution::Found;
+    use crate::press::solution::ZoneSolution;
     use crate::response::test_sheet::sheet;
     use thenar_surface::{Mesh, Product};
 
@@ -184,14 +195,14 @@ mod tests {
     }
 
     /// The skin last lay where a displacement `u` (mm) by site, which changed by `change`, had carried it.
-    fn shown(skin: &Skin, weight: f64, u: &[f64], change: &[f64]) -> Shown {
+    fn live_field(skin: &Skin, weight: f64, u: &[f64], change: &[f64]) -> LiveField {
         let none = vec![Vec3::zeros(); u.len()];
         let field = |u: &[f64]| -> Vec<Vec3> {
             let sites = u.iter().zip(&skin.sites.follow);
             let up = |(u, follow): (&f64, &f64)| Vec3::z() * (u / (weight * follow));
             sites.map(up).collect()
         };
-        Shown {
+        LiveField {
             load: none.clone(),
             field: field(u),
             load_change: none,
@@ -202,11 +213,11 @@ mod tests {
     #[test]
     fn a_zone_is_what_is_foreseen_to_touch() {
         let (mut skin, _) = sheet();
-        let (product, mesh) = (plate(), skin.welded.mesh.clone());
+        let (product, mesh) = (plate(), skin.merged.mesh.clone());
         let detection = detect(&mut skin, &mesh, &product, Vec3::zeros()).unwrap();
         let count = skin.sites.len();
         let weight = vec![0.5; count];
-        let setting = Setting {
+        let setting = SolveSetting {
             product: &product,
             detection: &detection,
             weight: &weight,
@@ -222,15 +233,18 @@ mod tests {
             sites.filter(|s| distances[*s as usize] < most).collect()
         };
         let (still, wide) = (vec![0.0; count], within(0.9));
-        assert_eq!(with_foreseen(&skin, &setting, wide.clone()), wide);
+        assert_eq!(extrapolated_zone(&skin, &setting, wide.clone()), wide);
 
         // Skin that is clear of the product is left out, and taken in when it comes nearer.
-        skin.memory.shown = shown(&skin, 0.5, &still, &still);
-        assert_eq!(with_foreseen(&skin, &setting, wide.clone()), within(CLEAR));
-        skin.memory.shown = shown(&skin, 0.5, &vec![0.1; count], &vec![0.15; count]);
+        skin.workspace.live_field = live_field(&skin, 0.5, &still, &still);
+        assert_eq!(
+            extrapolated_zone(&skin, &setting, wide.clone()),
+            within(CLEAR)
+        );
+        skin.workspace.live_field = live_field(&skin, 0.5, &vec![0.1; count], &vec![0.15; count]);
         let nearer = within(CLEAR + 0.25);
         assert!(nearer.len() > within(CLEAR).len() && nearer.len() < wide.len());
-        assert_eq!(with_foreseen(&skin, &setting, wide.clone()), nearer);
+        assert_eq!(extrapolated_zone(&skin, &setting, wide.clone()), nearer);
 
         // One site lies half way there, and goes on by as much or by little: then its neighbors join too.
         let zone = within(0.2);
@@ -248,17 +262,17 @@ mod tests {
                 u[lifted] = share * distances[lifted];
                 u
             };
-            skin.memory.shown = shown(&skin, 0.5, &up(0.5), &up(change));
-            assert_eq!(&with_foreseen(&skin, &setting, zone.clone()), wanted);
+            skin.workspace.live_field = live_field(&skin, 0.5, &up(0.5), &up(change));
+            assert_eq!(&extrapolated_zone(&skin, &setting, zone.clone()), wanted);
         }
 
         // What was in it stays until it is twice as far away; what has left it has to come as near as any other.
-        skin.memory.shown = shown(&skin, 0.5, &still, &still);
+        skin.workspace.live_field = live_field(&skin, 0.5, &still, &still);
         let mut was = |zone: &[u32]| {
             let gap = |&site: &u32| detection.gaps[vertex(&skin, site)].unwrap();
             let (touch, zeros): (Vec<Gap>, _) =
                 (zone.iter().map(gap).collect(), vec![0.0; zone.len()]);
-            let found = Found {
+            let found = ZoneSolution {
                 zone,
                 force: &zeros,
                 direction: &vec![-Vec3::z(); zone.len()],
@@ -268,7 +282,7 @@ mod tests {
             };
             let sums = vec![Sums::default(); zone.len()];
             keep(&mut skin, &setting, &found, (&zeros, &sums, &[]));
-            with_foreseen(&skin, &setting, wide.clone())
+            extrapolated_zone(&skin, &setting, wide.clone())
         };
         let stays = within(2.0 * CLEAR);
         assert!(stays.len() > within(CLEAR).len() && stays.len() < wide.len());

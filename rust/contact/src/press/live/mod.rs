@@ -1,4 +1,4 @@
-//! Live presses: what is extrapolated from the last frame, and which sites keep their last solution.
+//! Live presses: extrapolation from the last frame, and sites that keep their last solution.
 
 pub mod extrapolation;
 pub mod reused_sites;

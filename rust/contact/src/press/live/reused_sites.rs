@@ -1,16 +1,16 @@
-//! What of the last live contact still holds: skin that neither moved nor was strained from elsewhere keeps its forces.
+//! Live presses: which sites keep the last frame's solution (why Live skips a site), with a check after each solve.
 //!
 //! Certified each time: held skin is not carried off by what changed elsewhere, nor solved skin by what changed beyond its near
 //! coupling, farther than the written surface may miss the product; where it is, it is solved anew.
 
 use thenar_surface::Vec3;
 
-use super::extrapolation::{ahead, is_live};
+use super::extrapolation::{extrapolated, is_live};
 use crate::detection::press_direction::Sums;
-use crate::press::setting::{Setting, vertex};
-use crate::press::solution::Found;
+use crate::press::setting::{SolveSetting, vertex};
+use crate::press::solution::ZoneSolution;
 use crate::skin::prepare::Skin;
-use crate::workspace::live_cache::{Held, Met};
+use crate::workspace::live_cache::{LiveContact, ReusedSite};
 
 /// Skin in patches nearer than this to one in which skin moved is solved with it, mm (tests pass from 1 to 8).
 const REACH: f64 = 3.0;
@@ -27,18 +27,18 @@ const EARLY: f64 = 0.9;
 /// Which sites of `zone` hold on to what they met in the last live solve; the others are to be solved. Empty if all are.
 ///
 /// `strayed`: sites that were carried off in this very press, if that is why it solves again; None in its first round.
-pub fn held(
+pub fn reused_sites(
     skin: &Skin,
-    setting: &Setting<'_>,
+    setting: &SolveSetting<'_>,
     zone: &[u32],
     strayed: Option<&[u32]>,
 ) -> Vec<bool> {
-    let last = &skin.memory.held;
+    let last = &skin.workspace.live_contact;
     if !is_live(skin, setting) || last.zone.is_empty() {
         return Vec::new();
     }
-    let met: Vec<Option<&Met>> = zone.iter().map(|&site| last.of(site)).collect();
-    let is_changed = |(&site, met): (&u32, &Option<&Met>)| {
+    let met: Vec<Option<&ReusedSite>> = zone.iter().map(|&site| last.of(site)).collect();
+    let is_changed = |(&site, met): (&u32, &Option<&ReusedSite>)| {
         let gap = &setting.detection.gaps[vertex(skin, site)];
         let weight = setting.weight[site as usize];
         !met.is_some_and(|met| met.gap == *gap && met.weight == weight)
@@ -65,10 +65,17 @@ pub fn held(
 }
 
 /// Sites of `zone` that would stray if they were held while what changed last goes on.
-fn will_stray(skin: &Skin, setting: &Setting<'_>, zone: &[u32], met: &[Option<&Met>]) -> Vec<u32> {
+fn will_stray(
+    skin: &Skin,
+    setting: &SolveSetting<'_>,
+    zone: &[u32],
+    met: &[Option<&ReusedSite>],
+) -> Vec<u32> {
     let most = EARLY * STRAY * setting.detection.deepest();
-    let strays = |(site, met): &(&u32, &Option<&Met>)| {
-        let off = |met: &&Met| met.direction.dot(&ahead(skin, setting, **site)) - met.travel;
+    let strays = |(site, met): &(&u32, &Option<&ReusedSite>)| {
+        let off = |met: &&ReusedSite| {
+            met.direction.dot(&extrapolated(skin, setting, **site)) - met.travel
+        };
         met.as_ref().is_some_and(|met| off(met).abs() > most)
     };
     let straying = zone.iter().zip(met).filter(strays);
@@ -94,15 +101,15 @@ fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
 /// `held`: which sites of the zone held on to what they met before, as they do still; empty if none did.
 pub fn keep(
     skin: &mut Skin,
-    setting: &Setting<'_>,
-    found: &Found<'_>,
+    setting: &SolveSetting<'_>,
+    found: &ZoneSolution<'_>,
     (slack, sums, held): (&[f64], &[Sums], &[bool]),
 ) {
     if !is_live(skin, setting) {
-        skin.memory.held = Held::default();
+        skin.workspace.live_contact = LiveContact::default();
         return;
     }
-    let mut kept = std::mem::take(&mut skin.memory.held);
+    let mut kept = std::mem::take(&mut skin.workspace.live_contact);
     kept.met.resize_with(skin.sites.len(), || None);
     for site in &kept.zone {
         if found.zone.binary_search(site).is_err() {
@@ -113,7 +120,7 @@ pub fn keep(
         if held.get(k) == Some(&true) {
             continue;
         }
-        kept.met[site as usize] = Some(Met {
+        kept.met[site as usize] = Some(ReusedSite {
             gap: setting.detection.gaps[vertex(skin, site)],
             weight: setting.weight[site as usize],
             touch: found.touch[k],
@@ -127,14 +134,14 @@ pub fn keep(
     }
     kept.zone.clear();
     kept.zone.extend_from_slice(found.zone);
-    skin.memory.held = kept;
+    skin.workspace.live_contact = kept;
 }
 
 /// How far skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far: held skin
 /// by what changed elsewhere, solved skin by what changed beyond its near coupling.
 ///
 /// `field`: displacement of every site by all forces.
-pub fn strays(found: &Found<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>) {
+pub fn strays(found: &ZoneSolution<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>) {
     let most = STRAY * deepest;
     let (mut worst, mut far) = (0.0f64, Vec::new());
     for (k, &site) in found.zone.iter().enumerate() {

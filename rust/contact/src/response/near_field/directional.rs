@@ -1,21 +1,21 @@
-//! The near coupling along directions, as the compliance that a live press is solved with.
+//! The near-field compliance along press directions, for the solver of a live press.
 
-use super::Near;
-use crate::solve::{Compliance, Kept, Symmetric};
+use super::NearField;
+use crate::solve::{Compliance, Submatrix, Symmetric};
 
 /// The near compliance along directions, `A_ij = w_i w_j K_ij t_i.t_j`, mm/N: entries with the cosines in them, weights outside.
-pub struct NearAlong<'a> {
-    near: &'a Near,
+pub struct DirectionalNearField<'a> {
+    near: &'a NearField,
     entries: &'a [i16],
     weight: &'a [f64],
     diagonal: Vec<f64>,
 }
 
-impl<'a> NearAlong<'a> {
-    /// Of `near`, with the `entries` that [`Near::turn`] gave, and `weight` by unknown.
-    pub fn new(near: &'a Near, entries: &'a [i16], weight: &'a [f64]) -> Self {
+impl<'a> DirectionalNearField<'a> {
+    /// Of `near`, with the `entries` that [`NearField::turn`] gave, and `weight` by unknown.
+    pub fn new(near: &'a NearField, entries: &'a [i16], weight: &'a [f64]) -> Self {
         let diagonal = weight.iter().zip(&near.own).map(|(w, own)| own * w * w);
-        NearAlong {
+        DirectionalNearField {
             near,
             entries,
             weight,
@@ -24,7 +24,7 @@ impl<'a> NearAlong<'a> {
     }
 }
 
-impl NearAlong<'_> {
+impl DirectionalNearField<'_> {
     /// Some rows (ascending) times `x`, each written to the same place of `out`.
     fn multiply(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
         let weighted = |(x, w): (&f64, &f64)| (x * w) as f32;
@@ -36,7 +36,7 @@ impl NearAlong<'_> {
     }
 }
 
-impl Symmetric for NearAlong<'_> {
+impl Symmetric for DirectionalNearField<'_> {
     fn diagonal(&self) -> &[f64] {
         &self.diagonal
     }
@@ -46,7 +46,7 @@ impl Symmetric for NearAlong<'_> {
     }
 }
 
-impl Compliance for NearAlong<'_> {
+impl Compliance for DirectionalNearField<'_> {
     fn times_rows(&self, rows: &[u32], x: &[f64], out: &mut [f64]) {
         self.multiply(rows, x, out);
     }
@@ -62,12 +62,12 @@ impl Compliance for NearAlong<'_> {
         rows.fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    fn kept(&self, set: &[u32], _is_rough: bool) -> Kept<'_> {
+    fn submatrix(&self, set: &[u32], _is_rough: bool) -> Submatrix<'_> {
         let of_set = OfSet {
             all: self,
             set: set.to_vec(),
         };
-        Kept::in_place(self.weight.len(), set, Box::new(of_set))
+        Submatrix::in_place(self.weight.len(), set, Box::new(of_set))
     }
 
     fn is_narrow(&self, _is_rough: bool) -> bool {
@@ -77,7 +77,7 @@ impl Compliance for NearAlong<'_> {
 
 /// The same for some unknowns alone: elsewhere products are zero.
 struct OfSet<'a> {
-    all: &'a NearAlong<'a>,
+    all: &'a DirectionalNearField<'a>,
     set: Vec<u32>,
 }
 
@@ -101,15 +101,15 @@ mod tests {
     use super::*;
     use crate::response::assembly::coupling;
     use crate::response::test_sheet::{loads, most_off, near, sheet};
-    use crate::solve::row_runs::Rows;
-    use crate::solve::{Along, Axes, Part};
+    use crate::solve::row_runs::RowRuns;
+    use crate::solve::{Axes, DirectionalCompliance, Part};
     use thenar_surface::Vec3;
 
     #[test]
     fn without_a_range_products_are_those_of_the_whole_coupling() {
         let (skin, zone) = sheet();
         let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
-        let mut whole = Rows::new();
+        let mut whole = RowRuns::new();
         coupling((&skin.response, &skin.sites), &zone, &mut whole);
         let mut wanted = vec![0.0; zone.len()];
         let directions: Vec<Vec3> = loads.iter().map(Vec3::normalize).collect();
@@ -122,8 +122,8 @@ mod tests {
             vec![true; zone.len()],
         );
         let entries = near.turn(&axes);
-        let ours = NearAlong::new(&near, &entries, &weight);
-        let theirs = Along::new((&whole, &axes), (&weight, &likely), &part);
+        let ours = DirectionalNearField::new(&near, &entries, &weight);
+        let theirs = DirectionalCompliance::new((&whole, &axes), (&weight, &likely), &part);
         let x: Vec<f64> = (0..zone.len()).map(|k| (0.3 * k as f64).cos()).collect();
         let mut product = vec![0.0; zone.len()];
         ours.times(&x, &mut product);
@@ -137,7 +137,7 @@ mod tests {
         assert!(most < 5e-3 * largest, "{most} of {largest}");
         let set: Vec<u32> = (0..zone.len() as u32).filter(|k| k % 5 > 1).collect();
         let mut some = vec![f64::NAN; zone.len()];
-        let kept = ours.kept(&set, true);
+        let kept = ours.submatrix(&set, true);
         kept.matrix.times(&x, &mut some);
         assert!(kept.holds(&set) && !kept.holds(&[0]));
         for (k, (some, all)) in some.iter().zip(&product).enumerate() {

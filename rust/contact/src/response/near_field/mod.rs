@@ -1,4 +1,4 @@
-//! The response among sites near each other, as a live press solves with it: what lies farther off answers as it did last.
+//! The near field of a live press: the response between nearby patches; farther sites keep their last effect.
 //!
 //! Bonded skin answers little beyond a few thicknesses, and what it answers there changes little from frame to frame. Columns are
 //! all sites of some patches, so that the same serve while other sites of these are solved; rows are made as they are needed. The
@@ -14,9 +14,9 @@ use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use crate::response::assembly::{Members, layout};
-use crate::response::near_field::patch_rows::{Home, slices};
+use crate::response::near_field::patch_rows::{PatchRows, slices};
 use crate::response::near_field::row_kernels::{LANES, field_block, multiply_block, turn_row};
-use crate::response::quantized_rows::Rounded;
+use crate::response::quantized_rows::QuantizedRows;
 use crate::response::rows::Response;
 use crate::skin::sites::Sites;
 use crate::solve::Axes;
@@ -30,7 +30,7 @@ const MISSING: usize = usize::MAX;
 
 /// `K` (1/mm) between sites whose patches lie within a range of each other; symmetric but for rounding.
 #[derive(Debug, Clone, Default)]
-pub struct Near {
+pub struct NearField {
     /// The sites that are solved, ascending; the patch and the column of each.
     sites: Vec<u32>,
     patches: Vec<u32>,
@@ -44,14 +44,14 @@ pub struct Near {
     columns: Vec<u32>,
     begins: Vec<usize>,
     /// By patch.
-    homes: Vec<Home>,
+    homes: Vec<PatchRows>,
     /// Entries of the rows that were made; zero where a site meets itself.
     values: Vec<i16>,
     /// Where the entries of each site's row begin once they are turned, and where those of the last end.
     turned: Vec<usize>,
 }
 
-impl Near {
+impl NearField {
     /// The sites between which it is, ascending.
     pub fn sites(&self) -> &[u32] {
         &self.sites
@@ -68,7 +68,7 @@ impl Near {
     pub fn take_up(
         &mut self,
         (zone, open): (&[u32], &[u32]),
-        rows: &Rounded,
+        rows: &QuantizedRows,
         (response, sites): (&Response, &Sites),
         range: f64,
     ) {
@@ -138,12 +138,12 @@ impl Near {
         let members: Vec<Members> = sites.patch_range.iter().map(members).collect();
         let home = |(patch, &is_coupled): (u32, &bool)| {
             if !is_coupled {
-                return Home::default();
+                return PatchRows::default();
             }
             let felt = response.bounds(patch).zip(response.near(patch));
             let felt = felt.filter(|((other, bound), _)| *bound < self.range || *other == patch);
             let felt: Vec<(u32, u32)> = felt.map(|(_, entry)| *entry).collect();
-            Home::new(layout(&felt, &members))
+            PatchRows::new(layout(&felt, &members))
         };
         self.homes = (0..).zip(is_coupled).map(home).collect();
     }
@@ -206,7 +206,7 @@ impl Near {
         self.patches[row as usize]
     }
 
-    fn home(&self, row: u32) -> &Home {
+    fn home(&self, row: u32) -> &PatchRows {
         &self.homes[self.patch(row) as usize]
     }
 
@@ -264,13 +264,13 @@ mod tests {
     use super::*;
     use crate::response::assembly::coupling;
     use crate::response::test_sheet::{loads, most_off, near, sheet};
-    use crate::solve::row_runs::Rows;
+    use crate::solve::row_runs::RowRuns;
 
     #[test]
     fn without_a_range_fields_are_those_of_the_whole_coupling() {
         let (skin, zone) = sheet();
         let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
-        let mut whole = Rows::new();
+        let mut whole = RowRuns::new();
         coupling((&skin.response, &skin.sites), &zone, &mut whole);
         let field = near.field(&loads);
         let mut wanted = vec![0.0; zone.len()];
@@ -333,7 +333,7 @@ mod tests {
         let others: Vec<u32> = zone[zone.len() / 5..].to_vec();
         let some: Vec<u32> = zone.iter().copied().step_by(3).collect();
         for open in [&corner, &others, &some, &zone] {
-            kept.take_up((&zone, open), &skin.memory.rounded, ground, 9.0);
+            kept.take_up((&zone, open), &skin.workspace.quantized, ground, 9.0);
             let anew = near(&skin, open, 9.0);
             let loads = loads(open.len());
             assert!(kept.is_of(open, 9.0) && !kept.is_of(open, 10.0));

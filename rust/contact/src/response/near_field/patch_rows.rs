@@ -1,4 +1,4 @@
-//! How the rows of one patch lie in a near coupling.
+//! Row layout that the sites of one patch share in the near field.
 
 use super::row_kernels::LANES;
 use crate::response::assembly::{SHORT, take};
@@ -6,7 +6,7 @@ use crate::solve::row_runs::Run;
 
 /// What the rows of one patch have in common; empty where it is not coupled.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Home {
+pub(super) struct PatchRows {
     /// Entries of each, a multiple of [`LANES`].
     pub width: usize,
     /// The columns that they feel, and where these lie in the rows of the response: first and number.
@@ -16,11 +16,11 @@ pub(super) struct Home {
     pub chunks: Vec<u32>,
 }
 
-impl Home {
+impl PatchRows {
     /// Of the columns that rows feel, and where these lie in the rows of the response; none is solved yet.
     pub fn new((runs, pieces): (Vec<Run>, Vec<(u32, u32)>)) -> Self {
         let width: usize = runs.iter().map(|run| run.len as usize).sum();
-        Home {
+        PatchRows {
             width: width.next_multiple_of(LANES),
             runs,
             pieces,

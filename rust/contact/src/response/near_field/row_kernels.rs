@@ -1,4 +1,4 @@
-//! The loops over the rows of a near coupling, as wide as the processor allows.
+//! Vectorized loops over near-field rows.
 
 use multiversion::target::target_cfg_f;
 use thenar_surface::Vec3;
