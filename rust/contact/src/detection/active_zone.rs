@@ -16,8 +16,8 @@ pub fn candidates(skin: &Skin, detection: &Detection) -> Vec<u32> {
     within(skin, detection, 0.0)
 }
 
-/// [`candidates`] and their surroundings, to be kept while the posture changes little; with the `last` zone where that is little
-/// more, for what was lifted into it is likely to be again.
+/// [`candidates`] within a wider margin, to serve several small moves; merged with the `last` zone where that adds little, since
+/// sites that were lifted into the product are likely to be again.
 pub fn widened_zone(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32> {
     let lasting = within(skin, detection, WARM_MARGIN);
     let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
@@ -68,7 +68,7 @@ fn within(skin: &Skin, detection: &Detection, more: f64) -> Vec<u32> {
     (0..skin.sites.len() as u32).filter(may_touch).collect()
 }
 
-/// Refuses to press skin whose vertices are too far apart for a layer so thin: one would answer its own force the wrong way.
+/// Refuses skin whose vertex spacing is too coarse for its layer: a vertex's own compliance would turn negative.
 ///
 /// # Errors
 /// [`ContactError::TooCoarse`] naming the first such vertex.

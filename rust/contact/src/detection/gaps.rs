@@ -13,7 +13,7 @@ pub const CUT_OFF: f64 = 8.0;
 /// Penetration beyond which no soft tissue of a hand can yield, mm.
 pub const MOST_DEPTH: f64 = 20.0;
 
-/// The skin in one posture beside one product.
+/// Gaps of the skin in one posture to one product.
 #[derive(Clone)]
 pub struct Detection {
     /// Posed positions of the welded vertices, mm, in the product's frame.

@@ -4,13 +4,13 @@ use std::collections::VecDeque;
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
-/// Four sums that spread alike: of weighted normals and of weights, whose ratio is an average.
+/// Four sums that are diffused together: weighted normals and weights, whose ratio is an average.
 pub type Sums = [f64; 4];
 
 /// Accuracy of the result: a fixed number of steps reaches it for any input, so that the result turns with it.
 pub const ACCURACY: f64 = 1e-3;
 
-/// Strength from which on groups of values are spread first: Chebyshev's steps over all values grow with its root.
+/// Strength from which a coarse correction on groups is used: Chebyshev steps grow with its root.
 const STRONG: f64 = 500.0;
 /// Groups, about; as many equations are solved at once. 128 to 512 serve.
 const GROUPS: usize = 256;
@@ -66,7 +66,7 @@ impl Graph {
     }
 }
 
-/// Solves `(1 + c L) x = b` with the graph's Laplacian L: every value spreads over its neighborhood.
+/// Solves `(1 + c L) x = b` with the graph's Laplacian L.
 pub fn diffuse(b: &[Sums], graph: &Graph) -> Vec<Sums> {
     let mut x = vec![Sums::default(); b.len()];
     let is_strong = graph.strength >= STRONG;

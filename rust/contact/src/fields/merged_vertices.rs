@@ -47,7 +47,7 @@ pub fn move_out_of_product(skin: &Skin, press: &Press<'_>, shift: Vec3, contact:
     }
 }
 
-/// Skin of the mesh as given that another vertex stands for.
+/// Skin vertices of the mesh as given that are represented by another.
 fn merged(skin: &Skin) -> impl Iterator<Item = usize> + '_ {
     let welded = &skin.merged;
     let stands_alone = move |v: usize| welded.source[welded.merged_of[v] as usize] as usize == v;

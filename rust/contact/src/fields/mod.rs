@@ -5,6 +5,7 @@ pub mod patch_peak;
 pub mod merged_vertices;
 pub mod product_pressure;
 pub mod result;
+pub mod resultants;
 pub mod summary;
 pub mod warning_rules;
 pub mod warnings;

@@ -1,4 +1,4 @@
-//! Builds the result of a press: arrays by vertex, region table, forces, center of pressure, areas.
+//! Builds the result of a press: arrays by vertex, region table, areas and peaks; sums of force are in `resultants`.
 
 use thenar_surface::{Gap, Mesh, Product, Vec3};
 
@@ -6,9 +6,10 @@ use super::contact_area::{EdgeData, contact_areas};
 use super::patch_peak::{Field, patch_peak};
 use super::product_pressure::product_pressure;
 use super::result::{Contact, Convergence, RegionResult, Residual};
+use super::resultants::resultants;
 use super::warning_rules::{CheckedFields, warnings_of};
 use crate::interface::pulls::Adhesion;
-use crate::interface::shear_result::{shear_fields, shear_load};
+use crate::interface::shear_result::shear_fields;
 use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
@@ -32,12 +33,8 @@ pub fn summarize(
         .map(|(f, g)| (*f, g))
         .collect();
     let (product_pressure, product_force) = product_pressure(product, &touches, skin.spacing);
-    let normal_force: f64 = 0.0 + touches.iter().map(|t| t.0).sum::<f64>();
-    let shift = direction * offset;
-    let total_force: Vec3 = touches.iter().map(|(f, g)| -g.normal * *f).sum();
-    let (shear_force, shear_moment) = shear_load(pressed, shift);
-    let moment = |(f, g): &(f64, &Gap)| (g.closest + shift).cross(&(-g.normal * *f));
-    let center: Vec3 = touches.iter().map(|(f, g)| (g.closest + shift) * *f).sum();
+    let sums = resultants(pressed, &touches, direction * offset);
+    let normal_force = sums.normal_force;
     // A sum of nothing is -0.
     let contact_area: f64 = 0.0
         + fields
@@ -69,15 +66,9 @@ pub fn summarize(
         pressure: spread(skin, fields.pressure),
         gap: spread(skin, fields.gap),
         normal: spread(skin, fields.normal),
-        total_force: total_force + shear_force - pressed.adhesion.force(),
-        total_moment: touches.iter().map(moment).sum::<Vec3>()
-            + shear_moment
-            + pressed.adhesion.moment(shift),
-        center_of_pressure: if normal_force > 0.0 {
-            center / normal_force
-        } else {
-            Vec3::zeros()
-        },
+        total_force: sums.force,
+        total_moment: sums.moment,
+        center_of_pressure: sums.center_of_pressure,
         contact_area,
         peak_pressure,
         mean_pressure: if contact_area > 0.0 {

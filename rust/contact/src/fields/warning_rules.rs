@@ -17,7 +17,7 @@ const COARSE_RATIO: f64 = 4.0;
 const CREDIBLE_SIZE: (f64, f64) = (2.0, 2000.0);
 /// Penetration of the written skin that spoils a result, mm.
 pub(crate) const MOST_PENETRATION: f64 = 0.05;
-/// Way beyond the deepest overlap that pressed skin may move, mm: next to a contact, skin is carried along by no more than it bulges.
+/// Displacement beyond the deepest overlap from which skin counts as run away, mm: beside a contact skin moves by its bulge only.
 const MOST_BEYOND: f64 = 3.0;
 /// Pressure over a sensel that only an edge causes, MPa: pain begins at 0.3 to 0.7 MPa on a palm.
 const MOST_PATCH: f64 = 1.0;
@@ -25,11 +25,11 @@ const MOST_PATCH: f64 = 1.0;
 const CREASED: f64 = 0.35;
 /// Vertices in contact below which a contact is not resolved.
 const FEW: usize = 6;
-/// Share of all force that must push against the rest for a product to be held, and the share left over from which it is out of balance.
+/// Share of opposing force from which a product counts as held, and share of net force from which it is out of balance.
 const HELD_SHARE: f64 = 0.1;
 const BALANCED_SHARE: f64 = 0.25;
 
-/// Numbers of a result that remarks look at; by welded vertex.
+/// Fields that the rules read, by merged vertex.
 pub struct CheckedFields<'a> {
     /// mm.
     pub displacement: &'a [Vec3],
@@ -41,7 +41,7 @@ pub struct CheckedFields<'a> {
     pub patch_peak: f64,
 }
 
-/// Everything there is to say about a press.
+/// All warnings of a press.
 pub fn warnings_of(
     skin: &Skin,
     (posed, product): (&Mesh, &Product),

@@ -42,12 +42,12 @@ pub fn press_at(
     (product, shift): (&Product, Vec3),
     (control, seconds): (&Control, &mut Seconds),
 ) -> Result<Pressed, ContactError> {
-    // 1 Detection.
+    // Stage 1: detection.
     control.step("distances", 0.0)?;
     let started = Instant::now();
     let detection = detect(skin, posed, product, shift)?;
     add_time(seconds, "distances", started);
-    // 3 Response: its moduli and weights; rows and couplings are made for the zone.
+    // Stage 3 as far as it follows from the depths: moduli and response weights. Rows and couplings are made for the zone.
     let started = Instant::now();
     let mut shear_modulus = region_moduli(skin, &detection);
     let recall = recall(skin, &detection);
@@ -57,7 +57,7 @@ pub fn press_at(
     let mut response = site_response(skin, &shear_modulus, &detection);
     let attraction = AdhesionLaw::new(skin);
     add_time(seconds, "response", started);
-    // 2 Active zone and 4 solve, with adhesion as often as it takes.
+    // Stages 2 to 4: active zone, coupling, solve; with adhesion until it settles.
     let started = Instant::now();
     let position = Position {
         product,
@@ -176,7 +176,7 @@ fn displaced(
     Ok(Some(moved))
 }
 
-/// What an attraction is in the elastic tissue's terms: borne at once by what has not yet faded, N.
+/// An attraction as a load on the elastic tissue: divided by the share that has not faded, N.
 fn elastic(skin: &Skin, pull: &Pull, recall: &MemoryStep) -> (u32, Vec3) {
     let region = skin.sites.home_region(pull.site as usize) as usize;
     (pull.site, pull.load() / recall.at_once[region])

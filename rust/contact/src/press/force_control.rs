@@ -17,7 +17,7 @@ const FORCE_TOLERANCE: f64 = 1e-5;
 pub(crate) const MOST_TRAVEL: f64 = 120.0;
 /// First step of the search, mm.
 const FIRST_STEP: f64 = 0.4;
-/// Share of what is left that a press leaves in the progress told; a search takes about 8.
+/// Factor on the remaining progress per press; a search takes about 8 presses.
 const PRESS_SHARE: f64 = 0.85;
 /// Progress of a search when its force is found.
 const LAST_SHARE: f64 = 0.95;
@@ -128,7 +128,7 @@ struct Search<'a, 'c> {
     /// Every travel tried.
     probes: Vec<Probe>,
     presses: i32,
-    /// Share of the search done, as told.
+    /// Share of the search done, as reported.
     share: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::skin::prepare::Skin;
 use crate::solve::{Accuracy, Axes, Compliance, DirectionalCompliance, Part, solve_contact};
 use crate::{ContactError, Control, Model};
 
-/// Directions, weights and likely contacts of the places that are solved, and the part of their compliance that is stored.
+/// The linear problem of the solved sites: directions, weights, likely contacts, and the stored part of their compliance.
 pub(crate) struct DirectionalProblem {
     /// Places of the zone.
     places: Vec<u32>,
@@ -19,14 +19,14 @@ pub(crate) struct DirectionalProblem {
     weight: Vec<f64>,
     likely: Vec<bool>,
     part: Part,
-    /// Entries of the near coupling along the directions, in a live press.
+    /// Near-field entries along the directions, in a live press.
     near: Vec<i16>,
-    /// What forces beyond the coupling do to each along its direction, over its weight; empty where there are none.
+    /// Displacement of each along its direction by loads outside the coupling, over its weight; empty without such loads.
     push: Vec<f64>,
 }
 
 impl ZoneState {
-    /// What the compliance is made of besides the coupling; nothing stored yet.
+    /// Directions and outer loads of the compliance; no entry is stored yet.
     pub(crate) fn directional_problem(&self, skin: &Skin) -> DirectionalProblem {
         let places: Vec<u32> = self.solved().into_iter().map(|k| k as u32).collect();
         let direction: Vec<Vec3> = match skin.model {
@@ -53,7 +53,7 @@ impl ZoneState {
         }
     }
 
-    /// What the last live press shows at the solved places, less what these did to themselves and each other nearby.
+    /// Displacement of the solved places by outer loads: that of the last live press less their own near-field contribution.
     fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
         let (live_field, near) = (&skin.workspace.live_field, skin.workspace.near.now());
         if self.beyond == OuterLoads::Nothing || !live_field.is_of(skin.sites.len()) {
@@ -105,7 +105,7 @@ impl ZoneState {
         }
     }
 
-    /// Solves the linear problem of the present gaps, under what held places do to those that are solved.
+    /// Solves the linear problem of the present gaps, under the loads of reused sites.
     pub(crate) fn solve(
         &mut self,
         skin: &Skin,

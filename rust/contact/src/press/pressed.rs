@@ -18,11 +18,11 @@ pub(crate) struct Pressed {
     pub shear_modulus: Vec<f64>,
     /// Effective shear modulus by site, blended, MPa.
     pub modulus_at: Vec<f64>,
-    /// What memory did to it, if the tissue remembers.
+    /// Part of tissue memory, if a protocol is followed.
     pub recalled: Option<PressMemory>,
-    /// What attracts skin and product.
+    /// Adhesive attraction.
     pub adhesion: Adhesion,
-    /// What friction made of a drag.
+    /// Shear of a drag with friction.
     pub shear: Option<ShearState>,
 }
 

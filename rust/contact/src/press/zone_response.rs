@@ -65,7 +65,7 @@ impl Skin {
         Ok(())
     }
 
-    /// The compliance that a large skin is solved with; None where the matrix in memory is.
+    /// The far-field compliance that a large skin is solved with; None where the matrix in memory is used.
     pub(crate) fn far_field_compliance(&self) -> Option<DirectionalCoupling<'_>> {
         let workspace = &self.workspace;
         let is_large = self.hierarchy.is_some();

@@ -118,7 +118,7 @@ impl ZoneState {
         self.force = self.held_or(skin, |reused_site| reused_site.force, force);
     }
 
-    /// Changes travels as the last live press did: a drag goes on more often than not.
+    /// Extrapolates travels from the last live press: motion usually continues.
     fn carry_travel_on(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
         for (k, &site) in self.zone.iter().enumerate() {
             // What joins the zone lay where the field carried it.
@@ -154,7 +154,7 @@ impl ZoneState {
         is_held.then(|| skin.workspace.live_contact.of(self.zone[k]))?
     }
 
-    /// `values` by place in the zone, with those of held sites in their places.
+    /// `values` by place in the zone, with reused sites' own values filled in.
     fn held_or(
         &self,
         skin: &Skin,
@@ -167,7 +167,7 @@ impl ZoneState {
         values
     }
 
-    /// Takes over what is held; before the rest is measured where it lay last.
+    /// Takes over the solution of reused sites, before the other sites are measured.
     fn take_held(&mut self, skin: &Skin) {
         for k in 0..self.is_reused.len() {
             if let Some(reused_site) = self.reused_site(skin, k) {

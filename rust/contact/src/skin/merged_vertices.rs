@@ -8,7 +8,7 @@ use thenar_surface::{Mesh, MeshError, Vec3};
 /// Share of the edges around both below which two vertices count as one: nearer points make the response indefinite.
 const MERGE_SHARE: f64 = 0.25;
 
-/// A mesh without coincident vertices, and which of its vertices stands for each original one.
+/// A mesh without coincident vertices, and the map to and from the original ones.
 #[derive(Debug, Clone)]
 pub struct MergedMesh {
     /// The welded mesh.

@@ -36,7 +36,7 @@ pub struct Skin {
     /// Median edge, mm.
     pub(crate) spacing: f64,
     pub(crate) response: Response,
-    /// In a large skin, what stands for the response's rows.
+    /// The hierarchy of a large skin, in place of response rows.
     pub(crate) hierarchy: Option<Hierarchy>,
     pub(crate) workspace: Workspace,
     /// What the tissue remembers, while a protocol is followed.

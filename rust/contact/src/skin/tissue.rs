@@ -18,7 +18,7 @@ pub struct Place<'a> {
     pub sites: &'a Sites,
     /// Distances along it.
     pub metric: &'a SkinDistance,
-    /// Vertex of the mesh as given that each welded vertex stands for.
+    /// Vertex of the mesh as given that represents each merged vertex.
     pub source: &'a [u32],
 }
 

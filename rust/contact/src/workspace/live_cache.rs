@@ -5,20 +5,20 @@ use thenar_surface::{Gap, Vec3};
 use crate::detection::press_direction::Sums;
 use crate::response::near_field::NearField;
 
-/// Where loads carried the skin: a change of some is added to it.
+/// Displacement field of the last live press; changes of loads are added to it.
 #[derive(Debug, Clone, Default)]
 pub struct LiveField {
     /// Load at every site, weight and direction in it.
     pub load: Vec<Vec3>,
     /// `sum_j K_ij load_j` at every site.
     pub field: Vec<Vec3>,
-    /// How both changed in the last live press.
+    /// Changes of both in the last live press.
     pub load_change: Vec<Vec3>,
     pub field_change: Vec<Vec3>,
 }
 
 impl LiveField {
-    /// Whether there is something for a skin of so many sites.
+    /// True if it holds the field of a skin of so many sites.
     pub fn is_of(&self, sites: usize) -> bool {
         self.load.len() == sites
     }
@@ -30,7 +30,7 @@ impl LiveField {
     }
 }
 
-/// Where a site met the product in the last live solve.
+/// Solution of one site in the last live press.
 #[derive(Debug, Clone)]
 pub struct ReusedSite {
     /// Its gap before deformation, and its response weight.
@@ -47,23 +47,23 @@ pub struct ReusedSite {
     pub slack: f64,
 }
 
-/// The last live solve.
+/// Solution of the last live press.
 #[derive(Debug, Clone, Default)]
 pub struct LiveContact {
     /// Its zone, ascending.
     pub zone: Vec<u32>,
-    /// What each of them met, by site, so that what is held on to stays where it is.
+    /// The solution of each of them, by site.
     pub met: Vec<Option<ReusedSite>>,
 }
 
 impl LiveContact {
-    /// What a site met, if it was in the zone.
+    /// Solution of a site, if it was in the zone.
     pub fn of(&self, site: u32) -> Option<&ReusedSite> {
         self.met.get(site as usize)?.as_ref()
     }
 }
 
-/// The coupling of the first round of a solve, which often serves the next solve, and that of the rounds after it, of few sites.
+/// Near fields of the first round of a solve, often reused by the next solve, and of its later rounds, which have few sites.
 #[derive(Debug, Clone, Default)]
 pub struct NearFields {
     of_rounds: [NearField; 2],
@@ -71,17 +71,17 @@ pub struct NearFields {
 }
 
 impl NearFields {
-    /// Takes the one of a `round`, from 1.
+    /// Selects that of a `round`, from 1.
     pub fn turn_to(&mut self, round: usize) {
         self.now = usize::from(round > 1);
     }
 
-    /// The one of this round.
+    /// That of this round.
     pub fn now(&self) -> &NearField {
         &self.of_rounds[self.now]
     }
 
-    /// The same, to be made anew.
+    /// The same, to be rebuilt.
     pub fn now_mut(&mut self) -> &mut NearField {
         &mut self.of_rounds[self.now]
     }

@@ -3,18 +3,18 @@
 use crate::interface::pulls::Pull;
 use crate::solve::Accuracy;
 
-/// Where one solve ended, for the next to start from; a walk through a protocol keeps its own.
+/// State of the last solve that the next one starts from; a protocol keeps its own.
 #[derive(Debug, Clone, Default)]
 pub struct WarmStart {
-    /// What the last solve found.
+    /// Forces and travels of the last solve.
     pub last: StartContact,
     /// Travel found by force control, mm.
     pub offset: f64,
-    /// Slope there of the search for it, in its own terms per mm.
+    /// Slope of the force search at that travel, in its own measure of force per mm.
     pub slope: Option<f64>,
     /// Attraction of the last row of a protocol.
     pub pulls: Vec<Pull>,
-    /// How far solves go from here.
+    /// Accuracy of the solves that start here.
     pub accuracy: Accuracy,
 }
 

@@ -8,49 +8,49 @@ use crate::solve::Accuracy;
 use crate::workspace::live_cache::LiveField;
 use crate::{ContactError, Control, Model};
 
-/// Sites whose patches are farther apart than this answer each other as they did last, mm: 3 thicknesses of a finger's tissue.
-/// The fewer, the more often a round more is needed (tests pass from 15 to 1000).
+/// Range of the near field, mm: 3 thicknesses of a finger's tissue; sites farther apart keep their last effect on each other.
+/// A shorter range needs more rounds (tests pass from 15 to 1000).
 const NEAR: f64 = 22.0;
-/// Skin that is foreseen to come nearer to the product joins the zone, mm.
+/// Sites whose extrapolated gap is below this join the zone, mm.
 const CLEARANCE: f64 = 0.01;
-/// Skin that is foreseen to stay farther away does not, and leaves it once it is foreseen to stay twice as far away, mm. The
-/// nearer, the more often a round more is needed.
+/// Sites whose extrapolated gap is above this leave the zone, mm; twice this for sites of the last zone. A smaller gap needs
+/// more rounds.
 const CLEAR: f64 = 0.3;
 /// Largest distance between written contact and product that ends a live solve, mm, and over the deepest penetration.
 const MISFIT: f64 = 0.02;
 const MISFIT_SHARE: f64 = 2.5e-3;
 
-/// What acts on the sites that are solved besides the coupling among them.
+/// Loads on the solved sites from outside their coupling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum OuterLoads {
-    /// Nothing: all that bears forces is solved, and all of it is coupled.
+    /// None: all loaded sites are solved and coupled.
     Nothing,
-    /// What does by the forces shown last.
+    /// Forces of the last live press.
     Last,
-    /// What does by the forces that those are changing to.
+    /// Forces extrapolated from the last live press.
     Trend,
 }
 
-/// Whether a displacement `u` is longer than skin is away from the product, mm.
+/// Whether a displacement `u` is longer than the `distance` to the product, mm.
 pub fn can_reach(u: &Vec3, distance: f64) -> bool {
     distance < 0.0 || distance * distance < u.norm_squared()
 }
 
-/// Where the skin of a site will lie if what changed last goes on as it did, mm from where it is posed; zero if not known.
+/// Extrapolated displacement of a site, if the last change continues, mm; zero if unknown.
 pub fn extrapolated(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
     moved(skin, setting, site, |live_field, site| {
         live_field.field[site] + live_field.field_change[site]
     })
 }
 
-/// How the displacement of a site changes if it does as it did last, mm; zero if not known.
+/// Last change of a site's displacement, mm; zero if unknown.
 pub fn extrapolated_change(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
     moved(skin, setting, site, |live_field, site| {
         live_field.field_change[site]
     })
 }
 
-/// What a `field` of the last live press is at a site, mm.
+/// A `field` of the last live press at a site, mm.
 fn moved(
     skin: &Skin,
     setting: &SolveSetting<'_>,
@@ -64,10 +64,10 @@ fn moved(
     field(live_field, site) * (setting.weight[site] * skin.sites.follow[site])
 }
 
-/// A `zone` (ascending) without skin that stays clear of the product if what changed last goes on, and with skin beyond it that is
-/// then carried in, and its neighbors.
+/// The `zone` (ascending) by extrapolation: without sites that stay clear of the product, with those that the field will carry
+/// into it, and their neighbors.
 ///
-/// What is left out is looked after all the same: skin outside the zone that is carried into the product joins it.
+/// A wrong guess costs a round: sites outside the zone that the field carries into the product join it.
 pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
     if !is_live(skin, setting)
         || zone.is_empty()
@@ -103,13 +103,13 @@ pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<
     zone
 }
 
-/// Whether a press is live, on skin whose response is kept row by row.
+/// Whether a press is live, on a skin with its response rows in memory.
 pub fn is_live(skin: &Skin, setting: &SolveSetting<'_>) -> bool {
     let is_rough = setting.accuracy == Accuracy::Rough;
     is_rough && skin.model == Model::Layer && skin.hierarchy.is_none()
 }
 
-/// What acts on the sites that are solved in a `round` besides the coupling among them.
+/// Loads on the sites solved in a `round` from outside their coupling.
 pub fn beyond(skin: &Skin, setting: &SolveSetting<'_>, round: usize) -> OuterLoads {
     match is_live(skin, setting) {
         false => OuterLoads::Nothing,

@@ -1,7 +1,7 @@
 //! Live presses: which sites keep the last frame's solution (why Live skips a site), with a check after each solve.
 //!
-//! Certified each time: held skin is not carried off by what changed elsewhere, nor solved skin by what changed beyond its near
-//! coupling, farther than the written surface may miss the product; where it is, it is solved anew.
+//! After each solve, the displacement that changes elsewhere cause at reused sites, and changes outside the near field at solved
+//! ones, is compared with the live tolerance; sites above it are solved again.
 
 use thenar_surface::Vec3;
 
@@ -12,21 +12,21 @@ use crate::press::solution::ZoneSolution;
 use crate::skin::prepare::Skin;
 use crate::workspace::live_cache::{LiveContact, ReusedSite};
 
-/// Skin in patches nearer than this to one in which skin moved is solved with it, mm (tests pass from 1 to 8).
+/// Sites in patches nearer than this to a changed site are solved with it, mm (tests pass from 1 to 8).
 const REACH: f64 = 3.0;
-/// The same about skin that is found to stray or to be lifted, mm: it is off by little (tests pass from 1 to 3).
+/// The same around sites that exceed the tolerance or are lifted into the product, mm (tests pass from 1 to 3).
 const REACH_AGAIN: f64 = 1.0;
 /// Share of the zone above which all of it is solved.
 const MOST: f64 = 0.7;
-/// How far skin may stray, over the deepest penetration: somewhat less than the certificate's half per cent, so that what is held
-/// on to stays within that.
+/// Largest displacement error of a reused site over the deepest penetration: below the certificate's 0.5 %, so that reused
+/// sites stay within it.
 const STRAY: f64 = 4.5e-3;
-/// Share of that from which skin that is foreseen to stray is solved.
+/// Share of that error from which a site is solved because it is expected to exceed it.
 const EARLY: f64 = 0.9;
 
-/// Which sites of `zone` hold on to what they met in the last live solve; the others are to be solved. Empty if all are.
+/// Which sites of `zone` reuse their solution of the last live press; the others are solved. Empty if all are solved.
 ///
-/// `strayed`: sites that were carried off in this very press, if that is why it solves again; None in its first round.
+/// `strayed`: sites that exceeded the tolerance in this press, from its second round on; None in the first.
 pub fn reused_sites(
     skin: &Skin,
     setting: &SolveSetting<'_>,
@@ -64,7 +64,7 @@ pub fn reused_sites(
     held
 }
 
-/// Sites of `zone` that would stray if they were held while what changed last goes on.
+/// Sites of `zone` that would exceed the tolerance if they were reused while the last change continues.
 fn will_stray(
     skin: &Skin,
     setting: &SolveSetting<'_>,
@@ -96,9 +96,9 @@ fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
     is_near
 }
 
-/// Keeps a live solve for the next; forgets what there was after any other.
+/// Keeps the solution of a live solve for the next frame; clears it after any other solve.
 ///
-/// `held`: which sites of the zone held on to what they met before, as they do still; empty if none did.
+/// `held`: which sites of the zone were reused and stay as they are; empty if none were.
 pub fn keep(
     skin: &mut Skin,
     setting: &SolveSetting<'_>,
