@@ -89,7 +89,7 @@ pub enum Unsolved {
     /// It is an error that names the place.
     #[default]
     Refuse,
-    /// The best state found is returned, graded [`Grade::DoNotUse`].
+    /// The best state found is returned, graded [`DoNotUse`](crate::Grade::DoNotUse).
     Keep,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A nested-basis hierarchical matrix (H2; Hackbusch & Boerm 2002) whose bases are rows of the response itself (skeletons;
 //! Cheng et al. 2005), so that any kernel of model layer serves: several thicknesses, cuts, a stiff skin. What is left out of a
-//! row is at most [`TOLERANCE`] of the largest; a direct sum on a sample of sites says what became of it ([`Certificate`]).
+//! row is at most `hierarchy::TOLERANCE` of the largest; a direct sum on a sample of sites measures the error.
 
 pub mod hierarchy;
 mod cluster_tree;

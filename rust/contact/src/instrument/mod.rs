@@ -1,6 +1,6 @@
 //! The measuring set-up: mats of sensels, and the errors of sensors, fixtures and clocks.
 //!
-//! Instrument effects act on predictions, never on the skin. [`observe`] applies them in a fixed order: `fixture_compliance`
+//! Instrument effects act on predictions, never on the skin. [`observe()`] applies them in a fixed order: `fixture_compliance`
 //! (on the motion), `misregistration`, averaging over each sensel ([`Mat`]), `crosstalk`, `gain`, `offset`, `drift`,
 //! `saturation`, `threshold`, `dead_cells`, and `timing` (between the channels). Units: mm, N, s, kPa for maps.
 
