@@ -39,7 +39,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// [`ContactError::Cancelled`].
-    pub fn carry(
+    pub fn displacement(
         &self,
         (loads, clusters): (&[Load], &Clusters),
         known: &[Option<Vec3>],

@@ -217,7 +217,7 @@ fn threads_leave_no_mark() {
             };
             let some: Vec<Load> = zone[300..1200].iter().map(pressed).collect();
             let carried = hierarchy
-                .carry(
+                .displacement(
                     (&some, &coupled.clusters),
                     &vec![None; zone.len()],
                     ground,
@@ -246,7 +246,7 @@ fn a_certificate_is_what_the_direct_sum_says() {
         })
         .collect();
     let carried = hierarchy
-        .carry(
+        .displacement(
             (&some, &coupled.clusters),
             &vec![None; zone.len()],
             ground,

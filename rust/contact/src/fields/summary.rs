@@ -61,11 +61,11 @@ pub fn summarize(
         0.0
     };
     Contact {
-        displacement: spread(skin, fields.displacement),
+        displacement: by_given_vertex(skin, fields.displacement),
         nodal_force: force_by_vertex(skin, fields.force),
-        pressure: spread(skin, fields.pressure),
-        gap: spread(skin, fields.gap),
-        normal: spread(skin, fields.normal),
+        pressure: by_given_vertex(skin, fields.pressure),
+        gap: by_given_vertex(skin, fields.gap),
+        normal: by_given_vertex(skin, fields.normal),
         total_force: sums.force,
         total_moment: sums.moment,
         center_of_pressure: sums.center_of_pressure,
@@ -99,7 +99,7 @@ pub fn summarize(
 }
 
 /// Values by vertex of the mesh as given, from those by welded vertex.
-fn spread<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
+fn by_given_vertex<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
     if skin.merged.merged() == 0 {
         return values;
     }

@@ -38,7 +38,7 @@ impl DisplacedPosture {
 ///
 /// # Errors
 /// [`ContactError::Cancelled`].
-pub fn moved(
+pub fn displace(
     skin: &Skin,
     product: &Product,
     (truth, loads): (&Detection, &[(u32, Vec3)]),
@@ -49,7 +49,7 @@ pub fn moved(
         load: load * weight[site as usize],
     };
     let loads: Vec<Load> = loads.iter().map(load).collect();
-    let mut field = skin.carry(loads, control)?.field;
+    let mut field = skin.displacement(loads, control)?.field;
     for (site, u) in field.iter_mut().enumerate() {
         *u *= weight[site] * skin.sites.follow[site];
     }
@@ -103,7 +103,7 @@ pub fn restore(
         let fresh = solved.bearing[k] * solved.force[k];
         bearing.push((site, fresh));
         let region = skin.sites.home_region(site as usize) as usize;
-        solved.force[k] *= recall.at_once[region];
+        solved.force[k] *= recall.instantaneous[region];
         if solved.force[k] > 0.0 && !recall.is_left[region] {
             let known = recall.loads.binary_search_by_key(&site, |load| load.0);
             let elastic = fresh + known.map_or_else(|_| Vec3::zeros(), |at| recall.loads[at].1);

@@ -22,7 +22,7 @@ pub struct Stand<'a> {
 }
 
 /// Posed positions as the product sees them, mm.
-pub fn seen(posed: &mut [Vec3], motion: &Motion) {
+pub fn to_product_frame(posed: &mut [Vec3], motion: &Motion) {
     let back = motion.inverse();
     for position in posed {
         *position = back * nalgebra::Point3::from(*position) - nalgebra::Point3::origin();
@@ -30,7 +30,7 @@ pub fn seen(posed: &mut [Vec3], motion: &Motion) {
 }
 
 /// How the skin at every site has turned from one posture to another.
-pub fn turns(skin: &Skin, before: &Mesh, after: &Mesh) -> Vec<Rotation3<f64>> {
+pub fn rotations(skin: &Skin, before: &Mesh, after: &Mesh) -> Vec<Rotation3<f64>> {
     let normals = [vertex_normals(before), vertex_normals(after)];
     let frame = |mesh: &Mesh, normals: &[Vec3], vertex: u32| {
         let (normal, at) = (normals[vertex as usize], mesh.positions()[vertex as usize]);
@@ -60,7 +60,7 @@ pub fn turns(skin: &Skin, before: &Mesh, after: &Mesh) -> Vec<Rotation3<f64>> {
 }
 
 /// A contact solved in the product's frame, in that of the posed positions.
-pub fn carried(contact: &mut Contact, motion: &Motion) {
+pub fn from_product_frame(contact: &mut Contact, motion: &Motion) {
     let (turn, shift) = (motion.rotation, motion.translation.vector);
     let all = |vectors: &mut Vec<Vec3>| vectors.iter_mut().for_each(|v| *v = turn * *v);
     all(&mut contact.displacement);

@@ -7,7 +7,7 @@ use thenar_surface::{Mesh, Product, Vec3};
 use super::first_touch::first_touch;
 use super::protocol::{Demand, Row};
 use super::protocol_result::{Keep, Step};
-use super::row_posture::{Stand, carried, seen, turns};
+use super::row_posture::{Stand, from_product_frame, rotations, to_product_frame};
 use super::tissue_memory::TissueMemory;
 use crate::api::{Drag, ForceTarget};
 use crate::fields::summary::{summarize, totals};
@@ -124,7 +124,7 @@ impl Walk {
             (posed, Some(motion)) => {
                 let mesh = skin.posed(posed)?;
                 let mut positions = mesh.positions().to_vec();
-                seen(&mut positions, motion);
+                to_product_frame(&mut positions, motion);
                 mesh.with_positions(positions).map_err(ContactError::Hand)?
             }
         };
@@ -143,7 +143,7 @@ impl Walk {
             .map(|v| before.positions()[v] - posed.positions()[v])
             .collect();
         if let Some(history) = &mut self.history {
-            let turns = turns(skin, before, &posed);
+            let turns = rotations(skin, before, &posed);
             history.turn(|site| turns[site as usize]);
         }
         self.touch = None;
@@ -184,7 +184,7 @@ impl Walk {
             }
         }
         if let Some(motion) = &stand.motion {
-            carried(&mut contact, motion);
+            from_product_frame(&mut contact, motion);
         }
         Ok(contact)
     }

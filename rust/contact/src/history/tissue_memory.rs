@@ -48,7 +48,7 @@ struct Softening {
 #[derive(Debug, Clone)]
 pub struct MemoryStep {
     /// Share of the elastic load that is borne at once, by region.
-    pub at_once: Vec<f64>,
+    pub instantaneous: Vec<f64>,
     /// Factor of the modulus, by region.
     pub softness: Vec<f64>,
     /// Load, in the elastic tissue's terms, that moves the posture before the step, by site.
@@ -72,8 +72,9 @@ impl MemoryStep {
 
     /// Forces by site in the elastic tissue's terms, for a start; empty stays empty.
     pub fn elastic(&self, force: &[f64], sites: &Sites) -> Vec<f64> {
-        let scaled =
-            |(site, force): (usize, &f64)| force / self.at_once[sites.home_region(site) as usize];
+        let scaled = |(site, force): (usize, &f64)| {
+            force / self.instantaneous[sites.home_region(site) as usize]
+        };
         force.iter().enumerate().map(scaled).collect()
     }
 }
@@ -118,9 +119,9 @@ impl TissueMemory {
                     .collect()
             })
             .collect();
-        let mut at_once = self.lasting.clone();
+        let mut instantaneous = self.lasting.clone();
         for of_region in &fade {
-            at_once
+            instantaneous
                 .iter_mut()
                 .zip(of_region)
                 .for_each(|(a, (_, new))| *a += new);
@@ -132,7 +133,7 @@ impl TissueMemory {
                 let (decay, new) = of_region[region];
                 rest += branch[i] * decay - self.elastic[i] * new;
             }
-            (site, -rest / at_once[region])
+            (site, -rest / instantaneous[region])
         };
         let used: Vec<Vec<f64>> = self
             .softening
@@ -155,7 +156,7 @@ impl TissueMemory {
         MemoryStep {
             is_left: depth.iter().zip(&self.depth).map(is_left).collect(),
             loads,
-            at_once,
+            instantaneous,
             softness,
             fade,
             used,

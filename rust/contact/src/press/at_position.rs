@@ -12,7 +12,7 @@ use super::solution::SolvedContact;
 use super::stage_times::{Seconds, add_time};
 use crate::detection::active_zone::{active_zone, check_resolution};
 use crate::detection::gaps::{Detection, detect};
-use crate::history::displaced_posture::{DisplacedPosture, moved, restore};
+use crate::history::displaced_posture::{DisplacedPosture, displace, restore};
 use crate::history::tissue_memory::MemoryStep;
 use crate::interface::adhesion::{AdhesionLaw, MOST_SOLVES};
 use crate::interface::pulls::{Adhesion, Pull, steady};
@@ -72,7 +72,7 @@ pub fn press_at(
     let modulus_at = &mut response.modulus;
     let recalled = recall.map(|recall| {
         let mut bearing = restore(skin, &mut solved, modulus_at, &recall);
-        let mut clings = vec![false; recall.at_once.len()];
+        let mut clings = vec![false; recall.instantaneous.len()];
         for pull in &adhesion.pulls {
             bearing.push(elastic(skin, pull, &recall));
             clings[skin.sites.home_region(pull.site as usize) as usize] = true;
@@ -164,7 +164,7 @@ fn displaced(
             None => (pull.site, pull.load()),
         });
     }
-    let mut moved = moved(
+    let mut moved = displace(
         skin,
         position.product,
         (position.detection, &loads),
@@ -179,7 +179,7 @@ fn displaced(
 /// An attraction as a load on the elastic tissue: divided by the share that has not faded, N.
 fn elastic(skin: &Skin, pull: &Pull, recall: &MemoryStep) -> (u32, Vec3) {
     let region = skin.sites.home_region(pull.site as usize) as usize;
-    (pull.site, pull.load() / recall.at_once[region])
+    (pull.site, pull.load() / recall.instantaneous[region])
 }
 
 /// Finds attraction and contact together, from the attraction of the step before.

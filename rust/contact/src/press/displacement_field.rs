@@ -46,11 +46,11 @@ pub fn field(
         certificate,
     } = if setting.accuracy == Accuracy::Rough && skin.hierarchy.is_none() {
         FarFieldDisplacement {
-            field: carry_changes(skin, loads),
+            field: displacement_by_changes(skin, loads),
             certificate: 0.0,
         }
     } else {
-        skin.carry(loads, control)?
+        skin.displacement(loads, control)?
     };
     for (site, u) in field.iter_mut().enumerate() {
         *u *= setting.weight[site] * skin.sites.follow[site];
@@ -59,10 +59,10 @@ pub fn field(
 }
 
 /// Where loads carry the skin, from where those of the last live press did: loads that hardly changed wait until they have.
-fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
+fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     let mut live_field = std::mem::take(&mut skin.workspace.live_field);
     let sites = skin.sites.len();
-    if !live_field.is_of(sites) {
+    if !live_field.matches(sites) {
         live_field.load = vec![Vec3::zeros(); sites];
         live_field.field = vec![Vec3::zeros(); sites];
         live_field.load_change = vec![Vec3::zeros(); sites];
@@ -106,7 +106,7 @@ fn carry_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
 /// Puts skin in contact, and what the field would carry into the product, where the solve left it: along its direction.
 ///
 /// Other skin follows the field in full, in the zone or outside, so that the zone's margin leaves no mark.
-pub fn keep_out(
+pub fn keep_out_of_product(
     skin: &Skin,
     setting: &SolveSetting<'_>,
     found: &ZoneSolution<'_>,

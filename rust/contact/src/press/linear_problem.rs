@@ -48,15 +48,15 @@ impl ZoneState {
             weight: Vec::new(),
             likely: places.iter().map(likely).collect(),
             part: Part::default(),
-            push: self.push_from_beyond(skin, (&places, &direction)),
+            push: self.outer_displacement(skin, (&places, &direction)),
             places,
         }
     }
 
     /// Displacement of the solved places by outer loads: that of the last live press less their own near-field contribution.
-    fn push_from_beyond(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
+    fn outer_displacement(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
         let (live_field, near) = (&skin.workspace.live_field, skin.workspace.near.now());
-        if self.beyond == OuterLoads::Nothing || !live_field.is_of(skin.sites.len()) {
+        if self.beyond == OuterLoads::Nothing || !live_field.matches(skin.sites.len()) {
             return Vec::new();
         }
         let ahead = match self.beyond {

@@ -2,10 +2,10 @@
 
 use thenar_surface::Vec3;
 
-use super::displacement_field::{field, keep_out, lifted_sites};
+use super::displacement_field::{field, keep_out_of_product, lifted_sites};
 use super::live::extrapolation;
 use super::live::extrapolation::OuterLoads;
-use super::live::reused_sites::{keep, reused_sites, strays};
+use super::live::reused_sites::{keep_solution, reused_sites, strays};
 use super::setting::SolveSetting;
 use super::solution::SolvedContact;
 use super::zone_state::ZoneState;
@@ -69,10 +69,10 @@ pub fn solve(
             OuterLoads::Nothing => (0.0, Vec::new()),
             _ => strays(&state.found(), &field, deepest),
         };
-        keep_out(skin, setting, &state.found(), &mut field);
+        keep_out_of_product(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
         let left = (&state.slack[..], &state.sums[..], &state.is_reused[..]);
-        keep(skin, setting, &state.found(), left);
+        keep_solution(skin, setting, &state.found(), left);
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let wanted = (tolerance, setting.accuracy.certificate());
@@ -145,7 +145,7 @@ impl ZoneState {
             }
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
-                self.see_along_normals(skin);
+                self.update_cosines(skin);
                 self.matrix(skin, setting, &mut problem);
             }
             if pass >= PLAIN_PASSES || !has_improved {

@@ -77,7 +77,7 @@ impl Skin {
     ///
     /// # Errors
     /// [`ContactError::Cancelled`].
-    pub(crate) fn carry(
+    pub(crate) fn displacement(
         &self,
         mut loads: Vec<Load>,
         control: &Control,
@@ -102,7 +102,7 @@ impl Skin {
         {
             let bearing: Vec<u32> = loads.iter().map(|load| load.site).collect();
             let clusters = Clusters::new(hierarchy, &bearing, self.ground(), control)?;
-            return hierarchy.carry((&loads, &clusters), &known, self.ground(), control);
+            return hierarchy.displacement((&loads, &clusters), &known, self.ground(), control);
         }
         // Within the zone the field is a product of the solver's own operator.
         let coupled = &self.workspace.problem.coupled;
@@ -117,6 +117,6 @@ impl Skin {
         for (k, &site) in zone.iter().enumerate() {
             known[site as usize] = Some(Vec3::new(x[k], y[k], z[k]));
         }
-        hierarchy.carry((&loads, &coupled.clusters), &known, self.ground(), control)
+        hierarchy.displacement((&loads, &coupled.clusters), &known, self.ground(), control)
     }
 }

@@ -91,13 +91,13 @@ impl ZoneState {
         if self.beyond == OuterLoads::Trend {
             self.carry_travel_on(skin, setting);
         }
-        self.take_held(skin);
+        self.take_reused(skin);
         self.placed = vec![f64::NAN; self.zone.len()];
         if !travel.is_empty() && skin.model == Model::Layer {
             self.place(skin, setting);
         }
-        self.see_along_normals(skin);
-        self.slack = self.held_or(
+        self.update_cosines(skin);
+        self.slack = self.reused_or(
             skin,
             |reused_site| reused_site.slack,
             vec![0.0; self.zone.len()],
@@ -115,7 +115,7 @@ impl ZoneState {
         if self.beyond == OuterLoads::Trend {
             self.carry_forces_on(skin, setting, &mut force);
         }
-        self.force = self.held_or(skin, |reused_site| reused_site.force, force);
+        self.force = self.reused_or(skin, |reused_site| reused_site.force, force);
     }
 
     /// Extrapolates travels from the last live press: motion usually continues.
@@ -136,7 +136,7 @@ impl ZoneState {
     /// The same of forces.
     fn carry_forces_on(&self, skin: &Skin, setting: &SolveSetting<'_>, force: &mut [f64]) {
         let live_field = &skin.workspace.live_field;
-        if !live_field.is_of(skin.sites.len()) {
+        if !live_field.matches(skin.sites.len()) {
             return;
         }
         for (k, (force, &site)) in force.iter_mut().zip(&self.zone).enumerate() {
@@ -155,7 +155,7 @@ impl ZoneState {
     }
 
     /// `values` by place in the zone, with reused sites' own values filled in.
-    fn held_or(
+    fn reused_or(
         &self,
         skin: &Skin,
         value: impl Fn(&ReusedSite) -> f64,
@@ -168,7 +168,7 @@ impl ZoneState {
     }
 
     /// Takes over the solution of reused sites, before the other sites are measured.
-    fn take_held(&mut self, skin: &Skin) {
+    fn take_reused(&mut self, skin: &Skin) {
         for k in 0..self.is_reused.len() {
             if let Some(reused_site) = self.reused_site(skin, k) {
                 (self.touch[k], self.direction[k]) = (reused_site.touch, reused_site.direction);
@@ -217,11 +217,11 @@ impl ZoneState {
     }
 
     /// Takes the cosines between directions and the product's normals as they are now.
-    pub(crate) fn see_along_normals(&mut self, skin: &Skin) {
+    pub(crate) fn update_cosines(&mut self, skin: &Skin) {
         let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
         let cosines = self.touch.iter().zip(&self.direction).map(cosine);
         let cosines = cosines.map(|c| c.max(LEAST_COSINE)).collect();
-        self.cosine = self.held_or(skin, |reused_site| reused_site.cosine, cosines);
+        self.cosine = self.reused_or(skin, |reused_site| reused_site.cosine, cosines);
     }
 
     /// Measures the displaced zone against the product; in a live press, what hardly travelled since it was measured is only
@@ -241,7 +241,7 @@ impl ZoneState {
         let fresh = setting
             .product
             .gaps_along(&written, Some(&normals), limits(), &hints);
-        let fresh = self.found_again(setting, &written, fresh);
+        let fresh = self.measured_without_limit(setting, &written, fresh);
         for (k, gap) in places.into_iter().zip(fresh) {
             if let Some(gap) = gap {
                 self.touch[k] = gap;
@@ -252,7 +252,7 @@ impl ZoneState {
     }
 
     /// Measures again, as far as it takes, what has left the reach of the query: it is outside, never where it was before.
-    fn found_again(
+    fn measured_without_limit(
         &self,
         setting: &SolveSetting<'_>,
         written: &[Vec3],

@@ -37,7 +37,7 @@ pub fn sheet() -> (Skin, Vec<u32>) {
 /// The coupling of a zone within a range, mm.
 pub fn near(skin: &Skin, zone: &[u32], range: f64) -> NearField {
     let mut near = NearField::default();
-    near.take_up(
+    near.update(
         (zone, zone),
         &skin.workspace.quantized,
         (&skin.response, &skin.sites),

@@ -19,7 +19,7 @@ pub struct LiveField {
 
 impl LiveField {
     /// True if it holds the field of a skin of so many sites.
-    pub fn is_of(&self, sites: usize) -> bool {
+    pub fn matches(&self, sites: usize) -> bool {
         self.load.len() == sites
     }
 

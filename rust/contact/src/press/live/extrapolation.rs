@@ -58,7 +58,7 @@ fn moved(
     field: impl Fn(&LiveField, usize) -> Vec3,
 ) -> Vec3 {
     let (live_field, site) = (&skin.workspace.live_field, site as usize);
-    if !live_field.is_of(skin.sites.len()) {
+    if !live_field.matches(skin.sites.len()) {
         return Vec3::zeros();
     }
     field(live_field, site) * (setting.weight[site] * skin.sites.follow[site])
@@ -71,7 +71,7 @@ fn moved(
 pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
     if !is_live(skin, setting)
         || zone.is_empty()
-        || !skin.workspace.live_field.is_of(skin.sites.len())
+        || !skin.workspace.live_field.matches(skin.sites.len())
     {
         return zone;
     }
@@ -129,11 +129,11 @@ pub fn couple(
     control: &Control,
 ) -> Result<(), ContactError> {
     // Without a last live press nothing is known of what lies farther off: all of it is coupled.
-    let range = match skin.workspace.live_field.is_of(skin.sites.len()) {
+    let range = match skin.workspace.live_field.matches(skin.sites.len()) {
         true => NEAR,
         false => f64::INFINITY,
     };
-    if skin.workspace.near.now().is_of(open, range) {
+    if skin.workspace.near.now().matches(open, range) {
         return Ok(());
     }
     control.step("response", 0.0)?;
@@ -142,7 +142,7 @@ pub fn couple(
     let workspace = &mut skin.workspace;
     workspace.quantized.make(open.iter().copied(), ground);
     let near = workspace.near.now_mut();
-    near.take_up((zone, open), &workspace.quantized, ground, range);
+    near.update((zone, open), &workspace.quantized, ground, range);
     Ok(())
 }
 
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::detection::gaps::detect;
     use crate::detection::press_direction::Sums;
-    use crate::press::live::reused_sites::keep;
+    use crate::press::live::reused_sites::keep_solution;
     use crate::press::solution::ZoneSolution;
     use crate::response::test_sheet::sheet;
     use thenar_surface::{Mesh, Product};
@@ -281,7 +281,7 @@ mod tests {
                 touch: &touch,
             };
             let sums = vec![Sums::default(); zone.len()];
-            keep(&mut skin, &setting, &found, (&zeros, &sums, &[]));
+            keep_solution(&mut skin, &setting, &found, (&zeros, &sums, &[]));
             extrapolated_zone(&skin, &setting, wide.clone())
         };
         let stays = within(2.0 * CLEAR);

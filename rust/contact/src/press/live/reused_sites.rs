@@ -99,7 +99,7 @@ fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
 /// Keeps the solution of a live solve for the next frame; clears it after any other solve.
 ///
 /// `held`: which sites of the zone were reused and stay as they are; empty if none were.
-pub fn keep(
+pub fn keep_solution(
     skin: &mut Skin,
     setting: &SolveSetting<'_>,
     found: &ZoneSolution<'_>,

@@ -58,14 +58,14 @@ impl NearField {
     }
 
     /// Whether it is between these sites, with nothing left out that is nearer than `range` (mm).
-    pub fn is_of(&self, sites: &[u32], range: f64) -> bool {
+    pub fn matches(&self, sites: &[u32], range: f64) -> bool {
         self.sites == sites && self.range >= range
     }
 
     /// Makes it the coupling of `open`, whose `rows` are made, with patches nearer than `range` (mm).
     ///
     /// `zone`: what may be solved next; both ascending, and `open` within it.
-    pub fn take_up(
+    pub fn update(
         &mut self,
         (zone, open): (&[u32], &[u32]),
         rows: &QuantizedRows,
@@ -333,10 +333,10 @@ mod tests {
         let others: Vec<u32> = zone[zone.len() / 5..].to_vec();
         let some: Vec<u32> = zone.iter().copied().step_by(3).collect();
         for open in [&corner, &others, &some, &zone] {
-            kept.take_up((&zone, open), &skin.workspace.quantized, ground, 9.0);
+            kept.update((&zone, open), &skin.workspace.quantized, ground, 9.0);
             let anew = near(&skin, open, 9.0);
             let loads = loads(open.len());
-            assert!(kept.is_of(open, 9.0) && !kept.is_of(open, 10.0));
+            assert!(kept.matches(open, 9.0) && !kept.matches(open, 10.0));
             let (ours, wanted) = (kept.field(&loads), anew.field(&loads));
             // Sums of as many terms in another order.
             let most = wanted.iter().map(Vec3::norm).fold(0.0, f64::max);
