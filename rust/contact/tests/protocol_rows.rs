@@ -173,7 +173,7 @@ fn a_hand_and_a_product_that_move_together_feel_nothing_of_it() {
 }
 
 #[test]
-fn a_product_that_slid_is_borne_where_it_then_stands() {
+fn moment_and_center_follow_a_product_that_slid() {
     let slide = Vec3::new(1.5, -0.8, 0.0);
     let row = Row {
         time_s: 0.0,
@@ -260,7 +260,7 @@ fn a_row_that_fails_leaves_the_walk_where_it_stood() {
 }
 
 #[test]
-fn painted_skin_is_followed_until_it_is_painted_anew() {
+fn a_walk_ends_when_its_painted_effect_changes() {
     let tool = paraboloid(8.0, 0.0, 9.0);
     let mut skin = skin(&[]);
     let mut bone = ActiveEffect::named("bone", 1.0).unwrap();

@@ -18,6 +18,14 @@ pub const LEAST_COSINE: f64 = 0.35;
 /// How much farther than its depth a site may be sent along its direction, mm: the deeper it lies, the nearer that stays to its normal.
 const MOST_DETOUR: f64 = 3.0;
 
+/// The skin around a zone.
+pub struct Neighborhood<'a> {
+    pub sites: &'a Sites,
+    pub adjacency: &'a Adjacency,
+    /// Median edge, mm.
+    pub spacing: f64,
+}
+
 /// Averaged directions for the sites of `zone`, whose product normals and gaps (mm) are given, and the sums they come from.
 ///
 /// `known`: sums of sites that keep theirs, and with them their directions; empty where none does.
@@ -25,9 +33,13 @@ pub fn press_directions(
     zone: &[u32],
     (normal, gap): (&[Vec3], &[f64]),
     known: &[Option<Sums>],
-    around: (&Sites, &Adjacency, f64),
+    around: &Neighborhood<'_>,
 ) -> (Vec<Vec3>, Vec<Sums>) {
-    let (sites, adjacency, spacing) = around;
+    let &Neighborhood {
+        sites,
+        adjacency,
+        spacing,
+    } = around;
     let mut place = vec![u32::MAX; sites.len()];
     for (k, &site) in zone.iter().enumerate() {
         place[site as usize] = k as u32;
@@ -119,7 +131,7 @@ mod tests {
     use crate::detection::graph_diffusion::ACCURACY;
 
     #[test]
-    fn beside_values_that_stay_the_others_are_those_of_the_whole() {
+    fn diffusion_around_fixed_values_equals_the_whole() {
         let n = 80_u32;
         let beside = |i: u32| [i.checked_sub(1), Some(i + 1).filter(|j| *j < n)];
         let neighbors = |k: usize| beside(k as u32).into_iter().flatten();

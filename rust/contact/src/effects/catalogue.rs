@@ -91,7 +91,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn the_catalogue_stands_in_the_order_of_effects_and_stages() {
+    fn catalogue_order_is_that_of_effects_and_stages() {
         for (place, (effect, entry)) in CATALOGUE.iter().enumerate() {
             assert_eq!(effect.place(), place, "{}", entry.name);
             assert_eq!(Effect::named(entry.name), Some(*effect));

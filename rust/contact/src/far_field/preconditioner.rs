@@ -163,7 +163,7 @@ mod tests {
     use crate::solve::Symmetric;
 
     #[test]
-    fn where_all_sites_are_beside_the_preconditioner_is_the_inverse() {
+    fn preconditioner_with_all_neighbors_is_the_inverse() {
         let skin = skin(24, [6.0; 3], Vec::new());
         let (ground, none) = (skin.ground(), Control::none());
         let from_corner = |&i: &u32| {

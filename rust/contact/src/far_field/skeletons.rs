@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_is_told_from_the_chosen_ones() {
+    fn every_row_is_interpolated_from_the_skeleton() {
         // 1/r between two separate stretches of a line.
         let (rows, columns) = (60, 80);
         let entry = |i: usize, j: usize| 1.0 / (20.0 + i as f64 * 0.1 + j as f64 * 0.7);

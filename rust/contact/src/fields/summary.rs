@@ -10,18 +10,18 @@ use super::resultants::resultants;
 use super::warning_rules::{CheckedFields, warnings_of};
 use crate::interface::pulls::Adhesion;
 use crate::interface::shear_result::shear_fields;
-use crate::press::pressed::Pressed;
+use crate::press::pressed::{Pressed, Travel};
 use crate::skin::prepare::Skin;
 
 /// Least posed area of a vertex relative to its rest area: posing must not turn a sliver into infinite pressure.
 const LEAST_AREA_SHARE: f64 = 0.05;
 
-/// Builds the result of a press with the product moved by `offset` along `direction`.
+/// Builds the result of a press after a travel of the product.
 pub fn summarize(
     skin: &Skin,
     (posed, product): (&Mesh, &Product),
     pressed: &Pressed,
-    (offset, direction): (f64, Vec3),
+    travel: Travel,
 ) -> Contact {
     let fields = Fields::new(skin, posed, pressed);
     let touches: Vec<(f64, &Gap)> = pressed
@@ -33,7 +33,7 @@ pub fn summarize(
         .map(|(f, g)| (*f, g))
         .collect();
     let (product_pressure, product_force) = product_pressure(product, &touches, skin.spacing);
-    let sums = resultants(pressed, &touches, direction * offset);
+    let sums = resultants(pressed, &touches, travel.shift());
     let normal_force = sums.normal_force;
     // A sum of nothing is -0.
     let contact_area: f64 = 0.0
@@ -79,8 +79,8 @@ pub fn summarize(
         patch_peak,
         regions,
         product_pressure,
-        offset,
-        direction,
+        offset: travel.offset,
+        direction: travel.direction,
         adhesion: adhesion_by_vertex(skin, &pressed.adhesion),
         shear,
         residual: Residual {

@@ -17,6 +17,15 @@ const NEAR: f64 = 2.0;
 /// Bounds of the pressure left at a site over the elastic one.
 const EDGE_SHARES: (f64, f64) = (0.02, 50.0);
 
+/// The posture before memory and adhesion displace it.
+pub struct TruePosture<'a> {
+    pub product: &'a Product,
+    /// Its gaps.
+    pub detection: &'a Detection,
+    /// Response weight by site.
+    pub weight: &'a [f64],
+}
+
 /// The posture as the memory leaves it.
 pub struct DisplacedPosture {
     /// Detection there; the largest penetrations stay those of the true posture.
@@ -34,16 +43,21 @@ impl DisplacedPosture {
     }
 }
 
-/// Moves the posture of `truth` by loads (N) on sites that have their rows of the response.
+/// Displaces a posture by loads (N) on sites that have their rows of the response.
 ///
 /// # Errors
 /// [`ContactError::Cancelled`].
 pub fn displace(
     skin: &Skin,
-    product: &Product,
-    (truth, loads): (&Detection, &[(u32, Vec3)]),
-    (weight, control): (&[f64], &Control),
+    posture: &TruePosture<'_>,
+    loads: &[(u32, Vec3)],
+    control: &Control,
 ) -> Result<DisplacedPosture, ContactError> {
+    let &TruePosture {
+        product,
+        detection: truth,
+        weight,
+    } = posture;
     let load = |&(site, load): &(u32, Vec3)| Load {
         site,
         load: load * weight[site as usize],

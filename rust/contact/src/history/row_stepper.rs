@@ -18,8 +18,8 @@ use crate::interface::friction_state::FrictionMemory;
 use crate::interface::stick_slip::StickSlipStep;
 use crate::press::at_position::press_at;
 use crate::press::force_control::{find_offset, mean_normal};
-use crate::press::pressed::Pressed;
-use crate::press::stage_times::Seconds;
+use crate::press::pressed::{Pressed, Travel};
+use crate::press::stage_times::{Seconds, Watch};
 use crate::skin::prepare::Skin;
 use crate::workspace::warm_start::WarmStart;
 use crate::{ActiveEffect, Contact, ContactError, Control};
@@ -171,8 +171,11 @@ impl Walk {
         friction::move_skin(skin, stand.product, &mut pressed);
         let slide = last.row.slide;
         let posed = slid(posed, slide)?;
-        let place = (last.step.offset, self.direction());
-        let mut contact = summarize(skin, (&posed, stand.product), &pressed, place);
+        let travel = Travel {
+            offset: last.step.offset,
+            direction: self.direction(),
+        };
+        let mut contact = summarize(skin, (&posed, stand.product), &pressed, travel);
         if contact.center_of_pressure != Vec3::zeros() {
             contact.center_of_pressure += slide;
         }
@@ -209,6 +212,10 @@ impl Walk {
         };
         let (mut seconds, direction) = (Seconds::new(), self.direction());
         let posed = slid(posed, row.slide)?;
+        let watch = Watch {
+            control,
+            seconds: &mut seconds,
+        };
         let offset = match row.demand {
             Demand::Offset(offset) => offset,
             Demand::Depth(depth) => touch + depth,
@@ -223,13 +230,12 @@ impl Walk {
                     direction: Some(direction),
                 };
                 let place = (&*posed, product);
-                let (offset, _, pressed) =
-                    find_offset(skin, place, target, (control, &mut seconds))?;
-                return Ok((offset, pressed));
+                let (travel, pressed) = find_offset(skin, place, target, watch)?;
+                return Ok((travel.offset, pressed));
             }
         };
         let shift = direction * offset;
-        let pressed = press_at(skin, &posed, (product, shift), (control, &mut seconds))?;
+        let pressed = press_at(skin, &posed, (product, shift), watch)?;
         Ok((offset, pressed))
     }
 

@@ -9,10 +9,10 @@ use super::pressed::{PressMemory, Pressed};
 use super::relinearize::solve;
 use super::setting::SolveSetting;
 use super::solution::SolvedContact;
-use super::stage_times::{Seconds, add_time};
+use super::stage_times::{Watch, add_time};
 use crate::detection::active_zone::{active_zone, check_resolution};
 use crate::detection::gaps::{Detection, detect};
-use crate::history::displaced_posture::{DisplacedPosture, displace, restore};
+use crate::history::displaced_posture::{DisplacedPosture, TruePosture, displace, restore};
 use crate::history::tissue_memory::MemoryStep;
 use crate::interface::adhesion::{AdhesionLaw, MOST_SOLVES};
 use crate::interface::pulls::{Adhesion, Pull, steady};
@@ -36,12 +36,13 @@ struct Position<'a> {
 ///
 /// # Errors
 /// Those of a press; see [`Skin::press`].
-pub fn press_at(
+pub(crate) fn press_at(
     skin: &mut Skin,
     posed: &Mesh,
     (product, shift): (&Product, Vec3),
-    (control, seconds): (&Control, &mut Seconds),
+    watch: Watch<'_, '_>,
 ) -> Result<Pressed, ContactError> {
+    let Watch { control, seconds } = watch;
     // Stage 1: detection.
     control.step("distances", 0.0)?;
     let started = Instant::now();
@@ -164,12 +165,12 @@ fn displaced(
             None => (pull.site, pull.load()),
         });
     }
-    let mut moved = displace(
-        skin,
-        position.product,
-        (position.detection, &loads),
-        (position.weight, control),
-    )?;
+    let truth = TruePosture {
+        product: position.product,
+        detection: position.detection,
+        weight: position.weight,
+    };
+    let mut moved = displace(skin, &truth, &loads, control)?;
     if !pulls.is_empty() {
         moved.detection.deepen(skin);
     }

@@ -3,8 +3,8 @@
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
 use super::at_position::press_at;
-use super::pressed::Pressed;
-use super::stage_times::Seconds;
+use super::pressed::{Pressed, Travel};
+use super::stage_times::Watch;
 use crate::api::ForceTarget;
 use crate::detection::gaps::limits;
 use crate::skin::prepare::Skin;
@@ -34,8 +34,8 @@ pub(crate) fn find_offset(
     skin: &mut Skin,
     (posed, product): (&Mesh, &Product),
     target: ForceTarget,
-    (control, seconds): (&Control, &mut Seconds),
-) -> Result<(f64, Vec3, Pressed), ContactError> {
+    watch: Watch<'_, '_>,
+) -> Result<(Travel, Pressed), ContactError> {
     if !(target.newton > 0.0 && target.newton.is_finite()) {
         return Err(ContactError::ForceTarget {
             newton: target.newton,
@@ -54,8 +54,7 @@ pub(crate) fn find_offset(
         posed,
         product,
         direction,
-        control,
-        seconds,
+        watch,
         target: target.newton,
         last: None,
         probes: Vec::new(),
@@ -65,10 +64,10 @@ pub(crate) fn find_offset(
     let offset = search.run(start)?;
     search.skin.workspace.warm_start.slope = search.slope();
     match search.last {
-        Some((at, pressed)) if at == offset => Ok((offset, direction, pressed)),
+        Some((at, pressed)) if at == offset => Ok((Travel { offset, direction }, pressed)),
         _ => {
             let pressed = search.press(offset)?.1;
-            Ok((offset, direction, pressed))
+            Ok((Travel { offset, direction }, pressed))
         }
     }
 }
@@ -121,8 +120,7 @@ struct Search<'a, 'c> {
     posed: &'a Mesh,
     product: &'a Product,
     direction: Vec3,
-    control: &'a Control<'c>,
-    seconds: &'a mut Seconds,
+    watch: Watch<'a, 'c>,
     target: f64,
     last: Option<(f64, Pressed)>,
     /// Every travel tried.
@@ -137,10 +135,14 @@ impl Search<'_, '_> {
         let shift = self.direction * offset;
         let control = Control {
             progress: &|_, _| {},
-            ..*self.control
+            ..*self.watch.control
+        };
+        let watch = Watch {
+            control: &control,
+            seconds: self.watch.seconds,
         };
         let there = (self.product, shift);
-        let pressed = press_at(self.skin, self.posed, there, (&control, self.seconds));
+        let pressed = press_at(self.skin, self.posed, there, watch);
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
@@ -160,7 +162,7 @@ impl Search<'_, '_> {
         let digits = miss.clamp(FORCE_TOLERANCE, 1.0).ln() / FORCE_TOLERANCE.ln();
         let by_presses = 1.0 - PRESS_SHARE.powi(self.presses);
         self.share = self.share.max(LAST_SHARE * digits.max(by_presses));
-        self.control.step("force", self.share)
+        self.watch.control.step("force", self.share)
     }
 
     /// Excess of the force's 2/3 power: force grows about as travel^1.5, so this is nearly a straight line.

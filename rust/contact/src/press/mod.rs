@@ -32,7 +32,8 @@ use crate::workspace::warm_start::WarmStart;
 use crate::{ContactError, Control};
 use at_position::press_at;
 use force_control::find_offset;
-use stage_times::{Seconds, add_time};
+use pressed::Travel;
+use stage_times::{Seconds, Watch, add_time};
 
 /// Share of a force target that may be missed without a word.
 const FORCE_MISS: f64 = 1e-3;
@@ -54,22 +55,22 @@ impl Skin {
         };
         let mut seconds = Seconds::new();
         let posed = self.posed(press.posed)?;
-        let (offset, direction, mut pressed) = match press.force {
+        let watch = Watch {
+            control,
+            seconds: &mut seconds,
+        };
+        let (travel, mut pressed) = match press.force {
             None => {
                 let here = (press.product, Vec3::zeros());
-                let pressed = press_at(self, &posed, here, (control, &mut seconds))?;
+                let pressed = press_at(self, &posed, here, watch)?;
                 let direction = pressed
                     .force_on_skin()
                     .try_normalize(0.0)
                     .unwrap_or_else(Vec3::zeros);
-                (0.0, direction, pressed)
+                let offset = 0.0;
+                (Travel { offset, direction }, pressed)
             }
-            Some(target) => find_offset(
-                self,
-                (&posed, press.product),
-                target,
-                (control, &mut seconds),
-            )?,
+            Some(target) => find_offset(self, (&posed, press.product), target, watch)?,
         };
         if press.unsolved == Unsolved::Refuse
             && let Some(refusal) = pressed.solved.refusal(self)
@@ -87,8 +88,8 @@ impl Skin {
         }
         control.step("fields", 0.0)?;
         let started = Instant::now();
-        let mut contact = summarize(self, (&posed, press.product), &pressed, (offset, direction));
-        move_out_of_product(self, press, direction * offset, &mut contact);
+        let mut contact = summarize(self, (&posed, press.product), &pressed, travel);
+        move_out_of_product(self, press, travel.shift(), &mut contact);
         add_time(&mut seconds, "fields", started);
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);
@@ -100,7 +101,7 @@ impl Skin {
             }
         }
         contact.seconds = seconds;
-        pressed.start_next(self, offset);
+        pressed.start_next(self, travel.offset);
         control.step("fields", 1.0)?;
         Ok(contact)
     }

@@ -9,6 +9,22 @@ use crate::interface::friction_state::ShearState;
 use crate::interface::pulls::Adhesion;
 use crate::skin::prepare::Skin;
 
+/// Travel of the product.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Travel {
+    /// Along the direction, mm.
+    pub offset: f64,
+    /// Unit direction; zero without contact.
+    pub direction: Vec3,
+}
+
+impl Travel {
+    /// Shift of the product, mm.
+    pub fn shift(&self) -> Vec3 {
+        self.direction * self.offset
+    }
+}
+
 /// One solved position of the product.
 #[derive(Clone)]
 pub(crate) struct Pressed {

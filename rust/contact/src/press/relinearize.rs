@@ -71,12 +71,17 @@ pub fn solve(
         };
         keep_out_of_product(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
-        let left = (&state.slack[..], &state.sums[..], &state.is_reused[..]);
-        keep_solution(skin, setting, &state.found(), left);
+        keep_solution(skin, setting, &state.found());
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
+            let written = Written {
+                displacement: field,
+                far_field,
+                worst,
+                lifted,
+            };
             let wanted = (tolerance, setting.accuracy.certificate());
-            return Ok(state.finish((field, far_field), (worst, lifted), wanted));
+            return Ok(state.finish(written, wanted));
         }
         strayed.extend(far);
         state.extend(match setting.accuracy {
@@ -85,6 +90,17 @@ pub fn solve(
         });
     }
     Err(ContactError::Cancelled)
+}
+
+/// The written surface of a solve, and what is left of it inside the product.
+struct Written {
+    /// Of every site, mm.
+    displacement: Vec<Vec3>,
+    /// Its largest difference from the direct sum, relative.
+    far_field: f64,
+    /// Deepest site outside the zone that was lifted into the product, mm, and those beyond the tolerance.
+    worst: f64,
+    lifted: Vec<u32>,
 }
 
 /// The best fit so far: the merit of a pass is the misfit of the written skin, and what does not lower it goes half the way.
@@ -165,12 +181,13 @@ impl ZoneState {
         Ok(())
     }
 
-    fn finish(
-        mut self,
-        (displacement, far_field): (Vec<Vec3>, f64),
-        (worst, lifted): (f64, Vec<u32>),
-        (tolerance, certificate): (f64, f64),
-    ) -> SolvedContact {
+    fn finish(mut self, written: Written, (tolerance, certificate): (f64, f64)) -> SolvedContact {
+        let Written {
+            displacement,
+            far_field,
+            worst,
+            lifted,
+        } = written;
         let is_fit = self.misfit <= tolerance && (lifted.is_empty() || worst <= MOST_LIFTED);
         let is_solved = is_fit && self.complementarity <= certificate;
         self.convergence.has_converged = is_solved && far_field <= FAR_FIELD_TOLERANCE;

@@ -4,6 +4,7 @@ use thenar_surface::{Gap, Vec3};
 
 use super::setting::vertex;
 use crate::ContactError;
+use crate::detection::press_direction::Sums;
 use crate::fields::result::Convergence;
 use crate::skin::prepare::Skin;
 use crate::workspace::warm_start::StartContact;
@@ -22,6 +23,12 @@ pub struct ZoneSolution<'a> {
     pub travel: &'a [f64],
     /// Where each met the product.
     pub touch: &'a [Gap],
+    /// Slack of the last linear problem, mm.
+    pub slack: &'a [f64],
+    /// Sums of which each direction is an average.
+    pub sums: &'a [Sums],
+    /// Which reuse their solution of the last live press; empty if none do.
+    pub is_reused: &'a [bool],
 }
 
 /// The solved contact, in the product's frame.

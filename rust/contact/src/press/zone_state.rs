@@ -7,7 +7,7 @@ use super::setting::{SolveSetting, vertex};
 use super::solution::ZoneSolution;
 use crate::Model;
 use crate::detection::gaps::limits;
-use crate::detection::press_direction::{LEAST_COSINE, Sums, press_directions};
+use crate::detection::press_direction::{LEAST_COSINE, Neighborhood, Sums, press_directions};
 use crate::fields::result::Convergence;
 use crate::press::live::extrapolation::OuterLoads;
 use crate::skin::prepare::Skin;
@@ -207,8 +207,12 @@ impl ZoneState {
                 .map(|reused_site| reused_site.sums)
         };
         let known: Vec<Option<Sums>> = inside.iter().map(sums).collect();
-        let around = (&skin.sites, &skin.adjacency, setting.spacing);
-        let (averaged, sums) = press_directions(&sites, (&normals, &gaps), &known, around);
+        let around = Neighborhood {
+            sites: &skin.sites,
+            adjacency: &skin.adjacency,
+            spacing: setting.spacing,
+        };
+        let (averaged, sums) = press_directions(&sites, (&normals, &gaps), &known, &around);
         let mut direction = normal.to_vec();
         for ((k, average), sums) in inside.into_iter().zip(averaged).zip(sums) {
             (direction[k], self.sums[k]) = (average, sums);
@@ -360,6 +364,9 @@ impl ZoneState {
             cosine: &self.cosine,
             travel: &self.travel,
             touch: &self.touch,
+            slack: &self.slack,
+            sums: &self.sums,
+            is_reused: &self.is_reused,
         }
     }
 

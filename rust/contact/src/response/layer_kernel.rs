@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bulge_takes_up_the_dent() {
+    fn bulge_volume_equals_dent_volume() {
         // Net volume: integral of (1/r - Psi) 2 pi r dr over the range, which vanishes for nu = 1/2.
         for layers in [
             [layer(1.0), layer(1.0)],

@@ -279,9 +279,11 @@ mod tests {
                 cosine: &vec![1.0; zone.len()],
                 travel: &zeros,
                 touch: &touch,
+                slack: &zeros,
+                sums: &vec![Sums::default(); zone.len()],
+                is_reused: &[],
             };
-            let sums = vec![Sums::default(); zone.len()];
-            keep_solution(&mut skin, &setting, &found, (&zeros, &sums, &[]));
+            keep_solution(&mut skin, &setting, &found);
             extrapolated_zone(&skin, &setting, wide.clone())
         };
         let stays = within(2.0 * CLEAR);

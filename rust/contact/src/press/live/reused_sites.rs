@@ -6,7 +6,6 @@
 use thenar_surface::Vec3;
 
 use super::extrapolation::{extrapolated, is_live};
-use crate::detection::press_direction::Sums;
 use crate::press::setting::{SolveSetting, vertex};
 use crate::press::solution::ZoneSolution;
 use crate::skin::prepare::Skin;
@@ -98,13 +97,8 @@ fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
 
 /// Keeps the solution of a live solve for the next frame; clears it after any other solve.
 ///
-/// `held`: which sites of the zone were reused and stay as they are; empty if none were.
-pub fn keep_solution(
-    skin: &mut Skin,
-    setting: &SolveSetting<'_>,
-    found: &ZoneSolution<'_>,
-    (slack, sums, held): (&[f64], &[Sums], &[bool]),
-) {
+/// Sites that were reused stay as they are.
+pub fn keep_solution(skin: &mut Skin, setting: &SolveSetting<'_>, found: &ZoneSolution<'_>) {
     if !is_live(skin, setting) {
         skin.workspace.live_contact = LiveContact::default();
         return;
@@ -117,7 +111,7 @@ pub fn keep_solution(
         }
     }
     for (k, &site) in found.zone.iter().enumerate() {
-        if held.get(k) == Some(&true) {
+        if found.is_reused.get(k) == Some(&true) {
             continue;
         }
         kept.met[site as usize] = Some(ReusedSite {
@@ -125,11 +119,11 @@ pub fn keep_solution(
             weight: setting.weight[site as usize],
             touch: found.touch[k],
             direction: found.direction[k],
-            sums: sums[k],
+            sums: found.sums[k],
             cosine: found.cosine[k],
             travel: found.travel[k],
             force: found.force[k],
-            slack: slack[k],
+            slack: found.slack[k],
         });
     }
     kept.zone.clear();

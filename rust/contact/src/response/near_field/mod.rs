@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_taken_up_beside_other_sites_is_what_is_made_anew() {
+    fn incremental_coupling_equals_full_rebuild() {
         let (skin, zone) = sheet();
         let ground = (&skin.response, &skin.sites);
         let mut kept = near(&skin, &zone, 14.0);
