@@ -16,7 +16,7 @@ const LOOKS_SMALL: f64 = 0.3;
 const SEEN: (usize, usize) = (2, 1);
 const NEAR: f64 = 2.0;
 
-/// How a cluster is told from few of its sites.
+/// Skeleton basis of a cluster: chosen sites and the interpolation from them.
 #[derive(Debug, Clone, Default)]
 pub struct Basis {
     /// The chosen sites.
@@ -127,7 +127,7 @@ impl Clusters {
         Some(own)
     }
 
-    /// The sites that a cluster is told from are among these, in this order.
+    /// Candidates for the skeleton of a cluster, in this order.
     fn candidates(&self, cluster: usize) -> Option<Vec<u32>> {
         let cluster = &self.list[cluster];
         if cluster.children.is_empty() {

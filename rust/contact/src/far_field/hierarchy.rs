@@ -18,10 +18,10 @@ pub(super) const SEPARATION: f64 = 1.0;
 #[derive(Debug, Clone)]
 pub struct Hierarchy {
     pub(super) tree: Tree,
-    /// Lower bound of the skin distance by pair of patches, mm; infinite where they do not feel each other.
+    /// Lower bound of the skin distance by pair of patches, mm; infinite where they are out of range.
     bounds: Vec<f32>,
     patches: usize,
-    /// The farthest that any site is felt, mm.
+    /// Largest range of any site's response, mm.
     reach: f64,
 }
 

@@ -25,7 +25,7 @@ pub struct SparseInverse(pub(super) Vec<FactorRows>);
 /// Rows of one cluster.
 #[derive(Debug, Clone)]
 pub(super) struct FactorRows {
-    /// Places among the clusters' sites: those beside, then its own.
+    /// Places among the clusters' sites: conditioning neighbors, then its own.
     pub columns: Vec<u32>,
     /// How many are its own.
     own: usize,
@@ -34,7 +34,7 @@ pub(super) struct FactorRows {
 }
 
 impl SparseInverse {
-    /// Finds what lies beside each cluster; no rows yet.
+    /// Finds the conditioning neighbors of each cluster; no rows yet.
     pub fn planned(near: &Blocks, clusters: &Clusters, ground: SkinResponse<'_>) -> SparseInverse {
         let mut earlier: Vec<Vec<usize>> = vec![Vec::new(); clusters.list.len()];
         for pair in near.pairs.iter().filter(|pair| pair.a != pair.b) {
@@ -63,7 +63,7 @@ impl SparseInverse {
     /// Makes the rows.
     ///
     /// # Errors
-    /// What `watch`, told the share that is done, ends it with.
+    /// That of `watch`, which gets the share that is done.
     pub fn fill(
         &mut self,
         hierarchy: &Hierarchy,

@@ -22,7 +22,7 @@ pub struct ZoneCoupling {
     pub(super) far: Blocks,
     /// `K_ii` in the zone's order.
     pub(super) own: Vec<f64>,
-    /// What stands for the inverse.
+    /// The preconditioner.
     pub(super) sparse_inverse: SparseInverse,
 }
 
@@ -44,7 +44,7 @@ impl ZoneCoupling {
         Ok(coupled)
     }
 
-    /// Finds skeletons, pairs and what lies beside each cluster; no block yet.
+    /// Finds skeletons, pairs and the preconditioner's sparsity; no block yet.
     pub(super) fn planned(
         hierarchy: &Hierarchy,
         zone: &[u32],

@@ -22,7 +22,7 @@ pub struct Convergence {
 pub struct Residual {
     /// Largest of |min(force, slack)|, force in compliance units, relative to the largest penetration (Xie Eq. 14).
     pub complementarity: f64,
-    /// Deepest skin vertex inside the product after deformation, measured anew, mm.
+    /// Deepest skin vertex inside the product after deformation, measured again, mm.
     pub penetration_mm: f64,
     /// Difference of the force on hand and product, relative to their sum.
     pub load_balance: f64,

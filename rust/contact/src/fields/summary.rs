@@ -107,7 +107,7 @@ fn by_given_vertex<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
     welded.map(|&w| values[w as usize]).collect()
 }
 
-/// Nodal forces of the mesh as given: merged vertices bear none, the one that stands for them bears all.
+/// Nodal forces of the mesh as given: a merged vertex has none, its representative has all.
 fn force_by_vertex(skin: &Skin, force: Vec<f64>) -> Vec<f64> {
     if skin.merged.merged() == 0 {
         return force;

@@ -11,7 +11,7 @@ use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
 
-/// Skin nearer to the product than this, after it was moved, is measured anew, mm; farther skin keeps a first-order gap.
+/// Displaced skin nearer to the product than this is measured again, mm; farther skin keeps a first-order gap.
 const NEAR: f64 = 2.0;
 
 /// Bounds of the pressure left at a site over the elastic one.

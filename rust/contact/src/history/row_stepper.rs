@@ -27,7 +27,7 @@ use crate::{ActiveEffect, Contact, ContactError, Control};
 /// How far the product is taken off the skin where no force is asked for, mm.
 const CLEARANCE: f64 = 1.0;
 
-/// What is known on the way through a protocol: rows taken, what tissue and friction remember, where to start the next.
+/// State of a protocol in progress: rows taken, memory of tissue and friction, warm start of the next row.
 ///
 /// A walk belongs to one skin and one product. It may be cloned, to try rows from where it stands.
 #[derive(Clone)]

@@ -14,7 +14,7 @@ const SHORT_STEP: f64 = 1e-4;
 /// Load below which a site has forgotten, N: 1e-7 of a light touch on one vertex.
 const FAINT: f64 = 1e-10;
 
-/// What the tissue remembers.
+/// Internal variables of the tissue.
 #[derive(Debug, Clone)]
 pub struct TissueMemory {
     branches: Vec<Branch>,
@@ -47,7 +47,7 @@ struct Softening {
 /// What the memory means for the step being taken.
 #[derive(Debug, Clone)]
 pub struct MemoryStep {
-    /// Share of the elastic load that is borne at once, by region.
+    /// Share of the elastic load that acts at the end of the step, by region.
     pub instantaneous: Vec<f64>,
     /// Factor of the modulus, by region.
     pub softness: Vec<f64>,
@@ -80,7 +80,7 @@ impl MemoryStep {
 }
 
 impl TissueMemory {
-    /// Tissue that was never pressed. None if no effect remembers anything.
+    /// Tissue that was never pressed. None if no effect has memory.
     pub fn new(effects: &[ActiveEffect], regions: usize, sites: usize) -> Option<TissueMemory> {
         let (branches, lasting) = branches(effects, regions);
         let softening: Vec<Softening> = in_order(effects)
@@ -214,7 +214,7 @@ impl TissueMemory {
         }
     }
 
-    /// Turns what each site remembers as its skin has turned; `turn` by site.
+    /// Rotates the remembered loads of each site with its skin; `turn` by site.
     pub fn turn(&mut self, turn: impl Fn(u32) -> Rotation3<f64>) {
         for &site in &self.touched {
             let (turn, i) = (turn(site), site as usize);
@@ -225,7 +225,7 @@ impl TissueMemory {
         }
     }
 
-    /// True if a site still remembers anything; what is left of a faded one is dropped.
+    /// True if a site still has memory; a faded remainder is dropped.
     fn lives(&mut self, i: usize) -> bool {
         let is_faint = |load: &Vec3| load.norm() < FAINT;
         if !(is_faint(&self.elastic[i]) && self.fading.iter().all(|branch| is_faint(&branch[i]))) {
@@ -238,7 +238,7 @@ impl TissueMemory {
         false
     }
 
-    /// Decay of a branch in `region` over the step, and the share of a load that it takes up over it.
+    /// Decay of a branch in `region` over the step, and its share of a load that is new.
     fn fade(&self, branch: &Branch, region: usize, depth: f64) -> (f64, f64) {
         let passed = match &branch.clock {
             Clock::Time => self.seconds,

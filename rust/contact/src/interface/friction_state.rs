@@ -22,7 +22,7 @@ pub(crate) struct ShearState {
     pub end: StickSlipStep,
 }
 
-/// What friction remembers from step to step.
+/// Memory of friction from step to step.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct FrictionMemory {
     /// Memory of each site that was in contact, ascending by site.

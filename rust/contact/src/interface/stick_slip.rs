@@ -11,7 +11,7 @@ use crate::Control;
 
 /// Share of the limit from which a site counts as slipping.
 const RIM: f64 = 1.0 - 1e-9;
-/// What a site in contact remembers.
+/// Memory of a site in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SiteFriction {
     /// Shear force on the skin, N.
@@ -31,7 +31,7 @@ pub struct StickSlipProblem<'a> {
     pub tangents: &'a [[Vec3; 2]],
     /// Largest shear force of each site, N.
     pub limit: &'a [f64],
-    /// What each site remembers; None for those that were not in contact.
+    /// Memory of each site; None for those that were not in contact.
     pub before: &'a [Option<SiteFriction>],
 }
 

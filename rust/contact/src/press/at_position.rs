@@ -26,7 +26,7 @@ struct Position<'a> {
     product: &'a Product,
     /// Gaps of the true posture.
     detection: &'a Detection,
-    /// What the tissue remembers, if a protocol is followed.
+    /// Memory of the tissue, if a protocol is followed.
     recall: Option<&'a MemoryStep>,
     /// Response weight by site.
     weight: &'a [f64],
@@ -96,7 +96,7 @@ pub(crate) fn press_at(
     })
 }
 
-/// What the tissue remembers of the steps before, if a protocol is followed.
+/// The effect of tissue memory on this step, if a protocol is followed.
 fn recall(skin: &Skin, detection: &Detection) -> Option<MemoryStep> {
     let history = skin.history.as_ref()?;
     Some(history.recall(&detection.max_penetration, &skin.sites))

@@ -13,7 +13,7 @@ use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
 use crate::{ContactError, Control, Model};
 
-/// Change of a load, over the largest, that a live press does not yet carry on: all together move skin by some micrometres.
+/// Change of a load, over the largest, below which a live press defers it: all together move skin by some micrometres.
 const WAITING: f64 = 1e-5;
 
 /// Displacement of every site, and how far a large skin's is from the direct sum (0: not at all).
@@ -58,7 +58,7 @@ pub fn field(
     Ok((field, certificate))
 }
 
-/// Where loads carry the skin, from where those of the last live press did: loads that hardly changed wait until they have.
+/// Field of the loads by update of the last live press's field; small changes of load are deferred.
 fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     let mut live_field = std::mem::take(&mut skin.workspace.live_field);
     let sites = skin.sites.len();
@@ -103,7 +103,7 @@ fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
     field
 }
 
-/// Puts skin in contact, and what the field would carry into the product, where the solve left it: along its direction.
+/// Sets sites in contact, and those that the field would move into the product, to their solved travel along their direction.
 ///
 /// Other skin follows the field in full, in the zone or outside, so that the zone's margin leaves no mark.
 pub fn keep_out_of_product(
@@ -146,7 +146,7 @@ pub fn keep_out_of_product(
     }
 }
 
-/// Skin outside the zone that the displacement carries into the product, and how deep, mm.
+/// Sites outside the zone that the displacement lifts into the product, and the deepest of them, mm.
 pub fn lifted_sites(
     skin: &Skin,
     setting: &SolveSetting<'_>,

@@ -73,7 +73,7 @@ impl Skin {
             .then(|| DirectionalCoupling::new(&workspace.problem.coupled, &workspace.problem.along))
     }
 
-    /// Where loads carry the skin. Without a hierarchy, their sites must have their rows.
+    /// Displacement of the skin under loads. Without a hierarchy, their sites must have their rows.
     ///
     /// # Errors
     /// [`ContactError::Cancelled`].

@@ -1,6 +1,6 @@
 //! Response rows quantized to int16 for Live; row reads are the bottleneck, and these are half as long.
 //!
-//! An entry is off by 1/64000 of the largest of its row; where a site answers itself, it is kept apart as it is.
+//! The rounding error of an entry is 1/64000 of the largest of its row; diagonal entries are stored separately in full.
 
 use multiversion::target::target_cfg_f;
 use thenar_surface::Vec3;

@@ -103,7 +103,7 @@ impl Response {
         self.mix[site]
     }
 
-    /// Lower bound of the skin distance between two patches, mm; None if they do not feel each other.
+    /// Lower bound of the skin distance between two patches, mm; None if they are out of range.
     pub fn bound(&self, from: u32, to: u32) -> Option<f64> {
         let near = &self.near[from as usize];
         let place = near.binary_search_by_key(&to, |entry| entry.0).ok()?;

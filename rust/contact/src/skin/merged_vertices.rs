@@ -84,7 +84,7 @@ fn merge_radii(mesh: &Mesh) -> Vec<f64> {
         .collect()
 }
 
-/// For each point, the lowest earlier point within both points' radius that stands for itself, or the point itself.
+/// For each point, its representative: the lowest earlier representative within both points' radii, or the point itself.
 fn representatives(points: &[Vec3], radius: &[f64]) -> Vec<u32> {
     let widest = radius.iter().fold(0.0, |most, r| f64::max(most, *r));
     if widest <= 0.0 {

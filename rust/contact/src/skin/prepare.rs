@@ -39,7 +39,7 @@ pub struct Skin {
     /// The hierarchy of a large skin, in place of response rows.
     pub(crate) hierarchy: Option<Hierarchy>,
     pub(crate) workspace: Workspace,
-    /// What the tissue remembers, while a protocol is followed.
+    /// Memory of the tissue, while a protocol is followed.
     pub(crate) history: Option<TissueMemory>,
     warnings: Vec<String>,
 }

@@ -1,6 +1,6 @@
 //! The compliance along press directions, `A_ij = w_i w_j K_ij t_i.t_j`, computed on demand; weights stay outside.
 //!
-//! So nothing is made anew where weights alone change, and only what contact sets are solved on is ever stored.
+//! A change of weights alone rebuilds nothing, and only the submatrices of contact sets are stored.
 
 use std::cell::RefCell;
 use std::rc::Rc;

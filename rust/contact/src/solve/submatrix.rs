@@ -15,7 +15,7 @@ pub struct Submatrix<'a> {
     pub matrix: Box<dyn Symmetric + 'a>,
     /// Whether it is in single precision only.
     pub is_narrow: bool,
-    /// For which of the rows the matrix answers, where it is not for all.
+    /// Rows on which the matrix is valid, where not on all.
     answers: Option<Vec<bool>>,
 }
 
@@ -61,7 +61,7 @@ impl<'a> Submatrix<'a> {
         }
     }
 
-    /// All `unknowns`, of which the matrix answers for `set` (ascending) alone.
+    /// All `unknowns`, with a matrix that is valid on `set` (ascending) alone.
     pub fn in_place(unknowns: usize, set: &[u32], matrix: Box<dyn Symmetric + 'a>) -> Self {
         let mut answers = vec![false; unknowns];
         set.iter().for_each(|&i| answers[i as usize] = true);

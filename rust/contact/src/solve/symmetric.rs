@@ -10,7 +10,7 @@ pub trait Symmetric {
     /// The matrix times `x`; the same bits for any number of threads.
     fn times(&self, x: &[f64], out: &mut [f64]);
 
-    /// What stands for the inverse on the unknowns of `set` (ascending): that of the diagonal, where nothing better is at hand.
+    /// The preconditioner on the unknowns of `set` (ascending); Jacobi's by default.
     fn preconditioner(&self, set: &[u32]) -> Box<dyn Preconditioner + '_> {
         let per = set.iter().map(|&i| 1.0 / self.diagonal()[i as usize]);
         Box::new(PerDiagonal(per.collect()))

@@ -150,7 +150,7 @@ fn tensions(
     })
 }
 
-/// Width that an edge stands for: half of both rings beside it, mm.
+/// Width of an edge: half of both adjacent rings, mm.
 pub fn width(edges: &[f64], edge: usize) -> f64 {
     0.5 * (edges[(edge + 1).min(edges.len() - 1)] - edges[edge.max(1) - 1])
 }

@@ -131,8 +131,8 @@ pub fn keep_solution(skin: &mut Skin, setting: &SolveSetting<'_>, found: &ZoneSo
     skin.workspace.live_contact = kept;
 }
 
-/// How far skin was carried off along its directions, over the deepest penetration, and the sites that strayed too far: held skin
-/// by what changed elsewhere, solved skin by what changed beyond its near coupling.
+/// Largest error of travel along the press directions over the deepest penetration, and the sites beyond the tolerance: reused
+/// sites by changes elsewhere, solved sites by changes outside the near field.
 ///
 /// `field`: displacement of every site by all forces.
 pub fn strays(found: &ZoneSolution<'_>, field: &[Vec3], deepest: f64) -> (f64, Vec<u32>) {

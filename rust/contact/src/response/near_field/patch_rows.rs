@@ -9,7 +9,7 @@ use crate::solve::row_runs::Run;
 pub(super) struct PatchRows {
     /// Entries of each, a multiple of [`LANES`].
     pub width: usize,
-    /// The columns that they feel, and where these lie in the rows of the response: first and number.
+    /// The coupled columns, and their pieces in the rows of the response: first and number.
     runs: Vec<Run>,
     pieces: Vec<(u32, u32)>,
     /// Which of its chunks of [`LANES`] columns hold any that is solved, ascending: products read no others.
@@ -17,7 +17,7 @@ pub(super) struct PatchRows {
 }
 
 impl PatchRows {
-    /// Of the columns that rows feel, and where these lie in the rows of the response; none is solved yet.
+    /// Of the coupled columns and their pieces in the rows of the response; none is solved yet.
     pub fn new((runs, pieces): (Vec<Run>, Vec<(u32, u32)>)) -> Self {
         let width: usize = runs.iter().map(|run| run.len as usize).sum();
         PatchRows {
