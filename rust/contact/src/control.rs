@@ -1,4 +1,4 @@
-//! How a caller watches and stops a long run.
+//! Progress and cancellation of a long run.
 
 use crate::ContactError;
 

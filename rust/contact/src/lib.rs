@@ -1,54 +1,37 @@
-//! Gaps, response, contact solve and the fields of a press; knows nothing of files or Blender.
+//! Skin contact: gaps, response, contact solve and fields of a press. No files, no Blender.
 //!
 //! A [`Skin`] is prepared once from a rest mesh, its regions and materials, and pressed in any posture against any
 //! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
 
-pub mod ball;
-pub mod parameters;
 pub mod effects;
 pub mod instrument;
+pub mod sphere_indentation;
 
-mod contact_state;
+mod api;
 mod control;
-mod carried;
-mod direction;
-mod spread;
-mod errors;
-mod fields;
-mod interface;
-mod force_control;
-mod held;
-mod hierarchy;
-mod history;
-mod linearize;
-mod live;
-mod material;
-mod memory;
-mod merged;
-mod paper;
-mod press;
-mod remarks;
-mod response;
-mod simulate;
-mod sites;
+mod stage_times;
+mod error;
 mod skin;
+mod workspace;
+mod detection;
+mod response;
+mod far_field;
 mod solve;
-mod summary;
-mod turned;
-mod warning;
-mod weld;
-mod zone;
+mod interface;
+mod history;
+mod press;
+mod fields;
 
+pub use api::{Drag, ForceTarget, Model, Press, SkinInput, Start, Unsolved};
 pub use control::Control;
 pub use effects::ActiveEffect;
-pub use errors::ContactError;
+pub use error::ContactError;
+pub use fields::result::{Contact, Convergence, RegionResult, Residual, Shear};
+pub use fields::warnings::{Grade, Warning};
 pub use history::{Course, Cycle, Demand, Keep, Motion, Protocol, Row, Run, Stand, Step, Walk};
 pub use interface::{StickSlip, solve_stick_slip};
-pub use material::{Material, Swelling};
-pub use press::{
-    Contact, Convergence, Drag, ForceTarget, Model, Press, RegionResult, Residual, Shear,
-    SkinInput, Start, Unsolved,
-};
-pub use skin::Skin;
+pub use skin::materials::{Material, Swelling};
+pub use skin::parameters;
+pub use skin::prepare::Skin;
 pub use solve::{Solution, solve_dense};
-pub use warning::{Grade, Warning};
+pub use sphere_indentation as ball;

@@ -158,7 +158,7 @@ fn without_work_it_is_the_base_model_and_with_it_totals_tell() {
 }
 
 #[test]
-fn what_pulls_turns_the_product_about_where_it_stands() {
+fn adhesion_moment_is_about_the_product_s_position() {
     let direction = Vec3::new(0.96, 0.0, -0.28);
     let protocol = Protocol {
         rows: vec![Row {

@@ -182,7 +182,7 @@ fn force_is_kept_on_a_mat_around_a_whole_cylinder() {
 }
 
 #[test]
-fn what_falls_beside_the_mat_or_on_a_missing_cell_is_not_read() {
+fn loads_off_the_mat_or_on_a_missing_cell_are_not_read() {
     let mut layout = flat(3, 3, [5.0, 5.0]);
     for list in [&mut layout.centers, &mut layout.normals] {
         list.remove(4);

@@ -4,8 +4,8 @@
 //! a ramp for his step. A wide range gives DMT's pull-off `2 pi w R`, a short one JKR's `1.5 pi w R`. It pulls where skin is
 //! nearer than the range, so the skin leaps into contact and lets go later than it came.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const WORK: usize = 0;
 const RANGE: usize = 1;
@@ -41,6 +41,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ForcePulls,

@@ -8,9 +8,9 @@
 
 use thenar_surface::Vec3;
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
-use crate::sites::Sites;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::skin::sites::Sites;
 
 const THICKNESS: usize = 0;
 const SLOPE: usize = 1;
@@ -51,6 +51,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: Some("thickness over bone, mm"),
+    check: Some(check),
     consequences: &[
         Consequence {
             sign: Sign::AreaChanges,
@@ -85,16 +86,17 @@ const fn direction(name: &'static str, default: f64) -> ShapeNumber {
 }
 
 /// What is wrong beyond the ranges of single numbers.
-pub fn check(bone: &ActiveEffect) -> Result<(), String> {
-    if bone.shape[SLOPE] != 0.0 && along(bone).norm() == 0.0 {
+fn check(shape: &[f64], painted: &[f64]) -> Result<(), String> {
+    if shape[SLOPE] != 0.0 && along(shape).norm() == 0.0 {
         return Err(
             "the direction of its slope is zero; give direction_x, direction_y or direction_z"
                 .to_owned(),
         );
     }
     let [low, high] = ENTRY.shape[THICKNESS].admissible;
-    let painted = bone.painted.iter().flatten().enumerate();
     let stray = painted
+        .iter()
+        .enumerate()
         .filter(|(_, h)| !h.is_nan())
         .find(|(_, h)| !(**h >= low && **h <= high));
     match stray {
@@ -125,7 +127,9 @@ pub fn field(bone: &ActiveEffect, (sites, source): (&Sites, &[u32]), base: &[f64
         area += sites.area[site];
     }
     let center = if area > 0.0 { center / area } else { center };
-    let along = along(bone).try_normalize(0.0).unwrap_or_else(Vec3::zeros);
+    let along = along(&bone.shape)
+        .try_normalize(0.0)
+        .unwrap_or_else(Vec3::zeros);
     let level = bone.shape[THICKNESS];
     let at = |site: usize| {
         let painted = bone.painted.as_ref().map_or(f64::NAN, |p| {
@@ -146,10 +150,6 @@ pub fn field(bone: &ActiveEffect, (sites, source): (&Sites, &[u32]), base: &[f64
     (0..sites.len()).map(at).collect()
 }
 
-fn along(bone: &ActiveEffect) -> Vec3 {
-    Vec3::new(
-        bone.shape[DIRECTION],
-        bone.shape[DIRECTION + 1],
-        bone.shape[DIRECTION + 2],
-    )
+fn along(shape: &[f64]) -> Vec3 {
+    Vec3::new(shape[DIRECTION], shape[DIRECTION + 1], shape[DIRECTION + 2])
 }

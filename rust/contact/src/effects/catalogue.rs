@@ -1,59 +1,13 @@
-//! The list of effects, by the names that scripts, files and findings use.
+//! The catalogue of effects: one line each, in the order in which they compose.
 
-use super::entry::Entry;
+use super::definition::entry::Entry;
 use super::{adhesion, bone, compressibility, cycle_softening, drainage, friction, inclusion};
 use super::{rate_independent_loss, region_coupling, relaxation, stiff_skin, stiffening_law};
+use crate::ContactError;
+use crate::effects::definition::active::{ActiveEffect, joined};
+use crate::effects::definition::entry::Effect;
 use crate::instrument::{crosstalk, dead_cells, drift, fixture_compliance, gain, misregistration};
 use crate::instrument::{offset, saturation, threshold, timing};
-
-/// An effect of the catalogue.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Effect {
-    /// Soft tissue of another thickness over bone.
-    Bone,
-    /// Tissue that gives up volume.
-    Compressibility,
-    /// A thin stiff skin over soft pulp.
-    StiffSkin,
-    /// Regions that answer each other's forces only in part.
-    RegionCoupling,
-    /// Another growth of the modulus.
-    StiffeningLaw,
-    /// A place where the tissue is stiffer or softer.
-    Inclusion,
-    /// Stiffness that falls with use and recovers in rest.
-    CycleSoftening,
-    /// Force that fades with time.
-    Relaxation,
-    /// Fluid that leaves the pressed tissue.
-    Drainage,
-    /// Energy lost per cycle at any speed.
-    RateIndependentLoss,
-    /// Skin that sticks to the product and slips over it.
-    Friction,
-    /// Skin that clings to the product.
-    Adhesion,
-    /// A fixture that yields in series with the skin.
-    FixtureCompliance,
-    /// A mat that lies beside where it is said to lie.
-    Misregistration,
-    /// Sensels that pass part of their reading on.
-    Crosstalk,
-    /// Readings too large or too small by a factor.
-    Gain,
-    /// A zero point that is not at zero.
-    Offset,
-    /// Readings that wander with time.
-    Drift,
-    /// Readings that stop at a ceiling.
-    Saturation,
-    /// Readings below a floor that are shown as nothing.
-    Threshold,
-    /// Sensels that show nothing.
-    DeadCells,
-    /// A channel whose clock is behind.
-    Timing,
-}
 
 /// Every effect with what is known of it, in the order in which they compose.
 pub const CATALOGUE: [(Effect, &Entry); 22] = [
@@ -99,10 +53,35 @@ impl Effect {
     pub fn name(self) -> &'static str {
         self.entry().name
     }
+}
 
-    /// Its place in the catalogue, and so in the order of composition.
-    pub fn place(self) -> usize {
-        self as usize
+impl ActiveEffect {
+    /// An effect with the catalogue's numbers, on all regions.
+    pub fn new(effect: Effect, amplitude: f64) -> ActiveEffect {
+        let entry = effect.entry();
+        ActiveEffect {
+            effect,
+            entry,
+            amplitude,
+            shape: entry.shape.iter().map(|number| number.default).collect(),
+            chosen: vec![0; entry.choices.len()],
+            regions: None,
+            painted: None,
+        }
+    }
+
+    /// The effect of that name, with the catalogue's numbers, on all regions.
+    ///
+    /// # Errors
+    /// [`ContactError::UnknownEffect`] with the names that there are.
+    pub fn named(name: &str, amplitude: f64) -> Result<ActiveEffect, ContactError> {
+        match Effect::named(name) {
+            Some(effect) => Ok(ActiveEffect::new(effect, amplitude)),
+            None => Err(ContactError::UnknownEffect {
+                name: name.to_owned(),
+                known: joined(CATALOGUE.iter().map(|(_, entry)| entry.name)),
+            }),
+        }
     }
 }
 
@@ -112,7 +91,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn the_catalogue_stands_in_the_order_of_effects_and_stages() {
+    fn catalogue_order_is_that_of_effects_and_stages() {
         for (place, (effect, entry)) in CATALOGUE.iter().enumerate() {
             assert_eq!(effect.place(), place, "{}", entry.name);
             assert_eq!(Effect::named(entry.name), Some(*effect));

@@ -3,8 +3,8 @@
 //! `nu = (1 - amplitude) nu_base + amplitude poisson_ratio`, in the half space (Boussinesq's `(1 - nu) / (2 pi G r)`) and in
 //! the bonded layer's kernel alike.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 pub const ENTRY: Entry = Entry {
     name: "compressibility",
@@ -23,6 +23,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::VolumeIsLost,

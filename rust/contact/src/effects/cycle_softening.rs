@@ -4,8 +4,8 @@
 //! unloading and holding it stays; while nothing presses the region, it fades as `exp(-t / recovery_s)`. Stiffness thus
 //! falls only under load and comes back only without, so that no cycle gives energy.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const TRAVEL: usize = 0;
 const RECOVERY: usize = 1;
@@ -38,6 +38,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::LaterCyclesAreSofter,

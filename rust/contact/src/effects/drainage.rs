@@ -7,8 +7,8 @@
 //! have curves of their own (Hu, Chan, Vlassak & Suo 2011, J Appl Phys 110:086103), which are left out. The bulge beside the
 //! contact stays that of the undrained tissue.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const DIFFUSIVITY: usize = 0;
 const DRAINED: usize = 1;
@@ -41,6 +41,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ForceFallsInHold,

@@ -4,8 +4,8 @@
 //! against it. The skin answers as a bonded layer, or a half space (Cerruti), sheared at its surface. It acts when the product
 //! is dragged ([`crate::Drag`]); a press along the normal alone shears nothing.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const COEFFICIENT: usize = 0;
 
@@ -26,6 +26,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::TangentialForce,

@@ -8,9 +8,9 @@
 
 use thenar_surface::{SkinDistance, Vec3};
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
-use crate::sites::Sites;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::skin::sites::Sites;
 
 const CENTER: usize = 0;
 const RADIUS: usize = 3;
@@ -57,6 +57,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::BelongsToThePlace,

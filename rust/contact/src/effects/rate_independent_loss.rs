@@ -3,8 +3,8 @@
 //! A branch that fades with the way pressed instead of with time (endochronic theory, Valanis 1971): its clock is the travel
 //! of the region's largest depth over `length_mm`. The loop is the same at every speed, and nothing fades in a hold.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 pub const ENTRY: Entry = Entry {
     name: "rate_independent_loss",
@@ -23,6 +23,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::LoopIsOpen,

@@ -4,10 +4,10 @@
 //! the skin as one. Both terms are definite, and so is their mixture. Amplitude 1 is the cut that the paper makes between
 //! all regions (Xie 3.2); amplitude 0 is skin in one piece.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, Sign, Stage};
-use crate::response::rows::Cut;
-use crate::sites::Sites;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, Sign, Stage};
+use crate::response::tissue_geometry::Cut;
+use crate::skin::sites::Sites;
 
 pub const ENTRY: Entry = Entry {
     name: "region_coupling",
@@ -18,6 +18,7 @@ pub const ENTRY: Entry = Entry {
     shape: &[],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::BelongsToTheCrease,

@@ -3,8 +3,8 @@
 //! `g(t) = 1 - amplitude + amplitude sum_k w_k exp(-t / time_k)`, the w normalized to 1; the force on a site is `g * d f_e`,
 //! f_e being what an elastic tissue would bear (Fung 1993, 7.6). A press without a protocol is the answer at once, g = 1.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const BRANCHES: usize = 3;
 
@@ -24,6 +24,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: Some(check),
     consequences: &[
         Consequence {
             sign: Sign::ForceFallsInHold,
@@ -70,8 +71,8 @@ const fn weight(name: &'static str) -> ShapeNumber {
 }
 
 /// What is wrong beyond the ranges of single numbers.
-pub fn check(effect: &ActiveEffect) -> Result<(), String> {
-    if effect.shape[BRANCHES..].iter().sum::<f64>() > 0.0 {
+fn check(shape: &[f64], _painted: &[f64]) -> Result<(), String> {
+    if shape[BRANCHES..].iter().sum::<f64>() > 0.0 {
         Ok(())
     } else {
         Err("all weights are 0; at least one must be positive".to_owned())

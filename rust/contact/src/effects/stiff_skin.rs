@@ -7,10 +7,10 @@
 //! Skin and pulp stiffen together: what counts is D / G0, so that the response does not depend on the depth. Needs vertices not much
 //! farther apart than the bending length `((1 - nu) D / G0)^(1/3)` to be seen.
 
-use super::active::ActiveEffect;
-use super::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
 use crate::Material;
-use crate::response::sheet::Sheet;
+use crate::response::plate_on_layer::Sheet;
 
 const MODULUS: usize = 0;
 const THICKNESS: usize = 1;
@@ -53,6 +53,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::SmallToolsFeelStiffer,

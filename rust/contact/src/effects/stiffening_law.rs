@@ -11,10 +11,9 @@
 //! The strain is known before the solve: penetration of depth d and volume V belongs to a sphere with
 //! `a/R = sqrt(pi d^3 / V)`, a being Hertz's contact radius.
 
-use super::active::ActiveEffect;
-use super::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
-use crate::skin::Skin;
-use crate::zone::Detection;
+use super::definition::active::ActiveEffect;
+use super::definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
+use crate::skin::materials::Material;
 
 const REFERENCE_DEPTH: usize = 0;
 const REFERENCE_STRAIN: usize = 1;
@@ -70,6 +69,7 @@ pub const ENTRY: Entry = Entry {
         },
     ],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::AreaStays,
@@ -87,33 +87,42 @@ pub const ENTRY: Entry = Entry {
     source: "Fung 1993, Biomechanics 7; Ogden 1972, Proc R Soc A 326:565",
 };
 
-/// Shear modulus by region, MPa: the material's line, with what `laws` make of it.
-pub fn shear_moduli(skin: &Skin, laws: &[ActiveEffect], detection: &Detection) -> Vec<f64> {
-    let depths = &detection.max_penetration;
-    let line = skin
-        .tissue
-        .materials
-        .iter()
-        .zip(depths)
-        .map(|(m, depth)| m.shear_modulus(*depth));
+/// True if the law's x is the contact strain, not the depth.
+pub fn grows_with_strain(law: &ActiveEffect) -> bool {
+    law.chosen[1] == 1
+}
+
+/// Shear modulus by region, MPa: the materials' lines, with what `laws` make of them, at these depths (mm) and contact strains
+/// by region. Strains are read only by laws that grow with them.
+pub fn shear_moduli(
+    materials: &[Material],
+    laws: &[ActiveEffect],
+    (depths, strains): (&[f64], &[f64]),
+) -> Vec<f64> {
+    let line = materials.iter().zip(depths);
+    let line = line.map(|(m, depth)| m.shear_modulus(*depth));
     let mut moduli: Vec<f64> = line.collect();
     for law in laws {
-        let strains = if law.chosen[1] == 1 {
-            strains(skin, detection)
-        } else {
-            Vec::new()
-        };
         for (region, modulus) in moduli.iter_mut().enumerate() {
             let share = law.amplitude_on(region as u32);
-            let x = match strains.get(region) {
-                Some(strain) => strain / law.shape[REFERENCE_STRAIN],
-                None => depths[region] / law.shape[REFERENCE_DEPTH],
+            let x = match grows_with_strain(law) {
+                true => strains[region] / law.shape[REFERENCE_STRAIN],
+                false => depths[region] / law.shape[REFERENCE_DEPTH],
             };
-            let g0 = skin.tissue.materials[region].g0_mpa;
+            let g0 = materials[region].g0_mpa;
             *modulus = (1.0 - share) * *modulus + share * g0 * growth(law, x);
         }
     }
     moduli
+}
+
+/// Contact strain a/R of a penetration of that depth (mm) and volume (mm3); 0 without.
+pub fn contact_strain(depth: f64, volume: f64) -> f64 {
+    if volume > 0.0 {
+        (std::f64::consts::PI * depth.powi(3) / volume).sqrt()
+    } else {
+        0.0
+    }
 }
 
 /// The law's f(x).
@@ -131,29 +140,4 @@ fn growth(law: &ActiveEffect, x: f64) -> f64 {
         }
     };
     growth.min(MOST_GROWTH)
-}
-
-/// a/R of each region's penetration; 0 without.
-fn strains(skin: &Skin, detection: &Detection) -> Vec<f64> {
-    let mut volume = vec![0.0; skin.tissue.materials.len()];
-    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
-        let region = skin.sites.region[site];
-        let depth = (-detection.distances[vertex as usize]).max(0.0);
-        if region >= 0 {
-            volume[region as usize] += depth * skin.sites.area[site];
-        }
-    }
-    let strain = |(depth, volume): (&f64, &f64)| {
-        if *volume > 0.0 {
-            (std::f64::consts::PI * depth.powi(3) / volume).sqrt()
-        } else {
-            0.0
-        }
-    };
-    detection
-        .max_penetration
-        .iter()
-        .zip(&volume)
-        .map(strain)
-        .collect()
 }

@@ -1,4 +1,4 @@
-//! The area of the contact, with its edge found between vertices.
+//! Contact area, with the contact's border located between vertices.
 //!
 //! Near the edge of a smooth contact pressure falls as the square root of the distance inside, and the gap opens as
 //! its 3/2 power outside, with one common factor: `p = k sqrt(x)`, `s = 4 k / (3 E*) y^(3/2)` (Johnson, Contact Mechanics 4.2,

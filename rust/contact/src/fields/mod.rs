@@ -1,5 +1,11 @@
-//! Stage 5: what a designer reads from the solution.
+//! Stage 5: fields, totals and warnings of a solved contact.
 
 pub mod contact_area;
 pub mod patch_peak;
-pub mod product_side;
+pub mod merged_vertices;
+pub mod product_pressure;
+pub mod result;
+pub mod resultants;
+pub mod summary;
+pub mod warning_rules;
+pub mod warnings;

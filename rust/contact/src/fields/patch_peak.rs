@@ -1,4 +1,4 @@
-//! The largest mean pressure over a small patch of skin: what a pressure mat's sensel would read.
+//! Patch peak: the largest mean pressure over a patch of a sensel's size.
 
 use thenar_surface::{Adjacency, Vec3};
 

@@ -1,4 +1,4 @@
-//! A protocol: where the product is, or how hard it presses, against time.
+//! A protocol: offset, depth or force of the product against time.
 
 use thenar_surface::Vec3;
 

@@ -1,4 +1,4 @@
-//! Which channel of a recording an instrument effect acts on.
+//! The channel of a recording that an instrument effect acts on: map or load cell.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice};

@@ -1,4 +1,4 @@
-//! Effect `crosstalk`: sensels that pass part of their reading to their neighbors.
+//! Effect `crosstalk`: sensels that share part of their reading with their neighbors.
 //!
 //! Through each side shared by two sensels flows `amplitude * share * min(A_i, A_j) (p_j - p_i)`, so the map's force stays what it is
 //! and an even pressure stays even.
@@ -24,6 +24,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::BlursTheMap,

@@ -1,4 +1,4 @@
-//! Effect `dead_cells`: sensels that show less than they bear, or nothing, painted on the mat.
+//! Effect `dead_cells`: sensels that read low or nothing, painted on the mat.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, Sign, Stage};
@@ -12,6 +12,7 @@ pub const ENTRY: Entry = Entry {
     shape: &[],
     choices: &[],
     painted: Some("1 where a sensel is dead, 0 where it is well; one per sensel"),
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::MovesWithTheMat,

@@ -1,9 +1,10 @@
-//! Effect `drift`: a zero that wanders with time, or a sensitivity that creeps up with it.
+//! Effect `drift`: zero drift, or creep of the sensitivity, with time.
 //!
 //! zero: `y' = y + amplitude * rate * t`; sensitivity: `y' = y (1 + amplitude * creep * log10(1 + t / 1 s))`, both with t from
 //! the first instant. Neither needs contact to go on.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
 
@@ -55,6 +56,7 @@ pub const ENTRY: Entry = Entry {
         },
     ],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::TrendsWithoutContact,

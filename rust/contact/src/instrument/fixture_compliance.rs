@@ -1,4 +1,4 @@
-//! Effect `fixture_compliance`: a fixture that yields, so that the machine shows more travel than the skin gets.
+//! Effect `fixture_compliance`: a fixture in series with the skin, so that the machine shows more travel.
 //!
 //! `depth shown = depth in the skin + amplitude * compliance * force`: a spring in series with the skin.
 
@@ -22,6 +22,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ForceIsSmaller,

@@ -1,8 +1,9 @@
-//! Effect `gain`: readings that are all too large or too small by one factor, or each sensel by its own.
+//! Effect `gain`: readings off by a factor, common or per sensel.
 //!
 //! `y' = y (1 + amplitude * error)`; painted, each sensel has its own error.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 
@@ -24,6 +25,7 @@ pub const ENTRY: Entry = Entry {
     }],
     choices: &[CHANNEL],
     painted: Some("error of each sensel, 1"),
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ScalesReadings,

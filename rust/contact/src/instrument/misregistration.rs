@@ -1,6 +1,6 @@
-//! Effect `misregistration`: a mat that lies beside where it is said to lie, shifted in its two directions and turned.
+//! Effect `misregistration`: a mat shifted and rotated against its stated placement.
 
-use super::walk::Placement;
+use super::mat::placement::Placement;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const SHIFT: &str =
@@ -31,6 +31,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::MovesWithTheMat,

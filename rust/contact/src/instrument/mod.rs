@@ -1,13 +1,10 @@
-//! What a measuring set-up makes of a contact: mats of sensels, and the faults of sensors, fixtures and clocks.
+//! The measuring set-up: mats of sensels, and the errors of sensors, fixtures and clocks.
 //!
-//! Instrument effects act on predictions, never on the skin. [`observe`] applies them in a fixed order: `fixture_compliance`
+//! Instrument effects act on predictions, never on the skin. [`observe()`] applies them in a fixed order: `fixture_compliance`
 //! (on the motion), `misregistration`, averaging over each sensel ([`Mat`]), `crosstalk`, `gain`, `offset`, `drift`,
 //! `saturation`, `threshold`, `dead_cells`, and `timing` (between the channels). Units: mm, N, s, kPa for maps.
 
-mod layout;
 mod mat;
-mod walk;
-mod loads;
 mod channel;
 mod signals;
 mod observe;
@@ -22,9 +19,9 @@ pub(crate) mod threshold;
 pub(crate) mod dead_cells;
 pub(crate) mod timing;
 
-pub use loads::loads;
-pub(crate) use loads::loads_of;
+pub use mat::contact_loads::loads;
+pub(crate) use mat::contact_loads::loads_of;
+pub use mat::placement::Placement;
 pub use mat::{Mat, MatLayout, PointLoad};
 pub use observe::{check, observe};
 pub use signals::Signals;
-pub use walk::Placement;

@@ -1,12 +1,12 @@
-//! Conducts what a set-up makes of a contact's signals: its effects, one after the other in their fixed order.
+//! Conducts an observation: applies the instrument effects to predicted signals in their fixed order.
 
 use super::mat::Mat;
+use super::mat::placement::Placement;
 use super::signals::Signals;
-use super::walk::Placement;
 use super::{crosstalk, dead_cells, drift, fixture_compliance, gain, misregistration};
 use super::{offset, saturation, threshold, timing};
 use crate::ContactError;
-use crate::effects::tissue::in_order;
+use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect};
 
 /// What a set-up shows of `signals`, which are what happens at the skin.

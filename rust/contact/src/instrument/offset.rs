@@ -1,4 +1,4 @@
-//! Effect `offset`: zero points that are not at zero, of the map, the load cell, or the depth at first touch.
+//! Effect `offset`: zero offsets of the map, the load cell, or the depth at first touch.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
@@ -38,6 +38,7 @@ pub const ENTRY: Entry = Entry {
         meaning: "whose zero is off: the map's, the load cell's, or the depth's",
     }],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::ShiftsReadings,

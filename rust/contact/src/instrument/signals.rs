@@ -1,4 +1,4 @@
-//! The channels of a recording as a simulation predicts them, and what makes them fit together.
+//! Predicted signals of a recording, channel by channel, and their consistency checks.
 
 use super::mat::{Mat, PointLoad};
 use crate::ContactError;

@@ -1,6 +1,7 @@
-//! Effect `threshold`: readings below a floor that are shown as nothing.
+//! Effect `threshold`: readings below a floor are shown as zero.
 
-use super::channel::{self, CHANNEL};
+use super::channel;
+use super::channel::CHANNEL;
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Consequence, Entry, ShapeNumber, Sign, Stage};
 
@@ -32,6 +33,7 @@ pub const ENTRY: Entry = Entry {
     ],
     choices: &[CHANNEL],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::SilentBelowFloor,

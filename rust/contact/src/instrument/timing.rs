@@ -1,4 +1,4 @@
-//! Effect `timing`: channels whose clocks are apart, so that one shows later what another shows now.
+//! Effect `timing`: a time lag between channels.
 
 use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
@@ -24,6 +24,7 @@ pub const ENTRY: Entry = Entry {
         meaning: "which channel is behind: the map, the load cell (with its tangential force), or the motion",
     }],
     painted: None,
+    check: None,
     consequences: &[
         Consequence {
             sign: Sign::LagsBehind,

@@ -1,4 +1,4 @@
-//! Conducts friction on a solved press: limits from the normal forces, one step of sticking and slipping, the skin it moves.
+//! Conducts friction on a solved press: force limits, one stick-slip step, the skin displaced by shear.
 //!
 //! Left out: what shear does to the pressure and pressure to shear (nothing at nu = 1/2 on a half space; Goodman's
 //! approximation elsewhere), relaxation of the shear force, and the shrinking of the contact at the onset of slip.
@@ -8,17 +8,18 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 use thenar_surface::{Gap, Product, Vec3};
 
+use super::friction_state::{FrictionMemory, ShearState};
 use super::shear_kernel::ShearTables;
 use super::shear_matrix::{ShearMatrix, tangents};
 use super::shear_response::{Pairs, Place, ShearResponse};
-use super::stick_slip::{Dragged, Grip, Trace};
+use super::stick_slip::{SiteFriction, StickSlipProblem};
+use crate::api::Drag;
+use crate::detection::gaps::limits;
 use crate::effects::{ActiveEffect, Effect, friction};
-use crate::linearize::Solved;
-use crate::press::Drag;
+use crate::press::pressed::Pressed;
+use crate::press::solution::SolvedContact;
 use crate::response::rows::extent;
-use crate::simulate::Pressed;
-use crate::skin::Skin;
-use crate::zone::limits;
+use crate::skin::prepare::Skin;
 use crate::{ContactError, Control};
 
 /// Most sites in contact: their compliance takes 8 bytes a pair.
@@ -26,36 +27,6 @@ const MOST_SITES: usize = 8192;
 
 /// Most sites whose kernel is kept for the next row.
 const MOST_KEPT: usize = 3000;
-
-/// Shear of a press, by site in contact.
-#[derive(Debug, Clone)]
-pub(crate) struct Sheared {
-    /// Index into the zone of the press.
-    pub at: Vec<usize>,
-    /// Where each is.
-    pub places: Vec<Place>,
-    /// Largest shear force of each, N.
-    pub limit: Vec<f64>,
-    /// Travel of the product, mm.
-    pub travel: Vec3,
-    /// Turn of the product about the center of the contact, rad.
-    pub turn: Vec3,
-    /// The end of the step.
-    pub end: Dragged,
-}
-
-/// What friction remembers from step to step.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Grasp {
-    /// Memory of each site that was in contact, ascending by site.
-    pub traces: Vec<(u32, Trace)>,
-    /// Travel of the product so far, mm.
-    pub travel: Vec3,
-    /// Its turn about the center of the contact so far, rad.
-    pub turn: Vec3,
-    /// Motion of the product against each site by a posture that has moved since, mm; empty if it has not.
-    pub strays: Vec<Vec3>,
-}
 
 /// True if friction acts anywhere.
 pub(crate) fn acts(skin: &Skin) -> bool {
@@ -69,15 +40,15 @@ fn active(skin: &Skin) -> impl Iterator<Item = &ActiveEffect> {
 }
 
 /// What the next step must know of this one, the product having travelled `travel` (mm).
-pub(crate) fn grasp(pressed: &Pressed, travel: Vec3) -> Grasp {
+pub(crate) fn friction_memory(pressed: &Pressed, travel: Vec3) -> FrictionMemory {
     let Some(sheared) = &pressed.shear else {
-        return Grasp {
+        return FrictionMemory {
             travel,
-            ..Grasp::default()
+            ..FrictionMemory::default()
         };
     };
     let traces = sheared.places.iter().map(|p| p.site);
-    Grasp {
+    FrictionMemory {
         traces: traces.zip(sheared.end.traces.iter().copied()).collect(),
         travel,
         turn: sheared.turn,
@@ -93,7 +64,7 @@ pub(crate) fn grasp(pressed: &Pressed, travel: Vec3) -> Grasp {
 pub(crate) fn drag(
     skin: &mut Skin,
     pressed: &mut Pressed,
-    (drag, before): (Drag, &Grasp),
+    (drag, before): (Drag, &FrictionMemory),
     control: &Control,
 ) -> Result<(), ContactError> {
     check(drag)?;
@@ -114,16 +85,16 @@ pub(crate) fn drag(
     }
     control.step("friction", 0.0)?;
     remember_tables(skin);
-    let Some(tables) = &skin.memory.shear else {
+    let Some(tables) = &skin.workspace.shear else {
         return Ok(());
     };
     let sites: Vec<u32> = at.iter().map(|&k| pressed.solved.zone[k]).collect();
-    let pairs = response(skin, tables).pairs(&sites, &skin.memory.pairs);
-    let scene = Scene::new(skin, tables, (pressed, at), &pairs);
+    let pairs = response(skin, tables).pairs(&sites, &skin.workspace.pairs);
+    let scene = FrictionProblem::new(skin, tables, (pressed, at), &pairs);
     let sheared = scene.drag((drag, before), control)?;
     control.check()?;
     pressed.shear = Some(sheared);
-    skin.memory.pairs = if sites.len() <= MOST_KEPT {
+    skin.workspace.pairs = if sites.len() <= MOST_KEPT {
         pairs
     } else {
         Pairs::default()
@@ -142,14 +113,14 @@ fn check(drag: Drag) -> Result<(), ContactError> {
 
 fn remember_tables(skin: &mut Skin) {
     let layers = skin.response.layers();
-    let known = skin.memory.shear.as_ref();
+    let known = skin.workspace.shear.as_ref();
     if known.is_none_or(|tables| tables.layers() != layers) {
-        skin.memory.shear = Some(ShearTables::new(layers, extent(&skin.sites)));
+        skin.workspace.shear = Some(ShearTables::new(layers, extent(&skin.sites)));
     }
 }
 
 /// The contact as friction sees it.
-struct Scene {
+struct FrictionProblem {
     at: Vec<usize>,
     places: Vec<Place>,
     tangents: Vec<[Vec3; 2]>,
@@ -161,13 +132,13 @@ struct Scene {
     matrix: ShearMatrix<f32>,
 }
 
-impl Scene {
+impl FrictionProblem {
     fn new(
         skin: &Skin,
         tables: &ShearTables,
         (pressed, at): (&Pressed, Vec<usize>),
         pairs: &Pairs,
-    ) -> Scene {
+    ) -> FrictionProblem {
         let solved = &pressed.solved;
         let place = |&k: &usize| place(skin, pressed, solved.zone[k]);
         let places: Vec<Place> = at.iter().map(place).collect();
@@ -182,7 +153,7 @@ impl Scene {
         let center = at.iter().map(weighted).sum();
         let matrix = response(skin, tables).matrix(&places, &tangents, pairs);
         let approach = approach(skin, &pressed.solved, &at);
-        Scene {
+        FrictionProblem {
             at,
             places,
             tangents,
@@ -195,15 +166,15 @@ impl Scene {
 
     fn drag(
         self,
-        (drag, before): (Drag, &Grasp),
+        (drag, before): (Drag, &FrictionMemory),
         control: &Control,
-    ) -> Result<Sheared, ContactError> {
+    ) -> Result<ShearState, ContactError> {
         let trace = |place: &Place| {
             let found = before.traces.binary_search_by_key(&place.site, |t| t.0);
             found.ok().map(|k| before.traces[k].1)
         };
-        let remembered: Vec<Option<Trace>> = self.places.iter().map(trace).collect();
-        let grip = Grip {
+        let remembered: Vec<Option<SiteFriction>> = self.places.iter().map(trace).collect();
+        let grip = StickSlipProblem {
             matrix: &self.matrix,
             tangents: &self.tangents,
             limit: &self.limit,
@@ -237,7 +208,7 @@ impl Scene {
         for (trace, strayed) in end.traces.iter_mut().zip(&strayed) {
             trace.strayed = *strayed;
         }
-        Ok(Sheared {
+        Ok(ShearState {
             at: self.at,
             places: self.places,
             limit: self.limit,
@@ -251,8 +222,8 @@ impl Scene {
     ///
     /// What brings a contact nearer as a whole is no travel over the skin: it is taken off along the region's
     /// mean normal.
-    fn strayed(&self, remembered: &[Option<Trace>], strays: &[Vec3]) -> Vec<Vec3> {
-        let strayed = |((place, trace), mean): ((&Place, &Option<Trace>), &Vec3)| {
+    fn strayed(&self, remembered: &[Option<SiteFriction>], strays: &[Vec3]) -> Vec<Vec3> {
+        let strayed = |((place, trace), mean): ((&Place, &Option<SiteFriction>), &Vec3)| {
             let so_far = trace.map_or_else(Vec3::zeros, |t| t.strayed);
             let more = strays.get(place.site as usize);
             so_far + more.map_or_else(Vec3::zeros, |m| m - mean * mean.dot(m))
@@ -293,7 +264,7 @@ fn coefficient(skin: &Skin, site: u32) -> f64 {
 }
 
 /// Mean normal of each region's contact by force, at every site in contact.
-fn approach(skin: &Skin, solved: &Solved, at: &[usize]) -> Vec<Vec3> {
+fn approach(skin: &Skin, solved: &SolvedContact, at: &[usize]) -> Vec<Vec3> {
     let region = |k: usize| skin.sites.home_region(solved.zone[k] as usize) as usize;
     let mut mean = vec![Vec3::zeros(); skin.tissue.materials.len()];
     for &k in at {
@@ -324,7 +295,8 @@ fn response<'a>(skin: &'a Skin, tables: &'a ShearTables) -> ShearResponse<'a> {
 
 /// Moves the skin as the shear forces do, along its own surface, and lays it on the product again.
 pub(crate) fn move_skin(skin: &Skin, product: &Product, pressed: &mut Pressed) {
-    let (Some(sheared), Some(tables)) = (pressed.shear.as_ref(), skin.memory.shear.as_ref()) else {
+    let (Some(sheared), Some(tables)) = (pressed.shear.as_ref(), skin.workspace.shear.as_ref())
+    else {
         return;
     };
     let forces: Vec<Vec3> = sheared.end.traces.iter().map(|t| t.force).collect();

@@ -1,17 +1,19 @@
-//! What happens in the plane of the contact and across it: friction and adhesion.
+//! Forces between skin and product beyond normal contact: friction and adhesion.
 
 pub mod shear_kernel;
 pub mod shear_matrix;
 pub mod shear_response;
-pub mod discs;
+pub mod disc_solver;
 pub mod stick_slip;
-pub mod pull;
+pub mod drag_force_search;
 
-pub(crate) mod attraction;
+pub(crate) mod adhesion;
+pub(crate) mod friction_state;
+pub(crate) mod pulls;
 pub(crate) mod friction;
-pub(crate) mod shear_fields;
-mod dense;
+pub(crate) mod shear_result;
+mod dense_stick_slip;
 #[cfg(test)]
-mod paths;
+mod stick_slip_paths;
 
-pub use dense::{StickSlip, solve_stick_slip};
+pub use dense_stick_slip::{StickSlip, solve_stick_slip};

@@ -1,4 +1,4 @@
-//! Response of the surface to a point force along it: Cerruti's solution and the layer bonded to bone.
+//! Response of the surface to a tangential point force: Cerruti's solution and the layer bonded to bone.
 //!
 //! A traction of wave vector k along the surface moves it by `(1 - nu) / (G k) L(k h)` where it points along k and by
 //! `T(k h) / (G k)` where it points across: L = T = 1 is Cerruti's half space (Johnson, Contact Mechanics 3.75). In space
@@ -9,7 +9,7 @@
 use libm::{j0, j1};
 
 use crate::response::bonded_layer::Layer;
-use crate::response::grid::{Grid, RANGE_IN_THICKNESSES, pair};
+use crate::response::kernel_grid::{Grid, RANGE_IN_THICKNESSES, pair};
 
 /// Share of the range over which the kernel fades to zero.
 const FADE_SHARE: f64 = 0.25;
@@ -40,7 +40,7 @@ impl Layer {
 
 /// The kernel of one pair of places, 1/mm: `M` and `D` without their half-space part.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Held {
+pub struct ShearKernel {
     /// Taken off M.
     pub mean: f64,
     /// Taken off D.
@@ -90,16 +90,16 @@ impl ShearTables {
     }
 
     /// What bone takes off the kernel of the layers `a` and `b` at distance `r` (mm), 1/mm.
-    pub fn held(&self, a: usize, b: usize, r: f64) -> Held {
+    pub fn held(&self, a: usize, b: usize, r: f64) -> ShearKernel {
         let Some(table) = &self.tables[pair(a, b)] else {
-            return Held::default();
+            return ShearKernel::default();
         };
         let x = r / self.step;
         let i = x as usize;
         if i + 3 >= table.len() {
             // Beyond the table nothing is left of the whole.
             let soft = self.softness(a, b);
-            return Held {
+            return ShearKernel {
                 mean: 0.5 * (1.0 + soft) / r,
                 deviator: 0.5 * (1.0 - soft) / r,
             };
@@ -117,7 +117,7 @@ impl ShearTables {
                 * (p2 - p0
                     + t * (2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3 + t * (3.0 * (p1 - p2) + p3 - p0)))
         };
-        Held {
+        ShearKernel {
             mean: cubic(0),
             deviator: cubic(1),
         }
@@ -237,7 +237,7 @@ mod tests {
     fn a_layer_far_away_and_a_half_space_hold_nothing() {
         let open = layer(f64::INFINITY, 0.5);
         let tables = ShearTables::new(&[open, layer(5.0, 0.5)], 100.0);
-        assert_eq!(tables.held(0, 0, 3.0), Held::default());
+        assert_eq!(tables.held(0, 0, 3.0), ShearKernel::default());
         let beyond = tables.held(1, 1, 40.0);
         assert!(
             (beyond.mean - 0.75 / 40.0).abs() < 1e-15

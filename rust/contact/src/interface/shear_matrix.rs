@@ -1,8 +1,8 @@
-//! The symmetric compliance of contact sites in their tangent planes: one 2 x 2 block a pair, stored once.
+//! The symmetric tangential compliance of contact sites: one 2 x 2 block a pair, stored once.
 
 use thenar_surface::Vec3;
 
-use crate::solve::operator::Entry;
+use crate::solve::row_runs::Entry;
 
 /// A vector field in tangent planes, `n` first components and then `n` second ones.
 pub type Planar = Vec<f64>;

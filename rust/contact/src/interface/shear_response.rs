@@ -1,15 +1,16 @@
-//! What a shear force at one site of the skin does at another: the kernel along the skin, turned with its planes.
+//! Tangential response between sites: the shear kernel rotated into their tangent planes.
 //!
 //! The kernel acts on vectors in space and is seen in the tangent planes of both sites. For nu = 1/2 and straight chords it is
 //! twice Kelvin's tensor, so the matrix is definite for any arrangement of sites and planes, not only on flat skin.
 
 use thenar_surface::Vec3;
 
-use super::shear_kernel::{Held, LATTICE, ShearTables};
+use super::shear_kernel::{LATTICE, ShearKernel, ShearTables};
 use super::shear_matrix::ShearMatrix;
-use crate::response::rows::{Mix, Response};
-use crate::response::skin_metric::arc_length;
-use crate::sites::Sites;
+use crate::response::rows::Response;
+use crate::response::tissue_geometry::Mix;
+use crate::skin::arc_length::arc_length;
+use crate::skin::sites::Sites;
 
 /// A site of the skin where it is now.
 #[derive(Debug, Clone, Copy)]
@@ -131,7 +132,7 @@ impl ShearResponse<'_> {
         let r = arc_length(&self.sites.rest[i], &self.sites.rest[j], at_least);
         let (mine, other) = (self.response.mix(i), self.response.mix(j));
         let soft = mixed(mine, other, |a, b| self.tables.softness(a, b));
-        let held = Held {
+        let held = ShearKernel {
             mean: mixed(mine, other, |a, b| self.tables.held(a, b, r).mean),
             deviator: mixed(mine, other, |a, b| self.tables.held(a, b, r).deviator),
         };

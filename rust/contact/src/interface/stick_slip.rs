@@ -1,20 +1,19 @@
-//! One step of a contact that a product drags along: which skin sticks, which slips, and what the sites remember.
+//! One stick-slip step of a contact under a drag (Coulomb's law by increments), and the state of each site after it.
 //!
 //! Coulomb's law by increments: the shear force on the skin stays within `mu p`, and where it is `mu p` the skin slips against
 //! it. Given the normal forces, a step is one convex problem over discs; backward Euler, so no closed path gives energy.
 
 use thenar_surface::Vec3;
 
-use super::discs::{DiscSolution, largest_pair, solve_discs};
-use super::pull::Travel;
+use super::disc_solver::{DiscSolution, largest_pair, solve_discs};
 use super::shear_matrix::ShearMatrix;
 use crate::Control;
 
 /// Share of the limit from which a site counts as slipping.
 const RIM: f64 = 1.0 - 1e-9;
-/// What a site in contact remembers.
+/// Memory of a site in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trace {
+pub struct SiteFriction {
     /// Shear force on the skin, N.
     pub force: Vec3,
     /// Slip of the skin over the product so far, mm.
@@ -25,22 +24,22 @@ pub struct Trace {
 
 /// The contact of one step: sites with their compliance, planes and limits.
 #[derive(Debug, Clone, Copy)]
-pub struct Grip<'a> {
+pub struct StickSlipProblem<'a> {
     /// Compliance in the tangent planes.
     pub matrix: &'a ShearMatrix<f32>,
     /// The plane of each site.
     pub tangents: &'a [[Vec3; 2]],
     /// Largest shear force of each site, N.
     pub limit: &'a [f64],
-    /// What each site remembers; None for those that were not in contact.
-    pub before: &'a [Option<Trace>],
+    /// Memory of each site; None for those that were not in contact.
+    pub before: &'a [Option<SiteFriction>],
 }
 
 /// The end of a step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Dragged {
+pub struct StickSlipStep {
     /// Memory of every site.
-    pub traces: Vec<Trace>,
+    pub traces: Vec<SiteFriction>,
     /// Displacement of the skin in the plane of each site, mm.
     pub displacement: Vec<Vec3>,
     /// True where the force is within its limit.
@@ -57,18 +56,18 @@ pub struct Dragged {
     pub products: usize,
 }
 
-impl Dragged {
+impl StickSlipStep {
     /// Sum of the shear forces on the skin, N.
     pub fn force(&self) -> Vec3 {
         self.traces.iter().map(|t| t.force).sum()
     }
 }
 
-impl Grip<'_> {
+impl StickSlipProblem<'_> {
     /// Drags the product from the travel `from` to the travel `to` (mm, each by site).
     ///
     /// A site that was not in contact starts without slip where it then was.
-    pub fn drag(&self, from: &[Vec3], to: &[Vec3], control: &Control) -> Dragged {
+    pub fn drag(&self, from: &[Vec3], to: &[Vec3], control: &Control) -> StickSlipStep {
         let start = self.start();
         let before = self.slip_before(&start, from);
         self.drag_on((&before, &start), to, control)
@@ -79,7 +78,7 @@ impl Grip<'_> {
         (before, start): (&[f64], &[f64]),
         to: &[Vec3],
         control: &Control,
-    ) -> Dragged {
+    ) -> StickSlipStep {
         let offset: Vec<f64> = self
             .flat(to)
             .iter()
@@ -90,45 +89,13 @@ impl Grip<'_> {
         self.dragged((&offset, before), solution)
     }
 
-    /// Drags along `direction` (by site, per unit of travel) until the shear force along it is `newton`.
-    ///
-    /// Returns the travel and the step, or None if friction cannot hold that much.
-    pub fn drag_to_force(
-        &self,
-        from: &[Vec3],
-        (direction, along, newton): (&[Vec3], Vec3, f64),
-        control: &Control,
-    ) -> Option<(f64, Dragged)> {
-        let start = self.start();
-        let before = self.slip_before(&start, from);
-        let most: f64 = self
-            .tangents
-            .iter()
-            .zip(self.limit)
-            .map(|([a, b], limit)| limit * along.dot(a).hypot(along.dot(b)))
-            .sum();
-        if newton >= most {
-            return None;
-        }
-        let mut search = Travel {
-            grip: self,
-            from,
-            direction,
-            along,
-            control,
-            start,
-            before,
-        };
-        Some(search.find(newton))
-    }
-
-    fn dragged(&self, (offset, before): (&[f64], &[f64]), solution: DiscSolution) -> Dragged {
+    fn dragged(&self, (offset, before): (&[f64], &[f64]), solution: DiscSolution) -> StickSlipStep {
         let n = self.limit.len();
         let DiscSolution { force, slip, .. } = solution;
         let point = |field: &[f64], i: usize| {
             self.tangents[i][0] * field[i] + self.tangents[i][1] * field[n + i]
         };
-        let trace = |i: usize| Trace {
+        let trace = |i: usize| SiteFriction {
             force: point(&force, i),
             slip: point(&slip, i) + point(before, i),
             strayed: Vec3::zeros(),
@@ -136,7 +103,7 @@ impl Grip<'_> {
         let dissipated = -(0..2 * n).map(|k| force[k] * slip[k]).sum::<f64>();
         let moved: Vec<f64> = slip.iter().zip(offset).map(|(s, b)| s - b).collect();
         let stored = 0.5 * force.iter().zip(&moved).map(|(q, u)| q * u).sum::<f64>();
-        Dragged {
+        StickSlipStep {
             traces: (0..n).map(trace).collect(),
             displacement: (0..n).map(|i| point(&moved, i)).collect(),
             is_sticking: (0..n)
@@ -151,7 +118,7 @@ impl Grip<'_> {
     }
 
     /// Remembered forces in the planes of today.
-    fn start(&self) -> Vec<f64> {
+    pub(super) fn start(&self) -> Vec<f64> {
         let remembered: Vec<Vec3> = self
             .before
             .iter()
@@ -161,7 +128,7 @@ impl Grip<'_> {
     }
 
     /// Slip so far in the planes of today.
-    fn slip_before(&self, start: &[f64], from: &[Vec3]) -> Vec<f64> {
+    pub(super) fn slip_before(&self, start: &[f64], from: &[Vec3]) -> Vec<f64> {
         let n = self.limit.len();
         let remembered: Vec<Vec3> = self
             .before

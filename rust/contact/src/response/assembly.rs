@@ -1,4 +1,4 @@
-//! From rows of the response to the matrix of a contact problem, and from forces to displacements.
+//! Assembly: from response rows to the compliance matrix of a zone, and from forces to displacements.
 
 use std::ops::Range;
 
@@ -6,14 +6,14 @@ use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use super::rows::Response;
-use crate::sites::Sites;
-use crate::solve::operator::{Rows, Run};
+use crate::skin::sites::Sites;
+use crate::solve::row_runs::{RowRuns, Run};
 
 /// Values of a row that are copied at a time.
 pub const SHORT: usize = 16;
 
 /// `K` between the sites of `zone` (ascending): symmetric, 1/mm. Written to `matrix`, whose storage is used again.
-pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &mut Rows<f32>) {
+pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &mut RowRuns<f32>) {
     let members: Vec<Members> = sites
         .patch_range
         .iter()
@@ -114,9 +114,9 @@ impl Members {
 ///
 /// Written to `out`, whose storage is used again.
 pub fn compliance(
-    coupling: &Rows<f32>,
+    coupling: &RowRuns<f32>,
     (weight, direction): (&[f64], &[Vec3]),
-    out: &mut Rows<f32>,
+    out: &mut RowRuns<f32>,
 ) {
     let weighted: Vec<[f64; 3]> = weight
         .iter()

@@ -1,8 +1,8 @@
-//! Entries of the response between any sites: the very ones that its rows hold.
+//! Single entries of the response between any sites, bit for bit those of its rows; bounds and memory of rows.
 
 use super::rows::Response;
-use super::skin_metric::{Site, arc_lengths};
-use crate::sites::Sites;
+use crate::skin::arc_length::{Site, arc_lengths};
+use crate::skin::sites::Sites;
 
 /// What entries are made with, kept for its storage.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ impl Response {
         size_of::<f32>() as f64 * (entries + 2.0 * within)
     }
 
-    /// The farthest that any site is felt, mm.
+    /// Largest range of any site's response, mm.
     pub fn most_reach(&self) -> f64 {
         self.reach.iter().fold(0.0, |most, r| f64::max(most, *r))
     }
@@ -50,7 +50,7 @@ impl Response {
     }
 
     /// `K` of model layer between the sites of a group and site `j`, 1/mm, as a row in memory holds it; `bound` is the two
-    /// patches' lower bound of the skin distance (mm), infinite where they do not feel each other.
+    /// patches' lower bound of the skin distance (mm), infinite where they are out of range.
     pub fn entries(
         &self,
         there: Group<'_>,

@@ -3,17 +3,14 @@
 pub mod assembly;
 pub mod bonded_layer;
 pub mod entries;
-pub mod grid;
-pub mod kernel;
-pub mod near;
-pub mod near_along;
-mod near_home;
-mod near_rows;
-pub mod rounded;
-pub mod stiff_skin;
+pub mod kernel_grid;
+pub mod layer_kernel;
+pub mod near_field;
+pub mod quantized_rows;
+pub mod stiff_skin_kernel;
 pub mod rows;
-pub mod sheet;
-pub mod skin_metric;
+pub mod tissue_geometry;
+pub mod plate_on_layer;
 
 #[cfg(test)]
 pub(crate) mod test_sheet;

@@ -1,4 +1,4 @@
-//! The response of the skin between its sites, row by row, made when first needed and kept for every later posture.
+//! Response rows between sites, computed when first needed and kept for every later posture.
 //!
 //! A row holds `K(r_ij)` (1/mm), so that `u_i = s_i s_j K_ij P_j` with `s = sqrt((1 - nu) / (2 pi G))`. It depends on the rest
 //! mesh and on thicknesses alone. The operator is symmetric: both members of a pair are computed by the same operations.
@@ -7,11 +7,13 @@ use rayon::prelude::*;
 use thenar_surface::SkinDistance;
 
 use super::bonded_layer::Layer;
-use super::grid::RANGE_IN_THICKNESSES;
-use super::kernel::KernelTables;
-use super::{sheet::Sheet, skin_metric::arc_lengths, stiff_skin::StiffSkin};
+use super::kernel_grid::RANGE_IN_THICKNESSES;
+use super::layer_kernel::KernelTables;
+use super::stiff_skin_kernel::StiffSkin;
+use super::tissue_geometry::{Cut, Geometry, Mix};
 use crate::Model;
-use crate::sites::Sites;
+use crate::skin::arc_length::arc_lengths;
+use crate::skin::sites::Sites;
 
 /// Lattice self term: a point's own area A acts like a source at distance sqrt(A) / 3.9003, where 3.9003 is
 /// -4 zeta(1/2) beta(1/2): the quadrature-corrected point rule on a square lattice.
@@ -22,31 +24,6 @@ pub const PAPER_R0: f64 = 0.5;
 const EXACT_LAYERS: usize = 4;
 /// Ratio of neighboring thicknesses where they are interpolated.
 const LADDER_RATIO: f64 = 1.3;
-
-/// Two layers and the weight of the first.
-pub type Mix = (u16, u16, f64);
-
-/// A cut between blocks of the skin.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cut {
-    /// Block of every site.
-    pub block: Vec<u32>,
-    /// Share of the response that is kept between different blocks, 0 to 1.
-    pub kept: f64,
-}
-
-/// What the response of model layer depends on, besides the skin's shape.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Geometry {
-    /// Layer of every region.
-    pub layers: Vec<Layer>,
-    /// Inverse thickness at every site, 1/mm, where it does not follow from the regions.
-    pub curvature: Option<Vec<f64>>,
-    /// Stiff skin of every region; empty where there is none.
-    pub sheets: Vec<Sheet>,
-    /// Cuts, each a factor between 0 and 1 that keeps the response definite (Schur product).
-    pub cuts: Vec<Cut>,
-}
 
 /// Rows of the response that were needed so far.
 #[derive(Debug, Clone)]
@@ -126,7 +103,7 @@ impl Response {
         self.mix[site]
     }
 
-    /// Lower bound of the skin distance between two patches, mm; None if they do not feel each other.
+    /// Lower bound of the skin distance between two patches, mm; None if they are out of range.
     pub fn bound(&self, from: u32, to: u32) -> Option<f64> {
         let near = &self.near[from as usize];
         let place = near.binary_search_by_key(&to, |entry| entry.0).ok()?;

@@ -1,7 +1,7 @@
-//! A bent sheet of skin with its rows made: what the tests of the response press.
+//! Test fixture: a bent sheet of skin with its response rows.
 
-use super::near::Near;
-use crate::skin::Skin;
+use super::near_field::NearField;
+use crate::skin::prepare::Skin;
 use crate::{Control, Material, Model, SkinInput};
 use thenar_surface::{Mesh, Vec3};
 
@@ -30,16 +30,16 @@ pub fn sheet() -> (Skin, Vec<u32>) {
     let zone: Vec<u32> = zone.collect();
     skin.make_rows(&zone, &control).unwrap();
     let ground = (&skin.response, &skin.sites);
-    skin.memory.rounded.make(zone.iter().copied(), ground);
+    skin.workspace.quantized.make(zone.iter().copied(), ground);
     (skin, zone)
 }
 
 /// The coupling of a zone within a range, mm.
-pub fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
-    let mut near = Near::default();
-    near.take_up(
+pub fn near(skin: &Skin, zone: &[u32], range: f64) -> NearField {
+    let mut near = NearField::default();
+    near.update(
         (zone, zone),
-        &skin.memory.rounded,
+        &skin.workspace.quantized,
         (&skin.response, &skin.sites),
         range,
     );
@@ -47,7 +47,7 @@ pub fn near(skin: &Skin, zone: &[u32], range: f64) -> Near {
 }
 
 /// How far a product with `x` may be off: three and a half times the deviation that rounding every entry makes.
-pub fn most_off(near: &Near, x: &[f64]) -> f64 {
+pub fn most_off(near: &NearField, x: &[f64]) -> f64 {
     let unit = near.units.iter().fold(0.0, |m, u| f64::max(m, *u));
     unit * x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

@@ -1,74 +1,18 @@
-//! The contact solver: block principal pivoting over the contact set, conjugate gradients inside, warm starts.
+//! The contact solver: block principal pivoting with conjugate gradients and warm starts.
 //!
 //! Finds `p >= 0`, `s = A p + d >= 0`, `p s = 0` (Xie Eq. 13-14). Loose passes find the set, tight ones the forces
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
-use super::half::Compliance;
-use super::kept::Kept;
-use super::projection::mprgp;
+use super::lcp::{Accuracy, Compliance, EXACT, ROUGH, Solution};
+use super::mprgp::mprgp;
+use super::submatrix::Submatrix;
 use crate::Control;
 
-/// Residual from which a level is loose.
-const ROUGH: f64 = 1e-4;
-/// Residual at which the set of a large problem is looked at once more: a set that proves wrong later is solved twice.
-const FINE: f64 = 1e-7;
-/// Residual of the certificate.
-const EXACT: f64 = 1e-12;
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
 const PATIENCE: usize = 8;
 /// Passes in all before the fallback.
 const MOST_PASSES: usize = 120;
-
-/// How far a contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Accuracy {
-    /// To 1e-4 of the largest gap: enough to see where the surface goes.
-    Rough,
-    /// To 1e-12 of it: the certificate; from forces that are already rough, this costs least.
-    #[default]
-    Full,
-}
-
-impl Accuracy {
-    /// Residuals to go through, relative to the largest gap; the set must hold still before the next is taken.
-    ///
-    /// Where products are dear, the set is looked at on the way to the certificate, not only at its end, and not before a rough
-    /// solution: steps are few, and each look costs two products.
-    fn levels(self, is_dear: bool) -> &'static [f64] {
-        match self {
-            Accuracy::Rough if is_dear => &[ROUGH],
-            Accuracy::Rough => &[1e-2, ROUGH],
-            Accuracy::Full if is_dear => &[FINE, EXACT],
-            Accuracy::Full => &[EXACT],
-        }
-    }
-
-    /// Largest complementarity of a contact that counts as solved.
-    pub fn certificate(self) -> f64 {
-        match self {
-            Accuracy::Rough => 5e-3,
-            Accuracy::Full => 1e-10,
-        }
-    }
-}
-
-/// Forces and what is left of the equations.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// Nodal force, N, >= 0.
-    pub force: Vec<f64>,
-    /// Slack `A p + d`, mm, >= 0.
-    pub slack: Vec<f64>,
-    /// Largest |min(A_ii p_i, s_i)|, relative to the largest |d|.
-    pub complementarity: f64,
-    /// Changes of the contact set.
-    pub pivots: usize,
-    /// Conjugate-gradient steps, or products of the fallback.
-    pub steps: usize,
-    /// True if the fallback was needed.
-    pub fell_back: bool,
-}
 
 /// Solves the contact of `matrix` (mm/N) under `gap` (mm, negative: penetrating), starting from the forces `start`.
 ///
@@ -133,7 +77,7 @@ struct Run<'a> {
     in_contact: Vec<bool>,
     pivots: usize,
     steps: usize,
-    kept: Option<Kept<'a>>,
+    kept: Option<Submatrix<'a>>,
 }
 
 impl<'a> Run<'a> {
@@ -161,7 +105,7 @@ impl<'a> Run<'a> {
         (scale, accuracy): (f64, Accuracy),
         control: &Control,
     ) -> bool {
-        let levels = accuracy.levels(matrix.is_dear());
+        let levels = accuracy.levels(matrix.is_costly());
         let finest = levels.len() - 1;
         let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, 0);
         let mut tolerance = levels[0] * scale;
@@ -229,7 +173,7 @@ impl<'a> Run<'a> {
         // Single precision suffices to find the set.
         let kept = match self.kept.take() {
             Some(kept) if kept.is_narrow == matrix.is_narrow(is_rough) && kept.holds(&set) => kept,
-            _ => matrix.kept(&set, is_rough),
+            _ => matrix.submatrix(&set, is_rough),
         };
         let right: Vec<f64> = kept.rows.iter().map(|&i| -gap[i as usize]).collect();
         let mut x: Vec<f64> = kept.rows.iter().map(|&i| self.force[i as usize]).collect();
@@ -293,7 +237,7 @@ impl<'a> Run<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::operator::Rows;
+    use crate::solve::row_runs::RowRuns;
 
     const FULL: (Accuracy, &Control<'static>) = (
         Accuracy::Full,
@@ -322,7 +266,7 @@ mod tests {
     #[test]
     fn complementarity_holds_and_the_fallback_agrees() {
         let (matrix, gap) = problem(80);
-        let rows = Rows::dense(matrix, 80);
+        let rows = RowRuns::dense(matrix, 80);
         let solution = solve_contact(&rows, &gap, None, FULL);
         assert!(!solution.fell_back);
         assert!(
@@ -341,7 +285,7 @@ mod tests {
     #[test]
     fn a_warm_start_changes_nothing_but_the_work() {
         let (matrix, gap) = problem(60);
-        let rows = Rows::dense(matrix, 60);
+        let rows = RowRuns::dense(matrix, 60);
         let cold = solve_contact(&rows, &gap, None, FULL);
         let moved: Vec<f64> = gap.iter().map(|d| d - 0.01).collect();
         let warm = solve_contact(&rows, &moved, Some(&cold.force), FULL);
@@ -354,7 +298,12 @@ mod tests {
     #[test]
     fn without_penetration_there_is_no_force() {
         let (matrix, _) = problem(10);
-        let solution = solve_contact(&Rows::dense(matrix, 10), &[0.5; 10], Some(&[1.0; 10]), FULL);
+        let solution = solve_contact(
+            &RowRuns::dense(matrix, 10),
+            &[0.5; 10],
+            Some(&[1.0; 10]),
+            FULL,
+        );
         assert_eq!(solution.force, vec![0.0; 10]);
         assert_eq!(solution.complementarity, 0.0);
     }
@@ -362,7 +311,7 @@ mod tests {
     #[test]
     fn an_indefinite_matrix_ends_all_the_same() {
         let matrix = vec![1.0, 2.0, 2.0, 1.0];
-        let solution = solve_contact(&Rows::dense(matrix, 2), &[-1.0, -1.0], None, FULL);
+        let solution = solve_contact(&RowRuns::dense(matrix, 2), &[-1.0, -1.0], None, FULL);
         assert!(solution.force.iter().all(|p| p.is_finite() && *p >= 0.0));
     }
 }

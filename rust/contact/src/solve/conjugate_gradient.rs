@@ -1,6 +1,6 @@
-//! Conjugate gradients on a principal submatrix, with the preconditioner that the matrix gives for it.
+//! Preconditioned conjugate gradients on a principal submatrix.
 
-use super::half::Symmetric;
+use super::symmetric::Symmetric;
 
 /// How a run of conjugate gradients ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,8 @@
-//! The contact problem of a dense matrix that somebody else made.
+//! The contact problem of a dense matrix given by the caller.
 
-use super::block_pivoting::{Accuracy, Solution, solve_contact};
-use super::operator::Rows;
+use super::block_pivoting::solve_contact;
+use super::lcp::{Accuracy, Solution};
+use super::row_runs::RowRuns;
 use crate::{ContactError, Control};
 
 const TILE: usize = 32;
@@ -42,7 +43,7 @@ pub fn solve_dense(matrix: Vec<f64>, gap: &[f64]) -> Result<Solution, ContactErr
         });
     }
     // Single precision finds the set at half the memory traffic; double precision gives the certificate.
-    let (matrix, control) = (Rows::dense(matrix, n), Control::none());
+    let (matrix, control) = (RowRuns::dense(matrix, n), Control::none());
     let start = first_forces(&matrix, gap);
     let rough = (Accuracy::Rough, &control);
     let rough = solve_contact(&matrix.narrow(), gap, Some(&start), rough);
@@ -55,7 +56,7 @@ pub fn solve_dense(matrix: Vec<f64>, gap: &[f64]) -> Result<Solution, ContactErr
 }
 
 /// Small forces that mark where contact is likely: of what a smooth indenter overlaps on a half space, the inner half touches.
-fn first_forces(matrix: &Rows<f64>, gap: &[f64]) -> Vec<f64> {
+fn first_forces(matrix: &RowRuns<f64>, gap: &[f64]) -> Vec<f64> {
     let deepest = gap.iter().fold(0.0, |least, d| f64::min(least, *d));
     let alone = |(d, a): (&f64, &f64)| {
         if *d < FIRST_SHARE * deepest {

@@ -1,17 +1,21 @@
-//! Stage 4: the contact problem and its solvers.
+//! Stage 4: the linear contact problem and its solvers.
 
-pub mod operator;
+pub mod row_runs;
 
-mod along;
+mod directional;
 mod block_pivoting;
 mod conjugate_gradient;
 mod dense;
-mod half;
-mod kept;
-mod projection;
+mod lcp;
+mod packed;
+mod submatrix;
+mod symmetric;
+mod mprgp;
 
-pub use along::{Along, Axes, Part};
-pub use block_pivoting::{Accuracy, Solution, solve_contact};
+pub use block_pivoting::solve_contact;
 pub use dense::solve_dense;
-pub use half::{Compliance, Preconditioner, Symmetric};
-pub use kept::Kept;
+pub use directional::{Axes, DirectionalCompliance, Part};
+pub use lcp::Compliance;
+pub use lcp::{Accuracy, Solution};
+pub use submatrix::Submatrix;
+pub use symmetric::{Preconditioner, Symmetric};
