@@ -1,4 +1,4 @@
-"""addon/docs/effects.md lists the library's effects as they are: `python tests/python/test_effect_document.py` rewrites it."""
+"""addon/docs/effects.md lists the effects as the library does: run this file to write that half of it again."""
 
 from pathlib import Path
 
