@@ -57,7 +57,11 @@ def print_table(summary):
     print(f"{'peak over 24 mm2, kPa':28}{summary['patch_peak_kpa']:9.1f}")
     print(f"{'penetration left, mm':28}{summary['penetration_after_mm']:9.4f}")
     print(f"{'write-back error, mm':28}{summary['write_back_error_mm']:9.4f}")
-    print(f"{'grade':28}  {summary['grade']}: {summary['reason']}" if summary["reason"] else f"{'grade':28}  {summary['grade']}")
+    print(
+        f"{'grade':28}  {summary['grade']}: {summary['reason']}"
+        if summary["reason"]
+        else f"{'grade':28}  {summary['grade']}"
+    )
     for text in summary["warnings"]:
         print(f"note: {text}")
 

@@ -1,7 +1,5 @@
 //! Gaps, response, contact solve and the fields of a press; knows nothing of files or Blender.
-//!
-//! A [`Skin`] is prepared once from a rest mesh, its regions and materials, and pressed in any posture against any
-//! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
+#![doc = include_str!("../README.md")]
 
 pub mod ball;
 pub mod parameters;
