@@ -5,7 +5,7 @@ import pytest
 from test_rooms import ROOT
 
 SOUND = {
-    "README.md": "# Top\n[there](rust/x/README.md#two-words) `cargo xtask demo` `cargo test -p thenar-x --test hertz`\n",
+    "README.md": "# Top\n[there](rust/x/README.md#two-words) `cargo xtask demo`, `cargo test -p thenar-x --test hertz`",
     "rust/x/README.md": "# X\n## Two words\n[back](../../README.md) [out](https://example.org) [here](#x)\n",
     "rust/x/tests/hertz.rs": "//! H.\n",
     "rust/xtask/src/main.rs": '//! M.\n        "demo" => demo(),\n',
