@@ -22,6 +22,7 @@ WANTED_S, GOAL_S = 180.0, 60.0
 def main(count):
     """Measures `count` studies; prints the table. Returns 1 if one takes too long."""
     sys.path.insert(0, str(TESTS))
+    import results
     from trial import cases
 
     able = [case for case in cases.names("second") if cases.goes_on(case)]
@@ -36,7 +37,11 @@ def main(count):
         both.append(two[0])
         print(f"{case:12s} {len(sizes):10d} {sum(sizes):7d} {two[0]:19.1f} {one[0]:9.1f} {two[1]:18d}", flush=True)
     wanted = f"wanted at most {WANTED_S:g} s, goal {GOAL_S:g} s"
-    print(f"median {statistics.median(both):.1f} s, most {max(both):.1f} s; {wanted}")
+    measured = f"median {statistics.median(both):.1f} s, most {max(both):.1f} s"
+    print(f"{measured}; {wanted}")
+    what = f"a diagnosis of {RECORDINGS} recordings on {CORES} cores"
+    figure = results.Figure(what, f"{WANTED_S:g} s", f"{measured} of {count} studies", max(both) <= WANTED_S)
+    results.record("bench", f"target/venv/bin/python tests/bench/diagnosis.py {count}", [figure])
     return int(max(both) > WANTED_S)
 
 

@@ -75,6 +75,7 @@ def save(posture, path):
 
 def report(rows):
     """Rates by kind, reasons of refusals and the worst cases. Returns the exit code."""
+    import results
     from handles import random_postures, random_products
 
     wrong = {row["case"]: random_postures.faults(row) for row in rows}
@@ -102,7 +103,15 @@ def report(rows):
     print(
         f"unsound {unsound}/{len(rows)} ({100 * unsound / len(rows):.1f} %), refused {100 * refused / len(rows):.1f} %"
     )
-    return 1 if unsound or refused > MOST_REFUSED * len(rows) else 0
+    is_met = not unsound and refused <= MOST_REFUSED * len(rows)
+    figure = results.Figure(
+        "random postures against balls, boxes, rods, plates, sheets, forks, wires, tubes",
+        f"none unsound, at most {100 * MOST_REFUSED:g} % refused",
+        f"{len(rows)} postures: unsound {unsound}, refused {refused}, a press at most {times[-1]:.2f} s",
+        is_met,
+    )
+    results.record("bench", "target/venv/bin/python tests/bench/postures.py", [figure])
+    return int(not is_met)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+import results
 import thenar
 from bench import debian, lemke, problems, siconos
 from bench.timing import cpu_ms, once_ms
@@ -28,6 +29,11 @@ class Row:
     def as_dict(self):
         """For bench.json; what was not measured is null."""
         return {name: None if value != value else value for name, value in asdict(self).items()}
+
+    def as_figure(self):
+        """For RESULTS.md."""
+        measured = f"{self.ratio:.2f}x ({self.ours_ms:.2f} ms, reference {self.reference_ms:.2f} ms)"
+        return results.Figure(f"{self.what}, against {self.reference}", self.wanted, measured, self.is_met)
 
 
 def faster(what, reference, times, wanted, note=""):

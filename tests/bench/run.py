@@ -1,4 +1,4 @@
-"""Runs every benchmark, one thread, CPU time; prints the table and writes target/bench.json."""
+"""Runs every benchmark, one thread, CPU time; prints the table, writes target/bench.json and, if asked, RESULTS.md."""
 
 import json
 import os
@@ -11,6 +11,7 @@ ONE_THREAD = {name: "1" for name in ("RAYON_NUM_THREADS", "OMP_NUM_THREADS", "OP
 
 def main():
     """Measures, prints, writes. Returns the exit code: 0 unless a benchmark gave a wrong answer."""
+    import results
     from bench import friction_rows, grasp, protocol_rows, rows
 
     table, is_right = [], True
@@ -43,6 +44,8 @@ def main():
         "rows": [row.as_dict() for row in table],
     }
     (rows.TARGET / "bench.json").write_text(json.dumps(report, indent=2) + "\n")
+    figures = [row.as_figure() for row in table if row.is_met is not None]
+    results.record("bench", "cargo xtask bench", figures)
     return 0 if is_right else 1
 
 

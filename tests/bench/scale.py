@@ -45,6 +45,27 @@ def main(sizes):
         all(g <= MOST_GROWTH for g in grown),
     )
     judge(f"peak memory {cases[-1]['peak_gib']:.2f} GiB", f"<= {MOST_GIB:g}", cases[-1]["peak_gib"] <= MOST_GIB)
+    figures = [
+        (
+            "CPU of preparing and pressing, growth per decade of vertices up to 998,562",
+            f"{MOST_GROWTH:g}x",
+            ", ".join(f"{total(case):.2f} s" for case in cases) + "; " + ", ".join(f"{g:.1f}x" for g in grown),
+            all(g <= MOST_GROWTH for g in grown),
+        ),
+        (
+            "the same: peak memory",
+            f"{MOST_GIB:g} GiB",
+            f"{cases[-1]['peak_gib']:.2f} GiB",
+            cases[-1]["peak_gib"] <= MOST_GIB,
+        ),
+        (
+            "the same: far field against the direct sum",
+            f"{MOST_MISS:g}",
+            f"{cases[-1]['far_field']:.0e}",
+            cases[-1]["far_field"] <= MOST_MISS,
+        ),
+    ]
+    keep(figures)
     report = {"machine_threads": 1, "unit": "s of CPU time", "cases": cases, "aspher": beside_peer(cases[-1])}
     TARGET.mkdir(exist_ok=True)
     (TARGET / "scale.json").write_text(json.dumps(report, indent=2) + "\n")
@@ -66,7 +87,17 @@ def beside_peer(largest):
     print(f"aspher {peer['version']}, {peer['points']} points, {peer['status']}: {spent}")
     ratio = total(largest) / peer["cpu_s"]
     judge(f"ours at {largest['vertices']} vertices over aspher {ratio:.2f}", f"<= {PEER_RATIO:g}", ratio <= PEER_RATIO)
+    what = f"a million vertices against aspher on {peer['points']} points, one run, one thread"
+    keep([(what, f"{PEER_RATIO:g}x", f"{ratio:.2f}x", ratio <= PEER_RATIO)])
     return peer
+
+
+def keep(figures):
+    """Writes figures (what, wanted, measured, whether met) into RESULTS.md, if asked."""
+    import results
+
+    command = "target/venv/bin/python tests/bench/scale.py"
+    results.record("bench", command, [results.Figure(*figure) for figure in figures])
 
 
 def judge(what, wanted, is_met):

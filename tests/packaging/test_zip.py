@@ -7,6 +7,8 @@ import products
 import pytest
 
 ADDON = products.ROOT / "addon"
+NOT_SHIPPED = {"__pycache__", "docs", "CHANGELOG.md"}
+"""Parts of `addon` that stay in the repository: the documents are read there."""
 PLATFORMS = {"linux-x64", "windows-x64", "macos-arm64", "macos-x64", "windows-arm64", "linux-arm64"}
 
 
@@ -27,14 +29,14 @@ def test_zip_holds_the_add_on_and_nothing_else(names):
     sources = {
         path.relative_to(ADDON).as_posix()
         for path in ADDON.rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith(".")
+        if path.is_file() and not NOT_SHIPPED & set(path.parts) and not path.name.startswith(".")
     }
     expected = sources | {"LICENSE", f"wheels/{products.WHEEL.name}"}
     assert {name for name in names if not name.endswith("/")} == expected
 
 
 def test_zip_holds_no_tests_caches_or_sources(names):
-    forbidden = ("__pycache__", ".pyc", ".rs", "test_", "conftest", ".git", ".blend1", "egg-info")
+    forbidden = ("__pycache__", ".pyc", ".rs", "test_", "conftest", ".git", ".blend1", "egg-info", "docs/")
     assert not [name for name in names if any(word in name for word in forbidden)]
 
 

@@ -23,6 +23,7 @@ import os
 import shutil
 from pathlib import Path
 
+import results
 from trial import (
     cases,
     ceiling,
@@ -183,6 +184,9 @@ def _tell(asked, everyone, sealed, told, tables):
     )
     strata = counts.by_stratum(sealed, told[first].said)
     (asked.out / "page.html").write_text(page.page(asked.split, columns, strata, faults))
+    if asked.subset == "all":
+        asked_for = "" if asked.split == "trial" else f" -- --split {asked.split}"
+        results.write_block("trial", f"cargo xtask prove{asked_for}", score.shown(columns[first], beside))
     print(f"written: {asked.out / 'table.json'}, {asked.out / 'page.html'}")
     if asked.mutate:
         own = {name: sealed[name] for name in everyone[0].reads(sealed)}

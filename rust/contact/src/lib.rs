@@ -1,7 +1,5 @@
-//! Skin contact: gaps, response, contact solve and fields of a press. No files, no Blender.
-//!
-//! A [`Skin`] is prepared once from a rest mesh, its regions and materials, and pressed in any posture against any
-//! [`Product`](thenar_surface::Product). Units: mm, N, MPa, s.
+//! Gaps, response, contact solve and the fields of a press; knows nothing of files or Blender.
+#![doc = include_str!("../README.md")]
 
 pub mod effects;
 pub mod instrument;

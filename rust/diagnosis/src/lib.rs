@@ -1,9 +1,5 @@
 //! Comparison of recordings with the simulation, and what explains the difference; reads no files and knows nothing of Blender.
-//!
-//! The order of work: a study's recordings become [`Measured`] samples; the protocol of each is replayed through the contact
-//! model in the recording's own terms; parameters are fitted within their bounds against the noise that repeats show
-//! ([`Fit`]); what is left is compared, and located. Units: mm, N, MPa, s; kPa for the readings of a mat, as makers export.
-//! A residual is measured minus simulated.
+#![doc = include_str!("../README.md")]
 
 mod errors;
 mod random;

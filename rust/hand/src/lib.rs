@@ -1,6 +1,5 @@
 //! A parametric hand made from published measurements; knows nothing of forces.
-//!
-//! `HandShape` says what to build, `Hand` is the result: closed skin, palmar regions, bones with limits, weights.
+#![doc = include_str!("../README.md")]
 
 mod anatomy;
 mod armature;

@@ -1,7 +1,5 @@
 //! Mesh, study and measurement files to arrays with units; the only library crate that reads files.
-//!
-//! Knows nothing of physics or of Blender. Every error names the file, the line or byte, and the remedy.
-//! [`study::Study`] loads a folder of recordings with their setting. [`read`] tells a maker's format by what a file holds and gives [`PressureMap`]s or [`Curve`]s.
+#![doc = include_str!("../README.md")]
 
 mod error;
 mod fault;

@@ -1,7 +1,5 @@
 //! Meshes, regions, distances and the nearest triangle; knows nothing of forces.
-//!
-//! Lengths are in mm, areas in mm2, volumes in mm3, angles in radians. A [`Mesh`] is a checked triangle mesh, a [`Product`] a mesh prepared
-//! for signed-distance queries, a [`SkinDistance`] a coarse table of distances along a skin.
+#![doc = include_str!("../README.md")]
 // Boxes are arrays over axes and lanes; an index over both reads better than zipped iterators, and becomes vector code.
 #![allow(clippy::needless_range_loop)]
 

@@ -64,6 +64,7 @@ pub fn bench(places: &Places, arguments: &[String]) -> Result<ExitCode> {
     command
         .current_dir(&places.root)
         .arg("tests/bench/run.py")
+        .env("THENAR_RESULTS", "1")
         .args(arguments);
     process::in_view(&mut command, "the benchmarks")?;
     Ok(ExitCode::SUCCESS)

@@ -18,7 +18,8 @@ pub fn run(places: &Places, arguments: &[String]) -> Result<ExitCode> {
         .current_dir(&places.root)
         .args(["-m", "trial.prove"])
         .args(arguments)
-        .env("PYTHONPATH", places.root.join("tests"));
+        .env("PYTHONPATH", places.root.join("tests"))
+        .env("THENAR_RESULTS", "1");
     // One case per core: threads within a case would only take turns.
     for library in ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"] {
         command.env(library, "1");
