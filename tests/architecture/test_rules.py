@@ -29,7 +29,7 @@ PLANTED = [
     (layout_rules.first_lines, "addon/x.py", "import os\n", "addon/x.py"),
     (layout_rules.first_lines, "rust/surface/src/x.rs", "fn x() {}\n", "x.rs"),
     (layout_rules.lengths, "addon/x.py", '"""X."""\n' + "x = 1\n" * 400, "401 lines"),
-    (layout_rules.depth, "rust/surface/src/a/b/x.rs", "//! X.\n", "too deep"),
+    (layout_rules.depth, "rust/surface/src/a/b/c/x.rs", "//! X.\n", "too deep"),
     (layout_rules.depth, "addon/a/b/x.py", '"""X."""\n', "too deep"),
     (layout_rules.names, "addon/utils.py", '"""X."""\n', "'utils'"),
     (layout_rules.names, "rust/surface/src/core/x.rs", "//! X.\n", "'core'"),

@@ -1,9 +1,13 @@
 //! The sentences that a designer reads first. Knows nothing of how a report looks.
 
-use super::{Bin, Kind, Measure, RecordingComparison, SIGNIFICANT, Series, Trend, Variable};
-use crate::location::MODEL_ERROR;
-use crate::words::{chance, number, percent};
-use crate::{Estimate, Fit, Location};
+use crate::comparison::quantities::{Kind, Measure};
+use crate::comparison::result::{RecordingComparison, Series};
+use crate::comparison::trends::{Bin, SIGNIFICANT, Trend, Variable};
+use crate::fit::result::Fit;
+use crate::location::conduct::MODEL_ERROR;
+use crate::location::mismatch::Location;
+use crate::number_format::{chance, number, percent};
+use crate::parameters::estimate::Estimate;
 
 /// The recordings of which something is left.
 fn left_of(count: usize) -> String {
@@ -24,7 +28,7 @@ fn within_the_model(all: &str, p: f64) -> String {
 }
 
 /// About the whole study.
-pub(super) fn of_study(
+pub(crate) fn of_study(
     recordings: &[RecordingComparison],
     fit: &Fit,
     location: Option<&Location>,
@@ -141,7 +145,7 @@ fn has_values(recording: &RecordingComparison) -> bool {
 }
 
 /// About one recording.
-pub(super) fn of_recording(recording: &RecordingComparison) -> String {
+pub(crate) fn of_recording(recording: &RecordingComparison) -> String {
     if !has_values(recording) {
         let reason = recording.unknown.first();
         let reason = reason.map_or("it has no values".to_string(), |text| lowered(text));
@@ -151,7 +155,7 @@ pub(super) fn of_recording(recording: &RecordingComparison) -> String {
         );
     }
     if let Some(print) = &recording.print {
-        return print.sentence(&recording.measures);
+        return crate::prints::measures::sentence(print, &recording.measures);
     }
     let mut text = match strongest(recording) {
         Some((trend, bin)) => departs(recording, trend, bin),
@@ -361,9 +365,11 @@ impl Estimate {
     /// What the number belongs to, for people: `region pad`, `recording slow press`, `instrument`.
     pub fn of_what(&self) -> String {
         match &self.target {
-            crate::Target::Region(name) => format!("region \u{201c}{name}\u{201d}"),
-            crate::Target::Recording(name) => format!("\u{201c}{name}\u{201d}"),
-            crate::Target::Instrument => "the instrument".to_string(),
+            crate::parameters::target::Target::Region(name) => {
+                format!("region \u{201c}{name}\u{201d}")
+            }
+            crate::parameters::target::Target::Recording(name) => format!("\u{201c}{name}\u{201d}"),
+            crate::parameters::target::Target::Instrument => "the instrument".to_string(),
         }
     }
 

@@ -1,12 +1,14 @@
 //! Quantities of which a recording has one value per moment: those that were sampled, and the sums over a mat.
 
-use super::measures::{area_of, force_noise, force_of};
-use super::standing::Standing;
-use super::{Kind, Series, instrument};
-use crate::Quantity;
+use crate::comparison::instrument_view;
+use crate::comparison::instrument_view::{area_of, force_noise, force_of};
+use crate::comparison::quantities::Kind;
+use crate::comparison::recording_fit::Standing;
+use crate::comparison::result::Series;
+use crate::observe::measured::Quantity;
 
 /// Quantities of which the recording has one value per moment: those that were sampled, and the sums over a mat.
-pub(super) fn series(standing: &Standing) -> Vec<Series> {
+pub(crate) fn series(standing: &Standing) -> Vec<Series> {
     let mut all = Vec::new();
     for kind in [Kind::Force, Kind::TangentialForce, Kind::Area] {
         let mut series = Series {
@@ -37,7 +39,9 @@ fn sums(standing: &Standing) -> Vec<Series> {
     let Some(mat) = &standing.measured.mat else {
         return Vec::new();
     };
-    let is_pressure = |sample: &crate::Sample| matches!(sample.quantity, Quantity::Pressure(_));
+    let is_pressure = |sample: &crate::observe::measured::Sample| {
+        matches!(sample.quantity, Quantity::Pressure(_))
+    };
     if !standing.measured.samples.iter().any(is_pressure) {
         return Vec::new();
     }
@@ -53,9 +57,9 @@ fn sums(standing: &Standing) -> Vec<Series> {
         unit: "mm²",
         ..Series::default()
     };
-    let contact_from = instrument::contact_from(standing);
+    let contact_from = instrument_view::contact_from(standing);
     for moment in 0..standing.by_moment.len() {
-        let shown = instrument::shown(standing, moment, contact_from);
+        let shown = instrument_view::shown(standing, moment, contact_from);
         if shown.samples.iter().all(Option::is_none) {
             continue;
         }

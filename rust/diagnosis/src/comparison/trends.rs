@@ -1,8 +1,8 @@
 //! Residual against what it may depend on: in ranges of time, depth, rate, phase, cycle, and place on sensor and skin.
 
-use super::standing::Standing;
-use super::{Kind, SIGNIFICANT};
-use crate::{Phase, Quantity};
+use crate::comparison::quantities::Kind;
+use crate::comparison::recording_fit::Standing;
+use crate::observe::measured::{Phase, Quantity};
 
 /// Most ranges of a variable.
 const MOST_BINS: usize = 8;
@@ -137,7 +137,7 @@ impl Bin {
 }
 
 /// Every trend of a recording with two ranges or more; `p` is for one look each.
-pub(super) fn of(standing: &Standing) -> Vec<Trend> {
+pub(crate) fn of(standing: &Standing) -> Vec<Trend> {
     let mut trends = Vec::new();
     for kind in Kind::ALL {
         let samples = standing.measured.samples.iter().enumerate();
@@ -169,7 +169,7 @@ pub(super) fn of(standing: &Standing) -> Vec<Trend> {
 }
 
 /// Pays for the looks (Bonferroni): every probability is multiplied by their number. Returns it.
-pub(super) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
+pub(crate) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
     let mut bins: Vec<&mut Bin> = trends.flat_map(|trend| trend.bins.iter_mut()).collect();
     let looks = bins.len();
     bins.iter_mut()
@@ -277,3 +277,6 @@ impl Phase {
         }
     }
 }
+
+/// Chance at which a difference is called real.
+pub const SIGNIFICANT: f64 = 0.01;

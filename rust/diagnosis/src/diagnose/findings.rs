@@ -1,7 +1,8 @@
 //! What a diagnosis says: verdict, findings with numbers, place and time, rivals, gain, and what to record next.
 
-use super::unlisted::Unlisted;
-use crate::comparison::Comparison;
+use crate::comparison::result::Comparison;
+use crate::diagnose::unlisted_finding::Unlisted;
+use crate::selection::cross_validation::Gain;
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,35 +129,6 @@ pub struct Rival {
     pub left: f64,
     /// Fall of the deviance by phase: load, hold, unload, rest.
     pub ledger: [f64; 4],
-}
-
-/// An error of prediction with its 90 % interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
-    /// Root mean square.
-    pub rms: f64,
-    /// Ends of the interval.
-    pub interval: (f64, f64),
-}
-
-/// How well recordings are predicted that were not used.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Gain {
-    /// Recordings that were held out in turn, protocol by protocol.
-    pub held_out: Vec<String>,
-    /// Without and with the finding, in standard deviations of the noise.
-    pub before: Spread,
-    /// With it.
-    pub after: Spread,
-    /// Repeat against repeat.
-    pub floor: Spread,
-    /// Share of the reducible error that is removed.
-    pub removed: f64,
-    /// Ends of its interval.
-    pub interval: (f64, f64),
-    /// Share that the same change removes on the wrong recordings at the wrong moments, in 99 of 100 draws at most; None where nothing
-    /// could be removed.
-    pub placebo: Option<f64>,
 }
 
 /// A recording that would settle what cannot be told.

@@ -3,120 +3,24 @@
 //! What repeats share of the misfit is drawn over one variable after the other, as a factor of the force that is smooth in it, and each is
 //! judged by what it removes on protocols that it was not fitted to.
 
-use super::checks::restless;
-use super::course::{Course, Row};
-use super::elastic::radius;
-use super::empirical::{Factors, Point, VARIABLES, removed};
-use super::findings::Curve;
-use super::ladder::Rungs;
-use super::prepare::Prepared;
-use super::sentence::when_in_words;
-use super::shown;
-use crate::noise::Rhythm;
 use thenar_recordings::Study;
 
-/// What it may depend on, and units.
-const NAMES: [(&str, &str); VARIABLES] = [
-    ("depth", "mm"),
-    ("force", "N"),
-    ("contact_radius", "mm"),
-    ("time", "s"),
-    ("cycle", ""),
-    ("rate", "mm/s"),
-];
+use crate::checks::heteroscedasticity::restless;
+use crate::diagnose::empirical_factor::{Factors, Point, VARIABLES, removed};
+use crate::diagnose::findings::Curve;
+use crate::diagnose::unlisted_finding::{Correction, NAMES, Unlisted};
+use crate::diagnose::wording::phase_name;
+use crate::forward::surrogate::force_recording::{Course, Row};
+use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::tables::elastic_table::radius;
+use crate::noise::periodic_component::Rhythm;
+use crate::selection::scored::Rungs;
+
 /// Part of a recording's largest force below which its misfit is no part of the force.
 const LOADED: f64 = 0.05;
 /// Part that a variable must remove on protocols it was not fitted to, for it to be told; and that up and down apart must add.
 const TOLD: f64 = 0.25;
 const APART: f64 = 0.05;
-
-/// Something that is on no list.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unlisted {
-    /// What it depends on, and what a correction by that removes on protocols it was not fitted to (0 to 1); the most first.
-    pub depends_on: Vec<(&'static str, f64)>,
-    /// By the first of these.
-    pub correction: Option<Correction>,
-    /// What beats, if repeats show that.
-    pub rhythm: Option<Rhythm>,
-    /// Where and in which phase most of it shows; None where repeats do not share it.
-    pub place: Option<(String, &'static str)>,
-}
-
-/// A factor of the force that recordings ask for: empirical, and good for nothing that was not recorded.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Correction {
-    variable: usize,
-    /// Over that variable.
-    pub factors: Factors,
-    /// Part of what repeats share of the misfit that it removes on protocols it was not fitted to.
-    pub removed: f64,
-}
-
-impl Unlisted {
-    /// In words, after "something that is not in the list: ".
-    pub fn told(&self) -> String {
-        let Some(correction) = &self.correction else {
-            return match self.depends_on.is_empty() {
-                true => "what it depends on cannot be told: no correction holds on a protocol that it was not fitted to".to_owned(),
-                false => "no correction can be given, since it is another in every repeat".to_owned(),
-            };
-        };
-        let (name, unit) = correction.by();
-        let (least, most) = correction.extremes();
-        // What is small beside the other end is the curve's own roundness.
-        let counts = 0.1 * f64::max(-least.1, most.1);
-        let part = |(at, change): (f64, f64), word: &str| {
-            let told = format!("{:.0} % {word} at {at:.3} {unit}", 100.0 * change.abs());
-            (change.abs() > counts).then_some(told)
-        };
-        let when = self.place.as_ref();
-        let when = when.map_or(String::new(), |(_, phase)| {
-            format!(" and shows most {}", when_in_words(phase))
-        });
-        let mut ends = [(least, "smaller"), (most, "larger")];
-        ends.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-        let ends = ends.map(|(end, word)| part(end, word));
-        format!(
-            "it goes with {}{when}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
-             protocols that it was not fitted to",
-            words(name),
-            ends.into_iter().flatten().collect::<Vec<_>>().join(" and "),
-            100.0 * correction.removed
-        )
-    }
-}
-
-impl Correction {
-    /// Variable and unit.
-    pub fn by(&self) -> (&'static str, &'static str) {
-        NAMES[self.variable]
-    }
-
-    /// Where it takes most off the force and where it adds most, and what part.
-    fn extremes(&self) -> ((f64, f64), (f64, f64)) {
-        let each = || {
-            let (at, sides) = (&self.factors.knots, self.factors.change.iter());
-            sides.flat_map(|side| at.iter().copied().zip(side.iter().copied()))
-        };
-        let none = (0.0, 0.0);
-        (
-            each().fold(none, |a, b| if b.1 < a.1 { b } else { a }),
-            each().fold(none, |a, b| if b.1 > a.1 { b } else { a }),
-        )
-    }
-}
-
-/// A variable as a person would say it.
-pub fn words(variable: &str) -> &str {
-    match variable {
-        "contact_radius" => "the size of the contact",
-        "time" => "time in contact",
-        "cycle" => "the count of presses",
-        "rate" => "speed",
-        _ => variable,
-    }
-}
 
 /// What is known of what has no name.
 pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
@@ -133,7 +37,7 @@ pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
     }
     let site = |point: &Point| &study.recordings[point.recording].site;
     let sites: Vec<&String> = points.iter().map(site).collect();
-    let phases: Vec<&str> = points.iter().map(|p| shown::phase(p.phase)).collect();
+    let phases: Vec<&str> = points.iter().map(|p| phase_name(p.phase)).collect();
     let (site, phase) = (most(&points, &sites), most(&points, &phases));
     found.place = site.map(|site| (*site).clone()).zip(phase.copied());
     found
@@ -262,7 +166,7 @@ fn of_points(points: &[Point]) -> Unlisted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Phase;
+    use crate::observe::measured::Phase;
     use crate::random::Random;
 
     /// Four protocols of 60 rows to different depths by different tools; what is measured more is a part of the force, by depth and

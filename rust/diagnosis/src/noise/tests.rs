@@ -1,9 +1,12 @@
 //! Noise planted in made-up repeats is told again, and so is how repeats differ as a whole.
 
-use super::noise;
-use crate::observe::{Censoring, Measured, Moment, Phase, Quantity, Sample};
-use crate::random::Random;
 use nalgebra::Vector3;
+
+use crate::noise::channel::Channel;
+use crate::noise::estimate::noise;
+use crate::noise::repeat_alignment::{Told, aligned};
+use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
+use crate::random::Random;
 
 const SAMPLES: usize = 90;
 const STEP_S: f64 = 0.05;
@@ -196,8 +199,6 @@ fn recordings_of_another_kind_do_not_hide_repeats() {
 /// a tenth of its time earlier is another, and is joined by straight lines at the moments of the first.
 #[test]
 fn a_lag_of_rows_is_none_and_a_long_one_is_brought_to_the_same_moments() {
-    use super::Channel;
-    use super::alike::{Told, aligned};
     let planted = Planted {
         noise: 0.0,
         memory_s: 0.0,

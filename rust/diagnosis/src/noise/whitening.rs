@@ -2,10 +2,11 @@
 
 use nalgebra::DMatrix;
 
-use super::repeats::carry;
-use super::{CHANNELS, Channel, Noise};
-use crate::observe::{Censoring, Measured};
-use crate::statistics::{log_normal_cdf, log_normal_density};
+use crate::distributions::{log_normal_cdf, log_normal_density};
+use crate::noise::channel::{CHANNELS, Channel};
+use crate::noise::deviations::carry;
+use crate::noise::estimate::Noise;
+use crate::observe::measured::{Censoring, Measured};
 
 /// How each sample's residual is whitened: `w_k = (r_k / s_k - c r_j / s_j) / sqrt(1 - c^2)`, j the sample before it.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,21 +1,12 @@
 //! Ink and simulated contact on the skin: by vertex, and by region of the hand.
 
-use super::fitting::{Cells, Fitted};
-use super::sheet::Sheet;
-use super::{Areas, PrintCase, TOUCHED_FROM, residual};
+use thenar_recordings::handprint::TOUCHED_FROM;
 
-/// Contact of one region, by the areas of its vertices.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PrintRegion {
-    /// Its name.
-    pub name: String,
-    /// Inked, mm2.
-    pub recorded_mm2: f64,
-    /// In simulated contact, mm2.
-    pub simulated_mm2: f64,
-    /// Both over either.
-    pub overlap: f64,
-}
+use crate::prints::contact_areas::{Areas, residual};
+use crate::prints::paper_pose::{Cells, Fitted};
+use crate::prints::paper_sheet::Sheet;
+use crate::prints::print_case::PrintCase;
+use crate::prints::print_region::PrintRegion;
 
 /// The cell on which each vertex comes to lie, the paper in its fitted pose.
 pub fn cell_of(

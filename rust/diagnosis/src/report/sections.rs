@@ -1,13 +1,16 @@
 //! Sections of the page: one recording, and how the figures were made.
 
-use super::curves::{Against, curve};
-use super::maps::{self, Mark};
-use super::svg::escaped;
-use super::{bars, prints, tables};
-use crate::Place;
-use crate::comparison::{Comparison, Frame, RecordingComparison, Scanned, Trend};
-use crate::words::{capital, number};
 use std::fmt::Write;
+
+use crate::comparison::result::{Comparison, Frame, RecordingComparison};
+use crate::comparison::scan_heights::Scanned;
+use crate::comparison::trends::Trend;
+use crate::location::mismatch::Place;
+use crate::number_format::{capital, number};
+use crate::report::maps::{self, Mark};
+use crate::report::residual_curves::{Against, curve};
+use crate::report::svg::escaped;
+use crate::report::{prints, tables, trend_bars};
 
 /// A recording with its plots and tables.
 pub fn recording(number: usize, comparison: &Comparison) -> String {
@@ -172,7 +175,12 @@ fn trends(recording: &RecordingComparison) -> String {
     if recording.trends.is_empty() {
         return String::new();
     }
-    let one = |trend: &Trend| figure(bars::trend(trend, trend.kind.unit(recording.is_calibrated)));
+    let one = |trend: &Trend| {
+        figure(trend_bars::trend(
+            trend,
+            trend.kind.unit(recording.is_calibrated),
+        ))
+    };
     let plots: String = recording.trends.iter().map(one).collect();
     format!("<h3>Residual against what it may depend on</h3>\n<div class='small'>{plots}</div>\n")
 }
