@@ -6,13 +6,13 @@ use thenar_recordings::Study;
 use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
 
-use crate::comparison::conduct::compare_fit;
+use crate::comparison::compare_fit::compare_fit;
 use crate::comparison::result::{Compared, Comparison};
 use crate::comparison::trends::SIGNIFICANT;
 use crate::errors::DiagnosisError;
 use crate::fit::fitting::{Fitting, Options};
 use crate::fit::result::Fit;
-use crate::location::conduct::{Search, locate};
+use crate::location::locate::{Search, locate};
 use crate::location::mismatch::Location;
 use crate::number_format::{chance, percent};
 use crate::prints::study_prints::{Studied, add_prints};

@@ -1,4 +1,4 @@
-//! The laws of probability that fits and tests need.
+//! Probability distributions: log density and log CDF of the normal, quantile of Student's t.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -37,7 +37,7 @@ pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, findings_json};
 pub use errors::DiagnosisError;
 pub use fit::fitting::{Fitting, Options, fit_study};
 pub use fit::result::Fit;
-pub use location::conduct::{Search, locate};
+pub use location::locate::{Search, locate};
 pub use location::mismatch::{Carrier, Location, Mismatch, Place, Shown, When};
 pub use observe::measured::{
     Censoring, Mat, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint,

@@ -1,4 +1,4 @@
-//! Numbers as people write them in sentences and tables.
+//! Number formats of sentences and tables.
 
 /// Three significant digits; `-` for what is not known.
 pub(crate) fn number(value: f64) -> String {

@@ -1,6 +1,6 @@
 //! Change point of the gain within a session, from the gains of repeats (Student t, corrected for the positions tried).
 
-use crate::forward::surrogate::force_recording::Course;
+use crate::forward::surrogate::force_recording::ForceRecording;
 
 /// A step of the gain within the session.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,7 @@ pub struct GainStep {
 const USUAL_SCATTER: (f64, f64) = (0.05, 4.0);
 
 /// The step of the session's gain that repeats show most clearly: `log_gain` by recording against the others of its protocol.
-pub fn gain_step(courses: &[Course], log_gain: &[f64]) -> Option<GainStep> {
+pub fn gain_step(courses: &[ForceRecording], log_gain: &[f64]) -> Option<GainStep> {
     let (mut best, mut tried): (Option<GainStep>, f64) = (None, 0.0);
     for from in 1..courses.len() {
         let (mut xx, mut xy, mut yy, mut degrees) = (0.0, 0.0, 0.0, -1.0);
@@ -97,7 +97,7 @@ mod tests {
 
     /// Any table of Student's t: 2.776 at 4 degrees and 2.306 at 8 leave 5 %; 4.604 at 4 leaves 1 %.
     #[test]
-    fn tails_agree_with_published_tables() {
+    fn two_sided_t_tail_agrees_with_published_tables() {
         for (t, degrees, p) in [(2.776, 4.0, 0.05), (2.306, 8.0, 0.05), (4.604, 4.0, 0.01)] {
             assert!((two_sided(t, degrees) / p - 1.0).abs() < 2e-3, "{t}");
         }

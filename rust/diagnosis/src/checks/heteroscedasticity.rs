@@ -1,9 +1,9 @@
-//! What repeats say before any model is asked: whether the noise grows under load, and whether the session's gain has a step.
+//! Heteroscedasticity between repeats (more scatter under load than without), and the periodic component of their difference.
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::forward::surrogate::force_recording::{Course, Row};
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::noise::estimate::Noise;
 use crate::noise::periodic_component::Rhythm;
 use crate::observe::measured::Phase;
@@ -16,7 +16,7 @@ const OUTLIER: f64 = 5.0;
 
 /// How repeats deviate from one another under load and without.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unsteady {
+pub struct Heteroscedasticity {
     /// Standard deviation under load over that without, of what differs between repeats beyond gain and first touch.
     pub ratio: f64,
     /// Ratio that noise of the same size everywhere exceeds once in some hundred studies.
@@ -40,10 +40,13 @@ struct Deviations {
 }
 
 /// Noise under load over that without, from which the skin itself is unsteady.
-const UNSTEADY: f64 = 2.0;
+const HETEROSCEDASTIC: f64 = 2.0;
 
 /// What in the repeats themselves no effect on the list does, in words; None where noise suffices.
-pub fn restless(noise: &Noise, unsteady: Option<Unsteady>) -> Option<String> {
+pub fn unmodeled_repeat_noise(
+    noise: &Noise,
+    heteroscedasticity: Option<Heteroscedasticity>,
+) -> Option<String> {
     if let Some(rhythm) = noise.rhythm.filter(Rhythm::is_clear) {
         return Some(format!(
             "under load repeats of one protocol differ by a rhythm of {:.2} Hz ({:.0} a minute), in step with nothing that was done",
@@ -51,7 +54,7 @@ pub fn restless(noise: &Noise, unsteady: Option<Unsteady>) -> Option<String> {
             rhythm.per_minute()
         ));
     }
-    let is_unsteady = unsteady.is_some_and(|u| u.ratio > u.least.max(UNSTEADY));
+    let is_unsteady = heteroscedasticity.is_some_and(|u| u.ratio > u.least.max(HETEROSCEDASTIC));
     is_unsteady.then(|| {
         "repeats of one protocol differ more under load than without, by more than gain and first touch".to_owned()
     })
@@ -60,7 +63,7 @@ pub fn restless(noise: &Noise, unsteady: Option<Unsteady>) -> Option<String> {
 /// True if the force pulls where a fit with adhesion says so: a necessary sign, looked for in what was measured.
 ///
 /// `simulated` are the predictions of that fit. Neighbors share their noise, so that so many count as one.
-pub fn pulls(courses: &[Course], (simulated, sigma): (&[f64], &[f64])) -> bool {
+pub fn pulls(courses: &[ForceRecording], (simulated, sigma): (&[f64], &[f64])) -> bool {
     let (mut sum, mut count) = (0.0, 0.0);
     for row in courses.iter().flat_map(|c| &c.rows) {
         let Some(sample) = row.sample else {
@@ -83,14 +86,14 @@ const PULLS: f64 = 2.5;
 ///
 /// Noise of an instrument does not ask whether the tool touches; what the skin does by itself needs contact to be seen. `memory_s` is
 /// the time over which noise forgets itself: so many deviations count as one.
-pub fn unsteady(
-    screen: &Screen<'_>,
+pub fn heteroscedasticity(
+    surrogate: &Surrogate<'_>,
     (simulated, sigma): (&[f64], &[f64]),
     memory_s: f64,
-) -> Option<Unsteady> {
+) -> Option<Heteroscedasticity> {
     let (mut under, mut without, mut worth) = (Vec::new(), Vec::new(), [0.0, 0.0]);
-    for (c, one) in screen.courses.iter().enumerate() {
-        for other in &screen.courses[c + 1..] {
+    for (c, one) in surrogate.courses.iter().enumerate() {
+        for other in &surrogate.courses[c + 1..] {
             let repeats = one.protocol == other.protocol && one.place == other.place;
             if !repeats || one.rows.len() != other.rows.len() {
                 continue;
@@ -108,14 +111,14 @@ pub fn unsteady(
         return None;
     }
     let spread = (0.5 / worth[0].max(1.0) + 0.5 / worth[1].max(1.0)).sqrt();
-    Some(Unsteady {
+    Some(Heteroscedasticity {
         ratio: size(&under) / size(&without).max(1e-9),
         least: libm::exp(SURE * spread),
     })
 }
 
 fn deviations(
-    (one, other): (&Course, &Course),
+    (one, other): (&ForceRecording, &ForceRecording),
     (simulated, sigma): (&[f64], &[f64]),
 ) -> Deviations {
     let mut found = Deviations::default();
@@ -174,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rhythm_is_told_before_what_is_only_unsteady() {
+    fn periodic_component_is_reported_before_heteroscedasticity() {
         let of = |chance: f64, ratio: f64| {
             let (mut made, _) = crate::forward::surrogate::synthetic::ready(Vec::new(), &[], 0.1);
             made.noise.rhythm = Some(Rhythm {
@@ -182,7 +185,7 @@ mod tests {
                 nats: 20.0,
                 chance,
             });
-            restless(&made.noise, Some(Unsteady { ratio, least: 1.6 }))
+            unmodeled_repeat_noise(&made.noise, Some(Heteroscedasticity { ratio, least: 1.6 }))
         };
         let told = |chance, ratio| of(chance, ratio).unwrap();
         assert!(told(1e-4, 3.0).contains("1.20 Hz (72 a minute)"));

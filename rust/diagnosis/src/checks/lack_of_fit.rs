@@ -1,4 +1,4 @@
-//! What parameters can absorb, what is left, and whether noise alone leaves as much.
+//! Lack-of-fit test: the residual that parameters cannot absorb, against what noise alone leaves.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -118,11 +118,11 @@ impl Left<'_> {
             let sum = &mut sums[self.blocks[k]];
             *sum = (sum.0 + r, sum.1 + 1.0);
         }
-        let coherent = sums
+        let lack_of_fit = sums
             .iter()
             .filter(|s| s.1 > 0.0)
             .map(|(sum, n)| sum * sum / n);
-        [all, coherent.sum()]
+        [all, lack_of_fit.sum()]
     }
 }
 

@@ -1,12 +1,12 @@
-//! Necessary signs of an effect, looked for in what was measured, without a model of it.
+//! Signatures: necessary signs of an effect, tested on the recordings without a model of it.
 //!
 //! Each is a mean over the noise of its own; what is not clear either way at one in a hundred is not told.
 
 use thenar_contact::effects::{Effect, Sign};
 
 use crate::checks::heteroscedasticity::{SHARED, pulls};
-use crate::forward::surrogate::force_recording::{Course, Row};
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::Phase;
 use crate::selection::scored::Scored;
 
@@ -20,7 +20,10 @@ const FEW: usize = 3;
 const APART: f64 = 0.2;
 
 /// The sentences of an effect's signs that the recordings show clearly, and whether each holds.
-pub fn looked_for(ready: &Prepared, (scored, effect): (&Scored, Effect)) -> Vec<(String, bool)> {
+pub fn looked_for(
+    ready: &PreparedStudy,
+    (scored, effect): (&Scored, Effect),
+) -> Vec<(String, bool)> {
     let seen = |sign: Sign| match sign {
         Sign::ForceFallsInHold => clear(z(ready, &in_hold)),
         Sign::ForceStaysInHold => unlike(z(ready, &in_hold)),
@@ -61,7 +64,7 @@ fn unlike(z: Option<f64>) -> Option<bool> {
 type Two = (Vec<f64>, Vec<f64>);
 
 /// Standard errors by which first means exceed second ones, over all recordings; None where no recording has both.
-fn z(ready: &Prepared, two: &dyn Fn(&Course) -> Two) -> Option<f64> {
+fn z(ready: &PreparedStudy, two: &dyn Fn(&ForceRecording) -> Two) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for course in &ready.courses {
         let (first, second) = two(course);
@@ -83,7 +86,7 @@ fn mean(forces: &[f64]) -> Option<f64> {
 }
 
 /// Rows with a force in a phase.
-fn within(course: &Course, phase: Phase) -> Vec<&Row> {
+fn within(course: &ForceRecording, phase: Phase) -> Vec<&Row> {
     let rows = course.rows.iter();
     rows.filter(|r| r.phase == phase && r.sample.is_some())
         .collect()
@@ -96,23 +99,23 @@ fn ends(rows: &[&Row]) -> Two {
     (forces(&rows[..third]), forces(&rows[rows.len() - third..]))
 }
 
-fn in_hold(course: &Course) -> Two {
+fn in_hold(course: &ForceRecording) -> Two {
     ends(&within(course, Phase::Hold))
 }
 
-fn apart(course: &Course) -> Two {
+fn apart(course: &ForceRecording) -> Two {
     ends(&within(course, Phase::Apart))
 }
 
 /// The first loading and the unloading, at the same depths.
-fn in_loop(course: &Course) -> Two {
+fn in_loop(course: &ForceRecording) -> Two {
     let mut loading = within(course, Phase::Load);
     loading.retain(|r| r.cycle == 0);
     at_same_depths(course.deepest(), (&loading, &within(course, Phase::Unload)))
 }
 
 /// The first loading and the last, at the same depths.
-fn in_cycles(course: &Course) -> Two {
+fn in_cycles(course: &ForceRecording) -> Two {
     let last = course.rows.iter().map(|r| r.cycle).max().unwrap_or(0);
     let of = |cycle: u32| -> Vec<&Row> {
         let mut loading = within(course, Phase::Load);
@@ -143,14 +146,14 @@ fn at_same_depths(deepest: f64, (first, second): (&[&Row], &[&Row])) -> Two {
 }
 
 /// Standard errors by which the fastest presses of a tool bear more than the slowest, over the scatter of gains.
-fn by_speed(ready: &Prepared) -> Option<f64> {
+fn by_speed(ready: &PreparedStudy) -> Option<f64> {
     let (mut sum, mut count) = (0.0, 0.0);
     for place in 0..ready.elastic.places.len() {
         let own = ready
             .courses
             .iter()
             .filter(|c| c.place == place && c.speed() > 0.0);
-        let own: Vec<&Course> = own.collect();
+        let own: Vec<&ForceRecording> = own.collect();
         let speeds = || own.iter().map(|c| c.speed());
         let (slow, fast) = (
             speeds().fold(f64::INFINITY, f64::min),
@@ -180,7 +183,7 @@ mod tests {
 
     /// 2.33 standard errors are what one in a hundred draws of noise exceeds on either side.
     #[test]
-    fn a_change_is_told_where_it_is_clear_and_sameness_only_denied() {
+    fn signature_needs_significance_and_equality_is_only_rejected() {
         let of = |z: f64| (clear(Some(z)), unlike(Some(z)));
         assert_eq!(of(3.0), (Some(true), Some(false)));
         assert_eq!(of(-3.0), (Some(false), Some(false)));
@@ -190,7 +193,7 @@ mod tests {
 
     /// Two loadings on one line: rows of the later one lie deeper, and would seem to bear more.
     #[test]
-    fn forces_are_compared_at_the_same_depth() {
+    fn signature_forces_are_paired_at_equal_depth() {
         let rows = |from: f64, step: f64| -> Vec<Row> {
             let row = |k: u32| Row {
                 time_s: 0.0,

@@ -1,6 +1,6 @@
 //! A frame of a mat as its instrument would show it, measured and simulated alike.
 
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::observe::measured::{Censoring, Mat, Quantity};
 
 /// One frame through the instrument's limits; NaN where the cell is missing.
@@ -15,9 +15,9 @@ pub(crate) struct Shown {
 
 /// Readings of this much and more count as contact: the instrument's threshold, or where it has none, the smallest reading
 /// above zero in the recording.
-pub(crate) fn contact_from(standing: &Standing) -> f64 {
+pub(crate) fn contact_from(recording_fit: &RecordingFit) -> f64 {
     let pressures = || {
-        let samples = standing.measured.samples.iter();
+        let samples = recording_fit.measured.samples.iter();
         samples.filter(|sample| matches!(sample.quantity, Quantity::Pressure(_)))
     };
     let threshold = pressures()
@@ -33,8 +33,8 @@ pub(crate) fn contact_from(standing: &Standing) -> f64 {
 }
 
 /// The frame of a moment.
-pub(crate) fn shown(standing: &Standing, moment: usize, contact_from: f64) -> Shown {
-    let sensels = standing
+pub(crate) fn shown(recording_fit: &RecordingFit, moment: usize, contact_from: f64) -> Shown {
+    let sensels = recording_fit
         .measured
         .mat
         .as_ref()
@@ -47,8 +47,8 @@ pub(crate) fn shown(standing: &Standing, moment: usize, contact_from: f64) -> Sh
         sigma: missing(),
         samples: vec![None; sensels],
     };
-    for k in standing.by_moment[moment].clone() {
-        let sample = &standing.measured.samples[k];
+    for k in recording_fit.by_moment[moment].clone() {
+        let sample = &recording_fit.measured.samples[k];
         let Quantity::Pressure(sensel) = sample.quantity else {
             continue;
         };
@@ -63,9 +63,9 @@ pub(crate) fn shown(standing: &Standing, moment: usize, contact_from: f64) -> Sh
             _ => value,
         };
         shown.measured[at] = through(sample.value);
-        shown.simulated[at] = through(standing.simulated[k]);
-        shown.before[at] = through(standing.before[k]);
-        shown.sigma[at] = standing.sigma[k];
+        shown.simulated[at] = through(recording_fit.simulated[k]);
+        shown.before[at] = through(recording_fit.before[k]);
+        shown.sigma[at] = recording_fit.sigma[k];
         shown.samples[at] = Some(k);
     }
     shown

@@ -6,25 +6,30 @@ use crate::comparison::instrument_view::{
     self, N_PER_KPA_MM2, Shown, area_of, force_noise, force_of, peak_of,
 };
 use crate::comparison::quantities::Measure;
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::comparison::result::{Frame, Series};
 use crate::observe::measured::Mat;
 
 /// Every measure of the recording.
-pub(crate) fn table(standing: &Standing, series: &[Series], frames: &[Frame]) -> Vec<Measure> {
+pub(crate) fn table(
+    recording_fit: &RecordingFit,
+    series: &[Series],
+    frames: &[Frame],
+) -> Vec<Measure> {
     let mut table: Vec<Measure> = series.iter().flat_map(of_series).collect();
-    table.extend(crate::comparison::scan_heights::measures(standing));
-    let Some(mat) = &standing.measured.mat else {
+    table.extend(crate::comparison::scan_heights::measures(recording_fit));
+    let Some(mat) = &recording_fit.measured.mat else {
         return table;
     };
     for frame in frames {
-        let shown = instrument_view::shown(standing, frame.moment as usize, frame.contact_from);
+        let shown =
+            instrument_view::shown(recording_fit, frame.moment as usize, frame.contact_from);
         let mut reasons = frame
             .why
             .iter()
             .filter(|why| **why != crate::comparison::shown_frames::WORST);
         if let Some(why) = reasons.next() {
-            let rows = match standing.measured.is_calibrated {
+            let rows = match recording_fit.measured.is_calibrated {
                 true => of_frame(&shown, mat),
                 false => of_shape(&shown, mat),
             };

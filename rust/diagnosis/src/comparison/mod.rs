@@ -16,10 +16,10 @@ pub(crate) mod scan_heights;
 pub(crate) mod residual_on_skin;
 pub(crate) mod result;
 pub(crate) mod sentence;
-pub(crate) mod conduct;
+pub(crate) mod compare_fit;
 pub(crate) mod single_frame;
 
-pub use conduct::compare_fit;
+pub use compare_fit::compare_fit;
 pub use quantities::{Kind, Measure, WorstPlace};
 pub use residual_on_skin::on_skin;
 pub use result::{Compared, Comparison, Frame, RecordingComparison, Series};

@@ -1,4 +1,4 @@
-//! The samples of one recording with all that a fit says of them.
+//! One recording of a fit: samples, simulation, noise, and whitened residual by moment.
 
 use std::ops::Range;
 
@@ -9,7 +9,7 @@ use crate::fit::result::Fit;
 use crate::observe::measured::{Censoring, Measured};
 
 /// One recording of a fit.
-pub(crate) struct Standing<'a> {
+pub(crate) struct RecordingFit<'a> {
     pub measured: &'a Measured,
     /// In the samples' units; of a map without calibration scaled to the sum of each frame.
     pub simulated: Vec<f64>,
@@ -24,10 +24,10 @@ pub(crate) struct Standing<'a> {
     first_row: usize,
 }
 
-impl<'a> Standing<'a> {
-    pub fn of(fit: &'a Fit) -> Vec<Standing<'a>> {
+impl<'a> RecordingFit<'a> {
+    pub fn of(fit: &'a Fit) -> Vec<RecordingFit<'a>> {
         let mut first_row = 0;
-        let mut standings = Vec::with_capacity(fit.measured.len());
+        let mut recording_fits = Vec::with_capacity(fit.measured.len());
         for (k, measured) in fit.measured.iter().enumerate() {
             let by_moment = moments(measured);
             let scaled = |simulated: &[f64]| match measured.is_calibrated {
@@ -39,7 +39,7 @@ impl<'a> Standing<'a> {
             let residual = pairs
                 .map(|(sample, simulated)| residual(sample.value, *simulated, sample.censoring))
                 .collect();
-            standings.push(Standing {
+            recording_fits.push(RecordingFit {
                 measured,
                 simulated,
                 before,
@@ -52,7 +52,7 @@ impl<'a> Standing<'a> {
             });
             first_row += measured.samples.len();
         }
-        standings
+        recording_fits
     }
 
     /// Residual of a sample in standard deviations of its noise; NaN where that is not known.

@@ -1,8 +1,8 @@
-//! The residual of a frame of a mat, carried to the vertices of a skin.
+//! Residual of a mat frame interpolated to the skin's vertices.
 
 use nalgebra::Vector3;
 
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::comparison::result::{Compared, Frame};
 use crate::comparison::shown_frames;
 use crate::observe::measured::Mat;
@@ -57,16 +57,20 @@ fn bounds(mat: &Mat, sensels: &[usize], reach: f64) -> (Vector3<f64>, Vector3<f6
 }
 
 /// Residual per skin vertex in the frame of the largest residual.
-pub(crate) fn worst_frame(compared: &Compared, standing: &Standing, shown: &[Frame]) -> Vec<f64> {
+pub(crate) fn worst_frame(
+    compared: &Compared,
+    recording_fit: &RecordingFit,
+    shown: &[Frame],
+) -> Vec<f64> {
     let worst = shown
         .iter()
         .find(|frame| frame.why.contains(&shown_frames::WORST));
-    let (Some(mat), Some(frame)) = (&standing.measured.mat, worst) else {
+    let (Some(mat), Some(frame)) = (&recording_fit.measured.mat, worst) else {
         return Vec::new();
     };
-    if !standing.measured.is_calibrated {
+    if !recording_fit.measured.is_calibrated {
         return Vec::new();
     }
-    let depth = standing.measured.moments[frame.moment as usize].depth_mm;
+    let depth = recording_fit.measured.moments[frame.moment as usize].depth_mm;
     on_skin(compared.skin, mat, &frame.residual, depth.max(0.0))
 }

@@ -42,7 +42,7 @@ pub struct Comparison {
     /// Probability that noise alone leaves as much as is left; None where no repeats tell the noise.
     pub lack_of_fit_p: Option<f64>,
     /// Ranges of values that were tested; every probability is multiplied by this.
-    pub looks: usize,
+    pub look_elsewhere_count: usize,
     /// Where and when the mismatch lies that parameters cannot absorb; None if it was not looked for.
     pub location: Option<Location>,
     /// What a reader should be told, a sentence each.

@@ -1,9 +1,9 @@
-//! A scan beside the simulated skin: heights by place, and their measures.
+//! Heights of a scan and of the simulated skin by place, and their measures.
 
 use nalgebra::Vector3;
 
 use crate::comparison::quantities::{Kind, Measure};
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::observe::measured::Quantity;
 
 /// Share of places that differ by less than what is told of them.
@@ -33,10 +33,10 @@ pub struct Scanned {
 }
 
 /// The scan of a recording; None if it is of none.
-pub(crate) fn of(standing: &Standing) -> Option<Scanned> {
-    let scan = standing.measured.scan.as_ref()?;
-    let samples = of_scan(standing);
-    let place = |k: &usize| match standing.measured.samples[*k].quantity {
+pub(crate) fn of(recording_fit: &RecordingFit) -> Option<Scanned> {
+    let scan = recording_fit.measured.scan.as_ref()?;
+    let samples = of_scan(recording_fit);
+    let place = |k: &usize| match recording_fit.measured.samples[*k].quantity {
         Quantity::Scan(place) => place as usize,
         _ => 0,
     };
@@ -45,20 +45,20 @@ pub(crate) fn of(standing: &Standing) -> Option<Scanned> {
     Some(Scanned {
         moment: samples
             .first()
-            .map(|k| standing.measured.samples[*k].moment)?,
+            .map(|k| recording_fit.measured.samples[*k].moment)?,
         places: at.iter().map(|k| scan.places[*k]).collect(),
         vertices: at.iter().map(|k| scan.vertices[*k]).collect(),
         normals: at.iter().map(|k| scan.normals[*k]).collect(),
         spacing: scan.spacing,
-        measured: of(&|k| standing.measured.samples[k].value),
-        simulated: of(&|k| standing.simulated[k]),
-        residual: of(&|k| standing.residual[k]),
-        sigma: of(&|k| standing.sigma[k]),
+        measured: of(&|k| recording_fit.measured.samples[k].value),
+        simulated: of(&|k| recording_fit.simulated[k]),
+        residual: of(&|k| recording_fit.residual[k]),
+        sigma: of(&|k| recording_fit.sigma[k]),
     })
 }
 
-fn of_scan(standing: &Standing) -> Vec<usize> {
-    let samples = standing.measured.samples.iter().enumerate();
+fn of_scan(recording_fit: &RecordingFit) -> Vec<usize> {
+    let samples = recording_fit.measured.samples.iter().enumerate();
     samples
         .filter(|(_, sample)| sample.quantity.kind() == Kind::Scan)
         .map(|(k, _)| k)
@@ -66,12 +66,12 @@ fn of_scan(standing: &Standing) -> Vec<usize> {
 }
 
 /// Distance of scan and simulated skin, and how high the skin rises.
-pub(crate) fn measures(standing: &Standing) -> Vec<Measure> {
-    let heights = of_scan(standing);
+pub(crate) fn measures(recording_fit: &RecordingFit) -> Vec<Measure> {
+    let heights = of_scan(recording_fit);
     if heights.is_empty() {
         return Vec::new();
     }
-    let value = |k: usize| standing.measured.samples[k].value;
+    let value = |k: usize| recording_fit.measured.samples[k].value;
     let rms = |of: &dyn Fn(usize) -> f64| {
         let squares: f64 = heights.iter().map(|k| of(*k).powi(2)).sum();
         (squares / heights.len() as f64).sqrt()
@@ -86,13 +86,13 @@ pub(crate) fn measures(standing: &Standing) -> Vec<Measure> {
         let all = heights.iter().map(|k| sign * of(*k));
         sign * all.fold(f64::NEG_INFINITY, f64::max)
     };
-    let left = |k: usize| value(k) - standing.simulated[k];
-    let left_before = |k: usize| value(k) - standing.before[k];
+    let left = |k: usize| value(k) - recording_fit.simulated[k];
+    let left_before = |k: usize| value(k) - recording_fit.before[k];
     let (after, before) = (
-        |k: usize| standing.simulated[k],
-        |k: usize| standing.before[k],
+        |k: usize| recording_fit.simulated[k],
+        |k: usize| recording_fit.before[k],
     );
-    let noise = rms(&|k| standing.sigma[k]);
+    let noise = rms(&|k| recording_fit.sigma[k]);
     let row = |name, label, [measured, before, after]: [f64; 3], noise| Measure {
         name,
         label,

@@ -1,10 +1,10 @@
-//! The sentences that a designer reads first. Knows nothing of how a report looks.
+//! Sentences of a comparison, for the study and for each recording. Knows nothing of how a report looks.
 
 use crate::comparison::quantities::{Kind, Measure};
 use crate::comparison::result::{RecordingComparison, Series};
 use crate::comparison::trends::{Bin, SIGNIFICANT, Trend, Variable};
 use crate::fit::result::Fit;
-use crate::location::conduct::MODEL_ERROR;
+use crate::location::locate::MODEL_ERROR;
 use crate::location::mismatch::Location;
 use crate::number_format::{chance, number, percent};
 use crate::parameters::estimate::Estimate;
@@ -175,10 +175,12 @@ fn strongest(recording: &RecordingComparison) -> Option<(&Trend, &Bin)> {
             .flat_map(|trend| trend.bins.iter().map(move |bin| (trend, bin)))
             .filter(|(_, bin)| bin.stands_out())
     };
-    let most = all().map(|(_, bin)| bin.standings()).fold(0.0, f64::max);
+    let most = all()
+        .map(|(_, bin)| bin.standard_errors())
+        .fold(0.0, f64::max);
     all()
-        .filter(|(_, bin)| bin.standings() >= 0.8 * most)
-        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * bin.standings()) as i64))
+        .filter(|(_, bin)| bin.standard_errors() >= 0.8 * most)
+        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * bin.standard_errors()) as i64))
 }
 
 fn rank(variable: Variable) -> u8 {
@@ -192,7 +194,7 @@ fn rank(variable: Variable) -> u8 {
 }
 
 fn least_p(recording: &RecordingComparison) -> f64 {
-    -strongest(recording).map_or(0.0, |(_, bin)| bin.standings())
+    -strongest(recording).map_or(0.0, |(_, bin)| bin.standard_errors())
 }
 
 fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String {
@@ -207,12 +209,12 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
     let sure = match recording.is_noise_told {
         true => format!(
             "{} standard errors apart ({} after {looks} looks)",
-            number(bin.standings()),
+            number(bin.standard_errors()),
             chance(bin.p)
         ),
         false => format!(
             "{} times what the recording's own roughness leaves; no repeats tell the noise",
-            number(bin.standings())
+            number(bin.standard_errors())
         ),
     };
     format!(

@@ -1,9 +1,9 @@
-//! One frame of a mat beside one contact that was solved elsewhere: nothing is fitted.
+//! Comparison of one mat frame with one contact that was solved elsewhere; nothing is fitted.
 
 use nalgebra::{DMatrix, Vector3};
 use thenar_contact::instrument::{Mat as Sensels, MatLayout, PointLoad};
 
-use crate::comparison::conduct::compare_fit;
+use crate::comparison::compare_fit::compare_fit;
 use crate::comparison::result::{Compared, Comparison};
 use crate::errors::DiagnosisError;
 use crate::fit::result::Fit;

@@ -1,9 +1,9 @@
-//! Where and when the residual is largest: rows that name a sensel, a place on the skin and a moment.
+//! Largest residuals: sensel, place on the skin, and moment.
 
 use nalgebra::Vector3;
 
 use crate::comparison::quantities::WorstPlace;
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::comparison::result::Compared;
 use crate::observe::measured::{Mat, Quantity};
 
@@ -15,13 +15,13 @@ const APART: f64 = 0.1;
 const MOST_OF_ONE: usize = 3;
 
 /// The worst places of a recording, one moment for each sensel, by standard deviations of the noise where it is known.
-pub(crate) fn places(compared: &Compared, standing: &Standing) -> Vec<WorstPlace> {
-    let size = |k: usize| match standing.sigmas(k) {
-        sigmas if sigmas.is_nan() => standing.residual[k].abs(),
+pub(crate) fn places(compared: &Compared, recording_fit: &RecordingFit) -> Vec<WorstPlace> {
+    let size = |k: usize| match recording_fit.sigmas(k) {
+        sigmas if sigmas.is_nan() => recording_fit.residual[k].abs(),
         sigmas => sigmas.abs(),
     };
-    let mut order: Vec<usize> = (0..standing.residual.len())
-        .filter(|k| standing.residual[*k] != 0.0)
+    let mut order: Vec<usize> = (0..recording_fit.residual.len())
+        .filter(|k| recording_fit.residual[*k] != 0.0)
         .collect();
     order.sort_by(|a, b| size(*b).total_cmp(&size(*a)).then(a.cmp(b)));
     let mut chosen: Vec<usize> = Vec::new();
@@ -29,21 +29,24 @@ pub(crate) fn places(compared: &Compared, standing: &Standing) -> Vec<WorstPlace
         if chosen.len() == MOST {
             break;
         }
-        let quantity = |k: &usize| standing.measured.samples[*k].quantity;
+        let quantity = |k: &usize| recording_fit.measured.samples[*k].quantity;
         let alike = chosen
             .iter()
             .filter(|other| quantity(other) == quantity(&k));
-        let is_told = chosen.iter().any(|other| is_same(standing, *other, k));
+        let is_told = chosen.iter().any(|other| is_same(recording_fit, *other, k));
         if !is_told && alike.count() < MOST_OF_ONE {
             chosen.push(k);
         }
     }
-    chosen.iter().map(|k| row(compared, standing, *k)).collect()
+    chosen
+        .iter()
+        .map(|k| row(compared, recording_fit, *k))
+        .collect()
 }
 
 /// Whether two samples would tell the same: the same sensel at any time, or another quantity at about the same time.
-fn is_same(standing: &Standing, a: usize, b: usize) -> bool {
-    let samples = &standing.measured.samples;
+fn is_same(recording_fit: &RecordingFit, a: usize, b: usize) -> bool {
+    let samples = &recording_fit.measured.samples;
     if samples[a].quantity != samples[b].quantity {
         return false;
     }
@@ -53,14 +56,14 @@ fn is_same(standing: &Standing, a: usize, b: usize) -> bool {
     ) {
         return true;
     }
-    let time = |k: usize| standing.measured.moments[samples[k].moment as usize].time_s;
-    let moments = &standing.measured.moments;
+    let time = |k: usize| recording_fit.measured.moments[samples[k].moment as usize].time_s;
+    let moments = &recording_fit.measured.moments;
     let duration = moments.last().map_or(0.0, |last| last.time_s) - moments[0].time_s;
     (time(a) - time(b)).abs() < APART * duration
 }
 
-fn row(compared: &Compared, standing: &Standing, k: usize) -> WorstPlace {
-    let measured = standing.measured;
+fn row(compared: &Compared, recording_fit: &RecordingFit, k: usize) -> WorstPlace {
+    let measured = recording_fit.measured;
     let sample = &measured.samples[k];
     let moment = &measured.moments[sample.moment as usize];
     let sensel = match sample.quantity {
@@ -95,9 +98,9 @@ fn row(compared: &Compared, standing: &Standing, k: usize) -> WorstPlace {
         position_mm: position.map(Into::into),
         vertices: position.map_or_else(Vec::new, |at| vertices(compared.skin, at, reach)),
         measured: sample.value,
-        simulated: standing.simulated[k],
-        residual: standing.residual[k],
-        sigmas: standing.sigmas(k),
+        simulated: recording_fit.simulated[k],
+        residual: recording_fit.residual[k],
+        sigmas: recording_fit.sigmas(k),
     }
 }
 

@@ -1,14 +1,14 @@
-//! Recordings that could be made: every tool of a study and a sphere that it may lack, held at every speed or in cycles.
+//! Candidate recordings: each tool of the study (and a sphere that it may lack), at every speed with a hold, or in cycles.
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::Control;
 use thenar_recordings::Study;
 use thenar_recordings::study::{Indenter, Shape, Site};
 
 use crate::design::planned_recording::Press;
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
-use crate::forward::surrogate::force_recording::Course;
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic::Elastic;
 
 /// Radius of a sphere that is asked for where the study has no other tool, over the largest in use.
@@ -21,14 +21,14 @@ const HOLD_S: f64 = 8.0;
 const CYCLES: u32 = 4;
 /// A speed that is asked for where all were alike, over the one in use.
 const FASTER: f64 = 5.0;
-/// Depth of a sphere's press over its radius, at most: the contact model answers for no more (`tool::too_deep`).
+/// Depth of a sphere's press over its radius, at most: the contact model answers for no more (`indenter::too_deep`).
 const DEEPEST: f64 = 0.5;
 /// Rest before each press where the study says none, and time to set up each, s.
 const REST_S: f64 = 120.0;
 const SETTING_UP_S: f64 = 30.0;
 /// A recording that could be made.
 #[derive(Clone)]
-pub struct Choice {
+pub struct CandidateRecording {
     /// Name in the study, if it is one of its tools.
     pub indenter: Option<String>,
     /// mm; None where it is not round.
@@ -44,7 +44,7 @@ pub struct Choice {
 }
 
 /// What was recorded so far.
-pub struct Past {
+pub struct RecordedSoFar {
     /// Name of the site.
     pub site: String,
     /// Tools in use.
@@ -69,26 +69,26 @@ fn radius_of(tool: &Indenter) -> Option<f64> {
     }
 }
 
-impl Past {
+impl RecordedSoFar {
     /// Of at least one recording.
-    pub fn of(study: &Study, courses: &[Course]) -> Past {
-        let of = |c: &Course| &study.recordings[c.recording];
+    pub fn of(study: &Study, courses: &[ForceRecording]) -> RecordedSoFar {
+        let of = |c: &ForceRecording| &study.recordings[c.recording];
         let used: Vec<String> = courses.iter().map(|c| of(c).indenter.clone()).collect();
         let tools = study.indenters.iter().filter(|i| used.contains(&i.name));
-        let mut speeds: Vec<f64> = courses.iter().map(Course::speed).collect();
+        let mut speeds: Vec<f64> = courses.iter().map(ForceRecording::speed).collect();
         speeds.retain(|s| *s > 0.0);
         speeds.sort_by(f64::total_cmp);
         speeds.dedup_by(|a, b| *a < 1.33 * *b);
-        let most = |of: &dyn Fn(&Course) -> f64| courses.iter().map(of).fold(0.0, f64::max);
+        let most = |of: &dyn Fn(&ForceRecording) -> f64| courses.iter().map(of).fold(0.0, f64::max);
         let rest = courses.iter().filter_map(|c| of(c).rest_s);
-        Past {
+        RecordedSoFar {
             site: courses
                 .first()
                 .map_or(String::new(), |c| of(c).site.clone()),
             largest: tools.filter_map(radius_of).fold(0.0, f64::max),
             speeds,
-            depth_mm: most(&Course::deepest),
-            hold_s: most(&Course::hold_s).max(HOLD_S),
+            depth_mm: most(&ForceRecording::deepest),
+            hold_s: most(&ForceRecording::hold_s).max(HOLD_S),
             rest_s: rest.reduce(f64::max).unwrap_or(REST_S),
             used,
         }
@@ -131,7 +131,7 @@ impl Past {
         &self,
         (tools, places): (&[(Indenter, bool)], &[Option<usize>]),
         contact: &dyn Fn(usize) -> f64,
-    ) -> Vec<Choice> {
+    ) -> Vec<CandidateRecording> {
         let (mut all, mut paired) = (Vec::new(), Vec::new());
         let known = tools.iter().zip(places);
         let known = known.filter_map(|(tool, place)| Some((&tool.0, tool.1, (*place)?)));
@@ -148,7 +148,7 @@ impl Past {
                     hold_s,
                     cycles,
                 };
-                let alone = Choice {
+                let alone = CandidateRecording {
                     indenter: is_own.then(|| tool.name.clone()),
                     radius_mm: radius_of(tool),
                     is_known: self.is_used(&tool.name),
@@ -220,20 +220,20 @@ impl Past {
 /// `Cancelled`.
 pub fn placed(
     (tools, site): (&[(Indenter, bool)], &Site),
-    (past, fitting): (&Past, &mut Fitting),
-    (ready, elastic, control): (&Prepared, &mut Elastic, &Control<'_>),
+    (past, replay): (&RecordedSoFar, &mut Replay),
+    (ready, elastic, control): (&PreparedStudy, &mut Elastic, &Control<'_>),
 ) -> Result<Vec<Option<usize>>, DiagnosisError> {
     let mut places = Vec::new();
     for (tool, _) in tools {
-        let observed = &fitting.replay.observed.measured;
-        let is_here = |c: &&Course| {
+        let observed = &replay.observed.measured;
+        let is_here = |c: &&ForceRecording| {
             let one = &observed[c.recording];
             one.indenter == tool.name && one.site == site.name
         };
         let known = ready.courses.iter().find(is_here).map(|c| c.place);
         places.push(match known {
             Some(place) => Some(place),
-            None => match pressed((tool, site, past), fitting, (elastic, control)) {
+            None => match pressed((tool, site, past), replay, (elastic, control)) {
                 // A tool that the skin cannot be pressed with is no advice, and no reason to say nothing.
                 Err(DiagnosisError::Cancelled) => return Err(DiagnosisError::Cancelled),
                 other => other.ok(),
@@ -245,24 +245,22 @@ pub fn placed(
 
 /// The number of the place of a tool that is placed and pressed; if that fails, nothing is changed.
 fn pressed(
-    (tool, site, past): (&Indenter, &Site, &Past),
-    fitting: &mut Fitting,
+    (tool, site, past): (&Indenter, &Site, &RecordedSoFar),
+    replay: &mut Replay,
     (elastic, control): (&mut Elastic, &Control<'_>),
 ) -> Result<usize, DiagnosisError> {
     let quiet = Control {
         cancelled: control.cancelled,
         progress: &|_, _| {},
     };
-    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
-    let place = fitting
-        .replay
-        .add_place((tool, site), past.depth_of(tool))?;
+    let g0 = replay.tissue.materials[0].g0_mpa;
+    let place = replay.add_place((tool, site), past.depth_of(tool))?;
     let mut tried = elastic.clone();
-    let done = tried.add(fitting, g0, &quiet);
-    fitting.replay.set_effects(&[], &quiet)?;
+    let done = tried.add(replay, g0, &quiet);
+    replay.set_effects(&[], &quiet)?;
     match done {
         Ok(()) => *elastic = tried,
-        Err(_) => fitting.replay.drop_place(),
+        Err(_) => replay.drop_place(),
     }
     done.map(|()| place)
 }
@@ -274,7 +272,7 @@ mod tests {
 
     /// Which spheres are pressed in turn where these are in use, in the study's order of `radii` (mm), and in how many ways each.
     fn pairs(radii: [(&str, f64); 3], used: &[&str]) -> BTreeMap<String, usize> {
-        let past = Past {
+        let past = RecordedSoFar {
             site: String::new(),
             used: used.iter().map(|name| (*name).to_owned()).collect(),
             largest: 28.0,
@@ -291,7 +289,7 @@ mod tests {
         let contact = |place: usize| (radii[place].1 * 0.8).sqrt();
         let places = [Some(0), Some(1), Some(2)];
         let all = past.choices((&radii.map(sphere), &places), &contact);
-        let in_turn = |c: Choice| {
+        let in_turn = |c: CandidateRecording| {
             let mut both = [c.indenter?, c.in_turn_with?];
             both.sort();
             Some(both.join("+"))
@@ -306,7 +304,7 @@ mod tests {
     /// 5 and 28 mm differ more than either and 11, and 11 differs more from 28 than from 5. Each pair comes once in each way: at two
     /// speeds, and in cycles.
     #[test]
-    fn two_tools_that_were_not_used_are_pressed_in_turn_where_they_differ_more() {
+    fn alternating_candidates_pair_the_tools_that_differ_most() {
         let radii = [("large", 11.0), ("small", 5.0), ("wide", 28.0)];
         for turn in 0..3 {
             let mut radii = radii;

@@ -1,24 +1,24 @@
-//! What a recording that is yet to be made promises: how often it would settle between two explanations.
+//! Expected discrimination of a planned recording between two models (Box and Hill 1967): how often it would settle between them.
 //!
 //! Both explanations foretell the recording. What keeps one from imitating the other is the difference that is left once it is
 //! fitted anew to all recordings, the new ones among them: to first order a quadratic form of the foretold difference, with the
 //! information of what was recorded so far (Gauss-Newton) and the recording's own gain and first touch taken out (Schur
 //! complement). If the first explanation is true, the lead of its evidence grows by a normal number of mean `d / 2` and
 //! variance `d`, `d` being that squared difference in units of the noise, tempered, since forms are not true. What the
-//! recordings leave open of the true one's numbers (`possible.rs`) is open in what it foretells: then it, too, has to be fitted anew,
+//! recordings leave open of the true one's numbers (`profile.rs`) is open in what it foretells: then it, too, has to be fitted anew,
 //! and what that leaves is taken off its lead.
 
 use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use crate::design::planned_recording::{Fresh, Press, course};
-use crate::design::profile_likelihood::Possible;
+use crate::design::planned_recording::{Press, RecordingNoise, course};
+use crate::design::profile_likelihood::ProfilePoint;
 use crate::distributions::log_normal_cdf;
-use crate::forward::surrogate::force_recording::Course;
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::prepared_study::Prepared;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic::Elastic;
 use crate::parameters::surrogate_parameter::Coordinate;
 use crate::selection::scored::Scored;
@@ -28,17 +28,17 @@ use crate::selection::scored::Scored;
 const UNTRUE: f64 = 1.5;
 
 /// What recordings that are yet to be made come to under either of two explanations.
-pub struct Promise {
+pub struct Discrimination {
     /// With the first true, and with the second.
-    both: [Foreseen; 2],
+    both: [Outcome; 2],
     /// Evidence of the first over that of the second, so far.
     lead: f64,
     /// What deviances are divided by.
-    temper: f64,
+    overdispersion: f64,
 }
 
 /// What comes of an explanation that is true.
-struct Foreseen {
+struct Outcome {
     /// How probable each of its possible numbers is.
     shares: Vec<f64>,
     /// What the other explanation leaves of it, and it itself with the numbers that it has so far.
@@ -46,14 +46,19 @@ struct Foreseen {
     own: Squares,
 }
 
-impl Foreseen {
-    /// How often the lead comes to `needed` from `lead`, with deviances over `temper`.
-    fn probability(&self, presses: u32, (lead, needed, temper): (f64, f64, f64)) -> Option<f64> {
+impl Outcome {
+    /// How often the lead comes to `needed` from `lead`, with deviances over `overdispersion`.
+    fn probability(
+        &self,
+        presses: u32,
+        (lead, needed, overdispersion): (f64, f64, f64),
+    ) -> Option<f64> {
         let (rival, own) = (self.rival.left(presses)?, self.own.left(presses)?);
         let mut sum = 0.0;
         for (share, (rival, own)) in self.shares.iter().zip(rival.iter().zip(&own)) {
-            let spread = (rival + own) / temper;
-            let z = (lead + 0.5 * (rival - own) / temper - needed) / spread.max(1e-9).sqrt();
+            let spread = (rival + own) / overdispersion;
+            let z =
+                (lead + 0.5 * (rival - own) / overdispersion - needed) / spread.max(1e-9).sqrt();
             sum += share * libm::exp(log_normal_cdf(z));
         }
         Some(sum)
@@ -83,34 +88,35 @@ impl Squares {
     }
 }
 
-impl Promise {
+impl Discrimination {
     /// How often the lead of the true one comes to `needed`, nats, if each press is made that many times.
     pub fn probability(&self, presses: u32, needed: f64) -> Option<f64> {
         let first = 1.0 / (1.0 + libm::exp(-self.lead));
-        let temper = self.temper * UNTRUE;
-        let of = |k: usize, lead: f64| self.both[k].probability(presses, (lead, needed, temper));
+        let overdispersion = self.overdispersion * UNTRUE;
+        let of =
+            |k: usize, lead: f64| self.both[k].probability(presses, (lead, needed, overdispersion));
         Some(first * of(0, self.lead)? + (1.0 - first) * of(1, -self.lead)?)
     }
 }
 
 /// What is held against each other, and with what.
-pub struct Between<'a> {
+pub struct ModelPair<'a> {
     /// The recordings so far.
-    pub ready: &'a Prepared,
+    pub ready: &'a PreparedStudy,
     /// Tables, also of tools that were not used so far.
     pub elastic: &'a Elastic,
     /// Two explanations.
     pub two: [&'a Scored; 2],
     /// What the numbers of each may be.
-    pub possible: [Vec<Possible>; 2],
+    pub profile: [Vec<ProfilePoint>; 2],
     /// What deviances are divided by.
-    pub temper: f64,
+    pub overdispersion: f64,
 }
 
-impl Between<'_> {
+impl ModelPair<'_> {
     /// What presses that are made in turn promise, each with a tool of its own; None where the earlier recordings leave a fit without an
     /// answer.
-    pub fn promise(&self, presses: &[Press]) -> Option<Promise> {
+    pub fn discrimination(&self, presses: &[Press]) -> Option<Discrimination> {
         let ready = self.ready;
         let number = ready.courses.len();
         let (mut courses, mut shared) = (ready.courses.clone(), ready.shared.clone());
@@ -124,51 +130,52 @@ impl Between<'_> {
         }
         shared.extend_from_slice(&of_place);
         shared.extend(all_own);
-        let screen = Screen {
+        let surrogate = Surrogate {
             courses: &courses,
             elastic: self.elastic,
             shared,
-            ..ready.screen()
+            ..ready.surrogate()
         };
         let new = (number, ready.shared.len(), &of_place[..]);
-        let foretold = |k: usize| Foretold::new(&screen, (self.two[k], &self.possible[k]), new);
-        let [a, b] = [foretold(0)?, foretold(1)?];
-        let noise = |(course, forces): (&Course, &Vec<f64>)| {
+        let predicted =
+            |k: usize| PredictedRecordings::new(&surrogate, (self.two[k], &self.profile[k]), new);
+        let [a, b] = [predicted(0)?, predicted(1)?];
+        let noise = |(course, forces): (&ForceRecording, &Vec<f64>)| {
             let most = forces.iter().fold(0.0, |m, f| f64::max(m, *f));
-            Fresh::new(ready, course, ready.noise_share() * most)
+            RecordingNoise::new(ready, course, ready.noise_share() * most)
         };
-        let noise: Vec<Fresh> = courses[number..]
+        let noise: Vec<RecordingNoise> = courses[number..]
             .iter()
             .zip(a.forces())
             .map(noise)
             .collect();
-        Some(Promise {
+        Some(Discrimination {
             both: [a.beside(&b, &noise), b.beside(&a, &noise)],
-            lead: self.two[0].evidence - self.two[1].evidence,
-            temper: self.temper,
+            lead: self.two[0].qaic_gain - self.two[1].qaic_gain,
+            overdispersion: self.overdispersion,
         })
     }
 }
 
 /// An explanation's forces on new recordings, and how they change with what is fitted.
-struct Foretold {
+struct PredictedRecordings {
     /// By recording, with all that its numbers may be, and how probable these are; the optimum's are the first.
-    possible: Vec<(f64, Vec<Vec<f64>>)>,
+    profile: Vec<(f64, Vec<Vec<f64>>)>,
     /// By recording, slopes by coordinate; and of the recording's own coordinates times what these scatter by.
     slopes: Vec<Vec<Vec<f64>>>,
     own: Vec<Vec<Vec<f64>>>,
     known: DMatrix<f64>,
 }
 
-impl Foretold {
+impl PredictedRecordings {
     /// On the recordings from number `new` of the screen, whose coordinates stand after the `first` of earlier ones.
     fn new(
-        screen: &Screen<'_>,
-        (of, possible): (&Scored, &[Possible]),
+        surrogate: &Surrogate<'_>,
+        (of, profile): (&Scored, &[ProfilePoint]),
         (new, first, of_place): (usize, usize, &[Coordinate]),
-    ) -> Option<Foretold> {
-        let model = Model::new(screen, &of.mechanisms);
-        let last = screen.shared.len();
+    ) -> Option<PredictedRecordings> {
+        let model = Model::new(surrogate, &of.mechanisms);
+        let last = surrogate.shared.len();
         let longer = |known: &[f64]| {
             let mut at = known[..first].to_vec();
             at.resize(last, 0.0);
@@ -176,21 +183,21 @@ impl Foretold {
             at
         };
         let forces = |at: &[f64]| -> Vec<Vec<f64>> {
-            let set = model.setting(screen, at);
-            let all = new..screen.courses.len();
-            all.map(|course| screen.forces(&model, &set, course))
+            let set = model.setting(surrogate, at);
+            let all = new..surrogate.courses.len();
+            all.map(|course| surrogate.forces(&model, &set, course))
                 .collect()
         };
-        let one = |p: &Possible| (p.share, forces(&longer(&p.at)));
-        let possible: Vec<_> = possible.iter().map(one).collect();
-        let (at, best) = (longer(&of.refit.at), &possible.first()?.1);
+        let one = |p: &ProfilePoint| (p.share, forces(&longer(&p.at)));
+        let profile: Vec<_> = profile.iter().map(one).collect();
+        let (at, best) = (longer(&of.refit.at), &profile.first()?.1);
         let own = first + of_place.len()..last;
         let slopes = |(k, forces): (usize, &Vec<f64>)| {
-            slopes((screen, &model, &at), (new + k, forces), &own)
+            slopes((surrogate, &model, &at), (new + k, forces), &own)
         };
         let (slopes, own) = best.iter().enumerate().map(slopes).unzip();
-        Some(Foretold {
-            possible,
+        Some(PredictedRecordings {
+            profile,
             slopes,
             own,
             known: known(&of.refit.covariance, (first, of_place))?,
@@ -199,20 +206,20 @@ impl Foretold {
 
     /// At the optimum, by recording.
     fn forces(&self) -> &[Vec<f64>] {
-        &self.possible[0].1
+        &self.profile[0].1
     }
 
     /// What comes if this one is true, of all recordings together.
-    fn beside(&self, rival: &Foretold, noise: &[Fresh]) -> Foreseen {
-        Foreseen {
-            shares: self.possible.iter().map(|(share, _)| *share).collect(),
-            rival: rival.squares(&self.possible, noise),
-            own: self.squares(&self.possible, noise),
+    fn beside(&self, rival: &PredictedRecordings, noise: &[RecordingNoise]) -> Outcome {
+        Outcome {
+            shares: self.profile.iter().map(|(share, _)| *share).collect(),
+            rival: rival.squares(&self.profile, noise),
+            own: self.squares(&self.profile, noise),
         }
     }
 
     /// Squares if this one is fitted to each of what may be true.
-    fn squares(&self, truths: &[(f64, Vec<Vec<f64>>)], noise: &[Fresh]) -> Squares {
+    fn squares(&self, truths: &[(f64, Vec<Vec<f64>>)], noise: &[RecordingNoise]) -> Squares {
         let (m, n) = (truths.len(), self.known.nrows());
         let mut sum = DMatrix::zeros(m + n, m + n);
         for (course, noise) in noise.iter().enumerate() {
@@ -236,13 +243,13 @@ impl Foretold {
 /// Slopes of a recording's forces by all coordinates but the numbers `own`, and by those of `own` that move them, times what these
 /// scatter by.
 fn slopes(
-    (screen, model, at): (&Screen<'_>, &Model<'_>, &[f64]),
+    (surrogate, model, at): (&Surrogate<'_>, &Model<'_>, &[f64]),
     (course, forces): (usize, &[f64]),
     own: &Range<usize>,
 ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let (mut shared, mut others) = (Vec::new(), Vec::new());
     for (number, coordinate) in model.coordinates.iter().enumerate() {
-        let found = screen.slopes((model, at), (number, course), forces);
+        let found = surrogate.slopes((model, at), (number, course), forces);
         if !own.contains(&number) {
             shared.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
         } else if let Some(slope) = found {
@@ -277,7 +284,7 @@ mod tests {
 
     /// Presses stacked with a gain and touch each, fitted by least squares: what is left is what the quadratic form says.
     #[test]
-    fn what_is_left_is_what_a_fit_to_all_presses_leaves() {
+    fn expected_misfit_equals_refit_of_all_presses() {
         let (rows, fitted, own, presses) = (30, 4, 2, 5);
         let mut random = Random::new(7);
         let mut column = || -> Vec<f64> { (0..rows).map(|_| random.uniform() - 0.5).collect() };
@@ -285,16 +292,16 @@ mod tests {
         let slopes: Vec<Vec<f64>> = (0..fitted).map(|_| column()).collect();
         let owns: Vec<Vec<f64>> = (0..own).map(|_| column()).collect();
         let known = DMatrix::from_diagonal(&DVector::from_vec(vec![0.3, 1.0, 2.0, 5.0]));
-        let noise = Fresh::white(0.1, rows);
-        let foretold = Foretold {
-            possible: vec![(1.0, vec![vec![0.0; rows]])],
+        let noise = RecordingNoise::white(0.1, rows);
+        let predicted = PredictedRecordings {
+            profile: vec![(1.0, vec![vec![0.0; rows]])],
             slopes: vec![slopes.clone()],
             own: vec![owns.clone()],
             known: known.clone(),
         };
         let nothing = vec![0.0; rows];
         let truths = [nothing, off.clone()].map(|forces| (0.5, vec![forces]));
-        let squares = foretold.squares(&truths, &[noise]);
+        let squares = predicted.squares(&truths, &[noise]);
         let width = fitted + own * presses;
         let mut stacked = DMatrix::zeros(rows * presses + width, width);
         let mut side = DVector::zeros(rows * presses + width);
@@ -327,41 +334,41 @@ mod tests {
 
     /// A lead that grows by a normal number of mean d / 2 and variance d.
     #[test]
-    fn the_probability_is_that_of_the_lead() {
+    fn discrimination_probability_is_normal_in_the_lead() {
         let plain = |off: &[f64]| Squares {
             off: off.to_vec(),
             across: DMatrix::zeros(1, off.len()),
             slopes: DMatrix::zeros(1, 1),
             known: DMatrix::identity(1, 1),
         };
-        let foreseen = |shares: &[f64], rival: &[f64], own: &[f64]| Foreseen {
+        let foreseen = |shares: &[f64], rival: &[f64], own: &[f64]| Outcome {
             shares: shares.to_vec(),
             rival: plain(rival),
             own: plain(own),
         };
         let four = 4.0 * UNTRUE;
-        let promise = |lead: f64| Promise {
+        let discrimination = |lead: f64| Discrimination {
             both: [(); 2].map(|()| foreseen(&[1.0], &[four], &[0.0])),
             lead,
-            temper: 1.0,
+            overdispersion: 1.0,
         };
-        let even = promise(0.0).probability(2, 4.0).unwrap();
+        let even = discrimination(0.0).probability(2, 4.0).unwrap();
         assert!(
             (even - 0.5).abs() < 1e-6,
             "d = 8 leads by 4 on average: {even}"
         );
         // Twelve presses: d = 48, mean 24, deviation 6.93; a normal number above (4 - 24) / 6.93 = -2.887 in 99.805 % of cases.
-        let sure = promise(0.0).probability(12, 4.0).unwrap();
+        let sure = discrimination(0.0).probability(12, 4.0).unwrap();
         assert!((sure - 0.998_05).abs() < 2e-5, "{sure}");
-        let never = Promise {
+        let never = Discrimination {
             both: [(); 2].map(|()| foreseen(&[1.0], &[0.0], &[0.0])),
-            ..promise(0.0)
+            ..discrimination(0.0)
         };
         assert!(never.probability(12, 4.0).unwrap() < 1e-9);
         // Numbers that are open: half of the time as above, half of the time as much as the rival leaves is left by the true one itself.
-        let open = Promise {
+        let open = Discrimination {
             both: [(); 2].map(|()| foreseen(&[0.5, 0.5], &[four, four], &[0.0, four])),
-            ..promise(0.0)
+            ..discrimination(0.0)
         };
         // Then the lead stays 0 on average, and 4 is one deviation, 4, away: 15.87 % of cases.
         let both = open.probability(2, 4.0).unwrap();

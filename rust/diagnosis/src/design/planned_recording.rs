@@ -1,11 +1,11 @@
-//! A recording that is yet to be made: its moments, and its noise.
+//! A planned recording: its moments, and its noise model.
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::forward::surrogate::force_recording::{Course, Row};
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::noise::channel::Channel;
-use crate::noise::deviations::carry;
+use crate::noise::deviations::autocorrelation;
 use crate::observe::measured::Phase;
 
 /// Readings on every leg of a recording, and at its end without contact.
@@ -29,22 +29,22 @@ pub struct Press {
 }
 
 /// The noise of a recording: what a reading adds to what the one before it said.
-pub struct Fresh {
+pub struct RecordingNoise {
     sigma: f64,
     /// By reading from the second, what it remembers, and what is left to divide by.
     carried: Vec<(f64, f64)>,
 }
 
-impl Fresh {
+impl RecordingNoise {
     /// Of a course in a study, with a standard deviation of `sigma` (N).
-    pub fn new(ready: &Prepared, course: &Course, sigma: f64) -> Fresh {
+    pub fn new(ready: &PreparedStudy, course: &ForceRecording, sigma: f64) -> RecordingNoise {
         let channel = Channel::Force as usize;
         let (memory_s, step) = (ready.noise.memory_s[channel], ready.noise.step[channel]);
         let one = |pair: &[Row]| {
-            let carried = carry(pair[1].time_s - pair[0].time_s, memory_s);
+            let carried = autocorrelation(pair[1].time_s - pair[0].time_s, memory_s);
             (carried, step * (1.0 - carried * carried).sqrt())
         };
-        Fresh {
+        RecordingNoise {
             sigma,
             carried: course.rows.windows(2).map(one).collect(),
         }
@@ -52,8 +52,8 @@ impl Fresh {
 
     /// Noise of which each reading knows nothing of the others.
     #[cfg(test)]
-    pub fn white(sigma: f64, readings: usize) -> Fresh {
-        Fresh {
+    pub fn white(sigma: f64, readings: usize) -> RecordingNoise {
+        RecordingNoise {
             sigma,
             carried: vec![(0.0, 1.0); readings - 1],
         }
@@ -89,7 +89,7 @@ impl Fresh {
 }
 
 /// The moments of a recording that is yet to be made, last of the session.
-pub fn course(press: &Press, number: usize) -> Course {
+pub fn course(press: &Press, number: usize) -> ForceRecording {
     let mut rows = vec![row((0.0, 0.0), Phase::Apart, 0)];
     let leave = -AFTER.1 * press.depth_mm;
     let mut leg = |phase: Phase, (to_mm, seconds): (f64, f64), (count, cycle): (usize, u32)| {
@@ -118,7 +118,7 @@ pub fn course(press: &Press, number: usize) -> Course {
         (leave, AFTER.0),
         (READINGS.1, press.cycles.saturating_sub(1)),
     );
-    Course {
+    ForceRecording {
         recording: usize::MAX,
         name: String::new(),
         protocol: String::new(),
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_press_goes_in_holds_comes_out_and_rests() {
+    fn planned_press_loads_holds_unloads_and_rests() {
         let press = Press {
             place: 0,
             depth_mm: 0.8,

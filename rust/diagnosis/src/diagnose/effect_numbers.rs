@@ -1,14 +1,14 @@
-//! The numbers of a screened mechanism in the catalogue's terms.
+//! Estimates of a fitted effect in the catalogue's terms and units, with intervals.
 
 use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 
 use crate::diagnose::findings::{Number, Switched};
-use crate::forward::surrogate::effect_laws::RAMP;
-use crate::forward::surrogate::mechanism::{Acts, DeformationMeasure, Mechanism};
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::mechanism::{DeformationMeasure, Law, Mechanism};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
+use crate::forward::surrogate::tissue_laws::RAMP;
 use crate::forward::tables::elastic_table::radius;
 use crate::forward::tables::stiff_skin::{ratio, thickness};
 use crate::least_squares::surrogate_fit::Refit;
@@ -34,9 +34,9 @@ pub struct Free {
 
 impl Free {
     /// Those of mechanism `number` of a model.
-    pub fn of(ready: &Prepared, scored: &Scored, number: usize) -> Free {
-        let screen = ready.screen();
-        let model = Model::new(&screen, &scored.mechanisms);
+    pub fn of(ready: &PreparedStudy, scored: &Scored, number: usize) -> Free {
+        let surrogate = ready.surrogate();
+        let model = Model::new(&surrogate, &scored.mechanisms);
         let all = model.coordinates.iter().enumerate();
         let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
         let own: Vec<usize> = own.map(|(k, _)| k).collect();
@@ -69,7 +69,7 @@ impl Free {
 }
 
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
-pub fn told(ready: &Prepared, scored: &Scored, number: usize) -> (Vec<Number>, Switched) {
+pub fn told(ready: &PreparedStudy, scored: &Scored, number: usize) -> (Vec<Number>, Switched) {
     let mechanism = &scored.mechanisms[number];
     let free = Free::of(ready, scored, number);
     let effect = mechanism.effect;
@@ -102,15 +102,15 @@ fn list(effect: Effect, amplitude: Three, numbers: &[Named]) -> Vec<Number> {
 
 /// Choices that the catalogue leaves, by name.
 fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
-    let mut choices = match &mechanism.acts {
-        Acts::Stiffens(measure, growth) => {
+    let mut choices = match &mechanism.law {
+        Law::Stiffening(measure, growth) => {
             let measure = match measure {
                 DeformationMeasure::Depth => "depth",
                 DeformationMeasure::Strain => "strain",
             };
             vec![("law", growth.law()), ("measure", measure)]
         }
-        Acts::Late | Acts::Offset => vec![("channel", "force")],
+        Law::Delay | Law::Offset => vec![("channel", "force")],
         _ => Vec::new(),
     };
     let known = mechanism.effect.entry().choices;
@@ -124,14 +124,14 @@ type Named = (&'static str, f64, f64, f64);
 const WHOLE: Three = (1.0, 1.0, 1.0);
 
 /// Amplitude and shape numbers, each with its interval.
-fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<Named>) {
-    match &mechanism.acts {
-        Acts::Fades {
+fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, Vec<Named>) {
+    match &mechanism.law {
+        Law::Relaxation {
             spectrum: Spectrum::Free(lengths),
             ..
         } => travelling(lengths, free),
-        Acts::Fades { .. } => fading(ready, mechanism.effect, free),
-        Acts::Softens {
+        Law::Relaxation { .. } => fading(ready, mechanism.effect, free),
+        Law::Softening {
             travel_mm,
             recovery_s,
         } => {
@@ -142,14 +142,14 @@ fn values(ready: &Prepared, mechanism: &Mechanism, free: &Free) -> (Three, Vec<N
             ];
             (shares, shape)
         }
-        Acts::Clings { .. } => {
+        Law::Adhesion { .. } => {
             let work = interval(free, &|x| work_of(ready, x.max(0.0)));
             let work = ("work_j_per_m2", work.0, work.1, work.2);
             (WHOLE, vec![work, reach(ready, free)])
         }
-        Acts::Tabled(form) if mechanism.effect == Effect::StiffSkin => (WHOLE, skin(*form, free)),
-        acts => {
-            let told = one(ready, (mechanism.effect, acts)).map(|(name, scale)| {
+        Law::Tabulated(form) if mechanism.effect == Effect::StiffSkin => (WHOLE, skin(*form, free)),
+        law => {
+            let told = one(ready, (mechanism.effect, law)).map(|(name, scale)| {
                 let three = interval(free, &*scale);
                 (name, three.0, three.1, three.2)
             });
@@ -170,7 +170,7 @@ fn skin(form: usize, free: &Free) -> Vec<Named> {
 }
 
 /// Range of a grip.
-fn reach(ready: &Prepared, free: &Free) -> Named {
+fn reach(ready: &PreparedStudy, free: &Free) -> Named {
     let (log, error) = free.sum(&[0.0, 1.0]);
     let range = libm::exp(log) * ready.scales.deepest * RAMP;
     let factor = libm::exp(HALF * error).min(MOST);
@@ -189,39 +189,41 @@ type Scale<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
 
 /// The one number of a mechanism that has no other: its name, and its value in the catalogue's terms.
 fn one<'a>(
-    ready: &'a Prepared,
-    (effect, acts): (Effect, &Acts),
+    ready: &'a PreparedStudy,
+    (effect, law): (Effect, &Law),
 ) -> Option<(&'static str, Scale<'a>)> {
     let own = ready.base_material;
     let (least, most) = ready.scales.forces;
-    let (name, scale): (_, Scale<'a>) = match *acts {
-        Acts::Tabled(_) if effect == Effect::Bone => (
+    let (name, scale): (_, Scale<'a>) = match *law {
+        Law::Tabulated(_) if effect == Effect::Bone => (
             "thickness_mm",
             Box::new(move |x| own.thickness_mm * libm::exp(x)),
         ),
-        Acts::Tabled(_) => (
+        Law::Tabulated(_) => (
             "poisson_ratio",
             Box::new(move |x| own.poisson_ratio - x.max(0.0)),
         ),
-        Acts::Stiffens(measure, growth) => {
+        Law::Stiffening(measure, growth) => {
             let (name, most) = match measure {
                 DeformationMeasure::Depth => ("reference_depth_mm", ready.scales.deepest),
-                DeformationMeasure::Strain => ("reference_strain", ready.screen().largest_strain()),
+                DeformationMeasure::Strain => {
+                    ("reference_strain", ready.surrogate().largest_strain())
+                }
             };
             (name, Box::new(move |x| most * growth.reference(x)))
         }
-        Acts::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
-        Acts::Offset => ("offset_n", Box::new(|x| x)),
+        Law::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
+        Law::Offset => ("offset_n", Box::new(|x| x)),
         // Mean rate over the first ten times the creep's own time.
-        Acts::Drifts { time_s } => (
+        Law::Drift { time_s } => (
             "rate_n_per_min",
             Box::new(move |x| x * libm::log1p(10.0) / (10.0 * time_s) * 60.0),
         ),
-        Acts::Saturates(_) => ("ceiling_n", Box::new(move |x| most * libm::exp(x))),
-        Acts::Blind(_) => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
-        Acts::Yields => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
-        Acts::Late => ("delay_s", Box::new(|x| x)),
-        Acts::Fades { .. } | Acts::Softens { .. } | Acts::Clings { .. } => return None,
+        Law::Saturation(_) => ("ceiling_n", Box::new(move |x| most * libm::exp(x))),
+        Law::Floor(_) => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
+        Law::Compliance => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
+        Law::Delay => ("delay_s", Box::new(|x| x)),
+        Law::Relaxation { .. } | Law::Softening { .. } | Law::Adhesion { .. } => return None,
     };
     Some((name, scale))
 }
@@ -230,7 +232,7 @@ fn one<'a>(
 const OUTER: f64 = 1.090_8;
 
 /// Amplitude and times of a load that fades by a smooth spectrum.
-fn fading(ready: &Prepared, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
+fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
     // A period so many widths from the median, and its interval.
     let period = |widths: f64| {
         let (log, error) = free.sum(&[0.0, 1.0, widths]);
@@ -287,7 +289,7 @@ fn within((share, error): (f64, f64), scale: f64) -> Three {
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits
 /// of JKR and DMT, with `R = a^2 / d`.
-fn work_of(ready: &Prepared, share: f64) -> f64 {
+fn work_of(ready: &PreparedStudy, share: f64) -> f64 {
     let deepest = ready.scales.deepest;
     let radii = ready.elastic.places.iter().map(|p| radius(p, deepest));
     let tool = radii.fold(1e-3, f64::max).powi(2) / deepest;
@@ -300,7 +302,7 @@ mod tests {
 
     /// By a sum of a million steps.
     #[test]
-    fn outer_thirds_of_a_normal_law_lie_so_far_out() {
+    fn outer_third_mean_of_a_normal_distribution() {
         let (mut weights, mut sums) = ([0.0; 3], [0.0; 3]);
         let at = |n: i32| -8.0 + 16.0 * (f64::from(n) + 0.5) / 1e6;
         let whole: f64 = (0..1_000_000)
@@ -321,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn an_amplitude_that_only_says_whole_is_left_out_beside_other_numbers() {
+    fn unit_amplitude_is_omitted_beside_other_numbers() {
         let names = |amplitude: Three, numbers: &[Named]| -> Vec<&str> {
             let told = list(Effect::StiffSkin, amplitude, numbers);
             told.iter().map(|number| number.name).collect()
@@ -334,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_a_sum_takes_what_errors_share() {
+    fn standard_error_of_a_sum_includes_covariance() {
         let refit = Refit {
             at: vec![7.0, 1.0, 2.0],
             deviance: 0.0,

@@ -1,4 +1,4 @@
-//! What a diagnosis says: verdict, findings with numbers, place and time, rivals, gain, and what to record next.
+//! Types of a diagnosis: verdict, findings with numbers, place and time, rivals, and the suggested recording.
 
 use crate::comparison::result::Comparison;
 use crate::diagnose::unlisted_finding::Unlisted;

@@ -1,13 +1,13 @@
-//! Decides what may be said: detection, adequacy, rivals within reach, and what the recordings could test at all.
+//! Gates of the verdict: detection, adequacy, lead over rivals, and what the recordings could test at all.
 
 use thenar_contact::effects::Effect;
 
-use crate::checks::heteroscedasticity::restless;
+use crate::checks::heteroscedasticity::unmodeled_repeat_noise;
 use crate::diagnose::findings::Verdict;
 use crate::diagnose::pair_gates::{CLOCKS, is_adequate, is_pair, is_static};
 use crate::diagnose::wording::effect_in_words;
 use crate::forward::surrogate::mechanism::Mechanism;
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic_table::radius;
 use crate::selection::scored::{Rungs, Scored};
 
@@ -27,7 +27,7 @@ const LEAD: (f64, f64) = (3.0, 4.4);
 /// a blister at least 0.22 (calibration).
 const UNLISTED: f64 = 0.13;
 /// Evidence of a listed effect from which unsteady skin does not keep it from being named.
-const BEYOND_UNSTEADY: f64 = 60.0;
+const BEYOND_HETEROSCEDASTIC: f64 = 60.0;
 
 /// Ratio of contact radii from which two sizes are two: a clock that grows as the area is then twice as slow.
 const SIZES: f64 = 1.4;
@@ -52,7 +52,7 @@ pub struct Decision<'a> {
 }
 
 /// Decides from what the rungs found: the gates in their order, the first that is shut speaks.
-pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
+pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     if ready.noise.degrees.is_none() {
         let reason = format!(
             "no protocol was repeated, so that noise cannot be told from what is missing; {}",
@@ -61,11 +61,13 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         return silent(Verdict::InsufficientData, &reason);
     }
     let best = rungs.singles.first();
-    let is_clear = best.is_some_and(|b| b.evidence > BEYOND_UNSTEADY);
-    if let Some(reason) = restless(&ready.noise, rungs.unsteady).filter(|_| !is_clear) {
+    let is_clear = best.is_some_and(|b| b.qaic_gain > BEYOND_HETEROSCEDASTIC);
+    if let Some(reason) =
+        unmodeled_repeat_noise(&ready.noise, rungs.heteroscedasticity).filter(|_| !is_clear)
+    {
         return silent(Verdict::Unlisted, &reason);
     }
-    match best.filter(|b| b.evidence >= needed(&b.mechanisms[0])) {
+    match best.filter(|b| b.qaic_gain >= needed(&b.mechanisms[0])) {
         None => undetected(ready, rungs),
         Some(best) => paired(rungs).unwrap_or_else(|| alone(ready, rungs, best)),
     }
@@ -83,14 +85,14 @@ fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
 
 /// What one would look at first, where the noise is not known.
 fn suspected(rungs: &Rungs) -> String {
-    let most = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    let most = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);
     if most < SUSPECTED.0 {
         return "beyond the parameters nothing is suspected".to_owned();
     }
     let near = rungs
         .singles
         .iter()
-        .filter(|s| s.evidence > SUSPECTED.1 * most);
+        .filter(|s| s.qaic_gain > SUSPECTED.1 * most);
     let mut names: Vec<String> = near
         .map(|s| effect_in_words(s.mechanisms[0].effect.name()))
         .collect();
@@ -103,8 +105,8 @@ fn suspected(rungs: &Rungs) -> String {
 }
 
 /// Nothing listed is there: nothing at all, or something unlisted.
-pub fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
-    let left = rungs.base.coherent / rungs.samples as f64;
+pub fn undetected<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
+    let left = rungs.base.lack_of_fit / rungs.samples as f64;
     if left > UNLISTED {
         return silent(
             Verdict::Unlisted,
@@ -147,7 +149,7 @@ fn paired(rungs: &Rungs) -> Option<Decision<'_>> {
 }
 
 /// One effect that was detected: named, or one of several, or not enough.
-fn alone<'a>(ready: &Prepared, rungs: &'a Rungs, best: &'a Scored) -> Decision<'a> {
+fn alone<'a>(ready: &PreparedStudy, rungs: &'a Rungs, best: &'a Scored) -> Decision<'a> {
     if !is_adequate(best, rungs) {
         return silent(
             Verdict::Unlisted,
@@ -177,7 +179,7 @@ fn alone<'a>(ready: &Prepared, rungs: &'a Rungs, best: &'a Scored) -> Decision<'
 }
 
 /// Nothing is missing, with the study's own parameters or with others.
-fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
+fn nothing(ready: &PreparedStudy, rungs: &Rungs) -> Verdict {
     let at = &rungs.base.refit.at;
     let moved = (0..2).any(|k| {
         let start = ready.shared[k].start;
@@ -193,7 +195,7 @@ fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
 
 /// True if a rival's evidence is within reach.
 fn within(best: &Scored, rival: &Scored) -> bool {
-    lead(best, rival).is_some_and(|lead| best.evidence - rival.evidence < lead)
+    lead(best, rival).is_some_and(|lead| best.qaic_gain - rival.qaic_gain < lead)
 }
 
 /// Lead in evidence from which one explanation stands before a rival; None if they are the same.
@@ -228,7 +230,7 @@ pub fn opponents<'a>(rungs: &'a Rungs, pair: [&str; 2]) -> Option<[&'a Scored; 2
 
 /// True if only a second contact size could tell two names apart, and there is none: a clock that is fixed, and one that grows as
 /// the contact's area, differ nowhere else.
-fn is_alias(ready: &Prepared, best: &Scored, rival: &Scored) -> bool {
+fn is_alias(ready: &PreparedStudy, best: &Scored, rival: &Scored) -> bool {
     let radii = ready
         .elastic
         .places
@@ -252,7 +254,7 @@ pub fn have_sizes(radii: impl Iterator<Item = f64>) -> bool {
 }
 
 fn is_adequate_beside(rival: &Scored, best: &Scored) -> bool {
-    rival.evidence > 0.5 * best.evidence
+    rival.qaic_gain > 0.5 * best.qaic_gain
 }
 
 /// Evidence from which a mechanism is said to be there, nats.

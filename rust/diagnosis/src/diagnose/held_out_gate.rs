@@ -1,9 +1,9 @@
-//! The gate of prediction: what is named on slight evidence must predict recordings that it was not fitted to.
+//! Gate of prediction: an effect with a small QAIC gain must predict held-out recordings.
 
 use crate::diagnose::gates::{self, Decision};
 use crate::diagnose::wording::effect_in_words;
-use crate::forward::surrogate::mechanism::{Acts, Mechanism};
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::mechanism::{Law, Mechanism};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::Measured;
 use crate::selection::cross_validation::{Gain, gain};
 use crate::selection::scored::{Rungs, Scored};
@@ -18,7 +18,7 @@ const SLIGHT_FLOOR: f64 = 60.0;
 
 /// What the rungs decide, and the gain of what is named.
 pub fn decide<'a>(
-    ready: &Prepared,
+    ready: &PreparedStudy,
     rungs: &'a Rungs,
     measured: &[Measured],
     seed: u64,
@@ -28,7 +28,7 @@ pub fn decide<'a>(
         return (decision, None);
     };
     let gain = gain(ready, measured, named, seed);
-    let told = (&named.mechanisms[..], named.evidence);
+    let told = (&named.mechanisms[..], named.qaic_gain);
     let is_worse = |g: &Gain| is_refuted(told, (g.removed, g.placebo));
     match is_last(rungs, named) && gain.as_ref().is_some_and(is_worse) {
         true => (unnamed(ready, rungs, named), None),
@@ -38,14 +38,14 @@ pub fn decide<'a>(
 
 /// True if nothing else on the list could be said in a floor's place; an effect of the skin that shows slightly leads what else there is.
 fn is_last(rungs: &Rungs, named: &Scored) -> bool {
-    let is_floor = |s: &Scored| matches!(s.mechanisms[0].acts, Acts::Blind(_));
+    let is_floor = |s: &Scored| matches!(s.mechanisms[0].law, Law::Floor(_));
     let mut others = rungs.singles.iter().filter(|s| !is_floor(s));
-    let is_seen = |s: &Scored| s.evidence >= gates::needed(&s.mechanisms[0]);
+    let is_seen = |s: &Scored| s.qaic_gain >= gates::needed(&s.mechanisms[0]);
     !is_floor(named) || !others.any(is_seen)
 }
 
 /// Nothing listed is there, since what would be named does not predict.
-fn unnamed<'a>(ready: &Prepared, rungs: &'a Rungs, named: &Scored) -> Decision<'a> {
+fn unnamed<'a>(ready: &PreparedStudy, rungs: &'a Rungs, named: &Scored) -> Decision<'a> {
     let name = effect_in_words(named.mechanisms[0].effect.name());
     let reason = format!(
         "{name} would explain more than noise would, but not much more, and predicts recordings that it was not fitted to worse than nothing does"
@@ -59,16 +59,16 @@ fn unnamed<'a>(ready: &Prepared, rungs: &'a Rungs, named: &Scored) -> Decision<'
 /// True of one effect of the skin, or a floor of the sensor, that shows slightly, and with which recordings that were held out are predicted
 /// worse than without and no better than with its placebo; `removed`: share of the reducible error, with the placebo's.
 fn is_refuted(
-    (mechanisms, evidence): (&[Mechanism], f64),
+    (mechanisms, qaic_gain): (&[Mechanism], f64),
     (removed, placebo): (f64, Option<f64>),
 ) -> bool {
     let is_worse = removed <= 0.0 && placebo.is_some_and(|most| removed <= most);
     let slight = match mechanisms {
-        [one] if matches!(one.acts, Acts::Blind(_)) => SLIGHT_FLOOR,
+        [one] if matches!(one.law, Law::Floor(_)) => SLIGHT_FLOOR,
         [one] if !one.is_instrument() => SLIGHT,
         _ => 0.0,
     };
-    evidence < slight && is_worse
+    qaic_gain < slight && is_worse
 }
 
 #[cfg(test)]
@@ -79,17 +79,17 @@ mod tests {
     use crate::forward::surrogate::mechanism::Stage;
 
     #[test]
-    fn slight_evidence_of_one_effect_of_the_skin_must_predict() {
+    fn weak_skin_effect_must_predict_held_out_recordings() {
         let softening = Mechanism {
             effect: Effect::CycleSoftening,
-            acts: Acts::Softens {
+            law: Law::Softening {
                 travel_mm: 1.0,
                 recovery_s: 60.0,
             },
         };
         let offset = Mechanism {
             effect: Effect::Offset,
-            acts: Acts::Offset,
+            law: Law::Offset,
         };
         let (worse, better) = ((-0.2, Some(0.1)), (0.2, Some(0.1)));
         let one = std::slice::from_ref(&softening);
@@ -106,10 +106,10 @@ mod tests {
 
     /// A floor cuts every press, and so predicts those that it was not fitted to; one that an outlier shows does not.
     #[test]
-    fn a_floor_must_predict_unless_it_shows_clearly() {
+    fn weak_sensor_floor_must_predict_held_out_recordings() {
         let floor = [Mechanism {
             effect: Effect::Threshold,
-            acts: Acts::Blind(Stage::Last),
+            law: Law::Floor(Stage::Last),
         }];
         let worse = (-0.02, Some(0.06));
         assert!(is_refuted((&floor, 20.4), worse));

@@ -10,7 +10,7 @@ pub(crate) mod gates;
 pub(crate) mod held_out_gate;
 pub(crate) mod effect_numbers;
 pub(crate) mod findings_content;
-pub(crate) mod empirical_factor;
+pub(crate) mod detection_limits;
 pub(crate) mod wording;
 pub(crate) mod unlisted_finding;
 pub(crate) mod unlisted;
@@ -25,7 +25,6 @@ pub use findings::{
 pub use findings_json::findings_json;
 pub use unlisted_finding::{Correction, Unlisted};
 
-use crate::diagnose::pair_gates::is_pair;
 use std::sync::{Mutex, PoisonError};
 
 use thenar_contact::Control;
@@ -34,10 +33,11 @@ use thenar_recordings::Study;
 use crate::compare::compare;
 use crate::comparison::result::Comparison;
 use crate::diagnose::gates::Decision;
+use crate::diagnose::pair_gates::is_pair;
 use crate::errors::DiagnosisError;
 use crate::fit::fitting::{Fitting, Options};
-use crate::forward::surrogate::force_recording::Course;
-use crate::forward::surrogate::prepared_study::{Prepared, prepare};
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::surrogate::prepared_study::{PreparedStudy, prepare};
 use crate::parameters::surrogate_priors::form_note;
 use crate::selection::scored::Rungs;
 
@@ -75,10 +75,10 @@ pub fn diagnose(
     };
     let mut fitting = Fitting::new(study, &quiet)?;
     step(control, ("pressing the tools", 0.3))?;
-    if let Some(finer) = crate::forward::setup::refinement::refined(study, &fitting) {
+    if let Some(finer) = crate::forward::setup::refinement::refined(study, &fitting.replay) {
         fitting = Fitting::new(&finer, &quiet)?;
     }
-    let found = match prepare(study, &mut fitting, &quiet)? {
+    let found = match prepare(study, &mut fitting.replay, &quiet)? {
         Some(ready) => {
             let climb = |within: &Control<'_>| {
                 crate::selection::ladder::climb(&ready, fitting.measured(), within)
@@ -131,19 +131,24 @@ impl<'a> Parts<'a> {
 fn explained(
     study: &Study,
     (comparison, fitting): (Comparison, &mut Fitting),
-    (ready, rungs): (&Prepared, &Rungs),
+    (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
     let (decision, gain) =
         crate::diagnose::held_out_gate::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&decision.cannot_tell[..], quiet);
-    let next = crate::diagnose::next_recording::suggestions(study, fitting, (ready, rungs), asked)?;
+    let next = crate::diagnose::next_recording::suggestions(
+        study,
+        &mut fitting.replay,
+        (ready, rungs),
+        asked,
+    )?;
     let ladder = (ready, rungs, decision);
     Ok(told(study, (comparison, fitting), (ladder, next, gain)))
 }
 
 /// What the recordings could not show.
-fn untested(courses: &[Course]) -> Option<String> {
+fn untested(courses: &[ForceRecording]) -> Option<String> {
     let missing = match (
         crate::forward::surrogate::force_recording::goes_on(courses),
         crate::forward::surrogate::force_recording::unloads(courses),
@@ -158,7 +163,7 @@ fn untested(courses: &[Course]) -> Option<String> {
 }
 
 /// What was prepared, what the rungs found, and what they decide.
-type Climbed<'a> = (&'a Prepared, &'a Rungs, Decision<'a>);
+type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Decision<'a>);
 
 /// All that is said, from what was found.
 fn told(
@@ -182,9 +187,13 @@ fn told(
         names_90: crate::selection::model_weights::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
         gain,
-        smallest_seen: crate::diagnose::findings_content::smallest_seen(ready, rungs),
+        smallest_seen: crate::diagnose::detection_limits::smallest_seen(ready, rungs),
         record_next: next,
-        materials: crate::diagnose::findings_content::materials(fitting, (ready, rungs), &decision),
+        materials: crate::diagnose::findings_content::materials(
+            &fitting.replay,
+            (ready, rungs),
+            &decision,
+        ),
         effects: crate::diagnose::findings_content::effects(ready, &decision),
         rivals: crate::diagnose::findings_content::rivals(ready, rungs, &probabilities),
         curves: crate::diagnose::findings_content::curves(ready, rungs, &decision),
@@ -195,8 +204,13 @@ fn told(
         found.names_90 = Vec::new();
     }
     let mut reason = decision.reason.clone();
-    let restless = crate::checks::heteroscedasticity::restless(&ready.noise, rungs.unsteady);
-    found.notes.extend(restless.filter(|told| *told != reason));
+    let unmodeled_repeat_noise = crate::checks::heteroscedasticity::unmodeled_repeat_noise(
+        &ready.noise,
+        rungs.heteroscedasticity,
+    );
+    found
+        .notes
+        .extend(unmodeled_repeat_noise.filter(|told| *told != reason));
     if found.verdict == Verdict::Unlisted {
         let described = crate::diagnose::unlisted::unlisted(study, ready, rungs);
         reason = format!("{reason}; {}", described.told());
@@ -216,7 +230,7 @@ fn told(
 }
 
 /// What a reader should be told besides, and the place that maps show.
-fn add_notes(study: &Study, found: &mut Diagnosis, ready: &Prepared) {
+fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
     if found.gain.as_ref().is_some_and(is_no_better) {
         found.notes.push(

@@ -1,16 +1,16 @@
-//! What to record next: of the recordings that could be made (`choices.rs`), the one that soonest settles between two names.
+//! The next recording: of the candidates (`design`), the one that soonest settles between two names.
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::Control;
 use thenar_recordings::Study;
 
-use crate::design::candidate_recordings::{Choice, Past, placed};
-use crate::design::expected_discrimination::{Between, Promise};
-use crate::design::profile_likelihood::possible;
+use crate::design::candidate_recordings::{CandidateRecording, RecordedSoFar, placed};
+use crate::design::expected_discrimination::{Discrimination, ModelPair};
+use crate::design::profile_likelihood::profile;
 use crate::diagnose::findings::Suggestion;
 use crate::diagnose::gates::{are_clocks, have_sizes, lead, opponents};
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::elastic_table::radius;
 use crate::selection::scored::Rungs;
@@ -28,14 +28,14 @@ const PAIRS: usize = 3;
 /// What the contact model says of pressing another tool, or `Cancelled`.
 pub fn suggestions(
     study: &Study,
-    fitting: &mut Fitting,
-    (ready, rungs): (&Prepared, &Rungs),
+    replay: &mut Replay,
+    (ready, rungs): (&PreparedStudy, &Rungs),
     (pairs, control): (&[[&'static str; 2]], &Control<'_>),
 ) -> Result<Vec<Suggestion>, DiagnosisError> {
     if pairs.is_empty() {
         return Ok(Vec::new());
     }
-    let past = Past::of(study, &ready.courses);
+    let past = RecordedSoFar::of(study, &ready.courses);
     let site = study.sites.iter().find(|s| s.name == past.site);
     let Some(site) = site else {
         return Ok(Vec::new());
@@ -46,7 +46,7 @@ pub fn suggestions(
     let mut elastic = ready.elastic.clone();
     let places = placed(
         (&tools, site),
-        (&past, fitting),
+        (&past, replay),
         (ready, &mut elastic, control),
     )?;
     let contact = |place: usize| radius(&elastic.places[place], ready.scales.deepest);
@@ -93,33 +93,33 @@ impl Suggestion {
 
 /// The choice that soonest settles a pair with enough probability, or else that does so most often, and with how many presses.
 fn best<'a>(
-    (ready, elastic): (&Prepared, &Elastic),
+    (ready, elastic): (&PreparedStudy, &Elastic),
     rungs: &Rungs,
-    (pair, choices): ([&str; 2], &'a [Choice]),
-) -> Option<(&'a Choice, u32, f64)> {
+    (pair, choices): ([&str; 2], &'a [CandidateRecording]),
+) -> Option<(&'a CandidateRecording, u32, f64)> {
     let two = opponents(rungs, pair)?;
     let needed = lead(two[0], two[1])?;
-    let screen = ready.screen();
-    let between = Between {
+    let surrogate = ready.surrogate();
+    let between = ModelPair {
         ready,
         elastic,
         two,
-        possible: two.map(|of| possible(&screen, of, rungs.temper)),
-        temper: rungs.temper,
+        profile: two.map(|of| profile(&surrogate, of, rungs.overdispersion)),
+        overdispersion: rungs.overdispersion,
     };
     let contact = |place: usize| radius(&elastic.places[place], ready.scales.deepest);
-    let mut all: Vec<(&Choice, u32, f64)> = Vec::new();
+    let mut all: Vec<(&CandidateRecording, u32, f64)> = Vec::new();
     for choice in choices {
         let radii = (0..elastic.studied).chain(choice.presses.iter().map(|p| p.place));
         if are_clocks(two) && !have_sizes(radii.map(contact)) {
             continue;
         }
-        let Some(promise) = between.promise(&choice.presses) else {
+        let Some(discrimination) = between.discrimination(&choice.presses) else {
             continue;
         };
-        all.extend(enough(&promise, needed).map(|(times, p)| (choice, times, p)));
+        all.extend(enough(&discrimination, needed).map(|(times, p)| (choice, times, p)));
     }
-    let minutes = |one: &(&Choice, u32, f64)| f64::from(one.1) * one.0.minutes;
+    let minutes = |one: &(&CandidateRecording, u32, f64)| f64::from(one.1) * one.0.minutes;
     let settles = all.iter().filter(|one| one.2 >= ENOUGH);
     let soonest = settles.min_by(|a, b| minutes(a).total_cmp(&minutes(b)));
     let most = || all.iter().max_by(|a, b| a.2.total_cmp(&b.2));
@@ -127,10 +127,10 @@ fn best<'a>(
 }
 
 /// The fewest presses that settle often enough, or the most that are asked for; and how often they do.
-fn enough(promise: &Promise, needed: f64) -> Option<(u32, f64)> {
+fn enough(discrimination: &Discrimination, needed: f64) -> Option<(u32, f64)> {
     let mut last = None;
     for presses in PRESSES {
-        let probability = promise.probability(presses, needed)?;
+        let probability = discrimination.probability(presses, needed)?;
         last = Some((presses, probability));
         if probability >= ENOUGH {
             break;
@@ -140,7 +140,7 @@ fn enough(promise: &Promise, needed: f64) -> Option<(u32, f64)> {
 }
 
 /// With what to press and how.
-fn said(past: &Past, choice: &Choice) -> String {
+fn said(past: &RecordedSoFar, choice: &CandidateRecording) -> String {
     let press = &choice.presses[0];
     let other = if choice.is_known {
         ""
@@ -167,8 +167,8 @@ fn said(past: &Past, choice: &Choice) -> String {
 }
 
 fn told(
-    past: &Past,
-    choice: &Choice,
+    past: &RecordedSoFar,
+    choice: &CandidateRecording,
     (pair, times, probability): ([&'static str; 2], u32, f64),
 ) -> Suggestion {
     let press = &choice.presses[0];

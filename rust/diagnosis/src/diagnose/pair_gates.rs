@@ -2,7 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
-use crate::forward::surrogate::mechanism::{Acts, Mechanism};
+use crate::forward::surrogate::mechanism::{Law, Mechanism};
 use crate::selection::scored::{Rungs, Scored};
 
 /// Evidence that a mechanism must add beside another; and what changes the elastic answer alone beside another whose form is not as well
@@ -30,16 +30,16 @@ pub(crate) const CLOCKS: [Effect; 2] = [Effect::Relaxation, Effect::Drainage];
 
 pub(crate) fn is_adequate(best: &Scored, rungs: &Rungs) -> bool {
     let quiet = QUIET * rungs.samples as f64;
-    best.coherent <= quiet || best.coherent <= LEFT * rungs.base.coherent
+    best.lack_of_fit <= quiet || best.lack_of_fit <= LEFT * rungs.base.lack_of_fit
 }
 
 /// True if both of a pair are needed, and together they suffice.
 pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
     let alone = |k: usize| {
         let of = |s: &&Scored| s.mechanisms[0].effect == pair.mechanisms[k].effect;
-        rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
+        rungs.singles.iter().find(of).map_or(0.0, |s| s.qaic_gain)
     };
-    let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    let best = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);
     let least = |k: usize| {
         let (second, first) = (&pair.mechanisms[k], &pair.mechanisms[1 - k]);
         let beside = match first.effect {
@@ -52,10 +52,10 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
         };
         f64::max(inexact(first, second) * alone(1 - k), beside)
     };
-    let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
+    let is_needed = |k: usize| pair.qaic_gain - alone(1 - k) >= least(k);
     pair.mechanisms[0].effect != pair.mechanisms[1].effect
         && (0..2).all(is_needed)
-        && pair.evidence - best >= least(0).min(least(1))
+        && pair.qaic_gain - best >= least(0).min(least(1))
         && is_adequate(pair, rungs)
 }
 
@@ -94,7 +94,10 @@ pub(crate) fn is_answer(mechanism: &Mechanism) -> bool {
 
 /// True for what the tissue remembers.
 pub(crate) fn is_memory(mechanism: &Mechanism) -> bool {
-    matches!(mechanism.acts, Acts::Fades { .. } | Acts::Softens { .. })
+    matches!(
+        mechanism.law,
+        Law::Relaxation { .. } | Law::Softening { .. }
+    )
 }
 
 /// True for what changes the elastic answer alone.
@@ -116,7 +119,7 @@ mod tests {
 
     /// What the calibration's nulls reach, nats (`cargo xtask prove -- --split calibration`).
     #[test]
-    fn what_nulls_reach_is_no_detection() {
+    fn detection_threshold_exceeds_null_scores() {
         let reached = [
             (Effect::Relaxation, 2.4),
             (Effect::StiffSkin, 2.4),
@@ -129,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_effect_must_add_more_than_the_first_ones_form_leaves() {
+    fn second_effect_must_exceed_form_error_of_the_first() {
         use Effect::{Adhesion, Bone, CycleSoftening, Offset};
         use Effect::{RateIndependentLoss, Relaxation, Saturation, StiffeningLaw};
         assert!(

@@ -1,4 +1,4 @@
-//! What maps show: a place that stands out, which stays with the skin or with the sensor.
+//! Localized findings of maps: a place that stays with the skin (inclusion) or with the sensor.
 
 use thenar_recordings::Study;
 

@@ -1,4 +1,4 @@
-//! The sentence that a designer reads first.
+//! The verdict in one sentence.
 
 use crate::diagnose::findings::{Finding, Suggestion, Verdict};
 use crate::diagnose::wording::{effect_in_words, phase_in_words};
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_every_explanation_holds_is_told_beside_what_cannot_be_told_apart() {
+    fn sentence_names_the_effects_common_to_all_rivals() {
         let pairs = [["bone", "fixture_compliance"]];
         let told = |beside: &[&'static str]| {
             sentence(
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_that_seldom_settles_is_given_with_its_reserve() {
+    fn unlikely_next_recording_is_advised_with_reserve() {
         assert_eq!(
             said(Some(0.6)),
             " Record next: Press (settles it in 60 % of cases, takes about 30 minutes)."

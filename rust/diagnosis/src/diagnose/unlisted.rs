@@ -1,19 +1,19 @@
-//! What is missing and has no name: on what it depends, and a correction from the recordings alone, which is no physics.
+//! Misfit that no listed effect explains: the variables it depends on, by held-out improvement of an empirical correction.
 //!
 //! What repeats share of the misfit is drawn over one variable after the other, as a factor of the force that is smooth in it, and each is
 //! judged by what it removes on protocols that it was not fitted to.
 
 use thenar_recordings::Study;
 
-use crate::checks::heteroscedasticity::restless;
-use crate::diagnose::empirical_factor::{Factors, Point, VARIABLES, removed};
+use crate::checks::heteroscedasticity::unmodeled_repeat_noise;
 use crate::diagnose::findings::Curve;
 use crate::diagnose::unlisted_finding::{Correction, NAMES, Unlisted};
 use crate::diagnose::wording::phase_name;
-use crate::forward::surrogate::force_recording::{Course, Row};
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic_table::radius;
 use crate::noise::periodic_component::Rhythm;
+use crate::selection::empirical_factor::{Factors, Point, VARIABLES, removed};
 use crate::selection::scored::Rungs;
 
 /// Part of a recording's largest force below which its misfit is no part of the force.
@@ -23,11 +23,13 @@ const TOLD: f64 = 0.25;
 const APART: f64 = 0.05;
 
 /// What is known of what has no name.
-pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
+pub fn unlisted(study: &Study, ready: &PreparedStudy, rungs: &Rungs) -> Unlisted {
     let points = points(ready, rungs);
     let mut found = of_points(&points);
     found.rhythm = ready.noise.rhythm.filter(Rhythm::is_clear);
-    if found.correction.is_none() && restless(&ready.noise, rungs.unsteady).is_some() {
+    if found.correction.is_none()
+        && unmodeled_repeat_noise(&ready.noise, rungs.heteroscedasticity).is_some()
+    {
         // What grows under load and is not shared.
         found.depends_on.push(("force", f64::NAN));
         found
@@ -52,11 +54,11 @@ fn most<'a, K: PartialEq>(points: &[Point], keys: &'a [K]) -> Option<&'a K> {
     keys.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
 }
 
-fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
-    let alike = |a: &Course, b: &Course| {
+fn points(ready: &PreparedStudy, rungs: &Rungs) -> Vec<Point> {
+    let alike = |a: &ForceRecording, b: &ForceRecording| {
         a.protocol == b.protocol && a.place == b.place && a.rows.len() == b.rows.len()
     };
-    let mut protocols: Vec<Vec<&Course>> = Vec::new();
+    let mut protocols: Vec<Vec<&ForceRecording>> = Vec::new();
     for course in &ready.courses {
         match protocols.iter_mut().find(|p| alike(p[0], course)) {
             Some(protocol) => protocol.push(course),
@@ -64,7 +66,7 @@ fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
         }
     }
     let repeated = protocols.iter().enumerate().filter(|(_, p)| p.len() > 1);
-    let of = |(number, repeats): (usize, &Vec<&Course>)| -> Vec<Point> {
+    let of = |(number, repeats): (usize, &Vec<&ForceRecording>)| -> Vec<Point> {
         let rows = 0..repeats[0].rows.len();
         rows.filter_map(|n| point((ready, rungs), (number, repeats), n))
             .collect()
@@ -74,8 +76,8 @@ fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
 
 /// Row `n` of a protocol; None where it is not in contact, or hardly loaded.
 fn point(
-    (ready, rungs): (&Prepared, &Rungs),
-    (protocol, repeats): (usize, &[&Course]),
+    (ready, rungs): (&PreparedStudy, &Rungs),
+    (protocol, repeats): (usize, &[&ForceRecording]),
     n: usize,
 ) -> Option<Point> {
     let samples: Option<Vec<usize>> = repeats.iter().map(|c| c.rows[n].sample).collect();
@@ -105,7 +107,11 @@ fn point(
 }
 
 /// What a row of a recording may depend on, by [`NAMES`]; None out of contact.
-fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<[f64; VARIABLES]> {
+fn variables(
+    ready: &PreparedStudy,
+    one: &ForceRecording,
+    (n, base): (usize, f64),
+) -> Option<[f64; VARIABLES]> {
     let row = &one.rows[n];
     let touch = one.rows.iter().find(|row| row.depth_mm > 0.0)?;
     let fastest = one.rows.windows(2).map(speed).fold(0.0, f64::max);
@@ -116,7 +122,7 @@ fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<
 }
 
 /// Puts what a correction gives in the place of what was found into the curves of all recordings.
-pub fn draw(ready: &Prepared, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
+pub fn draw(ready: &PreparedStudy, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
     for (course, curve) in ready.courses.iter().zip(curves) {
         let rows = course.rows.iter().enumerate();
         let read = rows.filter_map(|(n, row)| Some((n, row, row.sample?)));
@@ -199,7 +205,7 @@ mod tests {
 
     /// A pocket that gives way at half of the depth.
     #[test]
-    fn what_goes_with_depth_is_said_to_and_is_corrected_elsewhere() {
+    fn depth_dependent_misfit_is_named_and_corrected_on_held_out_protocols() {
         let gives = |depth: f64, _: bool| -0.3 / (1.0 + libm::exp(-(depth - 0.5) / 0.05));
         let found = of_points(&study(gives));
         assert_eq!(found.depends_on[0].0, "depth", "{:?}", found.depends_on);
@@ -233,7 +239,7 @@ mod tests {
 
     /// Half of the squares are noise, which no correction removes and none need remove.
     #[test]
-    fn what_is_removed_is_a_part_of_what_noise_leaves() {
+    fn removed_share_is_relative_to_reducible_misfit() {
         let points = study(|_, _| -0.016);
         let (squares, count) = (
             points.iter().map(|p| p.weight * p.off * p.off).sum::<f64>(),
@@ -248,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn up_and_down_are_told_apart_where_they_differ() {
+    fn loading_and_unloading_get_separate_factors_where_they_differ() {
         let found = of_points(&study(
             |depth, out| if out { -0.2 * depth } else { 0.1 * depth },
         ));
@@ -258,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn most_is_where_most_of_it_is() {
+    fn place_of_most_misfit_is_the_largest_sum() {
         let points = study(|_, out| if out { -0.2 } else { 0.02 });
         let phases: Vec<Phase> = points.iter().map(|p| p.phase).collect();
         assert_eq!(most(&points, &phases), Some(&Phase::Unload));
@@ -267,7 +273,7 @@ mod tests {
 
     /// Noise is no misfit, and what is another in every protocol holds on none.
     #[test]
-    fn nothing_is_told_of_what_does_not_hold_elsewhere() {
+    fn no_correction_without_held_out_improvement() {
         let noise = of_points(&study(|_, _| 0.0));
         assert!(noise.correction.is_none(), "{:?}", noise.depends_on);
         let mut other = study(|_, _| 0.0);

@@ -1,8 +1,8 @@
 //! The finding of a misfit that no listed effect explains: variables it depends on, and an empirical correction.
 
-use crate::diagnose::empirical_factor::{Factors, VARIABLES};
 use crate::diagnose::wording::{phase_in_words, variable_in_words};
 use crate::noise::periodic_component::Rhythm;
+use crate::selection::empirical_factor::{Factors, VARIABLES};
 
 /// What it may depend on, and units.
 pub(crate) const NAMES: [(&str, &str); VARIABLES] = [

@@ -1,4 +1,4 @@
-//! Where a fit begins: at the study's own numbers, moved to where the simulation has the size of the measurement.
+//! Initial guess of a fit: the study's own parameters, scaled to the size of the measurement.
 
 use crate::errors::DiagnosisError;
 use crate::least_squares::objective::{Problem, is_load};

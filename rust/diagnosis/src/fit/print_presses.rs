@@ -1,4 +1,4 @@
-//! What handprints ask of a fit: presses with its materials, and what stands for it where nothing is fitted.
+//! Presses for handprints with the materials of a fit, and the empty fit of a study without fitted recordings.
 
 use nalgebra::DMatrix;
 use thenar_contact::{Control, Material};

@@ -1,4 +1,4 @@
-//! What a fit of the parameters to several recordings gives: estimates with intervals, simulation, noise, and what is left.
+//! Result of a fit: estimates, simulation, noise, projected residual, lack-of-fit probability.
 
 use nalgebra::DMatrix;
 

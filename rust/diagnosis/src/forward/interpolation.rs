@@ -1,4 +1,4 @@
-//! A number against depth, tabulated and smooth between: monotone where the table is (Fritsch & Carlson 1980).
+//! Monotone cubic interpolation (Fritsch & Carlson 1980).
 
 /// Values at growing places, joined by cubics with continuous slope.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hertz_curve_is_joined_to_a_few_parts_in_ten_thousand() {
+    fn hertz_curve_is_interpolated_within_5e_4() {
         let roots: Vec<f64> = (0..=24).map(|k| f64::from(k) / 24.0).collect();
         let table = Table::new(&roots, roots.iter().map(|s| s.powi(3)).collect());
         for k in 1..200 {
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_monotone_and_its_slope_has_no_steps() {
+    fn interpolation_is_monotone_with_continuous_slope() {
         let table = Table::new(&[0.0, 1.0, 2.0, 3.0], vec![0.0, 0.1, 5.0, 5.0]);
         let h = 1e-6;
         for k in 0..3000 {

@@ -1,4 +1,4 @@
-//! Estimates with their 90 % intervals.
+//! Estimates with 90 % confidence intervals.
 
 use nalgebra::DMatrix;
 

@@ -1,4 +1,4 @@
-//! Bounded Gauss-Newton with Levenberg and Marquardt's damping.
+//! Levenberg-Marquardt with bounds, for the mesh model.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! The function that a fit makes small: whitened residuals of all recordings at given parameters, and their derivatives.
+//! Objective of the mesh model's fit: Huber loss of whitened residuals plus priors, and its Jacobian.
 
 use std::ops::AddAssign;
 

@@ -1,9 +1,9 @@
-//! Fits of screened models: bounded Gauss-Newton with damping on Huber's function, from the base's optimum.
+//! Levenberg-Marquardt with bounds and Huber loss, for the surrogate model; covariance and linearized misfit.
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::noise::whitening::Whitened;
 
 /// Residuals beyond this many standard deviations pull with a constant force.
@@ -38,10 +38,10 @@ struct Here {
     deviance: f64,
 }
 
-fn here(screen: &Screen<'_>, model: &Model<'_>, at: Vec<f64>) -> Here {
-    let forces = screen.all_forces(model, &at);
-    let simulated = screen.stacked(&forces);
-    let whitened = screen.whitening.residuals(&simulated);
+fn here(surrogate: &Surrogate<'_>, model: &Model<'_>, at: Vec<f64>) -> Here {
+    let forces = surrogate.all_forces(model, &at);
+    let simulated = surrogate.stacked(&forces);
+    let whitened = surrogate.whitening.residuals(&simulated);
     let misfit: f64 = whitened.residual.iter().map(|r| huber(*r)).sum();
     let prior = model.coordinates.iter().zip(&at);
     let prior: f64 = prior
@@ -69,22 +69,22 @@ pub fn huber(r: f64) -> f64 {
 }
 
 /// Fits a model; `start` gives the first coordinates, the others begin where the model says.
-pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
+pub fn refit(surrogate: &Surrogate<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
     let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
     let shared = start.len().min(at.len());
     at[..shared].copy_from_slice(&start[..shared]);
     for (x, c) in at.iter_mut().zip(&model.coordinates) {
         *x = x.clamp(c.bounds.0, c.bounds.1);
     }
-    let mut now = here(screen, model, at);
-    let (mut normal, mut downhill) = system(model, &now, &slopes(screen, model, &now));
+    let mut now = here(surrogate, model, at);
+    let (mut normal, mut downhill) = system(model, &now, &slopes(surrogate, model, &now));
     let (mut damping, mut small) = (1e-3, 0);
     for _ in 0..MOST_STEPS {
         let Some(next) = step(model, (&now.at, &normal, &downhill), damping) else {
             break;
         };
         let is_worth_it = promised((&now.at, &next), &normal, &downhill) > PROMISED;
-        let next = is_worth_it.then(|| here(screen, model, next));
+        let next = is_worth_it.then(|| here(surrogate, model, next));
         let Some(next) = next.filter(|next| next.deviance < now.deviance) else {
             damping *= 10.0;
             if damping > 1e6 {
@@ -95,7 +95,7 @@ pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
         let gain = now.deviance - next.deviance;
         small = if gain < SETTLED { small + 1 } else { 0 };
         now = next;
-        (normal, downhill) = system(model, &now, &slopes(screen, model, &now));
+        (normal, downhill) = system(model, &now, &slopes(surrogate, model, &now));
         damping = f64::max(damping * 0.2, 1e-9);
         if small >= 2 {
             break;
@@ -112,12 +112,12 @@ pub fn refit(screen: &Screen<'_>, model: &Model<'_>, start: &[f64]) -> Refit {
 
 /// Inverse of the normal matrix with priors where nothing is fitted: at `at`, the coordinates of `known` as they are there.
 pub fn covariance(
-    screen: &Screen<'_>,
+    surrogate: &Surrogate<'_>,
     model: &Model<'_>,
     (at, known): (Vec<f64>, &[usize]),
 ) -> DMatrix<f64> {
-    let now = here(screen, model, at);
-    let (mut normal, _) = system(model, &now, &slopes(screen, model, &now));
+    let now = here(surrogate, model, at);
+    let (mut normal, _) = system(model, &now, &slopes(surrogate, model, &now));
     for k in known {
         normal.row_mut(*k).fill(0.0);
         normal.column_mut(*k).fill(0.0);
@@ -129,12 +129,12 @@ pub fn covariance(
 /// What is left of changed predictions (each of all samples, stacked) once a model's coordinates are fitted to them, to first order about
 /// `at`: squared, in units of the noise.
 pub fn left_by_fit(
-    screen: &Screen<'_>,
+    surrogate: &Surrogate<'_>,
     model: &Model<'_>,
     (at, changed): (&[f64], &[Vec<f64>]),
 ) -> Vec<f64> {
-    let now = here(screen, model, at.to_vec());
-    let jacobian = slopes(screen, model, &now);
+    let now = here(surrogate, model, at.to_vec());
+    let jacobian = slopes(surrogate, model, &now);
     // Not as in a fit, where outliers weigh less: the change has none.
     let mut normal = jacobian.tr_mul(&jacobian);
     for (k, c) in model.coordinates.iter().enumerate() {
@@ -144,7 +144,7 @@ pub fn left_by_fit(
     let one = |changed: &Vec<f64>| {
         let off = changed.iter().zip(&now.simulated).map(|(a, b)| a - b);
         let off = DMatrix::from_iterator(changed.len(), 1, off);
-        let off = screen.whitening.derivatives(&off, &now.whitened);
+        let off = surrogate.whitening.derivatives(&off, &now.whitened);
         let pull = jacobian.tr_mul(&off);
         off.norm_squared() - pull.dot(&(&inverse * &pull))
     };
@@ -152,11 +152,11 @@ pub fn left_by_fit(
 }
 
 /// Whitened derivatives of the predictions.
-fn slopes(screen: &Screen<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
+fn slopes(surrogate: &Surrogate<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
     let mut raw = DMatrix::zeros(now.simulated.len(), model.coordinates.len());
     for number in 0..model.coordinates.len() {
-        for (c, course) in screen.courses.iter().enumerate() {
-            let found = screen.slopes((model, &now.at), (number, c), &now.forces[c]);
+        for (c, course) in surrogate.courses.iter().enumerate() {
+            let found = surrogate.slopes((model, &now.at), (number, c), &now.forces[c]);
             let Some(slopes) = found else {
                 continue;
             };
@@ -167,7 +167,7 @@ fn slopes(screen: &Screen<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
             }
         }
     }
-    screen.whitening.derivatives(&raw, &now.whitened)
+    surrogate.whitening.derivatives(&raw, &now.whitened)
 }
 
 fn system(model: &Model<'_>, now: &Here, whitened: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
@@ -271,7 +271,7 @@ mod tests {
     /// A punch of 1 N/mm pressed to 2 mm after ten readings in the air: a modulus takes up what is in proportion to the force, and nothing of
     /// what the air reads.
     #[test]
-    fn what_a_modulus_can_imitate_does_not_stay() {
+    fn change_along_a_free_modulus_leaves_no_residual() {
         let reading = |k: u32| -> Reading {
             let depth = 0.1 * (f64::from(k) - 10.0);
             (f64::from(k), depth, Phase::Load, depth.max(0.0))
@@ -279,13 +279,13 @@ mod tests {
         let readings: Vec<Reading> = (0..=30).map(reading).collect();
         let sigma = 0.05;
         let (ready, _) = ready(vec![tool(2.0, |d| d, |_| 1.0)], &[(0, readings)], sigma);
-        let screen = ready.screen();
-        let model = Model::new(&screen, &[]);
-        let fitted = refit(&screen, &model, &[]);
+        let surrogate = ready.surrogate();
+        let model = Model::new(&surrogate, &[]);
+        let fitted = refit(&surrogate, &model, &[]);
         let stiffer = fitted.simulated.iter().map(|f| 1.02 * f).collect();
         let air = |(k, f): (usize, &f64)| if k < 10 { f + 0.2 } else { *f };
         let offset = fitted.simulated.iter().enumerate().map(air).collect();
-        let left = left_by_fit(&screen, &model, (&fitted.at, &[stiffer, offset]));
+        let left = left_by_fit(&surrogate, &model, (&fitted.at, &[stiffer, offset]));
         let whole: f64 = fitted
             .simulated
             .iter()

@@ -1,4 +1,4 @@
-//! What a value that an instrument's limits hide is worth to a sum: its mean, given that it is hidden.
+//! Generalized residuals of censored samples: the conditional mean of what an instrument's limits hide.
 //!
 //! Values over a threshold are shown because noise lifted them; without those under it, their sum has a mean of its own. With the mean
 //! of each hidden residual, `E(r | hidden)`, in its place (the generalized residual of Gourieroux et al. 1987, J. Econometrics 34:5),
@@ -58,7 +58,7 @@ mod tests {
 
     /// Readings of a mat with a threshold: seen and hidden ones together have mean 0 and variance at most 1, wherever the truth lies.
     #[test]
-    fn seen_and_hidden_residuals_together_have_no_mean() {
+    fn censored_and_seen_residuals_have_zero_mean() {
         let mut random = Random::new(3);
         for truth in [-1.0, 0.3, 1.0, 1.7, 4.0] {
             let (limit, sigma, count) = (1.0, 0.5, 40_000);

@@ -1,4 +1,4 @@
-//! What locating gives: mismatches that parameters cannot absorb, each with its place, its time, its size and how sure it is.
+//! Result of the location: mismatches with place, time, size and significance.
 
 use nalgebra::Vector3;
 
@@ -131,7 +131,7 @@ pub struct Location {
     /// Probability that noise alone shows as much as the strongest look; None if there was nothing to look at.
     pub p: Option<f64>,
     /// Places and times that were looked at.
-    pub looks: usize,
+    pub look_elsewhere_count: usize,
     /// The answer in a sentence.
     pub sentence: String,
     /// What a reader should be told besides, a sentence each.

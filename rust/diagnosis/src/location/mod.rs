@@ -9,4 +9,4 @@ pub mod model_error;
 pub mod scan_statistic;
 pub mod place_estimate;
 pub mod sentence;
-pub mod conduct;
+pub mod locate;

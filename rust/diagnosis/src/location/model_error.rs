@@ -1,4 +1,4 @@
-//! What a simulation may be off by though nothing local is missing: smooth factors, and a rough error that all presses share.
+//! Allowed error of the simulation: smooth factors over place and depth, and an uncorrelated part common to all presses.
 //!
 //! A layer over bone is no finite-strain solid. Against finite elements of six pads over curved bone (neo-Hookean to exponential,
 //! plate and rod, depths to 15 % of the thickness) its pressures are off by 1.5 to 2.9 % rms of the largest; with a factor quadratic
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, Vector3};
 
 use crate::location::protocol_cells::Cells;
-use crate::location::residual_sums::{Atom, Atoms, Channel};
+use crate::location::residual_sums::{CellSum, CellSums, Channel};
 use crate::location::scan_windows::Sensor;
 use crate::observe::measured::Measured;
 
@@ -31,7 +31,7 @@ pub(crate) struct Allowance {
 
 /// Atoms of one kind of channel under one tool at one site, and how they are numbered.
 struct Family<'a> {
-    atoms: Vec<(usize, &'a Atom)>,
+    cell_sums: Vec<(usize, &'a CellSum)>,
     /// Place of each on the skin, mm; of what has none its depth, in quarters of the largest.
     places: Vec<Vector3<f64>>,
     /// Distance from a place to the next.
@@ -42,10 +42,10 @@ struct Family<'a> {
 /// Allows for a simulation whose pressures, forces and areas are off by `error` of the largest; None: it is taken as exact.
 pub(crate) fn allow(
     (measured, cells): (&[Measured], &Cells),
-    (atoms, sensors): (&Atoms, &[Sensor]),
+    (cell_sums, sensors): (&CellSums, &[Sensor]),
     error: Option<f64>,
 ) -> Allowance {
-    let count = atoms.list.len();
+    let count = cell_sums.list.len();
     let Some(error) = error else {
         return Allowance {
             smooth: DMatrix::zeros(count, 0),
@@ -53,7 +53,7 @@ pub(crate) fn allow(
         };
     };
     let (mut smooth, mut rough) = (Vec::new(), Vec::new());
-    for family in families((measured, cells), atoms, sensors).values() {
+    for family in families((measured, cells), cell_sums, sensors).values() {
         smooth.extend(factors(family, count));
         rough.extend(nodes(family, (error, count)));
     }
@@ -65,31 +65,34 @@ pub(crate) fn allow(
 
 fn families<'a>(
     (measured, cells): (&'a [Measured], &Cells),
-    atoms: &'a Atoms,
+    cell_sums: &'a CellSums,
     sensors: &[Sensor],
 ) -> BTreeMap<(Channel, &'a str, &'a str), Family<'a>> {
     let mut families = BTreeMap::new();
-    for (at, atom) in atoms.list.iter().enumerate() {
-        let one = &measured[cells.list[atom.cell].recording];
-        let (kind, place, pitch) = match atom.channel {
+    for (at, cell_sum) in cell_sums.list.iter().enumerate() {
+        let one = &measured[cells.list[cell_sum.cell].recording];
+        let (kind, place, pitch) = match cell_sum.channel {
             Channel::Pressure(sensel) => {
-                let of =
-                    |sensor: &Sensor| sensor.place_of(atom.cell, sensel).zip(Some(sensor.pitch));
+                let of = |sensor: &Sensor| {
+                    sensor
+                        .place_of(cell_sum.cell, sensel)
+                        .zip(Some(sensor.pitch))
+                };
                 let found = sensors.iter().find_map(of);
                 let (place, pitch) = found.unwrap_or((Vector3::zeros(), 1.0));
                 (Channel::Pressure(0), place, pitch)
             }
-            other => (other, Vector3::new(4.0 * atom.depth, 0.0, 0.0), 1.0),
+            other => (other, Vector3::new(4.0 * cell_sum.depth, 0.0, 0.0), 1.0),
         };
         let family = families
             .entry((kind, one.indenter.as_str(), one.site.as_str()))
             .or_insert_with(|| Family {
-                atoms: Vec::new(),
+                cell_sums: Vec::new(),
                 places: Vec::new(),
                 pitch,
-                is_of_map: atom.channel.is_of_map(),
+                is_of_map: cell_sum.channel.is_of_map(),
             });
-        family.atoms.push((at, atom));
+        family.cell_sums.push((at, cell_sum));
         family.places.push(place);
     }
     families
@@ -100,14 +103,15 @@ fn factors(family: &Family<'_>, count: usize) -> Vec<Vec<f64>> {
     let shapes = if family.is_of_map {
         shapes(family)
     } else {
-        vec![vec![1.0; family.atoms.len()]]
+        vec![vec![1.0; family.cell_sums.len()]]
     };
     let mut columns = Vec::new();
     for shape in &shapes {
         for power in 0..POWERS {
             let mut column = vec![0.0; count];
-            for ((at, atom), factor) in family.atoms.iter().zip(shape) {
-                column[*at] = atom.weight * atom.simulated * factor * atom.depth.powi(power);
+            for ((at, cell_sum), factor) in family.cell_sums.iter().zip(shape) {
+                column[*at] =
+                    cell_sum.weight * cell_sum.simulated * factor * cell_sum.depth.powi(power);
             }
             columns.push(column);
         }
@@ -117,7 +121,12 @@ fn factors(family: &Family<'_>, count: usize) -> Vec<Vec<f64>> {
 
 /// Quadratic functions of place by atom, in the plane that the sensels under load lie in.
 fn shapes(family: &Family<'_>) -> Vec<Vec<f64>> {
-    let loads = || family.atoms.iter().map(|(_, atom)| atom.simulated.max(0.0));
+    let loads = || {
+        family
+            .cell_sums
+            .iter()
+            .map(|(_, cell_sum)| cell_sum.simulated.max(0.0))
+    };
     let whole = loads().sum::<f64>().max(f64::MIN_POSITIVE);
     let middle: Vector3<f64> = family
         .places
@@ -182,13 +191,13 @@ fn bumps(family: &Family<'_>, spacing: f64, (error, count): (f64, usize)) -> Vec
         }
     }
     let mut columns = vec![vec![0.0; count]; nodes.len()];
-    for ((at, atom), place) in family.atoms.iter().zip(&family.places) {
+    for ((at, cell_sum), place) in family.cell_sums.iter().zip(&family.places) {
         let bump =
             |node: &Vector3<f64>| (-(node - place).norm_squared() / (spacing * spacing)).exp();
         let bumps: Vec<f64> = nodes.iter().map(bump).collect();
         let length = bumps.iter().map(|b| b * b).sum::<f64>().sqrt().max(1e-3);
         for (column, bump) in columns.iter_mut().zip(&bumps) {
-            column[*at] = error * atom.peak * atom.weight * bump / length;
+            column[*at] = error * cell_sum.peak * cell_sum.weight * bump / length;
         }
     }
     columns

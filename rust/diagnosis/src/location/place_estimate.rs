@@ -1,4 +1,4 @@
-//! Where a look lies: its center, the places that cannot be told from it, the skin under it, and what it stays with.
+//! Place of a scan window: center, confidence region, skin under it, and whether it moves with skin or sensor.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use thenar_surface::{Mesh, closest_point};
 
 use crate::location::mismatch::{Carrier, Place};
 use crate::location::scan_statistic::Scan;
-use crate::location::scan_windows::{Coordinates, Disc, Look, Looks};
+use crate::location::scan_windows::{Coordinates, Disc, ScanWindow, ScanWindows};
 use crate::observe::measured::Measured;
 
 /// Correlation of two looks' statistics from which their places count as one.
@@ -21,7 +21,7 @@ const HELD: f64 = 0.9;
 #[derive(Clone, Copy)]
 pub(crate) struct Scored<'a> {
     pub scan: &'a Scan<'a>,
-    pub looks: &'a Looks,
+    pub windows: &'a ScanWindows,
     /// Statistic of every look, in units of its standard deviation.
     pub scores: &'a [f64],
 }
@@ -32,8 +32,8 @@ pub(crate) fn place(
     best: usize,
     (measured, skin): (&[Measured], Option<&Mesh>),
 ) -> Option<Place> {
-    let disc = scored.looks.list[best].disc?;
-    let sensor = &scored.looks.sensors[disc.sensor];
+    let disc = scored.windows.list[best].disc?;
+    let sensor = &scored.windows.sensors[disc.sensor];
     let mat = measured[sensor.recording].mat.as_ref()?;
     let held = held(scored, best, disc);
     let near = 2.0 * sensor.pitch + disc.radius;
@@ -93,8 +93,8 @@ struct Held {
 fn held(scored: Scored<'_>, best: usize, disc: Disc) -> Vec<Held> {
     let top = scored.scores[best];
     let mut middles: BTreeMap<(u32, [u64; 3]), Held> = BTreeMap::new();
-    for (look, score) in scored.looks.list.iter().zip(scored.scores) {
-        let Some(other) = of_kind(look, scored.looks.list[best].group, disc) else {
+    for (window, score) in scored.windows.list.iter().zip(scored.scores) {
+        let Some(other) = of_kind(window, scored.windows.list[best].group, disc) else {
             continue;
         };
         if score * top <= 0.0 {
@@ -123,17 +123,19 @@ fn held(scored: Scored<'_>, best: usize, disc: Disc) -> Vec<Held> {
     middles
 }
 
-fn of_kind(look: &Look, group: usize, disc: Disc) -> Option<Disc> {
+fn of_kind(window: &ScanWindow, group: usize, disc: Disc) -> Option<Disc> {
     let same = |other: &Disc| (other.coordinates, other.sensor) == (disc.coordinates, disc.sensor);
-    look.disc.filter(|other| look.group == group && same(other))
+    window
+        .disc
+        .filter(|other| window.group == group && same(other))
 }
 
 /// Largest distance to a disc of the same size that shows nearly the same.
 fn resolution(scored: Scored<'_>, best: usize, disc: Disc) -> f64 {
-    let group = scored.looks.list[best].group;
+    let group = scored.windows.list[best].group;
     let mut farthest: f64 = 0.0;
-    for (at, look) in scored.looks.list.iter().enumerate() {
-        let Some(other) = of_kind(look, group, disc).filter(|o| o.radius == disc.radius) else {
+    for (at, window) in scored.windows.list.iter().enumerate() {
+        let Some(other) = of_kind(window, group, disc).filter(|o| o.radius == disc.radius) else {
             continue;
         };
         let distance = (other.center - disc.center).norm();
@@ -146,35 +148,37 @@ fn resolution(scored: Scored<'_>, best: usize, disc: Disc) -> f64 {
 
 /// Skin or sensor: which coordinates gather more of the mismatch, over cells of two poses or more.
 fn carrier(scored: Scored<'_>, best: usize, sensor: usize) -> Carrier {
-    let own = scored.scan.atoms_of(&scored.looks.list[best]);
+    let own = scored.scan.atoms_of(&scored.windows.list[best]);
     let sign = scored.scores[best].signum();
     let mut by_group: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
-    for (look, score) in scored.looks.list.iter().zip(scored.scores) {
-        let Some(disc) = look.disc.filter(|disc| disc.sensor == sensor) else {
+    for (window, score) in scored.windows.list.iter().zip(scored.scores) {
+        let Some(disc) = window.disc.filter(|disc| disc.sensor == sensor) else {
             continue;
         };
         let shares = || {
-            let theirs = scored.scan.atoms_of(look);
-            own.iter().any(|atom| theirs.binary_search(atom).is_ok())
+            let theirs = scored.scan.atoms_of(window);
+            own.iter()
+                .any(|cell_sum| theirs.binary_search(cell_sum).is_ok())
         };
         let gain = 0.5 * (score * sign).max(0.0).powi(2);
-        let most = by_group.entry(look.group).or_insert([0.0; 2]);
+        let most = by_group.entry(window.group).or_insert([0.0; 2]);
         let kind = usize::from(disc.coordinates == Coordinates::Skin);
         if gain > most[kind] && shares() {
             most[kind] = gain;
         }
     }
     let poses = |group: &usize| {
-        let skin = |look: &&Look| {
-            look.disc
+        let skin = |window: &&ScanWindow| {
+            window
+                .disc
                 .is_some_and(|d| d.coordinates == Coordinates::Skin)
         };
         scored
-            .looks
+            .windows
             .list
             .iter()
-            .filter(|look| look.group == *group)
-            .any(|look| skin(&look))
+            .filter(|window| window.group == *group)
+            .any(|window| skin(&window))
     };
     let told = by_group.iter().filter(|(group, _)| poses(group));
     let strongest = told.max_by(|one, two| {

@@ -1,4 +1,4 @@
-//! Parts of the recordings' protocols, and the groups of parts over which a mismatch is looked for.
+//! Cells: parts of the recordings' protocols, and the groups of cells that are scanned.
 
 use std::collections::{BTreeMap, BTreeSet};
 

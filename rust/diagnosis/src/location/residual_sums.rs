@@ -1,4 +1,4 @@
-//! The projected residual, summed up to one number per cell and channel: all that a scan looks at.
+//! Sums of the projected residual per cell and channel, the input of the scan statistic.
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ impl Channel {
 
 /// All samples of one channel in one cell, along the direction in which one unit more on each of them would show.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Atom {
+pub(crate) struct CellSum {
     pub cell: usize,
     pub channel: Channel,
     /// Length of that direction, 1 / unit: root of the sum of 1 / sigma^2.
@@ -59,8 +59,8 @@ pub(crate) struct Atom {
 }
 
 /// Atoms ordered by channel and cell.
-pub(crate) struct Atoms {
-    pub list: Vec<Atom>,
+pub(crate) struct CellSums {
+    pub list: Vec<CellSum>,
     /// What parameters absorb, along the atoms: a row per atom.
     pub absorbed: DMatrix<f64>,
     /// Samples that an instrument's limits hide.
@@ -81,7 +81,7 @@ struct Sum {
 }
 
 /// Sums up a fit.
-pub(crate) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
+pub(crate) fn sum_up(fit: &Fit, cells: &Cells) -> CellSums {
     let directions = fit.absorbed.ncols();
     let mut sums: BTreeMap<(Channel, usize), Sum> = BTreeMap::new();
     let mut hidden = 0;
@@ -116,7 +116,7 @@ pub(crate) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
             }
         }
     }
-    let mut atoms = Atoms {
+    let mut cell_sums = CellSums {
         list: Vec::with_capacity(sums.len()),
         absorbed: DMatrix::zeros(sums.len(), directions),
         hidden,
@@ -124,9 +124,9 @@ pub(crate) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
     for ((channel, cell), sum) in sums {
         let weight = sum.square.sqrt();
         for (column, total) in sum.along.iter().enumerate() {
-            atoms.absorbed[(atoms.list.len(), column)] = total / weight;
+            cell_sums.absorbed[(cell_sums.list.len(), column)] = total / weight;
         }
-        atoms.list.push(Atom {
+        cell_sums.list.push(CellSum {
             cell,
             channel,
             weight,
@@ -141,7 +141,7 @@ pub(crate) fn sum_up(fit: &Fit, cells: &Cells) -> Atoms {
             ),
         });
     }
-    atoms
+    cell_sums
 }
 
 impl Sum {

@@ -1,4 +1,4 @@
-//! The statistic of a look, and the law of its maximum over all looks where nothing is amiss.
+//! Scan statistic of a window, and the null distribution of its maximum.
 //!
 //! Values of atoms under noise n and a simulation's allowed error z: `T (E^T P n + (1 - G G^T) D z)`, where E sums samples up to
 //! atoms, G = E^T Q is what parameters absorb of them, T takes smooth factors out, and D is the rough error.
@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector, DVectorView};
 use rayon::prelude::*;
 
 use crate::location::model_error::Allowance;
-use crate::location::residual_sums::Atoms;
-use crate::location::scan_windows::{Look, Looks};
+use crate::location::residual_sums::CellSums;
+use crate::location::scan_windows::{ScanWindow, ScanWindows};
 use crate::random::Random;
 
 /// Share of a look's length that parameters and smooth factors must leave for it to say anything.
@@ -18,8 +18,8 @@ const LANES: usize = 32;
 
 /// Looks with what they need for their statistic.
 pub(crate) struct Scan<'a> {
-    atoms: &'a Atoms,
-    looks: &'a Looks,
+    cell_sums: &'a CellSums,
+    windows: &'a ScanWindows,
     allowance: &'a Allowance,
     /// G with smooth factors taken out: T G.
     absorbed: DMatrix<f64>,
@@ -41,17 +41,17 @@ pub(crate) struct Scan<'a> {
 
 impl<'a> Scan<'a> {
     pub(crate) fn new(
-        (atoms, allowance): (&'a Atoms, &'a Allowance),
-        looks: &'a Looks,
+        (cell_sums, allowance): (&'a CellSums, &'a Allowance),
+        windows: &'a ScanWindows,
     ) -> Scan<'a> {
-        let (smooth, known) = (&allowance.smooth, &atoms.absorbed);
+        let (smooth, known) = (&allowance.smooth, &cell_sums.absorbed);
         let absorbed = known - smooth * (smooth.transpose() * known);
         let seen = &allowance.rough - smooth * (smooth.transpose() * &allowance.rough);
         let rough = seen - &absorbed * (known.transpose() * &allowance.rough);
         let left = DMatrix::identity(known.ncols(), known.ncols()) - known.transpose() * known;
         let mut scan = Scan {
-            atoms,
-            looks,
+            cell_sums,
+            windows,
             allowance,
             absorbed,
             rough,
@@ -62,12 +62,12 @@ impl<'a> Scan<'a> {
             deviations: Vec::new(),
             unseen: root(left),
         };
-        scan.along = looks.rows.iter().map(|row| scan.along(row)).collect();
-        scan.deviations = (0..atoms.list.len())
-            .map(|atom| scan.deviation(atom))
+        scan.along = windows.rows.iter().map(|row| scan.along(row)).collect();
+        scan.deviations = (0..cell_sums.list.len())
+            .map(|cell_sum| scan.deviation(cell_sum))
             .collect();
-        for look in &looks.list {
-            let (spread, response, share) = scan.measure(look);
+        for window in &windows.list {
+            let (spread, response, share) = scan.measure(window);
             let says = share >= LEAST_SHARE;
             scan.spreads.push(if says { spread } else { 0.0 });
             scan.responses.push(response);
@@ -81,7 +81,7 @@ impl<'a> Scan<'a> {
         let parts = [
             &self.allowance.smooth,
             &self.absorbed,
-            &self.atoms.absorbed,
+            &self.cell_sums.absorbed,
             &self.rough,
         ];
         let mut sum = DVector::zeros(parts.iter().map(|part| part.ncols()).sum());
@@ -91,7 +91,7 @@ impl<'a> Scan<'a> {
                 let values = part.column(column);
                 let weighted = row
                     .iter()
-                    .map(|a| self.atoms.list[*a as usize].weight * values[*a as usize]);
+                    .map(|a| self.cell_sums.list[*a as usize].weight * values[*a as usize]);
                 sum[first + column] = weighted.sum();
             }
             first += part.ncols();
@@ -109,34 +109,34 @@ impl<'a> Scan<'a> {
         ]
     }
 
-    fn deviation(&self, atom: usize) -> f64 {
-        let square = |matrix: &DMatrix<f64>| matrix.row(atom).norm_squared();
+    fn deviation(&self, cell_sum: usize) -> f64 {
+        let square = |matrix: &DMatrix<f64>| matrix.row(cell_sum).norm_squared();
         let kept = 1.0 - square(&self.allowance.smooth) - square(&self.absorbed);
         (kept.max(0.0) + square(&self.rough)).sqrt()
     }
 
     /// Standard deviation, response to one unit, and share kept.
-    fn measure(&self, look: &Look) -> (f64, f64, f64) {
-        let along = self.sum(look);
+    fn measure(&self, window: &ScanWindow) -> (f64, f64, f64) {
+        let along = self.sum(window);
         let [smooth, absorbed, known, rough] = self.parts(&along);
-        let whole: f64 = self.squares(look).sum();
+        let whole: f64 = self.squares(window).sum();
         let kept = (whole - smooth.norm_squared() - absorbed.norm_squared()).max(0.0);
         let response = whole - smooth.norm_squared() - absorbed.dot(&known);
         let spread = (kept + rough.norm_squared()).sqrt();
         (spread, response, (response.max(0.0) / whole).sqrt())
     }
 
-    fn squares<'l>(&'l self, look: &'l Look) -> impl Iterator<Item = f64> + 'l {
-        let rows = look
+    fn squares<'l>(&'l self, window: &'l ScanWindow) -> impl Iterator<Item = f64> + 'l {
+        let rows = window
             .rows
             .iter()
-            .flat_map(|row| &self.looks.rows[*row as usize]);
-        rows.map(|atom| self.atoms.list[*atom as usize].weight.powi(2))
+            .flat_map(|row| &self.windows.rows[*row as usize]);
+        rows.map(|cell_sum| self.cell_sums.list[*cell_sum as usize].weight.powi(2))
     }
 
-    fn sum(&self, look: &Look) -> DVector<f64> {
+    fn sum(&self, window: &ScanWindow) -> DVector<f64> {
         let mut sum = DVector::zeros(self.along.first().map_or(0, DVector::len));
-        for row in &look.rows {
+        for row in &window.rows {
             sum += &self.along[*row as usize];
         }
         sum
@@ -149,8 +149,8 @@ impl<'a> Scan<'a> {
 
     /// Values of the atoms with smooth factors taken out.
     pub(crate) fn observed(&self) -> Vec<f64> {
-        let values = self.atoms.list.iter().map(|atom| atom.value);
-        let values = DVector::from_iterator(self.atoms.list.len(), values);
+        let values = self.cell_sums.list.iter().map(|cell_sum| cell_sum.value);
+        let values = DVector::from_iterator(self.cell_sums.list.len(), values);
         let smooth = &self.allowance.smooth;
         let left = &values - smooth * (smooth.transpose() * &values);
         left.as_slice().to_vec()
@@ -161,14 +161,14 @@ impl<'a> Scan<'a> {
     pub(crate) fn excess(&self, values: &[f64], is_used: &dyn Fn(usize) -> bool) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (at, value) in values.iter().enumerate().filter(|(at, _)| is_used(*at)) {
-            let atom = &self.atoms.list[at];
+            let cell_sum = &self.cell_sums.list[at];
             if self.deviations[at] > 0.1 {
                 sum += (value / self.deviations[at]).powi(2);
                 count += 1.0;
             }
-            if !atom.channel.is_of_map() {
-                sum += atom.scatter.1;
-                count += atom.scatter.0 - 1.0;
+            if !cell_sum.channel.is_of_map() {
+                sum += cell_sum.scatter.1;
+                count += cell_sum.scatter.0 - 1.0;
             }
         }
         if count < 1.0 {
@@ -182,18 +182,20 @@ impl<'a> Scan<'a> {
 
     /// Signed statistic of every look, standard normal each where nothing is amiss; 0 for looks that say nothing.
     pub(crate) fn scores(&self, values: &[f64]) -> Vec<f64> {
-        let term = |atom: &u32| self.atoms.list[*atom as usize].weight * values[*atom as usize];
+        let term = |cell_sum: &u32| {
+            self.cell_sums.list[*cell_sum as usize].weight * values[*cell_sum as usize]
+        };
         let rows: Vec<f64> = self
-            .looks
+            .windows
             .rows
             .iter()
             .map(|row| row.iter().map(term).sum())
             .collect();
-        let score = |(look, spread): (&Look, &f64)| {
-            let sum: f64 = look.rows.iter().map(|row| rows[*row as usize]).sum();
+        let score = |(window, spread): (&ScanWindow, &f64)| {
+            let sum: f64 = window.rows.iter().map(|row| rows[*row as usize]).sum();
             if *spread > 0.0 { sum / spread } else { 0.0 }
         };
-        self.looks
+        self.windows
             .list
             .iter()
             .zip(&self.spreads)
@@ -202,13 +204,13 @@ impl<'a> Scan<'a> {
     }
 
     /// Standard deviation of a look's size, in its unit.
-    pub(crate) fn error(&self, look: usize) -> f64 {
-        self.spreads[look] / self.responses[look]
+    pub(crate) fn error(&self, window: usize) -> f64 {
+        self.spreads[window] / self.responses[window]
     }
 
     /// What two looks have in common, as a correlation of their statistics.
     pub(crate) fn correlation(&self, one: usize, two: usize) -> f64 {
-        let (a, b) = (&self.looks.list[one], &self.looks.list[two]);
+        let (a, b) = (&self.windows.list[one], &self.windows.list[two]);
         let spreads = self.spreads[one] * self.spreads[two];
         if spreads <= 0.0 {
             return 0.0;
@@ -217,9 +219,9 @@ impl<'a> Scan<'a> {
         let both = self
             .atoms_of(a)
             .into_iter()
-            .filter(|atom| theirs.binary_search(atom).is_ok());
+            .filter(|cell_sum| theirs.binary_search(cell_sum).is_ok());
         let shared: f64 = both
-            .map(|atom| self.atoms.list[atom as usize].weight.powi(2))
+            .map(|cell_sum| self.cell_sums.list[cell_sum as usize].weight.powi(2))
             .sum();
         let (mine, other) = (self.sum(a), self.sum(b));
         let ([s, q, _, r], [t, p, _, u]) = (self.parts(&mine), self.parts(&other));
@@ -227,22 +229,25 @@ impl<'a> Scan<'a> {
     }
 
     /// Atoms of a look, sorted.
-    pub(crate) fn atoms_of(&self, look: &Look) -> Vec<u32> {
-        let rows = look.rows.iter().map(|row| &self.looks.rows[*row as usize]);
-        let mut atoms: Vec<u32> = rows.flatten().copied().collect();
-        atoms.sort_unstable();
-        atoms
+    pub(crate) fn atoms_of(&self, window: &ScanWindow) -> Vec<u32> {
+        let rows = window
+            .rows
+            .iter()
+            .map(|row| &self.windows.rows[*row as usize]);
+        let mut cell_sums: Vec<u32> = rows.flatten().copied().collect();
+        cell_sums.sort_unstable();
+        cell_sums
     }
 
     /// Values with what a look explains taken out.
-    pub(crate) fn without(&self, values: &[f64], look: usize) -> Vec<f64> {
-        let size = self.scores(values)[look] * self.error(look);
-        let found = &self.looks.list[look];
+    pub(crate) fn without(&self, values: &[f64], window: usize) -> Vec<f64> {
+        let size = self.scores(values)[window] * self.error(window);
+        let found = &self.windows.list[window];
         let along = self.sum(found);
         let [smooth, _, known, _] = self.parts(&along);
         let mut shown = -(&self.allowance.smooth * smooth) - &self.absorbed * known;
-        for atom in self.atoms_of(found) {
-            shown[atom as usize] += self.atoms.list[atom as usize].weight;
+        for cell_sum in self.atoms_of(found) {
+            shown[cell_sum as usize] += self.cell_sums.list[cell_sum as usize].weight;
         }
         values
             .iter()
@@ -267,9 +272,9 @@ impl<'a> Scan<'a> {
     fn draw(&self, seed: u64) -> DMatrix<f64> {
         let mut random = Random::new(seed.wrapping_mul(0x2545_F491_4F6C_DD1D));
         let mut normal = |columns| DMatrix::from_fn(LANES, columns, |_, _| random.normal());
-        let mut values = normal(self.atoms.list.len());
-        let along =
-            &values * &self.atoms.absorbed + normal(self.unseen.ncols()) * self.unseen.transpose();
+        let mut values = normal(self.cell_sums.list.len());
+        let along = &values * &self.cell_sums.absorbed
+            + normal(self.unseen.ncols()) * self.unseen.transpose();
         let smooth = &self.allowance.smooth;
         let factors = &values * smooth;
         values -= factors * smooth.transpose();
@@ -279,23 +284,23 @@ impl<'a> Scan<'a> {
     }
 
     fn maxima(&self, values: &DMatrix<f64>) -> [f64; LANES] {
-        let mut rows = vec![[0.0; LANES]; self.looks.rows.len()];
-        for (sums, row) in rows.iter_mut().zip(&self.looks.rows) {
-            for atom in row {
-                let weight = self.atoms.list[*atom as usize].weight;
-                let drawn = values.column(*atom as usize);
+        let mut rows = vec![[0.0; LANES]; self.windows.rows.len()];
+        for (sums, row) in rows.iter_mut().zip(&self.windows.rows) {
+            for cell_sum in row {
+                let weight = self.cell_sums.list[*cell_sum as usize].weight;
+                let drawn = values.column(*cell_sum as usize);
                 sums.iter_mut()
                     .zip(drawn.iter())
                     .for_each(|(sum, value)| *sum += weight * value);
             }
         }
         let mut maxima = [0.0_f64; LANES];
-        for (look, spread) in self.looks.list.iter().zip(&self.spreads) {
+        for (window, spread) in self.windows.list.iter().zip(&self.spreads) {
             if *spread <= 0.0 {
                 continue;
             }
             let mut sums = [0.0; LANES];
-            for row in &look.rows {
+            for row in &window.rows {
                 let row = &rows[*row as usize];
                 sums.iter_mut()
                     .zip(row)

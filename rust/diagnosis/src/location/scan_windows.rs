@@ -1,11 +1,11 @@
-//! The places and times that a scan looks at: discs on the sensor and on the skin, and stretches of a protocol.
+//! Scan windows: discs on sensor and skin, and intervals of a protocol.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
 use crate::location::protocol_cells::{Cell, Cells, broad_groups, runs};
-use crate::location::residual_sums::{Atoms, Channel};
+use crate::location::residual_sums::{CellSums, Channel};
 use crate::observe::measured::{Mat, Measured};
 
 /// Radii of discs in pitches of the sensor: one sensel, four neighbors, eight, and on.
@@ -40,7 +40,7 @@ pub(crate) struct Disc {
 
 /// One thing looked at: a sum of rows.
 #[derive(Debug, Clone)]
-pub(crate) struct Look {
+pub(crate) struct ScanWindow {
     pub rows: Vec<u32>,
     /// Where; None: everywhere that the channel reads.
     pub disc: Option<Disc>,
@@ -61,18 +61,18 @@ pub(crate) struct Sensor {
 }
 
 /// All looks.
-pub(crate) struct Looks {
+pub(crate) struct ScanWindows {
     /// Atoms of each row.
     pub rows: Vec<Vec<u32>>,
-    pub list: Vec<Look>,
+    pub list: Vec<ScanWindow>,
     /// Cells of each group.
     pub groups: Vec<Vec<usize>>,
     pub sensors: Vec<Sensor>,
 }
 
 /// Everything worth a look, in a fixed order, nothing twice.
-pub(crate) fn plan(measured: &[Measured], cells: &Cells, atoms: &Atoms) -> Looks {
-    let mut looks = Looks {
+pub(crate) fn plan(measured: &[Measured], cells: &Cells, cell_sums: &CellSums) -> ScanWindows {
+    let mut windows = ScanWindows {
         rows: Vec::new(),
         list: Vec::new(),
         groups: Vec::new(),
@@ -83,24 +83,24 @@ pub(crate) fn plan(measured: &[Measured], cells: &Cells, atoms: &Atoms) -> Looks
     narrow.extend(runs(&cells.list, measured.len()));
     let mut of_channel: BTreeMap<(Channel, Option<usize>), BTreeMap<usize, Vec<u32>>> =
         BTreeMap::new();
-    for (at, atom) in atoms.list.iter().enumerate() {
-        let (kind, sensor) = match atom.channel {
-            Channel::Pressure(_) => (Channel::Pressure(0), looks.sensor_of(atom.cell)),
+    for (at, cell_sum) in cell_sums.list.iter().enumerate() {
+        let (kind, sensor) = match cell_sum.channel {
+            Channel::Pressure(_) => (Channel::Pressure(0), windows.sensor_of(cell_sum.cell)),
             other => (other, None),
         };
         let by_cell = of_channel.entry((kind, sensor)).or_default();
-        by_cell.entry(atom.cell).or_default().push(at as u32);
+        by_cell.entry(cell_sum.cell).or_default().push(at as u32);
     }
     for ((_, sensor), by_cell) in &of_channel {
-        looks.everywhere(&narrow, by_cell);
+        windows.everywhere(&narrow, by_cell);
         if let Some(sensor) = sensor {
-            looks.discs(*sensor, &broad, (atoms, by_cell));
+            windows.discs(*sensor, &broad, (cell_sums, by_cell));
         }
     }
-    looks
+    windows
 }
 
-impl Looks {
+impl ScanWindows {
     fn sensor_of(&self, cell: usize) -> Option<usize> {
         let has = |sensor: &Sensor| sensor.pose_of.contains_key(&cell);
         self.sensors.iter().position(has)
@@ -111,7 +111,7 @@ impl Looks {
         for group in restricted(groups, by_cell) {
             let row = self.row(atoms_of(&group, by_cell));
             self.groups.push(group);
-            self.list.push(Look {
+            self.list.push(ScanWindow {
                 rows: vec![row],
                 disc: None,
                 group: self.groups.len() - 1,
@@ -119,8 +119,8 @@ impl Looks {
         }
     }
 
-    fn row(&mut self, atoms: Vec<u32>) -> u32 {
-        self.rows.push(atoms);
+    fn row(&mut self, cell_sums: Vec<u32>) -> u32 {
+        self.rows.push(cell_sums);
         (self.rows.len() - 1) as u32
     }
 
@@ -129,20 +129,21 @@ impl Looks {
         &mut self,
         sensor: usize,
         groups: &BTreeSet<Vec<usize>>,
-        (atoms, by_cell): (&Atoms, &BTreeMap<usize, Vec<u32>>),
+        (cell_sums, by_cell): (&CellSums, &BTreeMap<usize, Vec<u32>>),
     ) {
         let neighbors = Neighbors::new(&self.sensors[sensor]);
         for group in restricted(groups, by_cell) {
             let mut own: BTreeMap<(usize, u32), Vec<u32>> = BTreeMap::new();
-            for atom in atoms_of(&group, by_cell) {
-                if let Channel::Pressure(sensel) = atoms.list[atom as usize].channel {
-                    let pose = self.sensors[sensor].pose_of[&atoms.list[atom as usize].cell];
-                    own.entry((pose, sensel)).or_default().push(atom);
+            for cell_sum in atoms_of(&group, by_cell) {
+                if let Channel::Pressure(sensel) = cell_sums.list[cell_sum as usize].channel {
+                    let pose =
+                        self.sensors[sensor].pose_of[&cell_sums.list[cell_sum as usize].cell];
+                    own.entry((pose, sensel)).or_default().push(cell_sum);
                 }
             }
             let rows: BTreeMap<(usize, u32), u32> = own
                 .into_iter()
-                .map(|(place, atoms)| (place, self.row(atoms)))
+                .map(|(place, cell_sums)| (place, self.row(cell_sums)))
                 .collect();
             self.groups.push(group);
             self.discs_of_group(sensor, &rows, &neighbors);
@@ -159,13 +160,13 @@ impl Looks {
         let Some(&drawn) = poses.first() else { return };
         let seen: BTreeSet<u32> = rows.keys().map(|(_, sensel)| *sensel).collect();
         let mut known: BTreeSet<Vec<u32>> = BTreeSet::new();
-        let mut add = |looks: &mut Looks, mut found: Vec<u32>, disc: Disc| {
+        let mut add = |windows: &mut ScanWindows, mut found: Vec<u32>, disc: Disc| {
             found.sort_unstable();
             if !found.is_empty() && known.insert(found.clone()) {
-                looks.list.push(Look {
+                windows.list.push(ScanWindow {
                     rows: found,
                     disc: Some(disc),
-                    group: looks.groups.len() - 1,
+                    group: windows.groups.len() - 1,
                 });
             }
         };
@@ -222,8 +223,8 @@ fn restricted(
 }
 
 fn atoms_of(group: &[usize], by_cell: &BTreeMap<usize, Vec<u32>>) -> Vec<u32> {
-    let atoms = group.iter().filter_map(|cell| by_cell.get(cell)).flatten();
-    atoms.copied().collect()
+    let cell_sums = group.iter().filter_map(|cell| by_cell.get(cell)).flatten();
+    cell_sums.copied().collect()
 }
 
 /// What lies around a sensel: for each pose, sensels with their distance, nearest first.

@@ -1,4 +1,4 @@
-//! What was found, in words.
+//! Sentences of a located mismatch.
 
 use crate::location::mismatch::{Carrier, Mismatch, Place, When};
 use crate::observe::measured::Phase;

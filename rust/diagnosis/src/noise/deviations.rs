@@ -43,8 +43,8 @@ impl Deviations {
         let series = |rest: &Vec<f64>| -> Vec<f64> {
             (1..rest.len())
                 .map(|k| {
-                    let carried = carry(steps[k - 1], memory_s);
-                    fresh(rest[k], rest[k - 1], carried) / sigma
+                    let carried = autocorrelation(steps[k - 1], memory_s);
+                    innovation(rest[k], rest[k - 1], carried) / sigma
                 })
                 .collect()
         };
@@ -61,7 +61,7 @@ impl Deviations {
             sum += a.component_mul(a);
             // Noise remembers little of what lies many memories back.
             for j in (0..k).rev() {
-                let shared = carry(self.time[k] - self.time[j], memory_s);
+                let shared = autocorrelation(self.time[k] - self.time[j], memory_s);
                 if shared < 1e-3 {
                     break;
                 }
@@ -73,7 +73,7 @@ impl Deviations {
 }
 
 /// Correlation of noise over `step`, s, if it forgets itself in `memory_s`.
-pub fn carry(step: f64, memory_s: f64) -> f64 {
+pub fn autocorrelation(step: f64, memory_s: f64) -> f64 {
     match memory_s > 0.0 {
         true => libm::exp(-step.max(0.0) / memory_s),
         false => 0.0,
@@ -81,12 +81,12 @@ pub fn carry(step: f64, memory_s: f64) -> f64 {
 }
 
 /// What is new in a value, of which `carried` of the one before is left, in units of all that it could be.
-pub(crate) fn fresh(now: f64, before: f64, carried: f64) -> f64 {
+pub(crate) fn innovation(now: f64, before: f64, carried: f64) -> f64 {
     (now - carried * before) / (1.0 - carried * carried).max(LEAST_FRESH).sqrt()
 }
 
 /// Standard deviation without outliers.
-pub fn spread(values: &[f64]) -> f64 {
+pub fn robust_deviation(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
     let rough = 1.4826 * median(&mut sizes);
     let kept = values.iter().filter(|v| v.abs() <= OUTLIER * rough);

@@ -1,4 +1,4 @@
-//! Stage 6c: how large a difference noise alone makes, from repeats where there are any.
+//! The noise model of a study: standard deviation of every sample, from repeats where there are any.
 
 use crate::noise::channel::{CHANNELS, Channel};
 use crate::noise::mat_smoothing::smoothed;

@@ -1,6 +1,6 @@
-//! Noise of a mat from repeats: sensel by sensel and frame by frame, part of it constant and part growing with the reading.
+//! Noise of a mat from repeats, sensel by sensel: a constant part and a part proportional to the reading.
 
-use crate::noise::deviations::{Group, spread};
+use crate::noise::deviations::{Group, robust_deviation};
 use crate::noise::scatter::Scatter;
 use crate::observe::measured::{Censoring, Measured, Quantity};
 
@@ -60,7 +60,7 @@ pub fn scatter(groups: &[Group], measured: &[Measured]) -> Option<Scatter> {
     }
     let told = |list: &[f64]| {
         if list.len() >= LEAST {
-            spread(list)
+            robust_deviation(list)
         } else {
             0.0
         }

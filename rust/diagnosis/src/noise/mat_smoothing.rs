@@ -1,4 +1,4 @@
-//! What a sensel would read without noise, roughly: noise that grows with the reading is judged by this and not by the reading itself.
+//! Smoothed mat readings, by which noise proportional to the reading is judged (the noisy reading itself would bias the weights).
 //!
 //! Judged by the reading, a value that noise made low would count as the surer one, and a fit would follow it.
 
@@ -36,7 +36,7 @@ mod tests {
 
     /// Readings of 10 kPa with noise of a tenth of them: judged by what is smoothed, low readings are hardly surer than high ones.
     #[test]
-    fn a_low_reading_is_hardly_surer_than_a_high_one() {
+    fn smoothed_reading_weights_low_readings_no_more_than_high() {
         let mut state = 3u64;
         let mut roll = || {
             state = state

@@ -1,4 +1,4 @@
-//! A rhythm in what differs between repeats: something that beats under the tool, in step with nothing.
+//! Periodic component in the difference between repeats, such as a pulse (Lomb 1976).
 //!
 //! What is missing from the model is the same in every repeat of a protocol, and so cancels in their deviations; a pulse is not. It is
 //! sought as a sine that grows with the force, of one frequency in all recordings and of any phase and size in each (Lomb 1976), beside
@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use crate::noise::deviations::{Deviations, carry, fresh};
+use crate::noise::deviations::{Deviations, autocorrelation, innovation};
 use crate::noise::restricted_likelihood::within;
 
 /// Frequencies between which a rhythm is sought, Hz: a heart at rest or at work, a muscle that tenses for seconds. Samples of a press are
@@ -98,7 +98,9 @@ impl Freed {
             return None;
         }
         let time: Vec<f64> = kept.iter().map(|k| of.time[*k]).collect();
-        let gaps = time.windows(2).map(|w| carry(w[1] - w[0], memory_s));
+        let gaps = time
+            .windows(2)
+            .map(|w| autocorrelation(w[1] - w[0], memory_s));
         let carried: Vec<f64> = std::iter::once(0.0).chain(gaps).collect();
         let white = |values: Vec<f64>| whitened(&carried, &values);
         let column = |j: usize| white(kept.iter().map(|k| of.along[*k][j]).collect());
@@ -151,7 +153,9 @@ const LEAST: usize = 12;
 
 fn whitened(carried: &[f64], values: &[f64]) -> DVector<f64> {
     let before = |k: usize| if k > 0 { values[k - 1] } else { 0.0 };
-    DVector::from_fn(values.len(), |k, _| fresh(values[k], before(k), carried[k]))
+    DVector::from_fn(values.len(), |k, _| {
+        innovation(values[k], before(k), carried[k])
+    })
 }
 
 #[cfg(test)]
@@ -185,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_is_told_with_its_frequency() {
+    fn planted_pulse_is_found_at_its_frequency() {
         let mut random = Random::new(11);
         for _ in 0..20 {
             let found = rhythm(&study(1.0, &mut random), 0.15).unwrap();
@@ -199,7 +203,7 @@ mod tests {
 
     /// The same part of the squares is twice as clear where there are twice as many degrees of freedom.
     #[test]
-    fn more_repeats_tell_more() {
+    fn periodic_component_power_grows_with_repeats() {
         let of = &study(1.0, &mut Random::new(6))[0];
         let mut freed = Freed::of(of, 0.15).unwrap();
         let two = freed.gained(1.2);
@@ -209,7 +213,7 @@ mod tests {
 
     /// The chance that is told is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.
     #[test]
-    fn noise_has_no_rhythm() {
+    fn white_noise_has_no_periodic_component() {
         let mut random = Random::new(4);
         let told = (0..100).filter(|_| {
             let found = rhythm(&study(0.0, &mut random), 0.15).unwrap();

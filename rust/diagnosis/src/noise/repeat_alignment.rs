@@ -1,4 +1,4 @@
-//! Repeats of one protocol brought to the same moments.
+//! Repeats of one protocol resampled to the same moments.
 
 use crate::noise::channel::Channel;
 use crate::observe::measured::{Censoring, Measured, Phase};
@@ -23,7 +23,7 @@ pub struct Aligned {
 
 /// A recording with what the model says of it.
 #[derive(Clone, Copy)]
-pub struct Told<'a> {
+pub struct RepeatSeries<'a> {
     /// The recording.
     pub measured: &'a Measured,
     /// Predictions by sample.
@@ -36,7 +36,7 @@ pub struct Told<'a> {
 ///
 /// Repeats whose samples fall on the same moments are taken as they are; others are joined by straight lines over the time since
 /// the first loading began. Only sensors without a number of their own: a mat's sensels are compared frame by frame elsewhere.
-pub fn aligned(channel: Channel, repeats: &[Told<'_>]) -> (Vec<f64>, Vec<Aligned>) {
+pub fn aligned(channel: Channel, repeats: &[RepeatSeries<'_>]) -> (Vec<f64>, Vec<Aligned>) {
     let series: Vec<Series> = repeats
         .iter()
         .map(|told| Series::new(channel, told))
@@ -85,7 +85,7 @@ struct Series {
 }
 
 impl Series {
-    fn new(channel: Channel, told: &Told<'_>) -> Series {
+    fn new(channel: Channel, told: &RepeatSeries<'_>) -> Series {
         let moments = &told.measured.moments;
         let began = moments
             .iter()

@@ -1,4 +1,4 @@
-//! Repeats of one protocol beside each other: how each departs from their mean, and how much of it gain and first touch are.
+//! Deviation of each repeat from their mean, with gain and first touch taken out.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -6,7 +6,7 @@ use crate::noise::deviations::{Deviations, Group, LEAST_SAMPLES};
 use crate::noise::repeat_alignment::Aligned;
 
 /// The repeats of one group at the same moments, and what gain and zero do to their mean.
-pub(crate) struct Together {
+pub(crate) struct AlignedGroup {
     time: Vec<f64>,
     repeats: Vec<Aligned>,
     /// Means over the repeats.
@@ -16,8 +16,8 @@ pub(crate) struct Together {
     slope: Vec<f64>,
 }
 
-impl Together {
-    pub(crate) fn new((time, repeats): (Vec<f64>, Vec<Aligned>)) -> Option<Together> {
+impl AlignedGroup {
+    pub(crate) fn new((time, repeats): (Vec<f64>, Vec<Aligned>)) -> Option<AlignedGroup> {
         let (n, m) = (time.len(), repeats.len() as f64);
         if n < LEAST_SAMPLES || repeats.iter().any(|r| r.value.len() != n) {
             return None;
@@ -29,7 +29,7 @@ impl Together {
         };
         let (value, depth) = (mean(&|r| &r.value), mean(&|r| &r.depth));
         let slope = own_slope(&value, &mean(&|r| &r.simulated), &mean(&|r| &r.slope));
-        Some(Together {
+        Some(AlignedGroup {
             time,
             value,
             depth,
@@ -96,7 +96,7 @@ mod tests {
     /// Skin twice as stiff as the model has twice its slope; where a reading near first touch is noise, the whole says no more than
     /// twice or half of that, and where the model bears nothing there is no slope.
     #[test]
-    fn the_slope_is_the_models_times_what_the_skin_bears_more_but_not_by_noise() {
+    fn own_slope_scales_the_model_slope_by_a_smooth_force_ratio() {
         let simulated = [0.0, 1e-3, 1e-3, 1.0, 2.0, 3.0];
         let value = [0.5, 0.1, -0.1, 2.0, 4.0, 6.0];
         let slope = [1.0, 0.5, 0.5, 1.0, 1.5, 2.0];

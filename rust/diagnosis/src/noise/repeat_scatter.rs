@@ -1,12 +1,12 @@
-//! What repeats of a protocol show: noise within a recording, and how recordings differ as a whole.
+//! Scatter of a channel over its repeats: within recordings (pooled), and between them.
 
 use nalgebra::Vector2;
 
 use crate::noise::channel::Channel;
-use crate::noise::deviations::{Deviations, Group, OUTLIER, spread};
+use crate::noise::deviations::{Deviations, Group, OUTLIER, robust_deviation};
 use crate::noise::periodic_component::rhythm;
-use crate::noise::repeat_alignment::{Told, aligned};
-use crate::noise::repeat_deviations::Together;
+use crate::noise::repeat_alignment::{RepeatSeries, aligned};
+use crate::noise::repeat_deviations::AlignedGroup;
 use crate::noise::restricted_likelihood;
 use crate::noise::scatter::Scatter;
 use crate::observe::measured::Measured;
@@ -62,17 +62,17 @@ impl Repeats {
             Channel::Scan => return crate::noise::scan_noise::scatter(&self.groups, measured),
             _ => {}
         }
-        let beside = |&k: &usize| Told {
+        let beside = |&k: &usize| RepeatSeries {
             measured: &measured[k],
             simulated: &simulated[k],
             slopes: &slopes[k],
         };
-        let aligned_all: Vec<(&Group, Together)> = self
+        let aligned_all: Vec<(&Group, AlignedGroup)> = self
             .groups
             .iter()
             .filter_map(|group| {
-                let repeats: Vec<Told<'_>> = group.iter().map(beside).collect();
-                Some((group, Together::new(aligned(self.channel, &repeats))?))
+                let repeats: Vec<RepeatSeries<'_>> = group.iter().map(beside).collect();
+                Some((group, AlignedGroup::new(aligned(self.channel, &repeats))?))
             })
             .collect();
         let each = aligned_all.iter();
@@ -82,7 +82,7 @@ impl Repeats {
         if all.is_empty() {
             return None;
         }
-        let told = restricted_likelihood::told(&all);
+        let told = restricted_likelihood::estimate(&all);
         let memory_s = told.memory_s;
         let of_most =
             |(d, (sigma, degrees)): (&Deviations, &(f64, f64))| (sigma / d.most, *degrees);
@@ -112,12 +112,15 @@ impl Repeats {
 }
 
 /// Standard deviation of the whitened deviations of all groups, and those over it.
-fn pooled_steps(all: &[Deviations], told: &restricted_likelihood::Told) -> (f64, Vec<f64>) {
+fn pooled_steps(
+    all: &[Deviations],
+    told: &restricted_likelihood::NoiseEstimate,
+) -> (f64, Vec<f64>) {
     let of_group = all.iter().zip(&told.sizes);
     let groups: Vec<Vec<Vec<f64>>> = of_group
         .map(|(d, (sigma, _))| d.whitened((*sigma, told.memory_s)))
         .collect();
-    let size = spread(&groups.concat().concat());
+    let size = robust_deviation(&groups.concat().concat());
     if size.is_nan() || size == 0.0 {
         return (1.0, Vec::new());
     }

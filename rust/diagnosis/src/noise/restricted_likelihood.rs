@@ -6,7 +6,9 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::noise::deviations::{Deviations, LEAST_FRESH, OUTLIER, carry, fresh, spread};
+use crate::noise::deviations::{
+    Deviations, LEAST_FRESH, OUTLIER, autocorrelation, innovation, robust_deviation,
+};
 use crate::observe::robust_scale::median;
 
 /// Ratios of memory to sampling interval between which the likeliest is sought, and how finely.
@@ -18,7 +20,7 @@ const HALVINGS: usize = 4;
 const BELIEVED: f64 = 2.0;
 
 /// What the repeats of all groups show.
-pub struct Told {
+pub struct NoiseEstimate {
     /// s; 0: none.
     pub memory_s: f64,
     /// By group: standard deviation, and its degrees of freedom.
@@ -26,13 +28,13 @@ pub struct Told {
 }
 
 /// The likeliest memory, and each group's size under it; outliers are left out.
-pub fn told(all: &[Deviations]) -> Told {
+pub fn estimate(all: &[Deviations]) -> NoiseEstimate {
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, None)).collect();
     let rough = likeliest(all, &kept);
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, Some(rough))).collect();
     let memory_s = likeliest(all, &kept);
     let pairs = all.iter().zip(&kept);
-    Told {
+    NoiseEstimate {
         memory_s,
         sizes: pairs
             .map(|(d, kept)| {
@@ -54,7 +56,7 @@ pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
             let at = at.filter(|at| *at < n)?;
             Some((
                 series[at],
-                carry((of.time[k] - of.time[at]).abs(), memory_s),
+                autocorrelation((of.time[k] - of.time[at]).abs(), memory_s),
             ))
         };
         let ((a, before), (b, after)) = (
@@ -72,7 +74,7 @@ pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
         .iter()
         .map(|series| (0..n).map(|k| off(series, k)).collect())
         .collect();
-    let most = OUTLIER * spread(&all.concat());
+    let most = OUTLIER * robust_deviation(&all.concat());
     (0..n)
         .filter(|&k| most == 0.0 || all.iter().all(|series| series[k].abs() <= most))
         .collect()
@@ -118,9 +120,10 @@ fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
     let (mut gram, mut pulls) = (Matrix2::zeros(), vec![Vector2::zeros(); of.rest.len()]);
     let mut sum = 0.0;
     for &k in kept {
-        let carried = before.map_or(0.0, |j| carry(of.time[k] - of.time[j], memory_s));
-        let of_all =
-            |values: &dyn Fn(usize) -> f64| fresh(values(k), before.map_or(0.0, values), carried);
+        let carried = before.map_or(0.0, |j| autocorrelation(of.time[k] - of.time[j], memory_s));
+        let of_all = |values: &dyn Fn(usize) -> f64| {
+            innovation(values(k), before.map_or(0.0, values), carried)
+        };
         let along = Vector2::new(of_all(&|k| of.along[k].x), of_all(&|k| of.along[k].y));
         gram += along * along.transpose();
         for (series, pull) in of.rest.iter().zip(&mut pulls) {
@@ -177,7 +180,7 @@ pub(crate) mod tests {
         let mut draw = || {
             let mut noise = vec![random.normal()];
             for k in 1..n {
-                let carried = carry(time[k] - time[k - 1], memory_s);
+                let carried = autocorrelation(time[k] - time[k - 1], memory_s);
                 noise.push(
                     carried * noise[k - 1] + (1.0 - carried * carried).sqrt() * random.normal(),
                 );
@@ -203,7 +206,7 @@ pub(crate) mod tests {
     /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
     /// it does to a slow signal, which goes as the variance times the memory.
     #[test]
-    fn memory_and_size_are_right_in_the_mean() {
+    fn correlation_time_and_sigma_are_unbiased() {
         for memory_s in [0.15, 0.6] {
             let mut random = Random::new(5);
             let studies = 60.0;
@@ -211,7 +214,7 @@ pub(crate) mod tests {
             for _ in 0..60 {
                 let all: Vec<Deviations> =
                     (0..5).map(|_| deviations(memory_s, &mut random)).collect();
-                let found = told(&all);
+                let found = estimate(&all);
                 let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
                 let ratio = found.memory_s / memory_s;
                 logs[0] += libm::log(ratio) / studies;
@@ -225,11 +228,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn noise_without_memory_is_told_to_have_none() {
+    fn white_noise_has_zero_correlation_time() {
         let mut random = Random::new(2);
         let with = (0..100).filter(|_| {
             let all: Vec<Deviations> = (0..5).map(|_| deviations(0.0, &mut random)).collect();
-            told(&all).memory_s > 0.0
+            estimate(&all).memory_s > 0.0
         });
         // Twice two nats is beyond the 95 % point of a chi-square of one number, and a memory can only be longer than none.
         let often = with.count();
@@ -238,7 +241,7 @@ pub(crate) mod tests {
 
     /// Without memory the size is that of plain least squares.
     #[test]
-    fn without_memory_it_is_least_squares() {
+    fn white_noise_likelihood_is_least_squares() {
         let of = deviations(0.15, &mut Random::new(1));
         let n = of.time.len();
         let all: Vec<usize> = (0..n).collect();
@@ -251,7 +254,7 @@ pub(crate) mod tests {
     /// Against the restricted likelihood with whole matrices (Harville 1977), of every third sample left out: what it
     /// gains from one memory to another, and the squares.
     #[test]
-    fn it_is_the_likelihood_of_whole_matrices() {
+    fn restricted_likelihood_equals_dense_matrix_form() {
         let of = deviations(0.4, &mut Random::new(3));
         let kept: Vec<usize> = (0..of.time.len()).filter(|k| k % 3 != 1).collect();
         let columns = DMatrix::from_fn(kept.len(), 2, |k, j| of.along[kept[k]][j]);

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use crate::noise::deviations::{Group, spread};
+use crate::noise::deviations::{Group, robust_deviation};
 use crate::noise::scatter::Scatter;
 use crate::observe::measured::{Measured, Quantity};
 
@@ -28,7 +28,7 @@ pub fn scatter(groups: &[Group], measured: &[Measured]) -> Option<Scatter> {
         members.extend(group.iter().copied());
     }
     (!members.is_empty())
-        .then(|| Scatter::of_map(&members, (spread(&deviations), 0.0), degrees, 0.0))
+        .then(|| Scatter::of_map(&members, (robust_deviation(&deviations), 0.0), degrees, 0.0))
 }
 
 /// Deviations from the mean by repeat and place.

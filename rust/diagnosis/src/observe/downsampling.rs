@@ -1,4 +1,4 @@
-//! Long recordings thinned: means over stretches of a recording, so that noise falls and turning points stay.
+//! Downsampling of long recordings by means over stretches; turning points are kept.
 
 use std::ops::Range;
 

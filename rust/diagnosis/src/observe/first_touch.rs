@@ -1,4 +1,4 @@
-//! Where a force first rises from its noise, in recordings that give travel without a point of first touch.
+//! First touch from the force onset, for recordings that give travel without a point of first touch.
 
 use crate::observe::robust_scale::{median, noise_of};
 
@@ -47,7 +47,7 @@ mod tests {
     use crate::random::Random;
 
     #[test]
-    fn the_touch_is_found_near_where_the_force_begins() {
+    fn first_touch_is_found_at_the_force_onset() {
         let mut random = Random::new(2);
         let travel: Vec<f64> = (0..3000).map(|k| f64::from(k) * 1e-3).collect();
         let clean = |t: &f64| (t - 1.0f64).max(0.0).powf(1.5) + 0.3;

@@ -1,4 +1,4 @@
-//! Parts of a protocol: where the tool moves in, stands, moves out, slides or is apart, told from noisy depths.
+//! Phases of a protocol (load, hold, unload, slide, apart) from noisy depths.
 
 use crate::observe::measured::Phase;
 use crate::observe::robust_scale::noise_of;

@@ -1,4 +1,4 @@
-//! How far a series scatters about a smooth course.
+//! Robust scale: roughness of a series about a smooth course, and the median.
 
 /// Standard deviation of a series' noise, from its third differences: a smooth course leaves almost none, and the median is
 /// moved by neither turning points nor outliers. 0 for fewer than 5 values.

@@ -1,4 +1,4 @@
-//! A skin's surface as scans see it: signed distances, and the rigid motion that lays scanned points on it.
+//! Registration of scanned points on the skin: signed distances and the rigid motion.
 
 use nalgebra::{Matrix6, Rotation3, Vector3, Vector6};
 use thenar_surface::{Feature, GapLimits, Mesh, Product, closest_point, vertex_normals};
@@ -247,7 +247,7 @@ mod tests {
 
     /// On a plane the distance is the height, from any triangle one begins at; beyond its rim the surface ends.
     #[test]
-    fn feet_on_a_plane_are_heights() {
+    fn signed_distance_to_a_plane_is_height() {
         let surface = Surface::new(grid(8, 1.0, &|_, _| 0.0));
         for (x, y, z) in [(3.3, -2.7, 1.5), (-6.1, 5.2, -0.4), (0.0, 0.0, 2.0)] {
             for from in [0, 100, 255] {
@@ -263,7 +263,7 @@ mod tests {
 
     /// A bowl with three unequal curvatures, moved: the motion back is found, though a dent of 1 mm takes a tenth of the points.
     #[test]
-    fn a_moved_surface_is_laid_back() {
+    fn registration_recovers_a_rigid_motion() {
         let height = |x: f64, y: f64| -x * x / 24.0 - y * y / 60.0 + x * y * y / 900.0;
         let surface = Surface::new(grid(24, 0.5, &height));
         let center = Vector3::zeros();

@@ -1,4 +1,4 @@
-//! Stage 6a: a study's recordings as moments of a protocol and samples in the recording's own terms.
+//! Conducts the observation of a study: every recording to moments and samples.
 
 use nalgebra::Vector3;
 use thenar_recordings::study::{Data, Indenter, PlacedSensel, Site, StudyRecording};

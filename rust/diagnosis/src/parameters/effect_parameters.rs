@@ -1,4 +1,4 @@
-//! Numbers of effects that a fit may change, and what it found for them.
+//! Parameters of effects that a mesh fit may change, and the estimates of them.
 
 use thenar_contact::ActiveEffect;
 

@@ -1,4 +1,4 @@
-//! How far the model's own form may be off: a smooth factor on the load, by depth, for each tool at each site.
+//! Form error of the mesh model as parameters: a smooth factor on the load, by depth, for each tool at each site.
 //!
 //! A layer on bone is not a finger: to meet the finite-element fingertip of `tests/proof`, plate or cylinder, to 3 mm, its modulus
 //! departs by up to 9 % from the best straight line over depth, the same at every speed and in every repeat. What is called

@@ -1,4 +1,4 @@
-//! The model's own form of a fit's coordinates: materials by region, and what belongs to each recording.
+//! Parameter vector to model inputs: materials by region, and nuisance parameters by recording.
 
 use thenar_contact::Material;
 

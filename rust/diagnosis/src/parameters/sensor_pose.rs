@@ -1,4 +1,4 @@
-//! Where mats and scans lie, as numbers that a fit may change.
+//! Pose parameters of mats and scans.
 
 use thenar_recordings::study::Instrument;
 

@@ -1,16 +1,16 @@
 //! Bounds and priors of the surrogate model's parameters: moduli, first touch, gain, and the error of the model's form.
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::Material;
 
-use crate::fit::fitting::Fitting;
 use crate::forward::mesh::nuisance::KNOTS;
-use crate::forward::surrogate::force_recording::Course;
+use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
 use crate::noise::estimate::Noise;
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
-/// Standard deviation of the factor by which the model's form may be off, for each tool at each site, by way (`stiffness::modes`): of a ball
-/// on flat skin (`balls`), of another tool there, and on any other skin.
+/// Standard deviation of the factor by which the model's form may be off, for each tool at each site, by way (`stiffness_factor::modes`): of a ball
+/// on flat skin (`forward::tables::sphere`), of another tool there, and on any other skin.
 ///
 /// Against the finite elements of the calibration's flat pads without effects balls are off by 0.4 % in the whole, by 0.3 % in their tilt and
 /// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more; on the
@@ -36,13 +36,13 @@ pub(crate) const MOST: f64 = 6.0;
 
 /// Moduli, first touch, gain, and the model's form.
 pub(crate) fn shared(
-    fitting: &Fitting,
-    (courses, elastic): (&[Course], &Elastic),
+    replay: &Replay,
+    (courses, elastic): (&[ForceRecording], &Elastic),
     noise: &Noise,
 ) -> Vec<Coordinate> {
-    let known = &fitting.replay.observed.is_touch_known;
-    let mut all = moduli(&fitting.replay.tissue.materials[0]).to_vec();
-    let has_regions = fitting.replay.tissue.regions.len() > 1;
+    let known = &replay.observed.is_touch_known;
+    let mut all = moduli(&replay.tissue.materials[0]).to_vec();
+    let has_regions = replay.tissue.regions.len() > 1;
     for place in 0..elastic.places.len() {
         let Some(first) = courses.iter().find(|c| c.place == place) else {
             continue;

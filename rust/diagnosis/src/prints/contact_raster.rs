@@ -1,4 +1,4 @@
-//! The simulated contact spread out on the paper's sheet: 1 where skin presses enough to leave ink, 0 elsewhere.
+//! Simulated contact rasterized on the paper: 1 where skin leaves ink, 0 elsewhere.
 
 use crate::observe::robust_scale::median;
 use crate::prints::paper_sheet::{MARGIN, Sheet};

@@ -1,4 +1,4 @@
-//! Table and sentence of a print.
+//! Table of measures and sentence of a handprint.
 
 use nalgebra::Vector3;
 use thenar_recordings::handprint::TOUCHED_FROM;

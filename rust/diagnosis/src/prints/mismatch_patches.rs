@@ -1,4 +1,4 @@
-//! Patches of the paper on which ink and simulated contact differ, as places that name vertices of the skin.
+//! Patches of the paper on which ink and simulated contact differ.
 
 use crate::comparison::quantities::{Kind, WorstPlace};
 use crate::observe::measured::Phase;

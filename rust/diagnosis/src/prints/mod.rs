@@ -14,7 +14,7 @@ pub(crate) mod paper_pose;
 pub(crate) mod measures;
 pub(crate) mod regions;
 pub(crate) mod mismatch_patches;
-pub(crate) mod conduct;
+pub(crate) mod compare_print;
 pub(crate) mod study_prints;
 pub(crate) mod single_print;
 

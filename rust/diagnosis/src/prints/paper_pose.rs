@@ -1,4 +1,4 @@
-//! The pose of the paper: the shift and turn in which ink and simulated contact differ least, and how surely that is so.
+//! Fit of the paper's pose (shift and turn) with its intervals.
 
 use nalgebra::{Matrix3, Vector3};
 use thenar_recordings::handprint::TOUCHED_FROM;

@@ -1,4 +1,4 @@
-//! Ink and simulated contact on the skin: by vertex, and by region of the hand.
+//! Ink and simulated contact by vertex of the skin and by region of the hand.
 
 use thenar_recordings::handprint::TOUCHED_FROM;
 

@@ -1,13 +1,13 @@
-//! One print beside one contact that was solved elsewhere: nothing but the paper's pose is fitted.
+//! Comparison of one handprint with one contact that was solved elsewhere; only the paper's pose is fitted.
 
 use nalgebra::Vector3;
 
-use crate::comparison::conduct::compare_fit;
+use crate::comparison::compare_fit::compare_fit;
 use crate::comparison::result::{Compared, Comparison};
 use crate::errors::DiagnosisError;
 use crate::fit::result::Fit;
 use crate::observe::measured::{Mat, Measured};
-use crate::prints::conduct::compare;
+use crate::prints::compare_print::compare;
 use crate::prints::print_case::{Pressed, PrintCase};
 
 /// A print, the paper as it lies, and the contact it is compared with; all in one frame of coordinates, mm.

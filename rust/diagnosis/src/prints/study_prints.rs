@@ -13,7 +13,7 @@ use crate::fit::fitting::Fitting;
 use crate::fit::result::Fit;
 use crate::forward::mesh::print_press::{Demanded, PrintPress};
 use crate::observe::measured::Mat;
-use crate::prints::conduct::compare;
+use crate::prints::compare_print::compare;
 use crate::prints::print_case::{Pressed, PrintCase};
 use crate::prints::printed::Printed;
 

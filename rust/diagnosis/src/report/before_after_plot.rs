@@ -1,4 +1,4 @@
-//! A recording before and after: force over time, and below it, on a scale of its own, what parameters alone leave.
+//! Plot of a recording: force over time before and after the finding, and the residual below.
 
 use crate::diagnose::findings::Curve;
 use crate::report::axes::{Axes, Titles, range, symmetric};
@@ -71,7 +71,7 @@ mod tests {
 
     /// Of 1 N, 20 mN are left: as large a part of the lower drawing as they are of what is left.
     #[test]
-    fn what_is_left_is_drawn_on_a_scale_of_its_own() {
+    fn residual_plot_has_its_own_scale() {
         let curve = Curve {
             recording: "slow <1>".to_owned(),
             time_s: vec![0.0, 1.0, 2.0],

@@ -29,7 +29,7 @@ pub fn comparison_json(comparison: &Comparison) -> String {
         "title": comparison.title,
         "sentence": comparison.sentence,
         "lack_of_fit_p": comparison.lack_of_fit_p,
-        "looks": comparison.looks,
+        "looks": comparison.look_elsewhere_count,
         "significant_below_p": SIGNIFICANT,
         "estimates": comparison.estimates.iter().map(estimate).collect::<Vec<_>>(),
         "recordings": comparison.recordings.iter().map(recording).collect::<Vec<_>>(),
@@ -45,7 +45,7 @@ fn location(location: &Location) -> Value {
     json!({
         "sentence": location.sentence,
         "p": location.p,
-        "looks": location.looks,
+        "looks": location.look_elsewhere_count,
         "mismatches": location.mismatches.iter().map(mismatch).collect::<Vec<_>>(),
     })
 }
@@ -263,7 +263,7 @@ fn trend(trend: &Trend, is_calibrated: bool) -> Value {
             "count": bin.count,
             "mean": bin.mean,
             "standard_error": bin.standard_error,
-            "standard_errors": bin.standings(),
+            "standard_errors": bin.standard_errors(),
             "stands_out": bin.stands_out(),
             "mean_sigmas": bin.mean_sigma,
             "standard_error_sigmas": bin.standard_error_sigma,

@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn nats_that_round_to_nothing_have_no_sign() {
+    fn rounded_zero_has_no_sign() {
         assert_eq!(
             [-0.04, 0.04, -0.06, 12.34].map(nats),
             ["0.0", "0.0", "-0.1", "12.3"]

@@ -114,7 +114,7 @@ pub fn location(comparison: &Comparison) -> String {
     };
     format!(
         "<section><h2>Where and when</h2>{body}<p class='meta'>{} places and times were looked at; all of them are paid for in p.</p></section>\n",
-        location.looks
+        location.look_elsewhere_count
     )
 }
 
@@ -199,7 +199,7 @@ pub fn list(title: &str, texts: &[String]) -> String {
 
 /// How the figures were made.
 pub fn method(comparison: &Comparison) -> String {
-    let looks = comparison.looks;
+    let looks = comparison.look_elsewhere_count;
     format!(
         "<section><h2>How to read this</h2><ul>\
 <li><b>Residual</b> is measured minus simulated. \u{03c3} is the standard deviation of the noise that repeats of a protocol show; without repeats it is only how rough the recording itself is, and what stands out of that may still be noise. The band marks \u{00b1}2\u{03c3}.</li>\

@@ -1,4 +1,4 @@
-//! Tables of the page: estimates, measures, worst places.
+//! Tables of the page: estimates, measures, largest residuals.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Bars: mean residual in ranges of a variable, and an estimate with its interval.
+//! Bar plots: mean residual in ranges of a variable, and an estimate with its interval.
 
 use crate::comparison::trends::Trend;
 use crate::parameters::estimate::Estimate;

@@ -1,21 +1,21 @@
-//! Fits of hypotheses to one study, each from all its starts.
+//! Fits of candidate models, each from all its starts.
 
 use thenar_contact::Control;
 
 use crate::errors::DiagnosisError;
+use crate::forward::surrogate::candidate_model::Model;
 use crate::forward::surrogate::mechanism::Mechanism;
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::prepared_study::Prepared;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::least_squares::surrogate_fit::refit;
 use crate::selection::scored::Scored;
 
 /// Tries hypotheses on one study.
 pub struct Trial<'a> {
     /// The study.
-    pub ready: &'a Prepared,
+    pub ready: &'a PreparedStudy,
     /// Its screen.
-    pub screen: &'a Screen<'a>,
+    pub surrogate: &'a Surrogate<'a>,
     /// Samples that repeats share, by number of their block.
     pub blocks: Vec<usize>,
     /// Optimum of the base, where fits begin.
@@ -36,13 +36,13 @@ impl Trial<'_> {
 
     /// Fits from an optimum of fewer mechanisms, the first of these.
     pub fn score(&self, mechanisms: &[Mechanism], from: &[f64]) -> Scored {
-        let model = Model::new(self.screen, mechanisms);
-        let refit = refit(self.screen, &model, from);
+        let model = Model::new(self.surrogate, mechanisms);
+        let refit = refit(self.surrogate, &model, from);
         Scored {
-            coherent: coherent(self.screen, &refit.residual, &self.blocks),
+            lack_of_fit: lack_of_fit(self.surrogate, &refit.residual, &self.blocks),
             mechanisms: mechanisms.to_vec(),
             refit,
-            evidence: 0.0,
+            qaic_gain: 0.0,
         }
     }
 
@@ -52,7 +52,7 @@ impl Trial<'_> {
         let one = std::slice::from_ref(mechanism);
         let mut starts = mechanism.starts(self.ready.least_seen());
         starts.push(Vec::new());
-        let own: Vec<f64> = self.screen.shared.iter().map(|c| c.start).collect();
+        let own: Vec<f64> = self.surrogate.shared.iter().map(|c| c.start).collect();
         let beside = |shared: &[f64], start: &[f64]| self.score(one, &[shared, start].concat());
         let fits = starts
             .iter()
@@ -94,10 +94,10 @@ fn lower(one: Scored, other: Scored) -> Scored {
 }
 
 /// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
-fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
+fn lack_of_fit(surrogate: &Surrogate<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
     let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
     let mut sums = vec![(0.0, 0.0f64, 0.0); count];
-    for (sample, _, _) in screen.phases() {
+    for (sample, _, _) in surrogate.phases() {
         let r = residual[sample].clamp(-6.0, 6.0);
         let sum = &mut sums[blocks[sample]];
         *sum = (sum.0 + r, sum.1 + 1.0, sum.2 + r * r);
@@ -117,7 +117,7 @@ fn coherent(screen: &Screen<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
 mod tests {
     use super::*;
     use crate::checks::lack_of_fit::blocks;
-    use crate::forward::surrogate::mechanism::{Acts, Stage};
+    use crate::forward::surrogate::mechanism::{Law, Stage};
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
     use crate::observe::measured::Phase;
     use crate::selection::candidates::singles;
@@ -167,10 +167,10 @@ mod tests {
             let recordings: Vec<_> = places.map(|k| (k, readings(k))).collect();
             let tools = self.stiffness.iter().map(punch).collect();
             let (ready, measured) = ready(tools, &recordings, 0.05);
-            let screen = ready.screen();
+            let surrogate = ready.surrogate();
             let mut trial = Trial {
                 ready: &ready,
-                screen: &screen,
+                surrogate: &surrogate,
                 blocks: blocks(&measured),
                 from: Vec::new(),
                 control: &Control::none(),
@@ -189,12 +189,12 @@ mod tests {
     };
     const CEILING: Mechanism = Mechanism {
         effect: Effect::Saturation,
-        acts: Acts::Saturates(Stage::Last),
+        law: Law::Saturation(Stage::Last),
     };
 
     /// From any one start, a fit misses some of them.
     #[test]
-    fn a_ceiling_is_found_near_the_largest_force_and_far_below_it() {
+    fn saturation_is_found_from_any_of_its_starts() {
         let middle = Clipped {
             ceiling_n: 13.0,
             offset_n: 0.6,
@@ -217,14 +217,14 @@ mod tests {
 
     /// An offset and a ceiling far below the largest force: from the offset alone only the ceiling that was found alone leads there.
     #[test]
-    fn a_pairs_second_begins_also_where_it_ended_alone() {
+    fn pair_fit_also_starts_at_the_single_optimum_of_its_second() {
         let study = Clipped {
             offset_n: 1.2,
             ..LOW
         };
         let offset = Mechanism {
             effect: Effect::Offset,
-            acts: Acts::Offset,
+            law: Law::Offset,
         };
         let both = study.on_trial(|trial| {
             let singles = [&offset, &CEILING].map(|m| trial.single(m));
@@ -240,12 +240,15 @@ mod tests {
 
     /// A base that was drawn to tissue that is none: nothing leads back from there.
     #[test]
-    fn a_single_one_begins_with_the_studys_own_numbers_too() {
+    fn single_fit_also_starts_at_the_study_parameters() {
         LOW.on_trial(|trial| {
-            let mut screen = trial.ready.screen();
-            screen.shared.iter_mut().for_each(|c| c.bounds.0 = -900.0);
+            let mut surrogate = trial.ready.surrogate();
+            surrogate
+                .shared
+                .iter_mut()
+                .for_each(|c| c.bounds.0 = -900.0);
             let drawn = Trial {
-                screen: &screen,
+                surrogate: &surrogate,
                 from: vec![-900.0; trial.from.len()],
                 control: &Control::none(),
                 blocks: trial.blocks.clone(),
@@ -261,7 +264,7 @@ mod tests {
     /// A floor under readings of two punches, small and just below the peak of the softer: between the last reading that is not there and the
     /// first that is. Where some get through a fifth below it the least reading is no floor, and they draw it down, by less than a tenth.
     #[test]
-    fn a_floor_is_found_small_and_near_the_smallest_peak() {
+    fn sensor_floor_is_found_over_its_range() {
         let study = Clipped {
             ceiling_n: 1e3,
             stiffness: &[10.0, 4.0],
@@ -278,9 +281,9 @@ mod tests {
             let slips = |f: f64| some_slip && (f / floor_n - 0.8).abs() < 0.02;
             let blind = |f: f64| if f < floor_n && !slips(f) { 0.0 } else { f };
             let found = study.on_trial_of(&blind, |trial| {
-                let acts = Acts::Blind(Stage::Last);
+                let law = Law::Floor(Stage::Last);
                 let effect = Effect::Threshold;
-                trial.single(&Mechanism { effect, acts }).refit.at
+                trial.single(&Mechanism { effect, law }).refit.at
             });
             let at = found.last().expect("a floor") * 8.0;
             let least = if some_slip {
@@ -294,7 +297,7 @@ mod tests {
 
     /// What a recording too noisy for the smallest peak shows is not asked for.
     #[test]
-    fn the_least_reading_is_that_of_quiet_recordings() {
+    fn least_detectable_reading_ignores_noisy_recordings() {
         let study = Clipped {
             stiffness: &[10.0, 4.0],
             ..LOW
@@ -312,12 +315,12 @@ mod tests {
 
     /// What begins with nothing answers as what it is added to, and so ends no worse.
     #[test]
-    fn a_mechanism_at_its_nothing_changes_nothing() {
+    fn null_parameter_of_a_mechanism_leaves_predictions_unchanged() {
         LOW.on_trial(|trial| {
-            let base = Model::new(trial.screen, &[]);
-            let without = trial.screen.all_forces(&base, &trial.from);
+            let base = Model::new(trial.surrogate, &[]);
+            let without = trial.surrogate.all_forces(&base, &trial.from);
             let mut all = singles(trial.ready.scales);
-            all.retain(|m| !matches!(m.acts, Acts::Tabled(_)));
+            all.retain(|m| !matches!(m.law, Law::Tabulated(_)));
             let found: Vec<Effect> = all
                 .iter()
                 .filter(|m| m.nothing().is_some())
@@ -331,9 +334,9 @@ mod tests {
                 let Some(nothing) = mechanism.nothing() else {
                     continue;
                 };
-                let model = Model::new(trial.screen, std::slice::from_ref(&mechanism));
+                let model = Model::new(trial.surrogate, std::slice::from_ref(&mechanism));
                 let at = [&trial.from[..], &[nothing]].concat();
-                let with = trial.screen.all_forces(&model, &at).concat();
+                let with = trial.surrogate.all_forces(&model, &at).concat();
                 let most = with
                     .iter()
                     .zip(without.concat())

@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use crate::forward::surrogate::mechanism::{
-    Acts, Clock, DeformationMeasure, Growth, Mechanism, Scales, Stage, WIDTHS,
+    Clock, DeformationMeasure, Growth, Law, Mechanism, Scales, Stage, WIDTHS,
 };
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
 use crate::forward::tables::stiff_skin::THICKNESSES_MM;
@@ -20,7 +20,7 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
     let deepest = scales.deepest;
     let fades = |effect, clock, spectrum| Mechanism {
         effect,
-        acts: Acts::Fades { clock, spectrum },
+        law: Law::Relaxation { clock, spectrum },
     };
     let [time, area] = WIDTHS.map(|widths| Spectrum::Smooth { widths });
     all.push(fades(Effect::Relaxation, Clock::Time, time));
@@ -33,22 +33,22 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
     for travel in [0.25, 0.8, 2.5] {
         all.push(Mechanism {
             effect: Effect::CycleSoftening,
-            acts: Acts::Softens {
+            law: Law::Softening {
                 travel_mm: travel * deepest,
                 recovery_s: 60.0,
             },
         });
     }
-    let one = |effect, acts| Mechanism { effect, acts };
-    all.extend(LETS_GO.map(|lets_go| one(Effect::Adhesion, Acts::Clings { lets_go })));
+    let one = |effect, law| Mechanism { effect, law };
+    all.extend(LETS_GO.map(|lets_go| one(Effect::Adhesion, Law::Adhesion { lets_go })));
     if scales.has_bone {
-        all.push(one(Effect::Bone, Acts::Tabled(0)));
+        all.push(one(Effect::Bone, Law::Tabulated(0)));
     }
-    all.push(one(Effect::Compressibility, Acts::Tabled(0)));
+    all.push(one(Effect::Compressibility, Law::Tabulated(0)));
     let skins = 0..THICKNESSES_MM.len();
-    all.extend(skins.map(|form| one(Effect::StiffSkin, Acts::Tabled(form))));
+    all.extend(skins.map(|form| one(Effect::StiffSkin, Law::Tabulated(form))));
     for growth in [Growth::Exponential, Growth::Square] {
-        let grows = |measure| one(Effect::StiffeningLaw, Acts::Stiffens(measure, growth));
+        let grows = |measure| one(Effect::StiffeningLaw, Law::Stiffening(measure, growth));
         all.extend(scales.has_strain.then(|| grows(DeformationMeasure::Strain)));
         all.push(grows(DeformationMeasure::Depth));
     }
@@ -56,13 +56,13 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
 }
 
 fn instrument() -> Vec<Mechanism> {
-    let one = |effect, acts| Mechanism { effect, acts };
-    let mut all = vec![one(Effect::Offset, Acts::Offset)];
-    all.extend([1.0, 6.0].map(|time_s| one(Effect::Drift, Acts::Drifts { time_s })));
+    let one = |effect, law| Mechanism { effect, law };
+    let mut all = vec![one(Effect::Offset, Law::Offset)];
+    all.extend([1.0, 6.0].map(|time_s| one(Effect::Drift, Law::Drift { time_s })));
     let stages = [Stage::Last, Stage::First];
-    all.extend(stages.map(|stage| one(Effect::Saturation, Acts::Saturates(stage))));
-    all.extend(stages.map(|stage| one(Effect::Threshold, Acts::Blind(stage))));
-    all.push(one(Effect::FixtureCompliance, Acts::Yields));
-    all.push(one(Effect::Timing, Acts::Late));
+    all.extend(stages.map(|stage| one(Effect::Saturation, Law::Saturation(stage))));
+    all.extend(stages.map(|stage| one(Effect::Threshold, Law::Floor(stage))));
+    all.push(one(Effect::FixtureCompliance, Law::Compliance));
+    all.push(one(Effect::Timing, Law::Delay));
     all
 }

@@ -1,15 +1,15 @@
-//! The honest gain: every protocol is predicted from the others, with and without what was found.
+//! Cross-validation: every protocol is predicted from the others, with and without a finding.
 
+use crate::forward::surrogate::candidate_model::Model;
 use crate::forward::surrogate::mechanism::Mechanism;
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::prepared_study::Prepared;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::least_squares::surrogate_fit::refit;
 use crate::noise::whitening::Whitening;
 use crate::observe::measured::Measured;
 use crate::parameters::surrogate_parameter::Kind;
 use crate::random::Random;
-use crate::selection::negative_control::{Held, placebo};
+use crate::selection::negative_control::{HeldOut, negative_control};
 use crate::selection::scored::Scored;
 
 /// Errors beyond this many standard deviations of the noise count as that many: outliers of a recording are nobody's gain.
@@ -32,7 +32,12 @@ struct Errors {
 ///
 /// What belongs to a held-out recording alone (its gain and first touch, within what repeats differ by; the model's form where its
 /// tool was not seen) is told from it, with and without the finding alike; nothing else is.
-pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) -> Option<Gain> {
+pub fn gain(
+    ready: &PreparedStudy,
+    measured: &[Measured],
+    found: &Scored,
+    seed: u64,
+) -> Option<Gain> {
     let mut protocols: Vec<(&str, usize)> = Vec::new();
     for course in &ready.courses {
         let key = (course.protocol.as_str(), course.place);
@@ -61,7 +66,7 @@ pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) 
                 floor: 0.0,
                 count: 0.0,
             };
-            let mut own = Held {
+            let mut own = HeldOut {
                 protocol: number,
                 error: Vec::new(),
                 patch: Vec::new(),
@@ -90,13 +95,13 @@ pub fn gain(ready: &Prepared, measured: &[Measured], found: &Scored, seed: u64) 
     let mut found = told(ready, &all, seed);
     let reducible = all.iter().map(|e| e.before - e.floor).sum::<f64>();
     if reducible > 0.0 {
-        found.placebo = Some(placebo(&held, MOST, seed) / reducible);
+        found.placebo = Some(negative_control(&held, MOST, seed) / reducible);
     }
     Some(found)
 }
 
 /// Mean square of repeats about each other, over the noise, as noise would give it: 1, or less if the noise was judged too large.
-fn floor(ready: &Prepared, course: usize) -> f64 {
+fn floor(ready: &PreparedStudy, course: usize) -> f64 {
     let one = &ready.courses[course];
     let mut squares = (0.0, 0.0);
     for other in &ready.courses {
@@ -131,7 +136,7 @@ fn floor(ready: &Prepared, course: usize) -> f64 {
 
 /// Predictions of what is out, from a fit to what is not.
 fn predicted(
-    ready: &Prepared,
+    ready: &PreparedStudy,
     measured: &[Measured],
     (mechanisms, from): (&[Mechanism], &[f64]),
     is_out: &dyn Fn(usize) -> bool,
@@ -143,11 +148,11 @@ fn predicted(
             .collect()
     };
     let within = |whitening: &Whitening, pin: Option<&[f64]>| {
-        let screen = Screen {
+        let surrogate = Surrogate {
             whitening,
-            ..ready.screen()
+            ..ready.surrogate()
         };
-        let mut model = Model::new(&screen, mechanisms);
+        let mut model = Model::new(&surrogate, mechanisms);
         if let Some(values) = pin {
             let seen = |place: usize| {
                 let mut all = ready.courses.iter().enumerate();
@@ -166,7 +171,7 @@ fn predicted(
             }
         }
         let start = pin.unwrap_or(&from[..from.len().min(model.coordinates.len())]);
-        refit(&screen, &model, start)
+        refit(&surrogate, &model, start)
     };
     let told_by = Whitening::new(measured, &ready.noise, &used(false));
     let fitted = within(&told_by, None);
@@ -174,7 +179,7 @@ fn predicted(
     within(&shown_by, Some(&fitted.at)).simulated
 }
 
-fn told(ready: &Prepared, all: &[Errors], seed: u64) -> Gain {
+fn told(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
     let rms = |of: &[&Errors], which: &dyn Fn(&Errors) -> f64| {
         let (sum, n) = of
             .iter()

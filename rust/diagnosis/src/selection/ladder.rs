@@ -1,5 +1,4 @@
-//! The ladder: parameters, instrument and tissue one by one, pairs, and what no listed name explains; it stops at the first
-//! rung that suffices.
+//! The ladder of models: base, single effects, pairs; stops at the first rung that suffices.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -8,12 +7,12 @@ use thenar_contact::Control;
 use thenar_contact::effects::Effect;
 
 use crate::checks::gain_step::{GainStep, gain_step};
-use crate::checks::heteroscedasticity::{pulls, unsteady};
+use crate::checks::heteroscedasticity::{heteroscedasticity, pulls};
 use crate::checks::lack_of_fit::blocks;
 use crate::errors::DiagnosisError;
 use crate::forward::surrogate::force_recording::{changes_speed, goes_on};
-use crate::forward::surrogate::mechanism::{Acts, Mechanism};
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::mechanism::{Law, Mechanism};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::{Measured, Phase};
 use crate::parameters::surrogate_parameter::Kind;
 use crate::selection::candidate_fits::Trial;
@@ -21,7 +20,7 @@ use crate::selection::candidates::singles;
 use crate::selection::scored::{Rungs, Scored};
 
 /// Price of one free number in nats.
-const PRICE: f64 = 1.0;
+const PENALTY: f64 = 1.0;
 /// Names among which all pairs are tried.
 const PAIRED: usize = 6;
 /// Names that are tried beside the leader.
@@ -34,14 +33,14 @@ const WORTH_A_PAIR: f64 = 7.0;
 /// # Errors
 /// `Cancelled`.
 pub fn climb(
-    ready: &Prepared,
+    ready: &PreparedStudy,
     measured: &[Measured],
     control: &Control<'_>,
 ) -> Result<Rungs, DiagnosisError> {
-    let screen = ready.screen();
+    let surrogate = ready.surrogate();
     let mut trial = Trial {
         ready,
-        screen: &screen,
+        surrogate: &surrogate,
         blocks: blocks(measured),
         from: Vec::new(),
         control,
@@ -57,7 +56,7 @@ pub fn climb(
     let least = deviances.fold(base.refit.deviance, f64::min);
     let scale = Scale {
         base: base.refit.deviance,
-        temper: (least / samples.max(1) as f64).max(1.0),
+        overdispersion: (least / samples.max(1) as f64).max(1.0),
     };
     scale.judge(&mut base);
     singles.iter_mut().for_each(|s| scale.judge(s));
@@ -66,19 +65,19 @@ pub fn climb(
         .filter(|s| s.mechanisms[0].effect == Effect::Gain)
     {
         // The scatter of gains was judged with the step in it: what the step explains is told by the repeats' gains alone.
-        scored.evidence = scored.evidence.max(clear_step.map_or(0.0, |f| f.evidence));
+        scored.qaic_gain = scored.qaic_gain.max(clear_step.map_or(0.0, |f| f.evidence));
     }
     let singles = best_of_each(ready, singles);
     let pairs = trial.pairs(&singles, &scale)?;
     let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
     Ok(Rungs {
-        unsteady: unsteady(&screen, sizes, ready.noise.memory_s[0]),
+        heteroscedasticity: heteroscedasticity(&surrogate, sizes, ready.noise.memory_s[0]),
         base,
         singles,
         pairs,
         gain_step,
         samples,
-        temper: scale.temper,
+        overdispersion: scale.overdispersion,
     })
 }
 
@@ -87,14 +86,18 @@ struct Scale {
     /// Deviance of the base.
     base: f64,
     /// What deviances are divided by.
-    temper: f64,
+    overdispersion: f64,
 }
 
 impl Scale {
     fn judge(&self, scored: &mut Scored) {
-        let numbers: usize = scored.mechanisms.iter().map(Mechanism::price).sum();
+        let numbers: usize = scored
+            .mechanisms
+            .iter()
+            .map(Mechanism::effective_parameters)
+            .sum();
         let fall = self.base - scored.refit.deviance;
-        scored.evidence = 0.5 * fall / self.temper - PRICE * numbers as f64;
+        scored.qaic_gain = 0.5 * fall / self.overdispersion - PENALTY * numbers as f64;
     }
 }
 
@@ -108,21 +111,21 @@ impl Trial<'_> {
         }
         tried.extend(step.map(|found| Mechanism {
             effect: Effect::Gain,
-            acts: Acts::GainStep { from: found.from },
+            law: Law::GainStep { from: found.from },
         }));
         self.each(&tried, (0.0, 0.6), |mechanism| self.single(mechanism))
     }
 
     /// Pairs of single mechanisms, best first; none where no single one is worth it.
     fn pairs(&self, singles: &[Scored], scale: &Scale) -> Result<Vec<Scored>, DiagnosisError> {
-        if singles.first().is_none_or(|b| b.evidence <= WORTH_A_PAIR) {
+        if singles.first().is_none_or(|b| b.qaic_gain <= WORTH_A_PAIR) {
             return Ok(Vec::new());
         }
         let fit = |(better, set): &(&Scored, _)| self.pair((better, set), singles);
         let mut pairs = self.each(&sets_of_two(singles), (0.6, 0.9), fit)?;
         pairs.iter_mut().for_each(|s| scale.judge(s));
         pairs.retain(|s| shows_its_signs(self.ready, s));
-        pairs.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        pairs.sort_by(|a, b| b.qaic_gain.total_cmp(&a.qaic_gain));
         Ok(pairs)
     }
 
@@ -144,9 +147,9 @@ impl Trial<'_> {
 }
 
 /// The best variant of every name whose necessary signs show, best first.
-fn best_of_each(ready: &Prepared, mut all: Vec<Scored>) -> Vec<Scored> {
+fn best_of_each(ready: &PreparedStudy, mut all: Vec<Scored>) -> Vec<Scored> {
     all.retain(|s| shows_its_signs(ready, s));
-    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    all.sort_by(|a, b| b.qaic_gain.total_cmp(&a.qaic_gain));
     let mut best: Vec<Scored> = Vec::new();
     for scored in all {
         let is_same = |b: &Scored| b.mechanisms[0].effect == scored.mechanisms[0].effect;
@@ -163,7 +166,7 @@ fn sets_of_two(singles: &[Scored]) -> Vec<(&Scored, [Mechanism; 2])> {
     let others = &singles[..singles.len().min(LED)];
     let among = others
         .iter()
-        .filter(|s| s.evidence > 1.0)
+        .filter(|s| s.qaic_gain > 1.0)
         .count()
         .min(PAIRED);
     let mut sets = Vec::new();
@@ -179,7 +182,7 @@ fn sets_of_two(singles: &[Scored]) -> Vec<(&Scored, [Mechanism; 2])> {
 }
 
 /// False for a hypothesis whose necessary signs do not show in what was measured.
-fn shows_its_signs(ready: &Prepared, scored: &Scored) -> bool {
+fn shows_its_signs(ready: &PreparedStudy, scored: &Scored) -> bool {
     let clings = scored
         .mechanisms
         .iter()
@@ -191,7 +194,7 @@ fn shows_its_signs(ready: &Prepared, scored: &Scored) -> bool {
 const STEP: f64 = 3.0;
 
 /// Logarithm of each recording's gain: what the fit with its prior gave, and what it left.
-fn log_gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
+fn log_gains(ready: &PreparedStudy, base: &Scored) -> Vec<f64> {
     ready
         .courses
         .iter()
@@ -211,7 +214,7 @@ fn log_gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
         .collect()
 }
 
-fn gains(ready: &Prepared, base: &Scored) -> Vec<f64> {
+fn gains(ready: &PreparedStudy, base: &Scored) -> Vec<f64> {
     let of = |course: usize| {
         let place = ready
             .shared

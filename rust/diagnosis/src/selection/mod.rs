@@ -7,5 +7,6 @@ pub mod ladder;
 pub mod model_weights;
 pub mod cross_validation;
 pub mod negative_control;
+pub mod empirical_factor;
 #[cfg(test)]
 pub mod synthetic_rungs;

@@ -1,21 +1,20 @@
-//! How probable every explanation is, by its evidence, and which names hold nine tenths.
+//! Akaike weights of all fitted models, and the names that hold 90 % of the weight.
 
-use crate::selection::scored::Rungs;
-use crate::selection::scored::Scored;
+use crate::selection::scored::{Rungs, Scored};
 
 /// Probabilities of the base and of everything that was tried, by evidence.
 pub fn probabilities(
     rungs: &Rungs,
     is_needed: impl Fn(&Scored) -> bool,
 ) -> Vec<(Vec<&'static str>, f64)> {
-    let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), SILENT)];
+    let mut all: Vec<(Vec<&'static str>, f64)> = vec![(Vec::new(), BASE_SCORE)];
     // A pair one of which is not needed is that single effect over again.
     let pairs = rungs.pairs.iter().filter(|pair| is_needed(pair));
     for scored in rungs.singles.iter().chain(pairs) {
         let names = scored.names();
         match all.iter_mut().find(|(other, _)| *other == names) {
-            Some((_, evidence)) => *evidence = evidence.max(scored.evidence),
-            None => all.push((names, scored.evidence)),
+            Some((_, qaic_gain)) => *qaic_gain = qaic_gain.max(scored.qaic_gain),
+            None => all.push((names, scored.qaic_gain)),
         }
     }
     let most = all
@@ -32,7 +31,7 @@ pub fn probabilities(
 }
 
 /// Evidence that the base counts for without any: what nulls reach.
-const SILENT: f64 = 4.0;
+const BASE_SCORE: f64 = 4.0;
 
 /// Names, most probable first, until they hold 90 %.
 pub fn names_90(probabilities: &[(Vec<&'static str>, f64)]) -> Vec<Vec<&'static str>> {
@@ -56,12 +55,12 @@ mod tests {
 
     /// Weights where a pair counts that leads by 6 nats.
     fn weights(rungs: &Rungs) -> Vec<(Vec<&'static str>, f64)> {
-        let lead = |pair: &Scored| pair.evidence - rungs.singles[0].evidence;
+        let lead = |pair: &Scored| pair.qaic_gain - rungs.singles[0].qaic_gain;
         probabilities(rungs, |pair| lead(pair) > 6.0)
     }
 
     #[test]
-    fn names_are_kept_until_they_hold_nine_tenths_and_a_needless_pair_is_none() {
+    fn names_90_hold_nine_tenths_of_the_weight_without_needless_pairs() {
         let first = (Effect::Relaxation, 100.0);
         let needed = weights(&rungs_beside(first, Effect::Offset, 8.0));
         assert_eq!(needed[0].0, ["relaxation", "offset"]);

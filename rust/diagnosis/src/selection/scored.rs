@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use crate::checks::gain_step::GainStep;
-use crate::checks::heteroscedasticity::Unsteady;
+use crate::checks::heteroscedasticity::Heteroscedasticity;
 use crate::forward::surrogate::mechanism::Mechanism;
 use crate::least_squares::surrogate_fit::Refit;
 
@@ -15,9 +15,9 @@ pub struct Scored {
     /// Its fit.
     pub refit: Refit,
     /// Logarithm of the evidence over that of the base: half of what the deviance falls by, tempered, less the price of its numbers.
-    pub evidence: f64,
+    pub qaic_gain: f64,
     /// Misfit that is the same in every repeat, beyond what noise adds up to.
-    pub coherent: f64,
+    pub lack_of_fit: f64,
 }
 
 impl Scored {
@@ -39,11 +39,11 @@ pub struct Rungs {
     /// Two mechanisms, best first; empty where one suffices.
     pub pairs: Vec<Scored>,
     /// How repeats deviate under load and without.
-    pub unsteady: Option<Unsteady>,
+    pub heteroscedasticity: Option<Heteroscedasticity>,
     /// The clearest step of the session's gain.
     pub gain_step: Option<GainStep>,
     /// Number of screened samples.
     pub samples: usize,
     /// What deviances are divided by: how much more than the noise the best model leaves.
-    pub temper: f64,
+    pub overdispersion: f64,
 }

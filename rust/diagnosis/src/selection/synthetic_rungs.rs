@@ -9,7 +9,7 @@ use crate::selection::candidates::singles;
 use crate::selection::scored::{Rungs, Scored};
 
 /// A candidate with these effects.
-pub fn scored(effects: &[Effect], evidence: f64) -> Scored {
+pub fn scored(effects: &[Effect], qaic_gain: f64) -> Scored {
     let tried = singles(Scales {
         deepest: 1.0,
         radius: 1.0,
@@ -29,8 +29,8 @@ pub fn scored(effects: &[Effect], evidence: f64) -> Scored {
             simulated: Vec::new(),
             covariance: DMatrix::zeros(0, 0),
         },
-        evidence,
-        coherent: 0.0,
+        qaic_gain,
+        lack_of_fit: 0.0,
     }
 }
 
@@ -40,9 +40,9 @@ pub fn rungs_beside(first: (Effect, f64), second: Effect, more: f64) -> Rungs {
         base: scored(&[], 0.0),
         singles: vec![scored(&[first.0], first.1), scored(&[second], 0.0)],
         pairs: vec![scored(&[first.0, second], first.1 + more)],
-        unsteady: None,
+        heteroscedasticity: None,
         gain_step: None,
         samples: 100,
-        temper: 1.0,
+        overdispersion: 1.0,
     }
 }

@@ -1,4 +1,4 @@
-//! Predictions of a model without memory, from ladders of presses that are kept.
+//! Predictions without history dependence, from cached press tables.
 
 use std::sync::Arc;
 

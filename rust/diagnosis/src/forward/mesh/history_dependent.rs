@@ -1,4 +1,4 @@
-//! Protocols followed as they were, for models that remember.
+//! Predictions with history dependence: each protocol is run moment by moment from rest.
 
 use rayon::prelude::*;
 use thenar_contact::effects::Effect;

@@ -1,4 +1,4 @@
-//! What the instrument shows of what happens at the skin: gain, counts, and the effects of an instrument.
+//! Instrument readings from the load at the skin: gain, counts, and effects of the instrument.
 
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::{Signals, observe};

@@ -1,4 +1,4 @@
-//! What a placed mat reads of a press: the mean pressure over each sensel, against depth.
+//! Mean pressure over each sensel of a placed mat, against depth.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A tool pressed to a ladder of depths: what a model without memory needs to answer any protocol.
+//! Force and area of a tool at a series of depths: what a model without history needs to predict any protocol.
 
 use thenar_contact::instrument::PointLoad;
 use thenar_contact::{Control, Demand, Keep, Protocol, Row, Run, Skin};

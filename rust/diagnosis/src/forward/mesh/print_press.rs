@@ -1,4 +1,4 @@
-//! The skin pressed once, as hard as a print was: positions and forces by vertex.
+//! The press of a handprint: positions and forces by vertex.
 
 use thenar_contact::{Control, Demand, Material};
 use thenar_surface::Vec3;

@@ -1,4 +1,4 @@
-//! Stage 6b: every recording's protocol run through the contact model, with predictions in the recording's own terms.
+//! The mesh model of a study: skin, tools and caches; predicts every recording's samples in the recording's own terms.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What a scan sees of a press: how far the scanned points lie from the deformed skin.
+//! Predicted distances of scanned points from the deformed skin.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! One press of a tool at its place, a row after another, and the contact in full that the last row leaves.
+//! One press of a tool, row by row; returns the last contact in full.
 
 use thenar_contact::{Contact, Control, Demand, Keep, Protocol, Row, Run};
 use thenar_surface::Vec3;

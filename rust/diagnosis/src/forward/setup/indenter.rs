@@ -1,4 +1,4 @@
-//! The tools of a study as closed surfaces, placed so that they touch at a site.
+//! Indenters of a study as closed surfaces, placed in first touch at a site.
 
 use nalgebra::Vector3;
 use thenar_recordings::study::{Indenter, Shape, Site};
@@ -209,7 +209,7 @@ mod tests {
     use thenar_surface::GapLimits;
 
     #[test]
-    fn a_ball_pressed_too_deep_is_told() {
+    fn sphere_pressed_beyond_its_radius_is_noted() {
         let tool = |shape| Indenter {
             name: "probe".into(),
             shape,

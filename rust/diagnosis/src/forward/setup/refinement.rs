@@ -1,17 +1,16 @@
-//! A study's skin with smaller triangles where its tools touch first.
+//! Mesh refinement of the skin near first touch.
 //!
 //! A contact that reaches over few vertices answers in steps, as one after the other comes to bear: on the skins of
 //! `tests/trial` force over depth wavers by 2 to 10 % about what finite elements give, where the contact is two to four edges
 //! wide. Triangles are halved across their longest edges (Rivara 1984), which keeps the mesh whole and no angle below half of the
 //! smallest that it had; new vertices lie on the cubic that leaves both ends of their edge along the skin.
 
+use crate::forward::mesh::replay::Replay;
 use std::collections::HashMap;
 
 use nalgebra::Vector3;
 use thenar_recordings::Study;
 use thenar_recordings::study::{Shape, StudySkin};
-
-use crate::fit::fitting::Fitting;
 
 /// Longest edge over the distance from first touch.
 const GRADE: f64 = 0.35;
@@ -29,8 +28,8 @@ struct Touch {
 }
 
 /// The study with a finer skin; None where it is fine enough.
-pub fn refined(study: &Study, fitting: &Fitting) -> Option<Study> {
-    let touches = touches(study, fitting);
+pub fn refined(study: &Study, replay: &Replay) -> Option<Study> {
+    let touches = touches(study, replay);
     let skin = finer(&study.skin, &touches)?;
     Some(Study {
         skin,
@@ -38,7 +37,7 @@ pub fn refined(study: &Study, fitting: &Fitting) -> Option<Study> {
     })
 }
 
-fn touches(study: &Study, fitting: &Fitting) -> Vec<Touch> {
+fn touches(study: &Study, replay: &Replay) -> Vec<Touch> {
     let of = |(r, recording): (usize, &thenar_recordings::study::StudyRecording)| {
         let site = study.sites.iter().find(|s| s.name == recording.site)?;
         let tool = study
@@ -47,7 +46,7 @@ fn touches(study: &Study, fitting: &Fitting) -> Vec<Touch> {
             .find(|i| i.name == recording.indenter)?;
         let core = match &tool.shape {
             Shape::Sphere { radius_mm } | Shape::Cylinder { radius_mm, .. } => {
-                (EARLY * radius_mm * fitting.replay.deepest(r)).sqrt()
+                (EARLY * radius_mm * replay.deepest(r)).sqrt()
             }
             Shape::Punch { radius_mm } => *radius_mm,
             _ => return None,

@@ -1,4 +1,4 @@
-//! Whether a tool presses the rim of the study's skin, where the model's tissue goes on and the sample's may not.
+//! Check whether a tool presses the rim of the study's skin, where the model's tissue goes on and the sample's may not.
 
 use std::collections::BTreeMap;
 

@@ -1,12 +1,12 @@
-//! How a recording's forces change with the numbers of a screened model.
+//! Derivatives of the surrogate's forces by its parameters.
 
-use crate::forward::surrogate::mechanism::{Acts, Mechanism};
-use crate::forward::surrogate::model::Model;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::mechanism::{Law, Mechanism};
 use crate::forward::surrogate::stiffness_factor::modes;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::parameters::surrogate_parameter::Kind;
 
-impl Screen<'_> {
+impl Surrogate<'_> {
     /// Derivative of one recording's forces by a coordinate, or None where it does not matter.
     pub fn slopes(
         &self,
@@ -40,8 +40,8 @@ impl Screen<'_> {
         match kind {
             Kind::Zero(c) | Kind::Gain(c) => c == course,
             Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
-            Kind::Of(of, _) => match &model.mechanisms[of].acts {
-                Acts::GainStep { from } => one.order >= *from,
+            Kind::Of(of, _) => match &model.mechanisms[of].law {
+                Law::GainStep { from } => one.order >= *from,
                 _ => true,
             },
             Kind::First | Kind::Limit => true,
@@ -77,14 +77,14 @@ mod tests {
 
     use super::*;
     use crate::forward::mesh::nuisance::KNOTS;
-    use crate::forward::surrogate::prepared_study::Prepared;
+    use crate::forward::surrogate::prepared_study::PreparedStudy;
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
     use crate::observe::measured::Phase;
     use crate::parameters::surrogate_parameter::Coordinate;
     use crate::selection::candidates::singles;
 
     /// A ball pressed to 2 mm, whose every shared number is free.
-    fn pressed() -> Prepared {
+    fn pressed() -> PreparedStudy {
         let ball = |d: f64| 10.0 * d * d.sqrt();
         let read = |time: f64| -> Reading { (time, time, Phase::Load, 0.9 * ball(time)) };
         let readings = (0..=80).map(|k| read(f64::from(k) / 40.0)).collect();
@@ -103,15 +103,15 @@ mod tests {
     }
 
     /// Most that slopes by a number are off central differences, over the largest slope.
-    fn off(screen: &Screen<'_>, (model, at): (&Model<'_>, &[f64]), number: usize) -> f64 {
+    fn off(surrogate: &Surrogate<'_>, (model, at): (&Model<'_>, &[f64]), number: usize) -> f64 {
         let beside = |way: f64| {
             let mut moved = at.to_vec();
             moved[number] += way;
-            screen.all_forces(model, &moved).concat()
+            surrogate.all_forces(model, &moved).concat()
         };
         let (low, high) = (beside(-1e-5), beside(1e-5));
-        let forces = screen.all_forces(model, at).concat();
-        let slopes = screen
+        let forces = surrogate.all_forces(model, at).concat();
+        let slopes = surrogate
             .slopes((model, at), (number, 0), &forces)
             .expect("slopes");
         let most = slopes.iter().fold(1e-3, |most: f64, s| most.max(s.abs()));
@@ -126,20 +126,20 @@ mod tests {
     /// Beside every mechanism that needs neither a table of its own nor a measured shape, and for every shared number: what a fit
     /// steps by is what the forces do.
     #[test]
-    fn slopes_are_those_of_the_forces() {
+    fn derivatives_equal_central_differences() {
         let ready = pressed();
-        let screen = ready.screen();
+        let surrogate = ready.surrogate();
         let mut tried = singles(ready.scales);
-        tried.retain(|m| !matches!(m.acts, Acts::Tabled(_) | Acts::Blind(_)));
-        let (effect, acts) = (Effect::Gain, Acts::GainStep { from: 0 });
-        tried.push(Mechanism { effect, acts });
+        tried.retain(|m| !matches!(m.law, Law::Tabulated(_) | Law::Floor(_)));
+        let (effect, law) = (Effect::Gain, Law::GainStep { from: 0 });
+        tried.push(Mechanism { effect, law });
         for mechanism in &tried {
-            let model = Model::new(&screen, std::slice::from_ref(mechanism));
+            let model = Model::new(&surrogate, std::slice::from_ref(mechanism));
             let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
             at[ready.shared.len()..].iter_mut().for_each(|x| *x += 0.1);
             for number in 0..ready.shared.len() {
                 let (off, kind) = (
-                    off(&screen, (&model, &at), number),
+                    off(&surrogate, (&model, &at), number),
                     model.coordinates[number].kind,
                 );
                 assert!(off < 2e-2, "{} {kind:?}: {off}", mechanism.effect.name());

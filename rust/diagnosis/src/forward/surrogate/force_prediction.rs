@@ -1,13 +1,13 @@
-//! The model that candidates are screened with: elastic tables, memory by springs, and an instrument, for all recordings at once.
+//! Force prediction of the surrogate: elastic tables, relaxing springs, tissue laws, fixture compliance, and the instrument.
 //!
 //! It shares tables, noise and priors with the fit, and answers a hundred times faster than a protocol that is followed
 //! moment by moment on the skin's mesh.
 
+use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::force_recording::Row;
-use crate::forward::surrogate::mechanism::Acts;
-use crate::forward::surrogate::model::{Model, Setting};
-use crate::forward::surrogate::relaxing_springs::{Way, lost};
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::mechanism::Law;
+use crate::forward::surrogate::relaxing_springs::{SpringHistory, relaxation_loss};
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::observe::measured::Phase;
 
 /// Most rounds in which the force is sought to which a stage yields, the part of the largest force to which it is found, and the largest
@@ -24,15 +24,15 @@ struct Answer {
     touches: Vec<f64>,
 }
 
-impl Screen<'_> {
+impl Surrogate<'_> {
     /// Forces of one recording's rows, N.
     pub fn forces(&self, model: &Model<'_>, set: &Setting, course: usize) -> Vec<f64> {
         let rows = self.courses[course].rows.iter();
         // Nothing is known where nothing was read yet.
         let known: Vec<f64> = rows.map(|r| f64::max(r.force_n, 0.0)).collect();
-        let yields = model.mechanisms.iter().any(|m| m.acts == Acts::Yields);
+        let yields = model.mechanisms.iter().any(|m| m.law == Law::Compliance);
         let mut forces = match yields {
-            true => self.yielding(model, set, (course, known)),
+            true => self.with_compliance(model, set, (course, known)),
             false => self.pressed(model, set, (course, &known)),
         };
         let gain = libm::exp(set.gain[course]);
@@ -42,7 +42,7 @@ impl Screen<'_> {
 
     /// Forces on the tool where the stage yields to them: what is measured is only where the search begins, and a stage that is as soft as
     /// the skin would not let it end by itself (each row is led on by Aitken's rule).
-    fn yielding(
+    fn with_compliance(
         &self,
         model: &Model<'_>,
         set: &Setting,
@@ -84,19 +84,19 @@ impl Screen<'_> {
             false => 0.0,
         };
         let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
-        let (fades, shares) = self.fades(model, set, (one, &depths));
-        if !fades.is_empty() {
-            let way = Way {
+        let (relaxation_branches, shares) = self.relaxation_branches(model, set, (one, &depths));
+        if !relaxation_branches.is_empty() {
+            let way = SpringHistory {
                 depths: &depths,
                 touches: &answer.touches,
-                fades: &fades,
+                relaxation_branches: &relaxation_branches,
                 shares: &shares,
             };
-            let more = lost(&way, &answer.springs);
+            let more = relaxation_loss(&way, &answer.springs);
             forces.iter_mut().zip(more).for_each(|(f, m)| *f += m);
         }
-        self.soften(model, set, ((one, &depths), &mut forces));
-        self.cling(model, set, ((one, &depths), &mut forces));
+        self.soften_by_use(model, set, ((one, &depths), &mut forces));
+        self.adhere(model, set, ((one, &depths), &mut forces));
         forces
     }
 
@@ -111,7 +111,7 @@ impl Screen<'_> {
         let zero = set.zero[course] + set.touch[one.place];
         let mut yields = 0.0;
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            if mechanism.acts == Acts::Yields {
+            if mechanism.law == Law::Compliance {
                 yields += set.of[number][0];
             }
         }
@@ -177,17 +177,17 @@ mod tests {
 
     use super::*;
     use crate::forward::surrogate::mechanism::{Mechanism, Stage};
-    use crate::forward::surrogate::prepared_study::Prepared;
+    use crate::forward::surrogate::prepared_study::PreparedStudy;
     use crate::forward::surrogate::synthetic::{ready, tool};
     use crate::parameters::surrogate_parameter::Kind;
 
     /// A press at 1 mm/s to 2 mm by a tool of that law; what was read is nothing.
-    fn pressed(force: impl Fn(f64) -> f64) -> Prepared {
+    fn pressed(force: impl Fn(f64) -> f64) -> PreparedStudy {
         pressed_and_read(force, |_| 0.0)
     }
 
     /// The same with readings by depth.
-    fn pressed_and_read(force: impl Fn(f64) -> f64, reading: impl Fn(f64) -> f64) -> Prepared {
+    fn pressed_and_read(force: impl Fn(f64) -> f64, reading: impl Fn(f64) -> f64) -> PreparedStudy {
         let read = |k: u32| {
             let time = f64::from(k) / 40.0;
             (time, time, Phase::Load, reading(time))
@@ -197,20 +197,20 @@ mod tests {
     }
 
     /// Forces with a mechanism of that size, in tissue as it is.
-    fn forces(ready: &Prepared, mechanism: (Effect, Acts), size: f64) -> Vec<f64> {
-        let screen = ready.screen();
-        let (effect, acts) = mechanism;
-        let all = [Mechanism { effect, acts }];
-        let model = Model::new(&screen, &all);
+    fn forces(ready: &PreparedStudy, mechanism: (Effect, Law), size: f64) -> Vec<f64> {
+        let surrogate = ready.surrogate();
+        let (effect, law) = mechanism;
+        let all = [Mechanism { effect, law }];
+        let model = Model::new(&surrogate, &all);
         let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
         *at.last_mut().unwrap() = size;
-        screen.all_forces(&model, &at).concat()
+        surrogate.all_forces(&model, &at).concat()
     }
 
     /// F = k (s - c F), so F = k s / (1 + c k), however soft the stage is against the skin; and for a ball, whose force is put in again.
     #[test]
-    fn a_stage_that_yields_moves_by_the_force_that_it_bears() {
-        let yields = (Effect::FixtureCompliance, Acts::Yields);
+    fn compliant_fixture_equals_closed_form() {
+        let yields = (Effect::FixtureCompliance, Law::Compliance);
         for part in [0.1, 0.5, 0.8] {
             // Of the deepest depth, at the force without.
             let linear = forces(&pressed(|d| 10.0 * d), yields.clone(), 0.1 * part);
@@ -233,7 +233,7 @@ mod tests {
 
     /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.
     #[test]
-    fn a_limit_stands_before_the_gain_or_after_it() {
+    fn limits_apply_before_or_after_the_gain() {
         let mut ready = pressed_and_read(|d| 10.0 * d, |_| f64::NAN);
         ready.scales.forces = (20.0, 20.0);
         let gain = 1.25f64;
@@ -247,12 +247,12 @@ mod tests {
         for (stage, limit) in [(Stage::First, 8.0 * gain), (Stage::Last, 8.0)] {
             let ceiling = forces(
                 &ready,
-                (Effect::Saturation, Acts::Saturates(stage)),
+                (Effect::Saturation, Law::Saturation(stage)),
                 f64::ln(8.0 / 20.0),
             );
             let most = ceiling.iter().fold(0.0, |a, b| f64::max(a, *b));
             assert!((most / limit - 1.0).abs() < 1e-6, "{stage:?}: {most}");
-            let floor = forces(&ready, (Effect::Threshold, Acts::Blind(stage)), 8.0 / 20.0);
+            let floor = forces(&ready, (Effect::Threshold, Law::Floor(stage)), 8.0 / 20.0);
             let seen = floor.iter().filter(|f| **f > 0.9 * limit);
             let least = seen.fold(f64::INFINITY, |a, b| a.min(*b));
             assert!((least / limit - 1.0).abs() < 0.06, "{stage:?}: {least}");
@@ -261,7 +261,7 @@ mod tests {
 
     /// A reading beside a floor is off by the force that is lacking, not by all of it: skin that is stiffer or softer than the model.
     #[test]
-    fn a_floor_takes_from_a_reading_no_more_than_lies_beyond_it() {
+    fn floor_residual_is_bounded_by_the_missing_force() {
         for stiffer in [1.06, 0.94] {
             let reading = |d: f64| match 10.0 * stiffer * d < 8.0 {
                 true => 0.0,
@@ -269,7 +269,7 @@ mod tests {
             };
             let mut ready = pressed_and_read(|d| 10.0 * d, reading);
             ready.scales.forces = (20.0, 20.0);
-            let blind = (Effect::Threshold, Acts::Blind(Stage::Last));
+            let blind = (Effect::Threshold, Law::Floor(Stage::Last));
             let told = forces(&ready, blind, 8.0 / 20.0);
             let off = told.iter().zip(&ready.courses[0].rows).map(|(f, row)| {
                 let same_stiffness = row.force_n / stiffer;

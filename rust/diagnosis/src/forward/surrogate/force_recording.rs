@@ -1,4 +1,4 @@
-//! Recordings as screening sees them: the rows of a protocol with the force samples that belong to them.
+//! Force recordings as the surrogate predicts them: rows of a protocol with their force samples.
 
 use thenar_recordings::Study;
 
@@ -23,7 +23,7 @@ pub struct Row {
 
 /// A recording of force over depth.
 #[derive(Debug, Clone)]
-pub struct Course {
+pub struct ForceRecording {
     /// Number of the recording in the study.
     pub recording: usize,
     /// Name.
@@ -40,7 +40,7 @@ pub struct Course {
     pub samples: (usize, usize),
 }
 
-impl Course {
+impl ForceRecording {
     /// Largest force, N.
     pub fn most(&self) -> f64 {
         self.rows
@@ -84,7 +84,7 @@ impl Course {
 }
 
 /// Whether some recording goes on after its loading: holds, unloads or is read after contact.
-pub fn goes_on(courses: &[Course]) -> bool {
+pub fn goes_on(courses: &[ForceRecording]) -> bool {
     let after = |row: &&Row| matches!(row.phase, Phase::Hold | Phase::Unload | Phase::Slide);
     courses
         .iter()
@@ -92,7 +92,7 @@ pub fn goes_on(courses: &[Course]) -> bool {
 }
 
 /// Whether some recording unloads.
-pub fn unloads(courses: &[Course]) -> bool {
+pub fn unloads(courses: &[ForceRecording]) -> bool {
     let unloading = |row: &&Row| row.phase == Phase::Unload;
     courses
         .iter()
@@ -100,8 +100,9 @@ pub fn unloads(courses: &[Course]) -> bool {
 }
 
 /// Whether one tool was pressed at speeds that differ by twice or more.
-pub fn changes_speed(courses: &[Course]) -> bool {
-    let differ = |a: &Course, b: &Course| a.place == b.place && a.speed() > 2.0 * b.speed();
+pub fn changes_speed(courses: &[ForceRecording]) -> bool {
+    let differ =
+        |a: &ForceRecording, b: &ForceRecording| a.place == b.place && a.speed() > 2.0 * b.speed();
     courses
         .iter()
         .any(|a| courses.iter().any(|b| b.speed() > 0.0 && differ(a, b)))
@@ -111,7 +112,11 @@ pub fn changes_speed(courses: &[Course]) -> bool {
 const FEW: usize = 4;
 
 /// Recordings of which force and depth are known, in the study's order.
-pub fn courses(study: &Study, measured: &[Measured], place_of: &[usize]) -> Vec<Course> {
+pub fn force_recordings(
+    study: &Study,
+    measured: &[Measured],
+    place_of: &[usize],
+) -> Vec<ForceRecording> {
     let mut first = 0;
     let mut found = Vec::new();
     for (recording, one) in measured.iter().enumerate() {
@@ -130,7 +135,7 @@ pub fn courses(study: &Study, measured: &[Measured], place_of: &[usize]) -> Vec<
         if rows.iter().filter(|row| row.sample.is_some()).count() < 8 {
             continue;
         }
-        found.push(Course {
+        found.push(ForceRecording {
             recording,
             name: one.name.clone(),
             protocol: one.protocol.clone(),
@@ -140,7 +145,7 @@ pub fn courses(study: &Study, measured: &[Measured], place_of: &[usize]) -> Vec<
             samples: (start, one.samples.len()),
         });
     }
-    let stated = |c: &Course| {
+    let stated = |c: &ForceRecording| {
         study.recordings[c.recording]
             .order
             .unwrap_or(c.recording as f64)

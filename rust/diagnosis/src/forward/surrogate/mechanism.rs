@@ -1,4 +1,4 @@
-//! What screening can add to the base model: mechanisms with their free numbers, and the variants that are tried.
+//! Mechanisms that the surrogate can add to its base model: laws, parameter counts, starts and null values.
 
 use thenar_contact::effects::Effect;
 
@@ -10,21 +10,21 @@ pub struct Mechanism {
     /// Name in the catalogue.
     pub effect: Effect,
     /// How it acts.
-    pub acts: Acts,
+    pub law: Law,
 }
 
 /// How a mechanism acts on the force.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Acts {
+pub enum Law {
     /// Load that fades by a clock.
-    Fades {
+    Relaxation {
         /// What drives it.
         clock: Clock,
         /// Branches, and what of them is free.
         spectrum: Spectrum,
     },
     /// Stiffness lost with loading travel (mm) and regained in rest (s); the share is free.
-    Softens {
+    Softening {
         /// Travel after which 63 % is lost, mm.
         travel_mm: f64,
         /// Time without load after which 63 % has come back, s.
@@ -33,14 +33,14 @@ pub enum Acts {
     /// Skin that clings takes off a force in proportion to the area that was touched, as gaps open where it touched, and until it lets
     /// go; the force on the largest contact is free, over the study's largest force, and the logarithm of the grip's range over the
     /// largest depth.
-    Clings {
+    Adhesion {
         /// Depth at which it lets go of the largest tool, over the largest depth; negative: above the skin.
         lets_go: f64,
     },
     /// A tabulated change of the response, by the number of its table; its coordinate is free.
-    Tabled(usize),
+    Tabulated(usize),
     /// The modulus grows with this measure by this law; its rate is free.
-    Stiffens(DeformationMeasure, Growth),
+    Stiffening(DeformationMeasure, Growth),
     /// Later recordings of the session read more or less by a factor; its logarithm is free.
     GainStep {
         /// First recording of the session that reads otherwise.
@@ -49,18 +49,18 @@ pub enum Acts {
     /// One force more or less everywhere, N.
     Offset,
     /// A force that creeps from each recording's start as log(1 + t / time); its size is free, N.
-    Drifts {
+    Drift {
         /// s.
         time_s: f64,
     },
     /// Readings bend over below a ceiling; its logarithm is free.
-    Saturates(Stage),
+    Saturation(Stage),
     /// Readings below a floor are none; the floor over the smallest peak is free.
-    Blind(Stage),
+    Floor(Stage),
     /// The stage travels further than the tool, by this much per newton.
-    Yields,
+    Compliance,
     /// The force is stamped late, s.
-    Late,
+    Delay,
 }
 
 /// Where in the chain a ceiling or a floor stands.
@@ -144,9 +144,9 @@ impl Growth {
 impl Mechanism {
     /// Number of free numbers.
     pub fn count(&self) -> usize {
-        match &self.acts {
-            Acts::Fades { spectrum, .. } => spectrum.count(),
-            Acts::Clings { .. } => 2,
+        match &self.law {
+            Law::Relaxation { spectrum, .. } => spectrum.count(),
+            Law::Adhesion { .. } => 2,
             _ => 1,
         }
     }
@@ -155,14 +155,14 @@ impl Mechanism {
     /// deepest, a ceiling that no reading meets does not tell where it is, and a floor is told only by the readings beside it, of which
     /// `least` is the least that stands out of the noise, over the smallest peak.
     pub fn starts(&self, least: f64) -> Vec<Vec<f64>> {
-        let fixed: &[&[f64]] = match &self.acts {
-            Acts::Fades {
+        let fixed: &[&[f64]] = match &self.law {
+            Law::Relaxation {
                 spectrum: Spectrum::Smooth { .. },
                 ..
             } => &STARTS,
-            Acts::Saturates(_) => &CEILINGS,
-            Acts::Blind(_) => return FLOORS.map(|part| vec![part * least]).to_vec(),
-            Acts::Tabled(_) if self.effect == Effect::StiffSkin => &SKINS,
+            Law::Saturation(_) => &CEILINGS,
+            Law::Floor(_) => return FLOORS.map(|part| vec![part * least]).to_vec(),
+            Law::Tabulated(_) if self.effect == Effect::StiffSkin => &SKINS,
             _ => &[],
         };
         fixed.iter().map(|start| start.to_vec()).collect()
@@ -170,28 +170,28 @@ impl Mechanism {
 
     /// The number with which it does nothing, where it has but one and there is such a number; a ceiling so high that nothing meets it.
     pub fn nothing(&self) -> Option<f64> {
-        match self.acts {
-            Acts::Blind(_) | Acts::Fades { .. } | Acts::Clings { .. } => None,
-            Acts::Saturates(_) => Some(HIGHEST),
+        match self.law {
+            Law::Floor(_) | Law::Relaxation { .. } | Law::Adhesion { .. } => None,
+            Law::Saturation(_) => Some(HIGHEST),
             _ => Some(0.0),
         }
     }
 
     /// Numbers that a fit can make use of: shares of neighboring branches stand for each other, and none is below 0.
-    pub fn price(&self) -> usize {
+    pub fn effective_parameters(&self) -> usize {
         self.count().min(3)
     }
 
     /// True for what a single loading at one speed can show: there, time and depth grow together.
     pub fn shows_in_loading(&self) -> bool {
         matches!(
-            self.acts,
-            Acts::Tabled(_)
-                | Acts::Stiffens(..)
-                | Acts::Offset
-                | Acts::Saturates(_)
-                | Acts::Blind(_)
-                | Acts::Yields
+            self.law,
+            Law::Tabulated(_)
+                | Law::Stiffening(..)
+                | Law::Offset
+                | Law::Saturation(_)
+                | Law::Floor(_)
+                | Law::Compliance
         )
     }
 
@@ -202,14 +202,14 @@ impl Mechanism {
 
     /// True where a recording's gain is a factor on all that is read of it.
     pub fn is_read_in_proportion(&self) -> bool {
-        !self.is_instrument() || matches!(self.acts, Acts::GainStep { .. })
+        !self.is_instrument() || matches!(self.law, Law::GainStep { .. })
     }
 
     /// True where the tool's elastic answer at a depth is a factor on all that is read there.
     pub fn is_in_proportion(&self) -> bool {
         matches!(
-            self.acts,
-            Acts::Tabled(_) | Acts::Stiffens(..) | Acts::Softens { .. } | Acts::GainStep { .. }
+            self.law,
+            Law::Tabulated(_) | Law::Stiffening(..) | Law::Softening { .. } | Law::GainStep { .. }
         )
     }
 }
@@ -253,7 +253,7 @@ pub const RANGES: (f64, f64) = (0.01, 0.5);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::forward::surrogate::model::Model;
+    use crate::forward::surrogate::candidate_model::Model;
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
     use crate::least_squares::surrogate_fit::refit;
     use crate::observe::measured::Phase;
@@ -261,7 +261,7 @@ mod tests {
 
     /// As `thenar_contact::effects::stiffening_law` has its laws: `exp(x / r)` and `1 + (x / r)^2`, r its reference.
     #[test]
-    fn a_modulus_grows_by_the_effects_own_laws() {
+    fn stiffening_equals_the_law_of_the_contact_model() {
         for (rate, x) in [(0.3, 0.5), (1.7, 0.9)] {
             let square = Growth::Square;
             let wanted = 1.0 + (x / square.reference(rate)).powi(2);
@@ -277,7 +277,7 @@ mod tests {
 
     /// A start has a number for each that is free; a stiff skin is sought among soft ones, as a fit by itself does, and stiff ones.
     #[test]
-    fn starts_are_whole_and_those_of_a_stiff_skin_lie_far_apart() {
+    fn starts_match_the_parameter_count_and_spread_for_stiff_skin() {
         let tried = singles(Scales {
             deepest: 1.0,
             radius: 1.0,
@@ -315,17 +315,17 @@ mod tests {
 
     /// Lengths between those that are modeled, and beyond, from a twentieth of the largest depth to five times as much.
     #[test]
-    fn friction_within_tissue_is_met_at_every_length() {
+    fn travel_spectrum_fits_any_friction_length() {
         let deepest = 2.0;
         for over in [0.05, 0.08, 0.2, 0.4, 0.8, 1.3, 2.0, 3.0, 5.0] {
             let readings = rubbed(deepest, over * deepest, 0.4);
             let most = readings.iter().fold(0.0, |m, r| f64::max(m, r.3));
             let punch = tool(deepest, |depth| 10.0 * depth, |_| 1.0);
             let (ready, _) = ready(vec![punch], &[(0, readings.clone())], 1e-3 * most);
-            let screen = ready.screen();
+            let surrogate = ready.surrogate();
             let mut all = singles(ready.scales);
             all.retain(|m| m.effect == Effect::RateIndependentLoss);
-            let found = refit(&screen, &Model::new(&screen, &all), &[]);
+            let found = refit(&surrogate, &Model::new(&surrogate, &all), &[]);
             let pairs = found.simulated.iter().zip(&readings);
             let squares: f64 = pairs.map(|(s, r)| (s - r.3).powi(2)).sum();
             let rms = (squares / readings.len() as f64).sqrt();

@@ -1,15 +1,15 @@
-//! Makes a study ready to be screened: which recordings, their noise, tables, and what is free in every model.
+//! Prepares a study for the surrogate: force recordings, noise, whitening, tables, and shared parameters.
 
+use crate::forward::mesh::replay::Replay;
 use nalgebra::Vector3;
 use thenar_contact::{Control, Material};
 use thenar_recordings::Study;
 use thenar_recordings::study::Shape;
 
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
-use crate::forward::surrogate::force_recording::{Course, courses};
+use crate::forward::surrogate::force_recording::{ForceRecording, force_recordings};
 use crate::forward::surrogate::mechanism::Scales;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::elastic_table::radius;
 use crate::noise::estimate::{Noise, noise};
@@ -24,9 +24,9 @@ const FLAT: (f64, f64) = (0.03, 1.5);
 const FLOOR: f64 = 4.0;
 
 /// A study that is ready.
-pub struct Prepared {
+pub struct PreparedStudy {
     /// Recordings of force over depth.
-    pub courses: Vec<Course>,
+    pub courses: Vec<ForceRecording>,
     /// Tables.
     pub elastic: Elastic,
     /// The noise that repeats show.
@@ -51,36 +51,36 @@ pub struct Prepared {
 /// What the contact model says, or `Cancelled`.
 pub fn prepare(
     study: &Study,
-    fitting: &mut Fitting,
+    replay: &mut Replay,
     control: &Control<'_>,
-) -> Result<Option<Prepared>, DiagnosisError> {
-    let mut found = courses(study, fitting.measured(), &fitting.replay.place_of);
+) -> Result<Option<PreparedStudy>, DiagnosisError> {
+    let mut found = force_recordings(study, &replay.observed.measured, &replay.place_of);
     found.retain(|c| c.deepest() > 0.0 && c.most() > 0.0);
     if found.is_empty() {
         return Ok(None);
     }
-    let g0 = fitting.replay.tissue.materials[0].g0_mpa;
-    let elastic = Elastic::new(fitting, (g0, is_flat(study)), control)?;
-    Ok(Some(assemble(study, fitting, (found, elastic))))
+    let g0 = replay.tissue.materials[0].g0_mpa;
+    let elastic = Elastic::new(replay, (g0, is_flat(study)), control)?;
+    Ok(Some(assemble(study, replay, (found, elastic))))
 }
 
 /// What is known without pressing.
 fn assemble(
     study: &Study,
-    fitting: &Fitting,
-    (found, elastic): (Vec<Course>, Elastic),
-) -> Prepared {
-    let is_screened: Vec<bool> = (0..fitting.measured().len())
+    replay: &Replay,
+    (found, elastic): (Vec<ForceRecording>, Elastic),
+) -> PreparedStudy {
+    let is_modeled: Vec<bool> = (0..replay.observed.measured.len())
         .map(|r| found.iter().any(|c| c.recording == r))
         .collect();
-    let noise = judged(study, fitting, ((&found, &elastic), &is_screened));
-    let whitening = Whitening::new(fitting.measured(), &noise, &is_screened);
-    let samples = fitting.measured().iter().flat_map(|m| &m.samples);
+    let noise = judged(study, replay, ((&found, &elastic), &is_modeled));
+    let whitening = Whitening::new(&replay.observed.measured, &noise, &is_modeled);
+    let samples = replay.observed.measured.iter().flat_map(|m| &m.samples);
     let values = samples.map(|s| s.value).collect();
     let scales = scales(study, &found, &elastic);
-    let shared = shared(fitting, (&found, &elastic), &noise);
+    let shared = shared(replay, (&found, &elastic), &noise);
     let sigma = noise.sigma.concat();
-    Prepared {
+    PreparedStudy {
         courses: found,
         elastic,
         noise,
@@ -89,17 +89,17 @@ fn assemble(
         sigma,
         shared,
         scales,
-        base_material: fitting.replay.tissue.materials[0],
+        base_material: replay.tissue.materials[0],
     }
 }
 
 /// The noise, from repeats along what gain and contact zero do to them.
 fn judged(
     study: &Study,
-    fitting: &Fitting,
-    ((courses, elastic), is_screened): ((&[Course], &Elastic), &[bool]),
+    replay: &Replay,
+    ((courses, elastic), is_modeled): ((&[ForceRecording], &Elastic), &[bool]),
 ) -> Noise {
-    let measured = fitting.measured();
+    let measured = &replay.observed.measured;
     let nothing = || -> Vec<Vec<f64>> {
         measured
             .iter()
@@ -107,7 +107,7 @@ fn judged(
             .collect()
     };
     let (mut simulated, mut slopes) = (nothing(), nothing());
-    let material = fitting.replay.tissue.materials[0];
+    let material = replay.tissue.materials[0];
     for course in courses {
         let table = &elastic.places[course.place];
         let force = |d: f64| match d > 0.0 {
@@ -125,13 +125,13 @@ fn judged(
         }
     }
     let noise_n = study.instrument.as_ref().and_then(|i| i.noise_n);
-    noise(measured, (&simulated, &slopes), is_screened, noise_n)
+    noise(measured, (&simulated, &slopes), is_modeled, noise_n)
 }
 
-impl Prepared {
+impl PreparedStudy {
     /// Noise over the largest force of its recording, the median of all samples.
     pub fn noise_share(&self) -> f64 {
-        let share = |c: &Course| {
+        let share = |c: &ForceRecording| {
             let sample = c.rows.iter().find_map(|r| r.sample)?;
             Some(self.sigma[sample] / c.most())
         };
@@ -176,8 +176,8 @@ impl Prepared {
     }
 
     /// The screen of these recordings.
-    pub fn screen(&self) -> Screen<'_> {
-        Screen {
+    pub fn surrogate(&self) -> Surrogate<'_> {
+        Surrogate {
             courses: &self.courses,
             elastic: &self.elastic,
             whitening: &self.whitening,
@@ -190,12 +190,15 @@ impl Prepared {
     }
 }
 
-fn scales(study: &Study, courses: &[Course], elastic: &Elastic) -> Scales {
-    let peaks = courses.iter().map(Course::most);
+fn scales(study: &Study, courses: &[ForceRecording], elastic: &Elastic) -> Scales {
+    let peaks = courses.iter().map(ForceRecording::most);
     let forces = peaks.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), f| {
         (low.min(f), high.max(f))
     });
-    let deepest = courses.iter().map(Course::deepest).fold(0.0, f64::max);
+    let deepest = courses
+        .iter()
+        .map(ForceRecording::deepest)
+        .fold(0.0, f64::max);
     let logs = elastic
         .places
         .iter()
@@ -240,7 +243,7 @@ mod tests {
     use crate::forward::surrogate::synthetic::{ready, tool};
 
     #[test]
-    fn the_form_of_a_known_ball_is_surest_and_that_of_round_skin_least() {
+    fn form_prior_widens_from_sphere_to_mesh_to_round_skin() {
         let tools = (0..2).map(|_| tool(1.0, |d| d, |_| 1.0)).collect();
         let (mut ready, _) = ready(tools, &[], 0.1);
         ready.elastic.places[1].is_exact = true;
@@ -252,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tools_first_touch_is_known_as_well_as_repeats_show() {
+    fn first_touch_prior_is_bounded_by_repeat_scatter() {
         let all = [None, Some(0.02), Some(0.4)].map(touch);
         assert_eq!(all, [0.05, 0.02, 0.05]);
     }

@@ -1,4 +1,4 @@
-//! Spectra of loads that fade: periods and shares of their branches.
+//! Relaxation spectra: periods and shares of their branches.
 
 /// Branches of a load that fades, and what of them is free. Periods in s, or in s at the contact radius `reference_mm`, or in mm.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_smooth_spectrum_has_its_amplitude_its_median_and_its_width() {
+    fn log_normal_spectrum_has_its_moments() {
         let all = smooth([0.3, 0.7, 1.5]);
         let moment = |k: i32| -> f64 {
             let of = |(period, share): &(f64, f64)| share * (libm::log(*period) - 0.7).powi(k);
@@ -86,7 +86,7 @@ mod tests {
 
     /// The load left of the widest spectrum is that of the normal law itself, integrated at steps forty times as fine.
     #[test]
-    fn the_widest_spectrum_fades_as_evenly_as_its_law() {
+    fn discrete_spectrum_approximates_the_log_normal_relaxation() {
         let (width, fine) = (WIDTHS[0].1, 2000);
         let all = smooth([1.0, 0.0, width]);
         for k in 0..=60 {
@@ -109,7 +109,7 @@ mod tests {
 
     /// Hu, Zhao, Vlassak & Suo 2010: `g = 0.491 exp(-0.908 tau^0.5) + 0.509 exp(-1.679 tau)`.
     #[test]
-    fn a_half_space_that_drains_is_within_the_family() {
+    fn spectrum_contains_the_poroelastic_half_space() {
         let all = smooth([1.0, -0.367, WIDTHS[1].1]);
         for k in 0..=60 {
             let tau = 0.01 * libm::pow(3000.0, f64::from(k) / 60.0);

@@ -1,4 +1,4 @@
-//! What the tissue remembers, by springs: the method of dimensionality reduction on a tool's own force curve.
+//! Viscoelastic springs by the method of dimensionality reduction on a tool's force curve.
 //!
 //! An elastic force curve `f(d)`, joined by straight lines between rungs `d_j`, is that of springs of stiffness `k_j` that touch
 //! one after the other at the depths `d_j`: `f(d) = sum_j k_j max(d - d_j, 0)`. Memory acts on each spring by itself, which is exact
@@ -11,19 +11,19 @@ const SHORT: f64 = 1e-6;
 
 /// What the springs of one recording go through.
 #[derive(Debug, Clone)]
-pub struct Way<'a> {
+pub struct SpringHistory<'a> {
     /// True depth by row, mm.
     pub depths: &'a [f64],
     /// Depth at which each spring touches, mm.
     pub touches: &'a [f64],
     /// By branch, decay and mean over each row's step.
-    pub fades: &'a [Vec<(f64, f64)>],
+    pub relaxation_branches: &'a [Vec<(f64, f64)>],
     /// Share of each branch.
     pub shares: &'a [f64],
 }
 
 /// Decay and mean of a branch over steps of its clock in periods.
-pub fn fade(steps: &[f64]) -> Vec<(f64, f64)> {
+pub fn branch_decay(steps: &[f64]) -> Vec<(f64, f64)> {
     let one = |x: &f64| match *x < SHORT {
         true => (1.0 - x, 1.0 - 0.5 * x),
         false => {
@@ -35,20 +35,20 @@ pub fn fade(steps: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// By row, force over what elastic springs bear: `sum_j k_j (s_j - max(d - d_j, 0))`, with stiffness `springs` (N/mm).
-pub fn lost(way: &Way<'_>, springs: &[f64]) -> Vec<f64> {
+pub fn relaxation_loss(way: &SpringHistory<'_>, springs: &[f64]) -> Vec<f64> {
     let rows = way.depths.len();
     let mut all = vec![0.0; rows];
-    let mut left = vec![0.0; way.fades.len()];
+    let mut left = vec![0.0; way.relaxation_branches.len()];
     for (touch, k) in way.touches.iter().zip(springs) {
         left.fill(0.0);
         let mut last = 0.0;
         for n in 0..rows {
             let length = (way.depths[n] - touch).max(0.0);
             let mut borne = length;
-            for (b, fades) in way.fades.iter().enumerate() {
+            for (b, relaxation_branches) in way.relaxation_branches.iter().enumerate() {
                 let (decay, mean) = match n {
                     0 => (0.0, 1.0),
-                    _ => fades[n],
+                    _ => relaxation_branches[n],
                 };
                 left[b] = left[b] * decay + (length - last) * mean;
                 borne -= way.shares[b] * (length - left[b]);

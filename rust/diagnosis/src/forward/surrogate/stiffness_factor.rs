@@ -1,14 +1,14 @@
-//! How much stiffer a tool's answer is than its table: modulus, the model's form, and what changes the response.
+//! Stiffness over the table's: modulus, form error, and effects that change the elastic response.
 
 use thenar_contact::effects::Effect;
 
 use crate::forward::mesh::nuisance::KNOTS;
-use crate::forward::surrogate::mechanism::{Acts, DeformationMeasure};
-use crate::forward::surrogate::model::{Model, Setting};
-use crate::forward::surrogate::screen::Screen;
-use crate::forward::tables::elastic_table::{Tabled, radius, rung};
+use crate::forward::surrogate::candidate_model::{Model, Setting};
+use crate::forward::surrogate::mechanism::{DeformationMeasure, Law};
+use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::forward::tables::elastic_table::{Tabulated, radius, rung};
 
-impl Screen<'_> {
+impl Surrogate<'_> {
     /// Modulus, form and changed response at a depth: force over the table's.
     pub(crate) fn factor(
         &self,
@@ -23,12 +23,12 @@ impl Screen<'_> {
         let form = set.form[place].iter().zip(modes(table, depth));
         log += form.map(|(size, mode)| size * mode).sum::<f64>();
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            match &mechanism.acts {
-                Acts::Tabled(form) => {
+            match &mechanism.law {
+                Law::Tabulated(form) => {
                     let value = set.of[number][0];
                     log += self.tabled((mechanism.effect, *form), value, (place, depth));
                 }
-                Acts::Stiffens(measure, growth) => {
+                Law::Stiffening(measure, growth) => {
                     let (rate, x) = (set.of[number][0], self.measure(*measure, (place, depth)));
                     log += growth.log(rate, x);
                 }
@@ -78,7 +78,7 @@ impl Screen<'_> {
 }
 
 /// Ways in which the model's form may be off at a depth: the whole tool, its tilt and its bend over depth, and first touch.
-pub(crate) fn modes(table: &Tabled, depth: f64) -> [f64; KNOTS] {
+pub(crate) fn modes(table: &Tabulated, depth: f64) -> [f64; KNOTS] {
     let u = (depth / table.deepest).clamp(0.0, 1.0);
     [
         1.0,

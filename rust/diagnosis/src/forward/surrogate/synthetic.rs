@@ -1,15 +1,15 @@
-//! Studies that tests make: tools whose answer has a closed form, and recordings of forces that a test states.
+//! Synthetic studies for tests: tools with a closed-form response, and stated force recordings.
 
 use nalgebra::Vector3;
 use thenar_contact::Material;
 
 use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
-use crate::forward::surrogate::force_recording::{Course, Row};
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::forward::surrogate::mechanism::Scales;
-use crate::forward::surrogate::prepared_study::Prepared;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic::Elastic;
-use crate::forward::tables::elastic_table::Tabled;
+use crate::forward::tables::elastic_table::Tabulated;
 use crate::noise::channel::CHANNELS;
 use crate::noise::estimate::Noise;
 use crate::noise::whitening::Whitening;
@@ -23,13 +23,13 @@ const LIMIT_MM: f64 = 3.0;
 pub type Reading = (f64, f64, Phase, f64);
 
 /// A tool whose force over the modulus (mm2) and whose contact's radius (mm) are functions of the depth, as far as `deepest` (mm).
-pub fn tool(deepest: f64, force: impl Fn(f64) -> f64, radius: impl Fn(f64) -> f64) -> Tabled {
+pub fn tool(deepest: f64, force: impl Fn(f64) -> f64, radius: impl Fn(f64) -> f64) -> Tabulated {
     let roots: Vec<f64> = (0..=30)
         .map(|k| deepest.sqrt() * f64::from(k) / 30.0)
         .collect();
     let of = |law: &dyn Fn(f64) -> f64| -> Vec<f64> { roots.iter().map(|r| law(r * r)).collect() };
     let rungs = of(&force);
-    Tabled {
+    Tabulated {
         force: Table::new(&roots, rungs.clone()),
         radius: of(&radius),
         deepest,
@@ -53,14 +53,14 @@ pub fn press_table(deepest: f64, force: impl Fn(f64) -> f64) -> PressTable {
 
 /// Recordings by their tool, with noise of `sigma` (N), in tissue of 1 MPa whose two moduli are free.
 pub fn ready(
-    tools: Vec<Tabled>,
+    tools: Vec<Tabulated>,
     recordings: &[(usize, Vec<Reading>)],
     sigma: f64,
-) -> (Prepared, Vec<Measured>) {
+) -> (PreparedStudy, Vec<Measured>) {
     let measured: Vec<Measured> = recordings.iter().map(|(_, all)| measured(all)).collect();
     let noise = noise(&measured, sigma);
     let courses = courses(recordings);
-    let prepared = Prepared {
+    let prepared = PreparedStudy {
         whitening: Whitening::new(&measured, &noise, &vec![true; measured.len()]),
         values: recordings
             .iter()
@@ -94,10 +94,13 @@ fn modulus(kind: Kind) -> Coordinate {
     }
 }
 
-fn scales(courses: &[Course]) -> Scales {
-    let peaks = || courses.iter().map(Course::most);
+fn scales(courses: &[ForceRecording]) -> Scales {
+    let peaks = || courses.iter().map(ForceRecording::most);
     Scales {
-        deepest: courses.iter().map(Course::deepest).fold(0.0, f64::max),
+        deepest: courses
+            .iter()
+            .map(ForceRecording::deepest)
+            .fold(0.0, f64::max),
         radius: 1.0,
         forces: (
             peaks().fold(f64::INFINITY, f64::min),
@@ -108,7 +111,7 @@ fn scales(courses: &[Course]) -> Scales {
     }
 }
 
-fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<Course> {
+fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<ForceRecording> {
     let mut first = 0;
     let mut all = Vec::new();
     for (number, (place, readings)) in recordings.iter().enumerate() {
@@ -120,7 +123,7 @@ fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<Course> {
             phase: one.2,
             cycle: 0,
         };
-        all.push(Course {
+        all.push(ForceRecording {
             recording: number,
             name: String::new(),
             protocol: String::new(),

@@ -1,15 +1,15 @@
-//! Elastic answers of every tool at its site, with and without what changes the response: tables that screening looks up.
+//! Elastic tables of every tool at its site, with and without effects that change the response.
 
+use crate::forward::mesh::replay::Replay;
 use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
 use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
-use crate::forward::tables::elastic_table::{Tabled, Variant};
-use crate::forward::tables::sphere::{self, Known};
+use crate::forward::tables::elastic_table::{Tabulated, Variant};
+use crate::forward::tables::sphere::{self, SphereTable};
 use crate::forward::tables::stiff_skin;
 use crate::forward::tables::table_presses::{ratios, tables};
 
@@ -27,7 +27,7 @@ const _: () = assert!(RUNGS.is_multiple_of(FEWER));
 #[derive(Debug, Clone)]
 pub struct Elastic {
     /// By place.
-    pub places: Vec<Tabled>,
+    pub places: Vec<Tabulated>,
     /// What changes them.
     pub variants: Vec<Variant>,
     /// Depth at which the modulus stops growing, mm.
@@ -46,19 +46,19 @@ impl Elastic {
     /// # Errors
     /// What the contact model says of a press, or `Cancelled`.
     pub fn new(
-        fitting: &mut Fitting,
+        replay: &mut Replay,
         (g_mpa, is_flat): (f64, bool),
         control: &Control<'_>,
     ) -> Result<Elastic, DiagnosisError> {
         let mut elastic = Elastic {
             places: Vec::new(),
             variants: Vec::new(),
-            limit_depth: fitting.replay.tissue.materials[0].d_lim_mm,
+            limit_depth: replay.tissue.materials[0].d_lim_mm,
             drained: Vec::new(),
-            studied: fitting.replay.places(),
+            studied: replay.places(),
             is_flat,
         };
-        elastic.add(fitting, g_mpa, control)?;
+        elastic.add(replay, g_mpa, control)?;
         Ok(elastic)
     }
 
@@ -68,34 +68,35 @@ impl Elastic {
     /// As of `new`.
     pub fn add(
         &mut self,
-        fitting: &mut Fitting,
+        replay: &mut Replay,
         g_mpa: f64,
         control: &Control<'_>,
     ) -> Result<(), DiagnosisError> {
-        let start = fitting.replay.tissue.materials.clone();
+        let start = replay.tissue.materials.clone();
         let flat = flattened(&start, g_mpa);
-        let (known, places) = (self.places.len(), fitting.replay.places());
+        let (known, places) = (self.places.len(), replay.places());
         let at: Vec<usize> = (known..places).collect();
-        let mut base = tables(fitting, (&[], &flat, RUNGS), (&at, control))?;
-        let balls = sphere::known(fitting, self.is_flat, (&at, &base, &flat));
-        for (table, ball) in base.iter_mut().zip(&balls) {
+        let mut base = tables(replay, (&[], &flat, RUNGS), (&at, control))?;
+        let spheres = sphere::known(replay, self.is_flat, (&at, &base, &flat));
+        for (table, ball) in base.iter_mut().zip(&spheres) {
             if let Some(ball) = ball {
                 table.force = ball.bare.iter().map(|force| force * g_mpa).collect();
             }
         }
         let mut added = Vec::new();
-        let on = (&base[..], &balls[..], &flat[..]);
+        let on = (&base[..], &spheres[..], &flat[..]);
         for planned in plan(&start[0]) {
-            added.push(changed(fitting, planned, on, (&at, control))?);
+            added.push(changed(replay, planned, on, (&at, control))?);
         }
-        added.extend(stiff_skin::tabulate(fitting, on, (&at, control))?);
+        added.extend(stiff_skin::tabulate(replay, on, (&at, control))?);
         self.take(added);
-        fitting.replay.set_effects(&[], control)?;
-        let tabled = |(table, ball): (PressTable, &Option<Known>)| Tabled {
+        replay.set_effects(&[], control)?;
+        let tabled = |(table, ball): (PressTable, &Option<SphereTable>)| Tabulated {
             is_exact: ball.is_some(),
             ..tabled(table, g_mpa)
         };
-        self.places.extend(base.into_iter().zip(&balls).map(tabled));
+        self.places
+            .extend(base.into_iter().zip(&spheres).map(tabled));
         self.drained = drained(&self.variants, (self.studied, places));
         Ok(())
     }
@@ -120,9 +121,9 @@ impl Elastic {
 
 /// What an effect changes of the base tables of these places: of known balls, and of others on the mesh.
 fn changed(
-    fitting: &mut Fitting,
+    replay: &mut Replay,
     (effect, knots): (Effect, Vec<Knot>),
-    (base, balls, flat): (&[PressTable], &[Option<Known>], &[Material]),
+    (base, spheres, flat): (&[PressTable], &[Option<SphereTable>], &[Material]),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Variant, DiagnosisError> {
     let mut log_ratio = vec![Vec::new(); places.len()];
@@ -132,12 +133,12 @@ fn changed(
                 log_ratio[place].push(vec![0.0; without.roots.len()]);
                 continue;
             };
-            let exact = balls[place].as_ref().and_then(|b| b.changed(effect));
+            let exact = spheres[place].as_ref().and_then(|b| b.changed(effect));
             log_ratio[place].push(match exact {
                 Some(logs) => logs,
                 None => {
                     let how = (std::slice::from_ref(effect), flat, FEWER);
-                    let pressed = tables(fitting, how, (&places[place..=place], control))?;
+                    let pressed = tables(replay, how, (&places[place..=place], control))?;
                     ratios(&pressed[0], without)
                 }
             });
@@ -215,7 +216,7 @@ fn flattened(start: &[Material], g_mpa: f64) -> Vec<Material> {
     start.iter().map(one).collect()
 }
 
-fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
+fn tabled(table: PressTable, g_mpa: f64) -> Tabulated {
     let rungs = smoothed(
         &table.roots,
         table.force.iter().map(|f| f / g_mpa).collect(),
@@ -225,7 +226,7 @@ fn tabled(table: PressTable, g_mpa: f64) -> Tabled {
         .iter()
         .map(|a| (a.max(0.0) / std::f64::consts::PI).sqrt());
     let last = table.roots.last().copied().unwrap_or(0.0);
-    Tabled {
+    Tabulated {
         force: Table::new(&table.roots, rungs.clone()),
         radius: smoothed(&table.roots, radius.collect()),
         deepest: last * last,

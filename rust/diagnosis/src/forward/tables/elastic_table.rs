@@ -19,7 +19,7 @@ pub struct Variant {
 
 /// A tool at a site: force for a modulus of 1 MPa, and contact radius, by the root of depth.
 #[derive(Debug, Clone)]
-pub struct Tabled {
+pub struct Tabulated {
     /// Roots of the depths, mm^0.5.
     pub roots: Vec<f64>,
     /// Force over the modulus, mm2.
@@ -51,7 +51,7 @@ impl Variant {
 }
 
 /// Rung below a depth, and the share of the way to the next, along the root of depth.
-pub fn rung(table: &Tabled, depth: f64) -> (usize, f64) {
+pub fn rung(table: &Tabulated, depth: f64) -> (usize, f64) {
     let last = table.roots.len() - 1;
     let root = depth.max(0.0).sqrt();
     let next = table.roots.partition_point(|r| *r <= root).clamp(1, last);
@@ -60,7 +60,7 @@ pub fn rung(table: &Tabled, depth: f64) -> (usize, f64) {
 }
 
 /// Contact radius at a depth, mm.
-pub fn radius(table: &Tabled, depth: f64) -> f64 {
+pub fn radius(table: &Tabulated, depth: f64) -> f64 {
     let (k, share) = rung(table, depth);
     table.radius[k] * (1.0 - share) + table.radius[k + 1] * share
 }

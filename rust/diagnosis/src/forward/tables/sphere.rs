@@ -1,10 +1,10 @@
-//! Balls on flat skin of one kind: their answers are known without a mesh, from rings (`thenar_contact::ball`).
+//! Closed-form tables of spheres on flat homogeneous skin, without a mesh (`thenar_contact::ball`).
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::ball::Ball;
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Material};
 
-use crate::fit::fitting::Fitting;
 use crate::forward::mesh::press_table::PressTable;
 
 /// Part by which the mesh's force may differ from a ball's in the last quarter of its table, if that is the ball that it is pressed with.
@@ -15,7 +15,7 @@ const SHALLOW: f64 = 0.01;
 
 /// A tool at a place that is such a ball.
 #[derive(Debug, Clone)]
-pub struct Known {
+pub struct SphereTable {
     radius_mm: f64,
     /// Thickness, mm, and Poisson's ratio.
     layer: (f64, f64),
@@ -28,23 +28,23 @@ pub struct Known {
 /// By place whose table from the mesh is given: the ball that it is. Skin of one region that is flat, and a ball that presses it as the mesh
 /// has it.
 pub fn known(
-    fitting: &Fitting,
+    replay: &Replay,
     is_flat: bool,
     (places, base, materials): (&[usize], &[PressTable], &[Material]),
-) -> Vec<Option<Known>> {
+) -> Vec<Option<SphereTable>> {
     let one = |(place, table): (&usize, &PressTable)| {
-        let radius_mm = fitting.replay.ball(*place)?;
+        let radius_mm = replay.ball(*place)?;
         let [material] = materials else {
             return None;
         };
-        Known::of(radius_mm, material, table).filter(|_| is_flat)
+        SphereTable::of(radius_mm, material, table).filter(|_| is_flat)
     };
     places.iter().zip(base).map(one).collect()
 }
 
-impl Known {
-    fn of(radius_mm: f64, material: &Material, table: &PressTable) -> Option<Known> {
-        let mut known = Known {
+impl SphereTable {
+    fn of(radius_mm: f64, material: &Material, table: &PressTable) -> Option<SphereTable> {
+        let mut known = SphereTable {
             radius_mm,
             layer: (material.thickness_mm, material.poisson_ratio),
             roots: table.roots.clone(),
@@ -115,12 +115,12 @@ mod tests {
 
     /// Hertz: F = 8/3 G / (1 - nu) sqrt(R) d^1.5; a ball of 40 mm is his paraboloid within 0.3 %.
     #[test]
-    fn a_ball_is_known_by_what_it_presses_and_answers_as_hertz_has_it() {
+    fn sphere_table_equals_hertz() {
         let hertz = |nu: f64, d: f64| 8.0 / 3.0 / (1.0 - nu) * 40.0f64.sqrt() * libm::pow(d, 1.5);
         let material = half_space(0.5);
         let meshed = |share: f64| press_table(0.7, move |d| 0.01 * share * hertz(0.5, d));
-        assert!(Known::of(40.0, &material, &meshed(0.9)).is_none());
-        let known = Known::of(40.0, &material, &meshed(1.02)).unwrap();
+        assert!(SphereTable::of(40.0, &material, &meshed(0.9)).is_none());
+        let known = SphereTable::of(40.0, &material, &meshed(1.02)).unwrap();
         let mut softer = ActiveEffect::new(Effect::Compressibility, 1.0);
         softer.shape[0] = 0.3;
         let changed = known.changed(&softer).unwrap();
@@ -136,8 +136,8 @@ mod tests {
     }
 
     /// On 5 mm, to 0.64 mm.
-    fn thick(radius_mm: f64) -> Known {
-        Known {
+    fn thick(radius_mm: f64) -> SphereTable {
+        SphereTable {
             radius_mm,
             layer: (5.0, 0.5),
             roots: vec![0.0, 0.4, 0.8],
@@ -147,7 +147,7 @@ mod tests {
 
     /// Bone at half the depth is a layer of half the thickness.
     #[test]
-    fn bone_nearer_to_the_skin_is_a_thinner_layer() {
+    fn bone_effect_equals_thinner_layer() {
         let mut known = thick(6.0);
         known.bare = known.forces(known.layer).unwrap();
         let mut bone = ActiveEffect::new(Effect::Bone, 1.0);
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ball_that_is_sunk_to_its_middle_is_not_known() {
+    fn sphere_table_ends_at_half_its_height() {
         let deep = thick(0.6);
         assert!(deep.forces(deep.layer).is_none() && deep.ball().is_none());
     }

@@ -1,19 +1,19 @@
-//! What a stiff skin adds to every tool's answer: tables by its thickness and its modulus over that of pulp.
+//! Tables of a stiff skin layer, by its thickness and its modulus over that of the pulp.
 //!
 //! Where a tool answers as some ball on the bare layer does, the skin's part is that ball's (`thenar_contact::ball`), whose skin gives
 //! way through its thickness and stretches as it is pressed deep. Other tools are pressed on the mesh with a skin of
 //! [`MESHED_MM`], a plate at small strains; of that only its bending stiffness counts, which gives every thickness.
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::ball::{Ball, StiffSkin};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
 use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
 use crate::forward::tables::elastic_table::Variant;
-use crate::forward::tables::sphere::Known;
+use crate::forward::tables::sphere::SphereTable;
 use crate::forward::tables::table_presses::{ratios, tables};
 
 /// Thicknesses that are tried, mm: a fingertip's horny layer has 0.3 (Adams 2013), all of its skin above the pulp about a millimetre.
@@ -59,12 +59,12 @@ pub fn thickness(form: usize) -> (f64, f64, f64) {
 /// # Errors
 /// What the contact model says of a press, or `Cancelled`.
 pub fn tabulate(
-    fitting: &mut Fitting,
-    (base, balls, flat): (&[PressTable], &[Option<Known>], &[Material]),
+    replay: &mut Replay,
+    (base, spheres, flat): (&[PressTable], &[Option<SphereTable>], &[Material]),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<Variant>, DiagnosisError> {
     let mut round = Vec::new();
-    for (table, known) in base.iter().zip(balls) {
+    for (table, known) in base.iter().zip(spheres) {
         control.check().map_err(|_| DiagnosisError::Cancelled)?;
         let most = MOST_TAKEN * flat[0].thickness_mm;
         let alike = match known {
@@ -76,7 +76,7 @@ pub fn tabulate(
     let others: Vec<usize> = (0..base.len())
         .filter(|place| round[*place].is_none())
         .collect();
-    let meshed = meshed(fitting, ((base, &others), flat), (places, control))?;
+    let meshed = meshed(replay, ((base, &others), flat), (places, control))?;
     let one = |(form, thickness_mm): (usize, f64)| {
         let log_ratio = (0..base.len()).map(|place| match &round[place] {
             Some(tables) => tables[form].clone(),
@@ -150,7 +150,7 @@ fn of_ball(ball: &Ball, table: &PressTable, most: f64) -> Option<Vec<Vec<Vec<f64
 
 /// By place (`others` are numbers of base tables) and knot of [`MESHED`], the logarithm of force over the base's.
 fn meshed(
-    fitting: &mut Fitting,
+    replay: &mut Replay,
     ((base, others), flat): ((&[PressTable], &[usize]), &[Material]),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<Vec<Vec<f64>>>, DiagnosisError> {
@@ -164,7 +164,7 @@ fn meshed(
         let mut skin = ActiveEffect::new(Effect::StiffSkin, 1.0);
         (skin.shape[0], skin.shape[1]) = (3.0 * flat[0].g0_mpa * ratio, MESHED_MM);
         let with = tables(
-            fitting,
+            replay,
             (std::slice::from_ref(&skin), flat, RUNGS),
             (&at, control),
         )?;
@@ -200,7 +200,7 @@ mod tests {
 
     /// Hertz' force on a half space is that of its own ball; a flat punch's, which grows as the depth, is that of none.
     #[test]
-    fn a_ball_is_found_by_its_force_and_a_punch_is_none() {
+    fn equivalent_sphere_is_found_from_force_and_rejected_for_a_punch() {
         let material = Material {
             g0_mpa: 0.01,
             thickness_mm: f64::INFINITY,
@@ -220,7 +220,7 @@ mod tests {
 
     /// A plate bends by E t^3: twice as thick a skin is as stiff as one with eight times the modulus.
     #[test]
-    fn of_a_plate_counts_its_bending_stiffness() {
+    fn plate_tables_scale_with_bending_stiffness() {
         let meshed: Vec<Vec<f64>> = MESHED.iter().map(|r| vec![libm::log(*r)]).collect();
         for (thickness_mm, at) in [(MESHED_MM, 3), (0.8 * MESHED_MM, 3), (1.2 * MESHED_MM, 2)] {
             let found = of_plate(&meshed, thickness_mm)[at][0];
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn the_modulus_grows_in_equal_ratios_between_knots() {
+    fn skin_modulus_is_log_linear_between_knots() {
         for (k, known) in RATIOS.iter().enumerate() {
             assert!((ratio(k as f64) / known - 1.0).abs() < 1e-12);
         }
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thickness_is_told_with_its_neighbors() {
+    fn thickness_interval_spans_neighboring_tables() {
         let all: Vec<(f64, f64, f64)> = (0..THICKNESSES_MM.len()).map(thickness).collect();
         assert_eq!(all[1], (0.5, 0.3, 0.9));
         assert!((all[0].1 / 0.18 - 1.0).abs() < 1e-12 && all[0].2 == 0.5);

@@ -1,9 +1,9 @@
 //! Presses of the mesh model that fill the tables, and the ratio of two tables.
 
+use crate::forward::mesh::replay::Replay;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::DiagnosisError;
-use crate::fit::fitting::Fitting;
 use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
 
@@ -12,16 +12,16 @@ use crate::forward::mesh::press_table::PressTable;
 /// # Errors
 /// What the contact model says of a press, or `Cancelled`.
 pub fn tables(
-    fitting: &mut Fitting,
+    replay: &mut Replay,
     (effects, materials, rungs): (&[ActiveEffect], &[Material], usize),
     (places, control): (&[usize], &Control<'_>),
 ) -> Result<Vec<PressTable>, DiagnosisError> {
-    fitting.replay.set_effects(effects, control)?;
+    replay.set_effects(effects, control)?;
     places
         .iter()
         .map(|&at| {
             control.check().map_err(|_| DiagnosisError::Cancelled)?;
-            fitting.replay.ladder((at, rungs), materials, control)
+            replay.ladder((at, rungs), materials, control)
         })
         .collect()
 }

@@ -1,4 +1,4 @@
-//! A handprint beside a contact: where ink and simulated contact overlap, with the pose of the paper as a fitted nuisance.
+//! Comparison of one handprint with a contact: overlap of ink and simulated contact, the paper's pose fitted.
 //!
 //! A cell of the print is evidence of contact and never of pressure: it touched if at least half of it is inked, and touches in
 //! simulation if at least half of it bears more than the pressure at which skin leaves ink. Overlap is what it is for mats: the area where both

@@ -1,11 +1,11 @@
-//! Where, when and how large the mismatch is that parameters cannot absorb: scan statistics on the projected residual.
+//! Conducts the location of a mismatch: scan statistics on the projected residual.
 //!
 //! A look is a disc on the sensor or the skin over a stretch of the protocols, or a stretch alone; its statistic is the mean of
 //! the projected residual `r = P L^-1 (measured - simulated)` along the whitened direction `w` in which one unit more on each
 //! of its samples would show, `w . r / |P w|`. The price of many looks is paid exactly: noise is drawn as `P n`, all looks are
 //! taken at it, and the largest is kept (Kulldorff 1997, Commun. Stat. 26:1481, with a Gaussian model and nuisances taken
 //! out). Where the residual is larger everywhere than its noise, the statistic is divided by that: then only what stands out
-//! from the rest is a place. What the simulation itself may be off by is allowed for (`allowance.rs`).
+//! from the rest is a place. What the simulation itself may be off by is allowed for (`model_error.rs`).
 
 use std::collections::BTreeSet;
 
@@ -17,9 +17,9 @@ use crate::fit::result::Fit;
 use crate::location::mismatch::{Location, Mismatch, Shown, When};
 use crate::location::place_estimate::Scored;
 use crate::location::protocol_cells::Cells;
-use crate::location::residual_sums::{Atoms, Channel};
+use crate::location::residual_sums::{CellSums, Channel};
 use crate::location::scan_statistic::Scan;
-use crate::location::scan_windows::{Look, Looks};
+use crate::location::scan_windows::{ScanWindow, ScanWindows};
 
 /// What a simulated sensel or force may be off by under smooth factors, of the largest. Against finite elements single sensels are off by
 /// up to 0.04 on a fine mesh, and by as much again where a mesh of 1.2 mm meets sensels of 2.5 mm. Set on 36 studies of six
@@ -79,12 +79,15 @@ pub fn locate(
     };
     step(0.0)?;
     let cells = crate::location::protocol_cells::cut(&fit.measured);
-    let atoms = crate::location::residual_sums::sum_up(fit, &cells);
-    let looks = crate::location::scan_windows::plan(&fit.measured, &cells, &atoms);
+    let cell_sums = crate::location::residual_sums::sum_up(fit, &cells);
+    let windows = crate::location::scan_windows::plan(&fit.measured, &cells, &cell_sums);
     let data = (fit.measured.as_slice(), &cells);
-    let allowance =
-        crate::location::model_error::allow(data, (&atoms, &looks.sensors), search.model_error);
-    let scan = Scan::new((&atoms, &allowance), &looks);
+    let allowance = crate::location::model_error::allow(
+        data,
+        (&cell_sums, &windows.sensors),
+        search.model_error,
+    );
+    let scan = Scan::new((&cell_sums, &allowance), &windows);
     step(0.1)?;
     let maxima = scan.null_maxima(search.draws, search.seed);
     step(0.9)?;
@@ -92,8 +95,8 @@ pub fn locate(
         fit,
         search,
         cells: &cells,
-        atoms: &atoms,
-        looks: &looks,
+        cell_sums: &cell_sums,
+        windows: &windows,
         scan: &scan,
         maxima: &maxima,
     };
@@ -106,15 +109,15 @@ struct Telling<'a> {
     fit: &'a Fit,
     search: &'a Search<'a>,
     cells: &'a Cells,
-    atoms: &'a Atoms,
-    looks: &'a Looks,
+    cell_sums: &'a CellSums,
+    windows: &'a ScanWindows,
     scan: &'a Scan<'a>,
     maxima: &'a [f64],
 }
 
 /// A look that stands out.
 struct Strongest {
-    look: usize,
+    window: usize,
     /// How much larger than noise all else of its kind is, curves or maps.
     scale: f64,
     /// Its statistic over that.
@@ -139,15 +142,15 @@ impl Telling<'_> {
                 break;
             }
             mismatches.push(self.tell(&best, &scores, p));
-            taken.extend(self.scan.atoms_of(&self.looks.list[best.look]));
-            values = self.scan.without(&values, best.look);
+            taken.extend(self.scan.atoms_of(&self.windows.list[best.window]));
+            values = self.scan.without(&values, best.window);
         }
-        let looks = self.scan.count();
+        let windows = self.scan.count();
         Location {
-            sentence: summary(&mismatches, (first, looks), self.search),
+            sentence: summary(&mismatches, (first, windows), self.search),
             mismatches,
             p: first,
-            looks,
+            look_elsewhere_count: windows,
             notes: self.notes(&values),
         }
     }
@@ -158,37 +161,42 @@ impl Telling<'_> {
         (values, scores): (&[f64], &[f64]),
         taken: &BTreeSet<u32>,
     ) -> Option<Strongest> {
-        let free = |look: &Look| {
-            let rows = look.rows.iter().map(|row| &self.looks.rows[*row as usize]);
-            taken.is_empty() || !rows.flatten().any(|atom| taken.contains(atom))
+        let free = |window: &ScanWindow| {
+            let rows = window
+                .rows
+                .iter()
+                .map(|row| &self.windows.rows[*row as usize]);
+            taken.is_empty() || !rows.flatten().any(|cell_sum| taken.contains(cell_sum))
         };
         let of_kind = |is_map: bool| {
-            let look = (0..scores.len())
-                .filter(|at| scores[*at] != 0.0 && self.is_of_map(&self.looks.list[*at]) == is_map)
-                .filter(|at| free(&self.looks.list[*at]))
+            let window = (0..scores.len())
+                .filter(|at| {
+                    scores[*at] != 0.0 && self.is_of_map(&self.windows.list[*at]) == is_map
+                })
+                .filter(|at| free(&self.windows.list[*at]))
                 .max_by(|one, two| scores[*one].abs().total_cmp(&scores[*two].abs()))?;
-            let scale = self.excess(&self.scan.without(values, look), is_map);
+            let scale = self.excess(&self.scan.without(values, window), is_map);
             Some(Strongest {
-                look,
+                window,
                 scale,
-                score: scores[look] / scale,
+                score: scores[window] / scale,
             })
         };
         let both = [false, true].into_iter().filter_map(of_kind);
         both.max_by(|one, two| one.score.abs().total_cmp(&two.score.abs()))
     }
 
-    fn is_of_map(&self, look: &Look) -> bool {
-        let atom = self.looks.rows[look.rows[0] as usize][0];
-        self.atoms.list[atom as usize].channel.is_of_map()
+    fn is_of_map(&self, window: &ScanWindow) -> bool {
+        let cell_sum = self.windows.rows[window.rows[0] as usize][0];
+        self.cell_sums.list[cell_sum as usize].channel.is_of_map()
     }
 
     /// How much larger than noise and the simulation's own error values of maps, or of all else, are as a whole.
     fn excess(&self, values: &[f64], is_map: bool) -> f64 {
         let is_used = |at: usize| {
-            let atom = &self.atoms.list[at];
-            let is_pressed = atom.simulated > PRESSED * atom.peak;
-            atom.channel.is_of_map() == is_map && (is_pressed || !is_map)
+            let cell_sum = &self.cell_sums.list[at];
+            let is_pressed = cell_sum.simulated > PRESSED * cell_sum.peak;
+            cell_sum.channel.is_of_map() == is_map && (is_pressed || !is_map)
         };
         self.scan.excess(values, &is_used)
     }
@@ -200,24 +208,24 @@ impl Telling<'_> {
     }
 
     fn tell(&self, strongest: &Strongest, scores: &[f64], p: f64) -> Mismatch {
-        let (best, scale) = (strongest.look, strongest.scale);
-        let atoms = self.scan.atoms_of(&self.looks.list[best]);
+        let (best, scale) = (strongest.window, strongest.scale);
+        let cell_sums = self.scan.atoms_of(&self.windows.list[best]);
         let scores: Vec<f64> = scores.iter().map(|score| score / scale).collect();
         let (size, spread) = self.size(strongest);
         let half = 1.645 * spread;
         let scored = Scored {
             scan: self.scan,
-            looks: self.looks,
+            windows: self.windows,
             scores: &scores,
         };
         let mut found = Mismatch {
-            shown: self.shown(atoms[0] as usize),
+            shown: self.shown(cell_sums[0] as usize),
             place: crate::location::place_estimate::place(
                 scored,
                 best,
                 (&self.fit.measured, self.search.skin),
             ),
-            when: self.when(&atoms),
+            when: self.when(&cell_sums),
             size,
             low: size - half,
             high: size + half,
@@ -233,26 +241,26 @@ impl Telling<'_> {
     /// Size of a look with its standard deviation. The noise of a curve remembers, so that its whitened residual is no mean of the
     /// residual itself: there the plain mean is told, as sure as its statistic is.
     fn size(&self, strongest: &Strongest) -> (f64, f64) {
-        let spread = strongest.scale * self.scan.error(strongest.look);
-        let look = &self.looks.list[strongest.look];
+        let spread = strongest.scale * self.scan.error(strongest.window);
+        let window = &self.windows.list[strongest.window];
         let (mut sum, mut whole) = (0.0, 0.0);
-        for at in self.scan.atoms_of(look) {
-            let atom = &self.atoms.list[at as usize];
-            let weight = atom.weight * atom.weight;
-            (sum, whole) = (sum + weight * atom.residual, whole + weight);
+        for at in self.scan.atoms_of(window) {
+            let cell_sum = &self.cell_sums.list[at as usize];
+            let weight = cell_sum.weight * cell_sum.weight;
+            (sum, whole) = (sum + weight * cell_sum.residual, whole + weight);
         }
         let mean = sum / whole;
-        if self.is_of_map(look) || mean * strongest.score <= 0.0 {
+        if self.is_of_map(window) || mean * strongest.score <= 0.0 {
             (strongest.score * spread, spread)
         } else {
             (mean, mean / strongest.score)
         }
     }
 
-    fn shown(&self, atom: usize) -> Shown {
-        let atom = &self.atoms.list[atom];
-        let recording = self.cells.list[atom.cell].recording;
-        match atom.channel {
+    fn shown(&self, cell_sum: usize) -> Shown {
+        let cell_sum = &self.cell_sums.list[cell_sum];
+        let recording = self.cells.list[cell_sum.cell].recording;
+        match cell_sum.channel {
             Channel::Force => Shown::Force,
             Channel::TangentialForce => Shown::TangentialForce,
             Channel::Area => Shown::Area,
@@ -262,10 +270,10 @@ impl Telling<'_> {
         }
     }
 
-    fn when(&self, atoms: &[u32]) -> When {
-        let places: BTreeSet<usize> = atoms
+    fn when(&self, cell_sums: &[u32]) -> When {
+        let places: BTreeSet<usize> = cell_sums
             .iter()
-            .map(|atom| self.atoms.list[*atom as usize].cell)
+            .map(|cell_sum| self.cell_sums.list[*cell_sum as usize].cell)
             .collect();
         let cells: Vec<&crate::location::protocol_cells::Cell> =
             places.iter().map(|at| &self.cells.list[*at]).collect();
@@ -299,10 +307,10 @@ impl Telling<'_> {
 
     fn notes(&self, values: &[f64]) -> Vec<String> {
         let mut notes = Vec::new();
-        if self.atoms.hidden > 0 {
+        if self.cell_sums.hidden > 0 {
             notes.push(format!(
                 "{} values that the instrument's limits hide count with their mean, given that they are hidden.",
-                self.atoms.hidden
+                self.cell_sums.hidden
             ));
         }
         for (what, is_map) in [("curves", false), ("maps", true)] {
@@ -320,7 +328,7 @@ impl Telling<'_> {
 
 fn summary(
     mismatches: &[Mismatch],
-    (p, looks): (Option<f64>, usize),
+    (p, windows): (Option<f64>, usize),
     search: &Search<'_>,
 ) -> String {
     let allowed = match search.model_error {
@@ -330,7 +338,7 @@ fn summary(
     match (mismatches.first(), p) {
         (Some(first), _) => first.sentence.clone(),
         (None, Some(p)) => format!(
-            "No place or time carries more than {allowed}: p = {} over {looks} looks.",
+            "No place or time carries more than {allowed}: p = {} over {windows} looks.",
             crate::location::sentence::figure(p)
         ),
         (None, None) => "Nothing can be located: no curve or mat has a sample that shows its value and that parameters do not absorb; scans are shown place by place.".to_owned(),

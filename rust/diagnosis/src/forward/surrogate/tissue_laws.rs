@@ -1,11 +1,11 @@
-//! What mechanisms do to a recording: load that fades, skin that clings, stiffness that is used up, and the instrument.
+//! Laws of tissue effects in the surrogate: relaxation and drainage, adhesion, softening by use.
 
-use crate::forward::surrogate::force_recording::Course;
-use crate::forward::surrogate::mechanism::{Acts, Clock};
-use crate::forward::surrogate::model::{Model, Setting};
+use crate::forward::surrogate::candidate_model::{Model, Setting};
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::surrogate::mechanism::{Clock, Law};
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
-use crate::forward::surrogate::relaxing_springs::fade;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::relaxing_springs::branch_decay;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic_table::radius;
 
 /// Power of the contact's radius with which the time of drainage grows: for small shares, and less by this for a share of 1; its bounds.
@@ -18,25 +18,23 @@ const GROWS: (f64, f64) = (1.6, 1.4);
 const MOST_GROWS: (f64, f64) = (1.0, 2.0);
 /// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
 const NARROWS: f64 = 0.3;
-/// Width of a floor's edge over the floor, in recordings that are only planned.
-const EDGE: f64 = 0.01;
 /// Way over which skin lets go, over the largest depth.
 const RELEASE: f64 = 0.08;
 
-impl Screen<'_> {
+impl Surrogate<'_> {
     /// Every branch of every mechanism that fades: its decay over each row's step, and its share.
     ///
     /// What drains leaves tissue that gives up volume, and that matters the more, the larger the contact is against the thickness: the
     /// share of drainage is in proportion to what compressibility takes from the tool's force.
-    pub(crate) fn fades(
+    pub(crate) fn relaxation_branches(
         &self,
         model: &Model<'_>,
         set: &Setting,
-        (one, depths): (&Course, &[f64]),
+        (one, depths): (&ForceRecording, &[f64]),
     ) -> (Vec<Vec<(f64, f64)>>, Vec<f64>) {
-        let (mut fades, mut shares) = (Vec::new(), Vec::new());
+        let (mut relaxation_branches, mut shares) = (Vec::new(), Vec::new());
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            let Acts::Fades { clock, spectrum } = &mechanism.acts else {
+            let Law::Relaxation { clock, spectrum } = &mechanism.law else {
                 continue;
             };
             let factor = match clock {
@@ -47,18 +45,18 @@ impl Screen<'_> {
             let steps = self.clocked((*clock, &numbers), (one, depths));
             for (period, share) in spectrum.branches(&numbers) {
                 let over: Vec<f64> = steps.iter().map(|s| s / period).collect();
-                fades.push(fade(&over));
+                relaxation_branches.push(branch_decay(&over));
                 shares.push((share * factor).min(0.95));
             }
         }
-        (fades, shares)
+        (relaxation_branches, shares)
     }
 
     /// A spectrum's free numbers as they are under a recording's tool: what drains has a width of its own at every size of contact.
     fn at_place(
         &self,
         (clock, spectrum): (Clock, &Spectrum),
-        (one, numbers): (&Course, &[f64]),
+        (one, numbers): (&ForceRecording, &[f64]),
     ) -> Vec<f64> {
         let mut numbers = numbers.to_vec();
         if let (Clock::Area { reference_mm }, Spectrum::Smooth { widths }) = (clock, spectrum) {
@@ -72,7 +70,7 @@ impl Screen<'_> {
     fn clocked(
         &self,
         (clock, numbers): (Clock, &[f64]),
-        (one, depths): (&Course, &[f64]),
+        (one, depths): (&ForceRecording, &[f64]),
     ) -> Vec<f64> {
         let table = &self.elastic.places[one.place];
         let step = |n: usize| {
@@ -98,18 +96,18 @@ impl Screen<'_> {
     /// (Derjaguin, Muller & Toporov 1975), and that does not ask how deep the tool still is. It is only where the skin has touched:
     /// the pull builds up as the gap at the rim of the largest contact opens, by the work done as far as that (`spanned`), and ends
     /// where the skin lets go. Larger tools lift the skin further: by the third root of their radius (Johnson 1985, 5.5).
-    pub(crate) fn cling(
+    pub(crate) fn adhere(
         &self,
         model: &Model<'_>,
         set: &Setting,
-        ((one, depths), forces): ((&Course, &[f64]), &mut [f64]),
+        ((one, depths), forces): ((&ForceRecording, &[f64]), &mut [f64]),
     ) {
         let area = |place: usize| radius(&self.elastic.places[place], self.most.1).powi(2);
         let most = (0..self.elastic.studied)
             .map(area)
             .fold(f64::MIN_POSITIVE, f64::max);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            let Acts::Clings { lets_go } = mechanism.acts else {
+            let Law::Adhesion { lets_go } = mechanism.law else {
                 continue;
             };
             let size = area(one.place) / most;
@@ -133,17 +131,17 @@ impl Screen<'_> {
     }
 
     /// Stiffness that use took away.
-    pub(crate) fn soften(
+    pub(crate) fn soften_by_use(
         &self,
         model: &Model<'_>,
         set: &Setting,
-        ((one, depths), forces): ((&Course, &[f64]), &mut [f64]),
+        ((one, depths), forces): ((&ForceRecording, &[f64]), &mut [f64]),
     ) {
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            let Acts::Softens {
+            let Law::Softening {
                 travel_mm,
                 recovery_s,
-            } = mechanism.acts
+            } = mechanism.law
             else {
                 continue;
             };
@@ -159,70 +157,6 @@ impl Screen<'_> {
                 *force *= 1.0 - share * used;
             }
         }
-    }
-
-    /// What the instrument makes of the forces of a recording, by its gain.
-    pub(crate) fn read(
-        &self,
-        model: &Model<'_>,
-        set: &Setting,
-        (one, gain, forces): (&Course, f64, &mut Vec<f64>),
-    ) {
-        forces.iter_mut().for_each(|f| *f *= gain);
-        for (number, mechanism) in model.mechanisms.iter().enumerate() {
-            if !mechanism.is_instrument() {
-                continue;
-            }
-            let value = set.of[number][0];
-            match &mechanism.acts {
-                Acts::GainStep { from } if one.order >= *from => {
-                    forces.iter_mut().for_each(|f| *f *= libm::exp(value));
-                }
-                Acts::Offset => forces.iter_mut().for_each(|f| *f += value),
-                Acts::Drifts { time_s } => {
-                    let start = one.rows[0].time_s;
-                    for (force, row) in forces.iter_mut().zip(&one.rows) {
-                        *force += value * libm::log1p((row.time_s - start) / time_s);
-                    }
-                }
-                Acts::Saturates(stage) => {
-                    let ceiling = stage.reads(self.most.0 * libm::exp(value), gain);
-                    for force in forces.iter_mut() {
-                        *force = ceiling - soft(ceiling - *force, 0.02 * ceiling);
-                    }
-                }
-                Acts::Blind(stage) => {
-                    let floor = stage.reads(value * self.least_peak, gain);
-                    for (force, row) in forces.iter_mut().zip(&one.rows) {
-                        *force = beyond(floor, *force, row.force_n);
-                    }
-                }
-                Acts::Late => {
-                    let times: Vec<f64> = one.rows.iter().map(|row| row.time_s).collect();
-                    let meant: Vec<f64> = times.iter().map(|t| t - value).collect();
-                    *forces = crate::observe::pressure_map::interpolated(&times, forces, &meant);
-                }
-                _ => {}
-            }
-        }
-    }
-}
-
-/// What is read of a force by an instrument that is blind below a floor, where something (or nothing) was read.
-///
-/// Of a force beside the floor nobody knows on which side it is, and to read nothing where all of it was meant would weigh as hundreds of
-/// other readings. So a reading is held against the force that is lacking (as Tobin 1958, Econometrica 26:24, has it of what is censored):
-/// what ought not to have been seen counts as that far from it, and of what ought to have been seen only what lies beyond the floor is
-/// missing. Where nothing is recorded yet the floor is an edge of [`EDGE`].
-fn beyond(floor: f64, force: f64, reading: f64) -> f64 {
-    let over = force - floor;
-    match reading {
-        _ if floor <= 0.0 => force,
-        _ if reading.is_nan() => {
-            force / (1.0 + libm::exp((-over / (EDGE * floor)).clamp(-40.0, 40.0)))
-        }
-        _ if reading > 0.5 * floor => force - (-over).clamp(0.0, force.max(0.0)),
-        _ => over.clamp(0.0, force.max(0.0)),
     }
 }
 
@@ -262,16 +196,6 @@ const PEAK: f64 = 0.25;
 /// triangles over the gap, a third of the sum of their corners.
 pub(crate) const RAMP: f64 = 1.0 + PEAK;
 
-/// A value below `x` and below none: `x` for large x, 0 for small, smooth over `width`.
-fn soft(x: f64, width: f64) -> f64 {
-    let y = x / width;
-    if y > 30.0 {
-        x
-    } else {
-        width * libm::log1p(libm::exp(y.max(-700.0)))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,7 +206,7 @@ mod tests {
 
     /// Against the gap itself: Hertz's displacement outside the contact (Johnson 1985, Eq. 3.42a) beside a sphere, with numbers.
     #[test]
-    fn a_gap_opens_as_beside_hertz_contact() {
+    fn rim_gap_equals_hertz_displacement() {
         let (radius, most) = (9.0f64, 0.8f64);
         let rim = (radius * most).sqrt();
         for depth in [0.79f64, 0.6, 0.3, 0.05] {
@@ -306,7 +230,7 @@ mod tests {
     /// Finite elements of the calibration's forefinger under spheres whose contacts are 1.48 and 2.37 times as wide as the smallest
     /// (`tests/trial/against_drainage.py`, amplitude 0.25): times go from 2.9 to 5.2 and 10.7 s, widths from 1.51 to 1.31 and 1.18.
     #[test]
-    fn drainage_slows_and_narrows_under_wider_contacts() {
+    fn drainage_time_and_width_follow_contact_radius() {
         for (size, time_s, width) in [(1.48f64, 5.2, 1.31), (2.37, 10.7, 1.18)] {
             assert!((2.9 * size.powf(growth(0.14)) / time_s - 1.0).abs() < 0.1);
             assert!((narrowed(1.51, size) - width).abs() < 0.1);
@@ -316,7 +240,7 @@ mod tests {
 
     /// Its work is the area under a triangle, summed.
     #[test]
-    fn a_grip_works_by_its_traction() {
+    fn adhesion_work_is_the_integral_of_traction() {
         let traction = |s: f64| match s < PEAK {
             true => 2.0 * s / PEAK,
             false => 2.0 * (1.0 - s) / (1.0 - PEAK),
@@ -336,7 +260,7 @@ mod tests {
 
     /// Spheres of 1 and 8 mm lift the skin until it lets go by heights as 1 to 2.
     #[test]
-    fn larger_tools_lift_skin_by_the_third_root_of_their_radius() {
+    fn release_height_scales_with_cube_root_of_radius() {
         let (most, sigma, lets_go) = (2.0, 0.1, -0.3);
         let depths: Vec<f64> = (0..=4000).map(|k| 2.0 - 1e-3 * f64::from(k)).collect();
         let reading = |d: &f64| (most - d, *d, Phase::Unload, 1.0);
@@ -344,44 +268,22 @@ mod tests {
         let sphere = |radius: f64| tool(most, |d| d, move |d| (radius * d).sqrt());
         let tools = vec![sphere(8.0), sphere(1.0)];
         let (ready, _) = ready(tools, &[(0, way.clone()), (1, way)], sigma);
-        let screen = ready.screen();
+        let surrogate = ready.surrogate();
         let clings = [Mechanism {
             effect: Effect::Adhesion,
-            acts: Acts::Clings { lets_go },
+            law: Law::Adhesion { lets_go },
         }];
-        let model = Model::new(&screen, &clings);
-        let set = model.setting(&screen, &[0.0, 0.0, 0.2, libm::log(0.1)]);
-        let highest = |course: &Course| {
+        let model = Model::new(&surrogate, &clings);
+        let set = model.setting(&surrogate, &[0.0, 0.0, 0.2, libm::log(0.1)]);
+        let highest = |course: &ForceRecording| {
             let mut forces = vec![0.0; depths.len()];
-            screen.cling(&model, &set, ((course, &depths), &mut forces));
+            surrogate.adhere(&model, &set, ((course, &depths), &mut forces));
             let pulled = depths.iter().zip(&forces).filter(|(_, f)| **f < 0.0);
             pulled.map(|(d, _)| -d).fold(0.0, f64::max)
         };
-        let heights: Vec<f64> = screen.courses.iter().map(highest).collect();
+        let heights: Vec<f64> = surrogate.courses.iter().map(highest).collect();
         for (height, root) in heights.iter().zip([1.0, 0.5]) {
             assert!((height + lets_go * most * root).abs() < 2e-3, "{heights:?}");
         }
-    }
-
-    #[test]
-    fn a_reading_is_held_against_the_force_that_it_lacks_of_a_floor() {
-        // Read above it, read 0.25 N below it, slipped through far below it; a pull.
-        for (force, wanted) in [(12.0, 12.0), (7.75, 7.5), (3.0, 0.0), (-1.0, -1.0)] {
-            assert!((beyond(8.0, force, 8.2) - wanted).abs() < 1e-12, "{force}");
-        }
-        // Not read, though 0.4 N beyond, or far more; noise is no reading.
-        for (force, wanted) in [(7.0, 0.0), (8.4, 0.4), (20.0, 12.0), (-1.0, 0.0)] {
-            for noise in [0.0, 3.9, -0.5] {
-                let told = beyond(8.0, force, noise);
-                assert!((told - wanted).abs() < 1e-12, "{force} {noise}");
-            }
-        }
-        // Planned: all of it or nothing, and a floor of nothing takes nothing.
-        assert!(beyond(8.0, 7.0, f64::NAN) < 0.01 && beyond(8.0, 9.0, f64::NAN) > 8.99);
-        assert!(
-            [f64::NAN, 0.0]
-                .iter()
-                .all(|read| beyond(0.0, 0.0, *read) == 0.0)
-        );
     }
 }

@@ -1,14 +1,14 @@
 //! Data shared by all surrogate models of a study: recordings, elastic tables, whitening, and the parameters of every model.
 
-use crate::forward::surrogate::force_recording::Course;
+use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
 use crate::noise::whitening::Whitening;
 use crate::parameters::surrogate_parameter::Coordinate;
 
 /// What all screened models of a study share.
-pub struct Screen<'a> {
+pub struct Surrogate<'a> {
     /// Recordings.
-    pub courses: &'a [Course],
+    pub courses: &'a [ForceRecording],
     /// Tables.
     pub elastic: &'a Elastic,
     /// How residuals are whitened.

@@ -1,9 +1,9 @@
-//! A screened model's free numbers: what they are, where they begin, and what they belong to.
+//! A candidate model: base plus mechanisms, with its parameters and their values by what they belong to.
 
 use crate::forward::mesh::nuisance::KNOTS;
-use crate::forward::surrogate::mechanism::{Acts, HIGHEST, MEDIANS_S, Mechanism, RANGES};
+use crate::forward::surrogate::mechanism::{HIGHEST, Law, MEDIANS_S, Mechanism, RANGES};
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
-use crate::forward::surrogate::screen::Screen;
+use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
 /// A model that is screened: what is added to the base.
@@ -16,11 +16,11 @@ pub struct Model<'a> {
 
 impl<'a> Model<'a> {
     /// The base with `mechanisms`.
-    pub fn new(screen: &Screen<'_>, mechanisms: &'a [Mechanism]) -> Model<'a> {
-        let mut coordinates = screen.shared.clone();
+    pub fn new(surrogate: &Surrogate<'_>, mechanisms: &'a [Mechanism]) -> Model<'a> {
+        let mut coordinates = surrogate.shared.clone();
         for (number, mechanism) in mechanisms.iter().enumerate() {
             for k in 0..mechanism.count() {
-                let (start, low, high) = range(screen, mechanism, k);
+                let (start, low, high) = range(surrogate, mechanism, k);
                 coordinates.push(Coordinate {
                     kind: Kind::Of(number, k),
                     start,
@@ -37,8 +37,8 @@ impl<'a> Model<'a> {
     }
 
     /// The numbers by what they belong to.
-    pub fn setting(&self, screen: &Screen<'_>, at: &[f64]) -> Setting {
-        let (places, courses) = (screen.elastic.places.len(), screen.courses.len());
+    pub fn setting(&self, surrogate: &Surrogate<'_>, at: &[f64]) -> Setting {
+        let (places, courses) = (surrogate.elastic.places.len(), surrogate.courses.len());
         let mut set = Setting {
             first: 0.0,
             limit: 0.0,
@@ -89,40 +89,40 @@ pub struct Setting {
 const RANGE: f64 = 0.1;
 
 /// Start and bounds of a mechanism's number.
-fn range(screen: &Screen<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64, f64) {
-    let (force, depth) = screen.most;
-    match &mechanism.acts {
-        Acts::Fades {
+fn range(surrogate: &Surrogate<'_>, mechanism: &Mechanism, number: usize) -> (f64, f64, f64) {
+    let (force, depth) = surrogate.most;
+    match &mechanism.law {
+        Law::Relaxation {
             spectrum: Spectrum::Smooth { widths },
             ..
         } if number > 0 => match number {
             1 => (0.0, libm::log(MEDIANS_S.0), libm::log(MEDIANS_S.1)),
             _ => (1.0, widths.0, widths.1),
         },
-        Acts::Fades { .. } => (0.03, 0.0, 0.6),
-        Acts::Softens { .. } => (0.1, 0.0, 0.9),
-        Acts::Clings { .. } if number > 0 => {
+        Law::Relaxation { .. } => (0.03, 0.0, 0.6),
+        Law::Softening { .. } => (0.1, 0.0, 0.9),
+        Law::Adhesion { .. } if number > 0 => {
             (libm::log(RANGE), libm::log(RANGES.0), libm::log(RANGES.1))
         }
-        Acts::Clings { .. } => (0.01, 0.0, 0.6),
-        Acts::Tabled(form) => match screen.elastic.variant(mechanism.effect, *form) {
+        Law::Adhesion { .. } => (0.01, 0.0, 0.6),
+        Law::Tabulated(form) => match surrogate.elastic.variant(mechanism.effect, *form) {
             Some(v) => {
                 let (low, high) = (v.knots[0], v.knots[v.knots.len() - 1]);
                 (0.1 * high, low, high)
             }
             None => (0.0, 0.0, 0.0),
         },
-        Acts::Stiffens(..) => (0.1, 0.0, 4.0),
-        Acts::GainStep { .. } => (0.0, -0.7, 0.7),
-        Acts::Offset => (0.0, -0.3 * force, 0.3 * force),
-        Acts::Drifts { .. } => (0.0, -0.3 * force, 0.3 * force),
-        Acts::Saturates(_) => (-0.1, -2.0, HIGHEST),
-        Acts::Blind(_) => (
-            f64::max(0.1, 1.5 * screen.least_floor),
-            screen.least_floor,
+        Law::Stiffening(..) => (0.1, 0.0, 4.0),
+        Law::GainStep { .. } => (0.0, -0.7, 0.7),
+        Law::Offset => (0.0, -0.3 * force, 0.3 * force),
+        Law::Drift { .. } => (0.0, -0.3 * force, 0.3 * force),
+        Law::Saturation(_) => (-0.1, -2.0, HIGHEST),
+        Law::Floor(_) => (
+            f64::max(0.1, 1.5 * surrogate.least_floor),
+            surrogate.least_floor,
             0.9,
         ),
-        Acts::Yields => (0.02 * depth / force, 0.0, 0.8 * depth / force),
-        Acts::Late => (0.02, -0.5, 0.5),
+        Law::Compliance => (0.02 * depth / force, 0.0, 0.8 * depth / force),
+        Law::Delay => (0.02, -0.5, 0.5),
     }
 }

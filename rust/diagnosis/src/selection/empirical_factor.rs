@@ -1,4 +1,4 @@
-//! Factors of the force over one variable, from what repeats share of the misfit: curves, and what they hold on other protocols.
+//! Empirical factor on the force over one variable, and the share of misfit that it removes on held-out protocols.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -139,7 +139,7 @@ mod tests {
     use super::hats;
 
     #[test]
-    fn hats_share_a_value_between_its_neighbors() {
+    fn hat_functions_partition_unity() {
         let knots = [1.0, 2.0, 4.0];
         assert_eq!(hats(&knots, 3.0), [(1, 0.5), (2, 0.5)]);
         assert_eq!(hats(&knots, 9.0), [(1, 0.0), (2, 1.0)]);

@@ -1,10 +1,10 @@
-//! A recording beside its simulation: measures, residual against what it may depend on, frames, and the worst places.
+//! Conducts the comparison of a fit: measures, trends, frames and largest residuals of every recording.
 //!
 //! A mat is compared as its instrument would show it: what lies under its threshold counts as nothing on both sides, and
 //! what clips counts as the ceiling on both sides. A map without calibration is compared by shape alone: the simulation is
 //! scaled to the sum of the reading.
 
-use crate::comparison::recording_fit::Standing;
+use crate::comparison::recording_fit::RecordingFit;
 use crate::comparison::result::{Compared, Comparison, RecordingComparison};
 use crate::comparison::trends::Trend;
 
@@ -13,17 +13,19 @@ use crate::comparison::trends::Trend;
 /// `sites` without the name of a recording's site leave its worst places without vertices.
 pub fn compare_fit(compared: &Compared) -> Comparison {
     let fit = compared.fit;
-    let standings = Standing::of(fit);
-    let mut all_trends: Vec<Vec<Trend>> = standings
+    let recording_fits = RecordingFit::of(fit);
+    let mut all_trends: Vec<Vec<Trend>> = recording_fits
         .iter()
         .map(crate::comparison::trends::of)
         .collect();
-    let looks = crate::comparison::trends::pay(all_trends.iter_mut().flatten());
-    let recordings: Vec<RecordingComparison> = standings
+    let look_elsewhere_count = crate::comparison::trends::pay(all_trends.iter_mut().flatten());
+    let recordings: Vec<RecordingComparison> = recording_fits
         .iter()
         .zip(all_trends)
         .enumerate()
-        .map(|(number, (standing, trends))| recording(compared, (number, standing), trends))
+        .map(|(number, (recording_fit, trends))| {
+            recording(compared, (number, recording_fit), trends)
+        })
         .collect();
     Comparison {
         title: compared.title.to_string(),
@@ -31,7 +33,7 @@ pub fn compare_fit(compared: &Compared) -> Comparison {
         recordings,
         estimates: fit.estimates.clone(),
         lack_of_fit_p: fit.lack_of_fit_p,
-        looks,
+        look_elsewhere_count,
         location: compared.location.cloned(),
         notes: notes(compared),
     }
@@ -49,12 +51,12 @@ fn notes(compared: &Compared) -> Vec<String> {
 
 fn recording(
     compared: &Compared,
-    (number, standing): (usize, &Standing),
+    (number, recording_fit): (usize, &RecordingFit),
     trends: Vec<Trend>,
 ) -> RecordingComparison {
-    let measured = standing.measured;
-    let frames = crate::comparison::shown_frames::shown(standing);
-    let series = crate::comparison::series::series(standing);
+    let measured = recording_fit.measured;
+    let frames = crate::comparison::shown_frames::shown(recording_fit);
+    let series = crate::comparison::series::series(recording_fit);
     let mut comparison = RecordingComparison {
         name: measured.name.clone(),
         protocol: measured.protocol.clone(),
@@ -62,17 +64,21 @@ fn recording(
         site: measured.site.clone(),
         sentence: String::new(),
         is_calibrated: measured.is_calibrated,
-        has_noise: standing.has_noise(),
+        has_noise: recording_fit.has_noise(),
         // A frame that is compared with a contact as it stands has the noise that was stated, or none.
         is_noise_told: compared.fit.lack_of_fit_p.is_some() || compared.fit.estimates.is_empty(),
         moments: measured.moments.clone(),
-        measures: crate::comparison::measures::table(standing, &series, &frames),
+        measures: crate::comparison::measures::table(recording_fit, &series, &frames),
         trends,
-        worst: crate::comparison::worst_places::places(compared, standing),
-        residual_kpa: crate::comparison::residual_on_skin::worst_frame(compared, standing, &frames),
+        worst: crate::comparison::worst_places::places(compared, recording_fit),
+        residual_kpa: crate::comparison::residual_on_skin::worst_frame(
+            compared,
+            recording_fit,
+            &frames,
+        ),
         series,
         mat: measured.mat.clone(),
-        scan: crate::comparison::scan_heights::of(standing),
+        scan: crate::comparison::scan_heights::of(recording_fit),
         print: None,
         frames,
         unknown: measured.unknown.clone(),
