@@ -1,11 +1,11 @@
 //! Expected discrimination of a planned recording between two models (Box and Hill 1967): how often it would settle between them.
 //!
-//! Both explanations foretell the recording. What keeps one from imitating the other is the difference that is left once it is
-//! fitted anew to all recordings, the new ones among them: to first order a quadratic form of the foretold difference, with the
+//! Both explanations predict the recording. What keeps one from imitating the other is the difference that is left once it is
+//! refitted to all recordings, the new ones among them: to first order a quadratic form of the predicted difference, with the
 //! information of what was recorded so far (Gauss-Newton) and the recording's own gain and first touch taken out (Schur
 //! complement). If the first explanation is true, the lead of its evidence grows by a normal number of mean `d / 2` and
 //! variance `d`, `d` being that squared difference in units of the noise, tempered, since forms are not true. What the
-//! recordings leave open of the true one's numbers (`profile.rs`) is open in what it foretells: then it, too, has to be fitted anew,
+//! recordings leave open of the true one's numbers (`profile_likelihood.rs`) is open in what it predicts: then it, too, has to be refitted,
 //! and what that leaves is taken off its lead.
 
 use std::ops::Range;
@@ -23,8 +23,8 @@ use crate::forward::tables::elastic::Elastic;
 use crate::parameters::surrogate_parameter::Coordinate;
 use crate::selection::scored::Scored;
 
-/// What a lead that is foretold is divided by: no form is quite true. With it the calibration's studies are settled as often as was
-/// foretold, or more.
+/// What a lead that is predicted is divided by: no form is quite true. With it the calibration's studies are settled as often as was
+/// predicted, or more.
 const UNTRUE: f64 = 1.5;
 
 /// What recordings that are yet to be made come to under either of two explanations.
@@ -33,7 +33,7 @@ pub struct Discrimination {
     both: [Outcome; 2],
     /// Evidence of the first over that of the second, so far.
     lead: f64,
-    /// What deviances are divided by.
+    /// Overdispersion, by which deviances are divided.
     overdispersion: f64,
 }
 
@@ -109,7 +109,7 @@ pub struct ModelPair<'a> {
     pub two: [&'a Scored; 2],
     /// What the numbers of each may be.
     pub profile: [Vec<ProfilePoint>; 2],
-    /// What deviances are divided by.
+    /// Overdispersion, by which deviances are divided.
     pub overdispersion: f64,
 }
 

@@ -101,7 +101,7 @@ fn unread(courses: &[ForceRecording]) -> Vec<ForceRecording> {
 /// Sizes at which a mechanism is tried.
 const SIZES: usize = 24;
 
-/// A size in screening's own number as a person takes it, and the largest that there can be.
+/// A size in the surrogate's own number as a person takes it, and the largest that there can be.
 fn in_words(ready: &PreparedStudy, scored: &Scored, size: f64) -> (f64, &'static str, f64) {
     let (least, most) = ready.scales.forces;
     let deepest = ready.scales.deepest;

@@ -156,7 +156,7 @@ pub struct Suggestion {
     pub presses: u32,
     /// The names it settles between.
     pub settles: Vec<&'static str>,
-    /// How often it would settle the matter, as the two explanations foretell it; None where they do not.
+    /// How often it would settle the matter, as the two explanations predict it; None where they do not.
     pub probability: Option<f64>,
     /// Time that all its presses take, with the rest before each, minutes.
     pub minutes: f64,

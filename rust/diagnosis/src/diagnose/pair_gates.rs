@@ -59,7 +59,7 @@ pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
         && is_adequate(pair, rungs)
 }
 
-/// The part of a mechanism's evidence that screening's form of it may leave for a second one to take up. What each took up where the first
+/// The part of a mechanism's evidence that the surrogate's form of it may leave for a second one to take up. What each took up where the first
 /// was alone is printed likewise: one of the calibration's 188 studies passes (relaxation beside softening by use, with 16 %), so that its
 /// wrong names stay below 2 %. What acts apart from the loading leaves least to what changes the elastic answer, and another law of
 /// stiffening most (15 and 17 % in two studies of the second trial's fourth draw).

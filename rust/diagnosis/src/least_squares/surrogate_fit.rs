@@ -15,7 +15,7 @@ const SETTLED: f64 = 0.02;
 /// Gain of the deviance that a step must promise to be tried.
 const PROMISED: f64 = 1e-3;
 
-/// A screened model at its optimum.
+/// A candidate model at its optimum.
 #[derive(Debug, Clone)]
 pub struct Refit {
     /// Coordinates.

@@ -9,7 +9,7 @@ use crate::parameters::target::Target;
 /// Step of a finite difference: of a logarithm, and of the bounds' distance.
 const STEP: (f64, f64) = (0.05, 0.02);
 
-/// A number of an effect that a fit may change, from where [`Options::effects`](super::Options::effects) has it.
+/// A number of an effect that a fit may change, from where [`Options::effects`](crate::Options::effects) has it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Free {
     /// Number of the effect in the options.

@@ -1,6 +1,6 @@
 //! A parameter of the surrogate model: what it is, where a fit begins, its bounds and its prior.
 
-/// A free number of the screened model.
+/// A free number of the candidate model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coordinate {
     /// What it is.

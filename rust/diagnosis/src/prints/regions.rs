@@ -23,7 +23,7 @@ pub fn cell_of(
     case.pressed.positions.iter().map(cell).collect()
 }
 
-/// Residual by vertex as [`super::Printed::on_skin`], and the part of the force that presses beside the paper.
+/// Residual by vertex as [`crate::prints::Printed::on_skin`], and the part of the force that presses beside the paper.
 pub fn on_skin(case: &PrintCase<'_>, cell_of: &[Option<usize>]) -> (Vec<f64>, f64) {
     let (mut all, mut beside) = (0.0, 0.0);
     let mut at_vertex = |(vertex, cell): (usize, &Option<usize>)| {

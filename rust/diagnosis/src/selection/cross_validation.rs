@@ -14,7 +14,7 @@ use crate::selection::scored::Scored;
 
 /// Errors beyond this many standard deviations of the noise count as that many: outliers of a recording are nobody's gain.
 const MOST: f64 = 8.0;
-/// Times that recordings are drawn anew for an interval.
+/// Times that recordings are resampled for an interval.
 const DRAWS: usize = 400;
 /// Ends of a 90 % interval.
 const ENDS: (f64, f64) = (0.05, 0.95);

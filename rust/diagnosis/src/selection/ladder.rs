@@ -85,7 +85,7 @@ pub fn climb(
 struct Scale {
     /// Deviance of the base.
     base: f64,
-    /// What deviances are divided by.
+    /// Overdispersion, by which deviances are divided.
     overdispersion: f64,
 }
 

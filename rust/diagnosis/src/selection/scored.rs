@@ -14,9 +14,9 @@ pub struct Scored {
     pub mechanisms: Vec<Mechanism>,
     /// Its fit.
     pub refit: Refit,
-    /// Logarithm of the evidence over that of the base: half of what the deviance falls by, tempered, less the price of its numbers.
+    /// Minus half the QAIC difference to the base, nats: half the fall of the deviance over the overdispersion, less 1 per parameter.
     pub qaic_gain: f64,
-    /// Misfit that is the same in every repeat, beyond what noise adds up to.
+    /// Lack of fit: sum of squares common to repeats, beyond pure error.
     pub lack_of_fit: f64,
 }
 
@@ -44,6 +44,6 @@ pub struct Rungs {
     pub gain_step: Option<GainStep>,
     /// Number of screened samples.
     pub samples: usize,
-    /// What deviances are divided by: how much more than the noise the best model leaves.
+    /// Overdispersion (c-hat): deviance per sample of the best model, 1 at least; deviances are divided by it.
     pub overdispersion: f64,
 }

@@ -4,7 +4,7 @@ use thenar_contact::effects::Effect;
 
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
 
-/// A mechanism as screening models it; its free numbers stand in the vector of parameters.
+/// A mechanism as the surrogate models it; its free numbers stand in the vector of parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mechanism {
     /// Name in the catalogue.

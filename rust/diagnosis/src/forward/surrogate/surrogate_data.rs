@@ -5,7 +5,7 @@ use crate::forward::tables::elastic::Elastic;
 use crate::noise::whitening::Whitening;
 use crate::parameters::surrogate_parameter::Coordinate;
 
-/// What all screened models of a study share.
+/// What all candidate models of a study share.
 pub struct Surrogate<'a> {
     /// Recordings.
     pub courses: &'a [ForceRecording],
