@@ -12,8 +12,9 @@ one with a recording drawn by lot in `<case>/at_random`. A wrong exit counts as 
 the table and writes `table.json` and `page.html`. Exits with 1 if a row of the diagnosis falls short of what it must
 be.
 
-The thresholds of the diagnosis (rust/diagnosis/src/diagnose: gates.rs, checks.rs, prepare.rs) were set on
-`--split calibration` and on larger draws of it, and what they rest on is printed with both (thresholds.py).
+The thresholds of the diagnosis (in rust/diagnosis/src: diagnose/gates.rs, diagnose/pair_gates.rs, checks,
+parameters/surrogate_priors.rs) were set on `--split calibration` and on larger draws of it, and what they rest on is
+printed with both (thresholds.py).
 """
 
 import argparse

@@ -6,10 +6,16 @@ use thenar_recordings::Study;
 use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
 
-use crate::comparison::{Compared, Comparison, SIGNIFICANT, compare_fit};
-use crate::prints::{Studied, add_prints};
-use crate::words::{chance, percent};
-use crate::{DiagnosisError, Fit, Fitting, Location, Options, Search, locate};
+use crate::comparison::compare_fit::compare_fit;
+use crate::comparison::result::{Compared, Comparison};
+use crate::comparison::trends::SIGNIFICANT;
+use crate::errors::DiagnosisError;
+use crate::fit::fitting::{Fitting, Options};
+use crate::fit::result::Fit;
+use crate::location::locate::{Search, locate};
+use crate::location::mismatch::Location;
+use crate::number_format::{chance, percent};
+use crate::prints::study_prints::{Studied, add_prints};
 
 /// Standard deviation of the factor by which the model's load may be off at any depth: two of them are the 9 % by which the layer leaves
 /// the finite elements of the round fingertip in `tests/proof`.

@@ -1,4 +1,4 @@
-//! Why a study could not be compared.
+//! Errors of the crate: why a study could not be compared.
 
 use thenar_contact::ContactError;
 use thenar_surface::MeshError;

@@ -250,7 +250,10 @@ fn the_order_of_sensels_does_not_matter() {
     let (one, two) = (found(&fit), found(&turned));
     let (a, b) = (&one.mismatches[0], &two.mismatches[0]);
     let (p, q) = (a.place.as_ref().unwrap(), b.place.as_ref().unwrap());
-    assert_eq!((one.looks, p.row_column), (two.looks, q.row_column));
+    assert_eq!(
+        (one.look_elsewhere_count, p.row_column),
+        (two.look_elsewhere_count, q.row_column)
+    );
     assert!((p.center_mm - q.center_mm).norm() < 1e-9 && (a.size - b.size).abs() < 1e-9);
     assert_eq!(a.when, b.when);
     let mirrored: Vec<u32> = q
@@ -330,7 +333,7 @@ fn little_data_and_hidden_data_are_told_as_such() {
         .for_each(|one| one.samples.clear());
     empty.absorbed = DMatrix::zeros(0, 0);
     let location = found(&empty);
-    assert_eq!((location.looks, location.p), (0, None));
+    assert_eq!((location.look_elsewhere_count, location.p), (0, None));
     assert!(location.sentence.contains("Nothing can be located"));
 }
 

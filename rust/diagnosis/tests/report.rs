@@ -238,7 +238,7 @@ fn the_simulations_own_error_is_told_beside_the_noise() {
     let silent = Location {
         mismatches: Vec::new(),
         p: Some(0.4),
-        looks: 12,
+        look_elsewhere_count: 12,
         sentence: String::new(),
         notes: Vec::new(),
     };

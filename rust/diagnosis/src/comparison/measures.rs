@@ -1,46 +1,35 @@
 //! The table of measures of a recording: what was read, and what the simulation shows before and after the fit.
 
-use super::instrument::{self, Shown};
-use super::standing::Standing;
-use super::{Frame, Series};
-use crate::Mat;
 use nalgebra::Vector3;
 
-const N_PER_KPA_MM2: f64 = 1e-3;
-
-/// One measure, in its unit; NaN where it has no value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measure {
-    /// Name with its unit, `peak_kpa`.
-    pub name: &'static str,
-    /// Name for people.
-    pub label: &'static str,
-    /// Unit for people, empty for a share.
-    pub unit: &'static str,
-    /// `whole recording`, or which frame.
-    pub of: &'static str,
-    /// As read; NaN for what compares reading and simulation, such as overlap.
-    pub measured: f64,
-    /// Simulated with the parameters at which the fit began.
-    pub before: f64,
-    /// Simulated at the estimates.
-    pub after: f64,
-    /// Standard deviation that the noise gives the measured value, if that of every sample is independent; NaN if not known.
-    pub noise: f64,
-}
+use crate::comparison::instrument_view::{
+    self, N_PER_KPA_MM2, Shown, area_of, force_noise, force_of, peak_of,
+};
+use crate::comparison::quantities::Measure;
+use crate::comparison::recording_fit::RecordingFit;
+use crate::comparison::result::{Frame, Series};
+use crate::observe::measured::Mat;
 
 /// Every measure of the recording.
-pub(super) fn table(standing: &Standing, series: &[Series], frames: &[Frame]) -> Vec<Measure> {
+pub(crate) fn table(
+    recording_fit: &RecordingFit,
+    series: &[Series],
+    frames: &[Frame],
+) -> Vec<Measure> {
     let mut table: Vec<Measure> = series.iter().flat_map(of_series).collect();
-    table.extend(super::scanned::measures(standing));
-    let Some(mat) = &standing.measured.mat else {
+    table.extend(crate::comparison::scan_heights::measures(recording_fit));
+    let Some(mat) = &recording_fit.measured.mat else {
         return table;
     };
     for frame in frames {
-        let shown = instrument::shown(standing, frame.moment as usize, frame.contact_from);
-        let mut reasons = frame.why.iter().filter(|why| **why != super::frames::WORST);
+        let shown =
+            instrument_view::shown(recording_fit, frame.moment as usize, frame.contact_from);
+        let mut reasons = frame
+            .why
+            .iter()
+            .filter(|why| **why != crate::comparison::shown_frames::WORST);
         if let Some(why) = reasons.next() {
-            let rows = match standing.measured.is_calibrated {
+            let rows = match recording_fit.measured.is_calibrated {
                 true => of_frame(&shown, mat),
                 false => of_shape(&shown, mat),
             };
@@ -269,27 +258,6 @@ fn told(values: &[f64], of: &dyn Fn(&[f64]) -> f64) -> f64 {
     }
 }
 
-pub(super) fn peak_of(values: &[f64]) -> f64 {
-    values.iter().copied().fold(0.0, f64::max)
-}
-
-/// Sum of pressure times area, N, with the pressures in kPa.
-pub(super) fn force_of(values: &[f64], mat: &Mat) -> f64 {
-    let pairs = values
-        .iter()
-        .zip(&mat.areas)
-        .filter(|(value, _)| !value.is_nan());
-    N_PER_KPA_MM2 * pairs.map(|(value, area)| value * area).sum::<f64>()
-}
-
-pub(super) fn area_of(values: &[f64], mat: &Mat) -> f64 {
-    let pairs = values
-        .iter()
-        .zip(&mat.areas)
-        .filter(|(value, _)| **value > 0.0);
-    pairs.map(|(_, area)| area).sum()
-}
-
 fn center_of(values: &[f64], mat: &Mat) -> Vector3<f64> {
     let (mut sum, mut weight) = (Vector3::zeros(), 0.0);
     for (k, value) in values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
@@ -304,12 +272,6 @@ fn peak_noise(shown: &Shown) -> f64 {
         .filter(|k| !shown.measured[*k].is_nan())
         .max_by(|a, b| shown.measured[*a].total_cmp(&shown.measured[*b]));
     at.map_or(f64::NAN, |at| shown.sigma[at])
-}
-
-pub(super) fn force_noise(shown: &Shown, mat: &Mat) -> f64 {
-    let touching = (0..shown.measured.len()).filter(|k| shown.measured[*k] > 0.0);
-    let squares = touching.map(|k| (shown.sigma[k] * mat.areas[k]).powi(2));
-    N_PER_KPA_MM2 * squares.sum::<f64>().sqrt()
 }
 
 fn center_noise(shown: &Shown, mat: &Mat, center: Vector3<f64>) -> f64 {

@@ -1,9 +1,13 @@
-//! The sentences that a designer reads first. Knows nothing of how a report looks.
+//! Sentences of a comparison, for the study and for each recording. Knows nothing of how a report looks.
 
-use super::{Bin, Kind, Measure, RecordingComparison, SIGNIFICANT, Series, Trend, Variable};
-use crate::location::MODEL_ERROR;
-use crate::words::{chance, number, percent};
-use crate::{Estimate, Fit, Location};
+use crate::comparison::quantities::{Kind, Measure};
+use crate::comparison::result::{RecordingComparison, Series};
+use crate::comparison::trends::{Bin, SIGNIFICANT, Trend, Variable};
+use crate::fit::result::Fit;
+use crate::location::locate::MODEL_ERROR;
+use crate::location::mismatch::Location;
+use crate::number_format::{chance, number, percent};
+use crate::parameters::estimate::Estimate;
 
 /// The recordings of which something is left.
 fn left_of(count: usize) -> String {
@@ -24,7 +28,7 @@ fn within_the_model(all: &str, p: f64) -> String {
 }
 
 /// About the whole study.
-pub(super) fn of_study(
+pub(crate) fn of_study(
     recordings: &[RecordingComparison],
     fit: &Fit,
     location: Option<&Location>,
@@ -141,7 +145,7 @@ fn has_values(recording: &RecordingComparison) -> bool {
 }
 
 /// About one recording.
-pub(super) fn of_recording(recording: &RecordingComparison) -> String {
+pub(crate) fn of_recording(recording: &RecordingComparison) -> String {
     if !has_values(recording) {
         let reason = recording.unknown.first();
         let reason = reason.map_or("it has no values".to_string(), |text| lowered(text));
@@ -151,7 +155,7 @@ pub(super) fn of_recording(recording: &RecordingComparison) -> String {
         );
     }
     if let Some(print) = &recording.print {
-        return print.sentence(&recording.measures);
+        return crate::prints::measures::sentence(print, &recording.measures);
     }
     let mut text = match strongest(recording) {
         Some((trend, bin)) => departs(recording, trend, bin),
@@ -171,10 +175,12 @@ fn strongest(recording: &RecordingComparison) -> Option<(&Trend, &Bin)> {
             .flat_map(|trend| trend.bins.iter().map(move |bin| (trend, bin)))
             .filter(|(_, bin)| bin.stands_out())
     };
-    let most = all().map(|(_, bin)| bin.standings()).fold(0.0, f64::max);
+    let most = all()
+        .map(|(_, bin)| bin.standard_errors())
+        .fold(0.0, f64::max);
     all()
-        .filter(|(_, bin)| bin.standings() >= 0.8 * most)
-        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * bin.standings()) as i64))
+        .filter(|(_, bin)| bin.standard_errors() >= 0.8 * most)
+        .min_by_key(|(trend, bin)| (rank(trend.variable), -(1e3 * bin.standard_errors()) as i64))
 }
 
 fn rank(variable: Variable) -> u8 {
@@ -188,7 +194,7 @@ fn rank(variable: Variable) -> u8 {
 }
 
 fn least_p(recording: &RecordingComparison) -> f64 {
-    -strongest(recording).map_or(0.0, |(_, bin)| bin.standings())
+    -strongest(recording).map_or(0.0, |(_, bin)| bin.standard_errors())
 }
 
 fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String {
@@ -203,12 +209,12 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
     let sure = match recording.is_noise_told {
         true => format!(
             "{} standard errors apart ({} after {looks} looks)",
-            number(bin.standings()),
+            number(bin.standard_errors()),
             chance(bin.p)
         ),
         false => format!(
             "{} times what the recording's own roughness leaves; no repeats tell the noise",
-            number(bin.standings())
+            number(bin.standard_errors())
         ),
     };
     format!(
@@ -361,9 +367,11 @@ impl Estimate {
     /// What the number belongs to, for people: `region pad`, `recording slow press`, `instrument`.
     pub fn of_what(&self) -> String {
         match &self.target {
-            crate::Target::Region(name) => format!("region \u{201c}{name}\u{201d}"),
-            crate::Target::Recording(name) => format!("\u{201c}{name}\u{201d}"),
-            crate::Target::Instrument => "the instrument".to_string(),
+            crate::parameters::target::Target::Region(name) => {
+                format!("region \u{201c}{name}\u{201d}")
+            }
+            crate::parameters::target::Target::Recording(name) => format!("\u{201c}{name}\u{201d}"),
+            crate::parameters::target::Target::Instrument => "the instrument".to_string(),
         }
     }
 

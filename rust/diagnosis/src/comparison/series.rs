@@ -1,12 +1,14 @@
 //! Quantities of which a recording has one value per moment: those that were sampled, and the sums over a mat.
 
-use super::measures::{area_of, force_noise, force_of};
-use super::standing::Standing;
-use super::{Kind, Series, instrument};
-use crate::Quantity;
+use crate::comparison::instrument_view;
+use crate::comparison::instrument_view::{area_of, force_noise, force_of};
+use crate::comparison::quantities::Kind;
+use crate::comparison::recording_fit::RecordingFit;
+use crate::comparison::result::Series;
+use crate::observe::measured::Quantity;
 
 /// Quantities of which the recording has one value per moment: those that were sampled, and the sums over a mat.
-pub(super) fn series(standing: &Standing) -> Vec<Series> {
+pub(crate) fn series(recording_fit: &RecordingFit) -> Vec<Series> {
     let mut all = Vec::new();
     for kind in [Kind::Force, Kind::TangentialForce, Kind::Area] {
         let mut series = Series {
@@ -15,30 +17,32 @@ pub(super) fn series(standing: &Standing) -> Vec<Series> {
             unit: kind.unit(true),
             ..Series::default()
         };
-        for (k, sample) in standing.measured.samples.iter().enumerate() {
+        for (k, sample) in recording_fit.measured.samples.iter().enumerate() {
             if sample.quantity.kind() == kind {
                 series.moments.push(sample.moment);
                 series.measured.push(sample.value);
-                series.simulated.push(standing.simulated[k]);
-                series.before.push(standing.before[k]);
-                series.sigma.push(standing.sigma[k]);
+                series.simulated.push(recording_fit.simulated[k]);
+                series.before.push(recording_fit.before[k]);
+                series.sigma.push(recording_fit.sigma[k]);
             }
         }
         if !series.moments.is_empty() {
             all.push(series);
         }
     }
-    all.extend(sums(standing));
+    all.extend(sums(recording_fit));
     all
 }
 
 /// Force and area of contact on a mat over its frames; without calibration only the area.
-fn sums(standing: &Standing) -> Vec<Series> {
-    let Some(mat) = &standing.measured.mat else {
+fn sums(recording_fit: &RecordingFit) -> Vec<Series> {
+    let Some(mat) = &recording_fit.measured.mat else {
         return Vec::new();
     };
-    let is_pressure = |sample: &crate::Sample| matches!(sample.quantity, Quantity::Pressure(_));
-    if !standing.measured.samples.iter().any(is_pressure) {
+    let is_pressure = |sample: &crate::observe::measured::Sample| {
+        matches!(sample.quantity, Quantity::Pressure(_))
+    };
+    if !recording_fit.measured.samples.iter().any(is_pressure) {
         return Vec::new();
     }
     let mut force = Series {
@@ -53,9 +57,9 @@ fn sums(standing: &Standing) -> Vec<Series> {
         unit: "mm²",
         ..Series::default()
     };
-    let contact_from = instrument::contact_from(standing);
-    for moment in 0..standing.by_moment.len() {
-        let shown = instrument::shown(standing, moment, contact_from);
+    let contact_from = instrument_view::contact_from(recording_fit);
+    for moment in 0..recording_fit.by_moment.len() {
+        let shown = instrument_view::shown(recording_fit, moment, contact_from);
         if shown.samples.iter().all(Option::is_none) {
             continue;
         }
@@ -73,7 +77,7 @@ fn sums(standing: &Standing) -> Vec<Series> {
         );
         push(&mut area, &|values| area_of(values, mat), f64::NAN);
     }
-    match standing.measured.is_calibrated {
+    match recording_fit.measured.is_calibrated {
         true => vec![force, area],
         false => vec![area],
     }

@@ -1,8 +1,8 @@
-//! Residual against what it may depend on: in ranges of time, depth, rate, phase, cycle, and place on sensor and skin.
+//! Mean residual in ranges of time, depth, rate, phase, cycle, and place on sensor and skin; significance with Bonferroni.
 
-use super::standing::Standing;
-use super::{Kind, SIGNIFICANT};
-use crate::{Phase, Quantity};
+use crate::comparison::quantities::Kind;
+use crate::comparison::recording_fit::RecordingFit;
+use crate::observe::measured::{Phase, Quantity};
 
 /// Most ranges of a variable.
 const MOST_BINS: usize = 8;
@@ -122,7 +122,7 @@ impl Bin {
     /// What is projected of one recording also moves where parameters that it shares with others would follow those, and the mean
     /// as read knows nothing of noise that repeats share; only what both show is told. 0 if they disagree in sign or the noise
     /// is not known.
-    pub fn standings(&self) -> f64 {
+    pub fn standard_errors(&self) -> f64 {
         let (read, projected) = (
             self.mean / self.standard_error,
             self.mean_sigma / self.standard_error_sigma,
@@ -137,24 +137,24 @@ impl Bin {
 }
 
 /// Every trend of a recording with two ranges or more; `p` is for one look each.
-pub(super) fn of(standing: &Standing) -> Vec<Trend> {
+pub(crate) fn of(recording_fit: &RecordingFit) -> Vec<Trend> {
     let mut trends = Vec::new();
     for kind in Kind::ALL {
-        let samples = standing.measured.samples.iter().enumerate();
+        let samples = recording_fit.measured.samples.iter().enumerate();
         let of_kind: Vec<usize> = samples
-            .filter(|(k, sample)| sample.quantity.kind() == kind && standing.tells(*k))
+            .filter(|(k, sample)| sample.quantity.kind() == kind && recording_fit.tells(*k))
             .map(|(k, _)| k)
             .collect();
         for variable in Variable::ALL {
             let mut placed: Vec<(f64, usize)> = of_kind
                 .iter()
-                .map(|k| (value(standing, variable, *k), *k))
+                .map(|k| (value(recording_fit, variable, *k), *k))
                 .filter(|(at, _)| !at.is_nan())
                 .collect();
             placed.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             let bins: Vec<Bin> = groups(&placed, variable.is_counted())
                 .into_iter()
-                .map(|group| bin(standing, variable, group))
+                .map(|group| bin(recording_fit, variable, group))
                 .collect();
             if bins.len() > 1 {
                 trends.push(Trend {
@@ -169,7 +169,7 @@ pub(super) fn of(standing: &Standing) -> Vec<Trend> {
 }
 
 /// Pays for the looks (Bonferroni): every probability is multiplied by their number. Returns it.
-pub(super) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
+pub(crate) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
     let mut bins: Vec<&mut Bin> = trends.flat_map(|trend| trend.bins.iter_mut()).collect();
     let looks = bins.len();
     bins.iter_mut()
@@ -177,10 +177,10 @@ pub(super) fn pay<'t>(trends: impl Iterator<Item = &'t mut Trend>) -> usize {
     looks
 }
 
-fn value(standing: &Standing, variable: Variable, k: usize) -> f64 {
-    let sample = &standing.measured.samples[k];
-    let moment = &standing.measured.moments[sample.moment as usize];
-    let on_mat = || match (sample.quantity, &standing.measured.mat) {
+fn value(recording_fit: &RecordingFit, variable: Variable, k: usize) -> f64 {
+    let sample = &recording_fit.measured.samples[k];
+    let moment = &recording_fit.measured.moments[sample.moment as usize];
+    let on_mat = || match (sample.quantity, &recording_fit.measured.mat) {
         (Quantity::Pressure(sensel), Some(mat)) => {
             ((sensel as usize) < mat.centers.len()).then_some((mat, sensel as usize))
         }
@@ -198,7 +198,7 @@ fn value(standing: &Standing, variable: Variable, k: usize) -> f64 {
         Variable::Cycle => f64::from(moment.cycle),
         Variable::SensorRow => place(0),
         Variable::SensorColumn => place(1),
-        Variable::Skin(axis) => match (sample.quantity, &standing.measured.scan) {
+        Variable::Skin(axis) => match (sample.quantity, &recording_fit.measured.scan) {
             (Quantity::Scan(place), Some(scan)) => {
                 let place = scan.places.get(place as usize);
                 place.map_or(f64::NAN, |place| place[axis])
@@ -230,37 +230,44 @@ fn groups(placed: &[(f64, usize)], is_counted: bool) -> Vec<&[(f64, usize)]> {
     groups
 }
 
-fn bin(standing: &Standing, variable: Variable, group: &[(f64, usize)]) -> Bin {
+fn bin(recording_fit: &RecordingFit, variable: Variable, group: &[(f64, usize)]) -> Bin {
     let samples: Vec<usize> = group.iter().map(|(_, k)| *k).collect();
     let (first, last) = (group[0].0, group[group.len() - 1].0);
-    let (mean_sigma, error) = standing.mean_projected(&samples);
-    let has_noise = standing.has_noise();
+    let (mean_sigma, error) = recording_fit.mean_projected(&samples);
+    let has_noise = recording_fit.has_noise();
     let mut bin = Bin {
         range: [first, last],
         label: match variable {
-            Variable::Phase => phase_name(standing, samples[0]).to_string(),
+            Variable::Phase => phase_name(recording_fit, samples[0]).to_string(),
             Variable::Cycle => format!("{}", first as u32 + 1),
             _ => String::new(),
         },
         count: samples.len(),
-        mean: samples.iter().map(|k| standing.residual[*k]).sum::<f64>() / samples.len() as f64,
-        standard_error: raw_error(standing, &samples),
+        mean: samples
+            .iter()
+            .map(|k| recording_fit.residual[*k])
+            .sum::<f64>()
+            / samples.len() as f64,
+        standard_error: raw_error(recording_fit, &samples),
         mean_sigma: if has_noise { mean_sigma } else { f64::NAN },
         standard_error_sigma: if has_noise { error } else { f64::NAN },
         p: 1.0,
     };
-    bin.p = libm::erfc(bin.standings() / std::f64::consts::SQRT_2);
+    bin.p = libm::erfc(bin.standard_errors() / std::f64::consts::SQRT_2);
     bin
 }
 
-fn raw_error(standing: &Standing, samples: &[usize]) -> f64 {
-    let squares: f64 = samples.iter().map(|k| standing.sigma[*k].powi(2)).sum();
+fn raw_error(recording_fit: &RecordingFit, samples: &[usize]) -> f64 {
+    let squares: f64 = samples
+        .iter()
+        .map(|k| recording_fit.sigma[*k].powi(2))
+        .sum();
     squares.sqrt() / samples.len() as f64
 }
 
-fn phase_name(standing: &Standing, k: usize) -> &'static str {
-    let sample = &standing.measured.samples[k];
-    standing.measured.moments[sample.moment as usize]
+fn phase_name(recording_fit: &RecordingFit, k: usize) -> &'static str {
+    let sample = &recording_fit.measured.samples[k];
+    recording_fit.measured.moments[sample.moment as usize]
         .phase
         .name()
 }
@@ -277,3 +284,6 @@ impl Phase {
         }
     }
 }
+
+/// Chance at which a difference is called real.
+pub const SIGNIFICANT: f64 = 0.01;

@@ -1,7 +1,8 @@
-//! What a diagnosis says: verdict, findings with numbers, place and time, rivals, gain, and what to record next.
+//! Types of a diagnosis: verdict, findings with numbers, place and time, rivals, and the suggested recording.
 
-use super::unlisted::Unlisted;
-use crate::comparison::Comparison;
+use crate::comparison::result::Comparison;
+use crate::diagnose::unlisted_finding::Unlisted;
+use crate::selection::cross_validation::Gain;
 
 /// The answer in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,35 +131,6 @@ pub struct Rival {
     pub ledger: [f64; 4],
 }
 
-/// An error of prediction with its 90 % interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
-    /// Root mean square.
-    pub rms: f64,
-    /// Ends of the interval.
-    pub interval: (f64, f64),
-}
-
-/// How well recordings are predicted that were not used.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Gain {
-    /// Recordings that were held out in turn, protocol by protocol.
-    pub held_out: Vec<String>,
-    /// Without and with the finding, in standard deviations of the noise.
-    pub before: Spread,
-    /// With it.
-    pub after: Spread,
-    /// Repeat against repeat.
-    pub floor: Spread,
-    /// Share of the reducible error that is removed.
-    pub removed: f64,
-    /// Ends of its interval.
-    pub interval: (f64, f64),
-    /// Share that the same change removes on the wrong recordings at the wrong moments, in 99 of 100 draws at most; None where nothing
-    /// could be removed.
-    pub placebo: Option<f64>,
-}
-
 /// A recording that would settle what cannot be told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suggestion {
@@ -184,7 +156,7 @@ pub struct Suggestion {
     pub presses: u32,
     /// The names it settles between.
     pub settles: Vec<&'static str>,
-    /// How often it would settle the matter, as the two explanations foretell it; None where they do not.
+    /// How often it would settle the matter, as the two explanations predict it; None where they do not.
     pub probability: Option<f64>,
     /// Time that all its presses take, with the rest before each, minutes.
     pub minutes: f64,

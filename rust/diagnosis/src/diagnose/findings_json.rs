@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::findings::{Diagnosis, Finding, Gain, Rival, Spread, Suggestion, Switched};
-use super::unlisted::{Correction, Unlisted};
+use crate::diagnose::findings::{Diagnosis, Finding, Rival, Suggestion, Switched};
+use crate::diagnose::unlisted_finding::{Correction, Unlisted};
+use crate::selection::cross_validation::{Gain, Spread};
 
 /// The diagnosis as JSON, schema 1.
 pub fn findings_json(found: &Diagnosis) -> String {
@@ -58,7 +59,7 @@ fn rounded(value: f64) -> Option<f64> {
 }
 
 fn finding(found: &Finding) -> Value {
-    let number = |n: &super::findings::Number| {
+    let number = |n: &crate::diagnose::findings::Number| {
         let ends = n.interval;
         let value = json!({
             "value": rounded(n.value), "low": rounded(ends.0), "high": rounded(ends.1), "unit": n.unit,

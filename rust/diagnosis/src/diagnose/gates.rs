@@ -1,14 +1,15 @@
-//! Decides what may be said: detection, adequacy, rivals within reach, and what the recordings could test at all.
+//! Gates of the verdict: detection, adequacy, lead over rivals, and what the recordings could test at all.
 
 use thenar_contact::effects::Effect;
 
-use super::checks::restless;
-use super::elastic::radius;
-use super::findings::Verdict;
-use super::ladder::{Rungs, Scored};
-use super::mechanism::{Acts, Mechanism};
-use super::prepare::Prepared;
-use super::sentence::words;
+use crate::checks::heteroscedasticity::unmodeled_repeat_noise;
+use crate::diagnose::findings::Verdict;
+use crate::diagnose::pair_gates::{CLOCKS, is_adequate, is_pair, is_static};
+use crate::diagnose::wording::effect_in_words;
+use crate::forward::surrogate::mechanism::Mechanism;
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::tables::elastic_table::radius;
+use crate::selection::scored::{Rungs, Scored};
 
 /// Evidence, nats, from which something is said to be missing, and from which the instrument is said to be at fault: an offset reaches 4.3
 /// where nothing is, what the tissue remembers 2.4 (`cargo xtask prove -- --split calibration`).
@@ -19,28 +20,14 @@ const DETECTED: (f64, f64) = (5.0, 6.0);
 const DETECTED_STATIC: (f64, f64) = (5.0, 6.0);
 /// The same of a step in the gain, which reaches 3.6 there, and of adhesion, which has more variants than others.
 const DETECTED_ELSE: (f64, f64) = (5.5, 7.5);
-/// Evidence that a mechanism must add beside another; and what changes the elastic answer alone beside another whose form is not as well
-/// known as that of what the tissue remembers.
-const BESIDE: f64 = 5.5;
-const STATIC_BESIDE: f64 = 10.0;
-/// The same of what changes the skin's elastic answer beside what fades by a clock, to which it adds 3.8 where that is there alone, and
-/// beside adhesion, to which it adds 7.2 (`--split calibration`).
-const BESIDE_APART: (f64, f64) = (4.0, 8.0);
-/// The same of two that both change the elastic answer alone, each of which takes up what the other's form leaves: bone adds 4.5 to a
-/// stiffening law on the calibration (printed likewise), 10.7 on a larger draw.
-const STATIC_BOTH: f64 = 14.0;
 /// Lead in evidence, nats, over every rival that bears another name; and over one that belongs to the instrument where the other
 /// belongs to the skin. The largest lead of a wrong name is 1.7, of a wrong clock 1.3 (printed likewise).
 const LEAD: (f64, f64) = (3.0, 4.4);
-/// Part of the coherent misfit that a name may leave.
-const LEFT: f64 = 0.3;
-/// Coherent misfit per sample, in variances of the noise, below which nothing is left to explain.
-const QUIET: f64 = 0.12;
 /// Coherent misfit per sample that no name explains, from which something unlisted is there: where nothing is missing it reaches 0.08, under
 /// a blister at least 0.22 (calibration).
 const UNLISTED: f64 = 0.13;
 /// Evidence of a listed effect from which unsteady skin does not keep it from being named.
-const BEYOND_UNSTEADY: f64 = 60.0;
+const BEYOND_HETEROSCEDASTIC: f64 = 60.0;
 
 /// Ratio of contact radii from which two sizes are two: a clock that grows as the area is then twice as slow.
 const SIZES: f64 = 1.4;
@@ -65,7 +52,7 @@ pub struct Decision<'a> {
 }
 
 /// Decides from what the rungs found: the gates in their order, the first that is shut speaks.
-pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
+pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     if ready.noise.degrees.is_none() {
         let reason = format!(
             "no protocol was repeated, so that noise cannot be told from what is missing; {}",
@@ -74,11 +61,13 @@ pub fn decide<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
         return silent(Verdict::InsufficientData, &reason);
     }
     let best = rungs.singles.first();
-    let is_clear = best.is_some_and(|b| b.evidence > BEYOND_UNSTEADY);
-    if let Some(reason) = restless(&ready.noise, rungs.unsteady).filter(|_| !is_clear) {
+    let is_clear = best.is_some_and(|b| b.qaic_gain > BEYOND_HETEROSCEDASTIC);
+    if let Some(reason) =
+        unmodeled_repeat_noise(&ready.noise, rungs.heteroscedasticity).filter(|_| !is_clear)
+    {
         return silent(Verdict::Unlisted, &reason);
     }
-    match best.filter(|b| b.evidence >= needed(&b.mechanisms[0])) {
+    match best.filter(|b| b.qaic_gain >= needed(&b.mechanisms[0])) {
         None => undetected(ready, rungs),
         Some(best) => paired(rungs).unwrap_or_else(|| alone(ready, rungs, best)),
     }
@@ -96,15 +85,17 @@ fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
 
 /// What one would look at first, where the noise is not known.
 fn suspected(rungs: &Rungs) -> String {
-    let most = rungs.singles.first().map_or(0.0, |s| s.evidence);
+    let most = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);
     if most < SUSPECTED.0 {
         return "beyond the parameters nothing is suspected".to_owned();
     }
     let near = rungs
         .singles
         .iter()
-        .filter(|s| s.evidence > SUSPECTED.1 * most);
-    let mut names: Vec<String> = near.map(|s| words(s.mechanisms[0].effect.name())).collect();
+        .filter(|s| s.qaic_gain > SUSPECTED.1 * most);
+    let mut names: Vec<String> = near
+        .map(|s| effect_in_words(s.mechanisms[0].effect.name()))
+        .collect();
     // No order is known of what is not told apart.
     names.sort();
     match names.len() {
@@ -114,8 +105,8 @@ fn suspected(rungs: &Rungs) -> String {
 }
 
 /// Nothing listed is there: nothing at all, or something unlisted.
-pub fn undetected<'a>(ready: &Prepared, rungs: &'a Rungs) -> Decision<'a> {
-    let left = rungs.base.coherent / rungs.samples as f64;
+pub fn undetected<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
+    let left = rungs.base.lack_of_fit / rungs.samples as f64;
     if left > UNLISTED {
         return silent(
             Verdict::Unlisted,
@@ -158,7 +149,7 @@ fn paired(rungs: &Rungs) -> Option<Decision<'_>> {
 }
 
 /// One effect that was detected: named, or one of several, or not enough.
-fn alone<'a>(ready: &Prepared, rungs: &'a Rungs, best: &'a Scored) -> Decision<'a> {
+fn alone<'a>(ready: &PreparedStudy, rungs: &'a Rungs, best: &'a Scored) -> Decision<'a> {
     if !is_adequate(best, rungs) {
         return silent(
             Verdict::Unlisted,
@@ -188,7 +179,7 @@ fn alone<'a>(ready: &Prepared, rungs: &'a Rungs, best: &'a Scored) -> Decision<'
 }
 
 /// Nothing is missing, with the study's own parameters or with others.
-fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
+fn nothing(ready: &PreparedStudy, rungs: &Rungs) -> Verdict {
     let at = &rungs.base.refit.at;
     let moved = (0..2).any(|k| {
         let start = ready.shared[k].start;
@@ -204,7 +195,7 @@ fn nothing(ready: &Prepared, rungs: &Rungs) -> Verdict {
 
 /// True if a rival's evidence is within reach.
 fn within(best: &Scored, rival: &Scored) -> bool {
-    lead(best, rival).is_some_and(|lead| best.evidence - rival.evidence < lead)
+    lead(best, rival).is_some_and(|lead| best.qaic_gain - rival.qaic_gain < lead)
 }
 
 /// Lead in evidence from which one explanation stands before a rival; None if they are the same.
@@ -237,12 +228,9 @@ pub fn opponents<'a>(rungs: &'a Rungs, pair: [&str; 2]) -> Option<[&'a Scored; 2
     Some([best(pair[0], pair[1])?, best(pair[1], pair[0])?])
 }
 
-/// What makes force fade with time: by a clock that is fixed, or one that grows as the contact's area.
-const CLOCKS: [Effect; 2] = [Effect::Relaxation, Effect::Drainage];
-
 /// True if only a second contact size could tell two names apart, and there is none: a clock that is fixed, and one that grows as
 /// the contact's area, differ nowhere else.
-fn is_alias(ready: &Prepared, best: &Scored, rival: &Scored) -> bool {
+fn is_alias(ready: &PreparedStudy, best: &Scored, rival: &Scored) -> bool {
     let radii = ready
         .elastic
         .places
@@ -266,82 +254,7 @@ pub fn have_sizes(radii: impl Iterator<Item = f64>) -> bool {
 }
 
 fn is_adequate_beside(rival: &Scored, best: &Scored) -> bool {
-    rival.evidence > 0.5 * best.evidence
-}
-
-fn is_adequate(best: &Scored, rungs: &Rungs) -> bool {
-    let quiet = QUIET * rungs.samples as f64;
-    best.coherent <= quiet || best.coherent <= LEFT * rungs.base.coherent
-}
-
-/// True if both of a pair are needed, and together they suffice.
-pub fn is_pair(pair: &Scored, rungs: &Rungs) -> bool {
-    let alone = |k: usize| {
-        let of = |s: &&Scored| s.mechanisms[0].effect == pair.mechanisms[k].effect;
-        rungs.singles.iter().find(of).map_or(0.0, |s| s.evidence)
-    };
-    let best = rungs.singles.first().map_or(0.0, |s| s.evidence);
-    let least = |k: usize| {
-        let (second, first) = (&pair.mechanisms[k], &pair.mechanisms[1 - k]);
-        let beside = match first.effect {
-            _ if !is_static(second) => BESIDE,
-            _ if CLOCKS.contains(&first.effect) && !second.is_instrument() => BESIDE_APART.0,
-            Effect::Adhesion if is_answer(second) => BESIDE_APART.1,
-            _ if acts_apart(first) => BESIDE,
-            _ if is_static(first) && !first.is_instrument() => STATIC_BOTH,
-            _ => STATIC_BESIDE,
-        };
-        f64::max(inexact(first, second) * alone(1 - k), beside)
-    };
-    let is_needed = |k: usize| pair.evidence - alone(1 - k) >= least(k);
-    pair.mechanisms[0].effect != pair.mechanisms[1].effect
-        && (0..2).all(is_needed)
-        && pair.evidence - best >= least(0).min(least(1))
-        && is_adequate(pair, rungs)
-}
-
-/// The part of a mechanism's evidence that screening's form of it may leave for a second one to take up. What each took up where the first
-/// was alone is printed likewise: one of the calibration's 188 studies passes (relaxation beside softening by use, with 16 %), so that its
-/// wrong names stay below 2 %. What acts apart from the loading leaves least to what changes the elastic answer, and another law of
-/// stiffening most (15 and 17 % in two studies of the second trial's fourth draw).
-fn inexact(mechanism: &Mechanism, second: &Mechanism) -> f64 {
-    match mechanism.effect {
-        Effect::RateIndependentLoss if is_answer(second) => 0.02,
-        Effect::Adhesion if is_answer(second) => 0.01,
-        Effect::StiffeningLaw if is_answer(second) => 0.25,
-        _ if is_memory(mechanism) && is_answer(second) => 0.006,
-        Effect::Adhesion => 0.09,
-        Effect::Saturation => 0.1,
-        Effect::StiffeningLaw | Effect::CycleSoftening => 0.13,
-        Effect::RateIndependentLoss => 0.04,
-        _ if mechanism.is_instrument() => 0.0,
-        _ if is_memory(mechanism) => 0.02,
-        _ => 0.03,
-    }
-}
-
-/// True for what shows as force that fades or as skin that clings, and not in the answer to a press alone.
-fn acts_apart(mechanism: &Mechanism) -> bool {
-    is_memory(mechanism) || mechanism.effect == Effect::Adhesion
-}
-
-/// True for what changes the tissue's elastic answer by its geometry or its bulk.
-fn is_answer(mechanism: &Mechanism) -> bool {
-    matches!(
-        mechanism.effect,
-        Effect::Bone | Effect::Compressibility | Effect::StiffSkin
-    )
-}
-
-/// True for what the tissue remembers.
-fn is_memory(mechanism: &Mechanism) -> bool {
-    matches!(mechanism.acts, Acts::Fades { .. } | Acts::Softens { .. })
-}
-
-/// True for what changes the elastic answer alone.
-fn is_static(mechanism: &Mechanism) -> bool {
-    let others = [Effect::StiffeningLaw, Effect::FixtureCompliance];
-    is_answer(mechanism) || others.contains(&mechanism.effect)
+    rival.qaic_gain > 0.5 * best.qaic_gain
 }
 
 /// Evidence from which a mechanism is said to be there, nats.

@@ -1,67 +1,45 @@
-//! Stages 7 to 10: from what the parameters leave to a diagnosis.
+//! Conducts a diagnosis: from what the fitted parameters leave to a verdict, findings, and the next recording.
 //!
-//! Conducts the ladder noise, parameters, instrument, one effect, two effects, unlisted. Screening models the force of every recording
-//! by tables of elastic presses and springs that remember (`memory.rs`), under the same noise and priors as the fit.
+//! The ladder is noise, parameters, instrument, one effect, two effects, unlisted. Candidates are fitted with the surrogate model
+//! (`forward::surrogate`), under the same noise and priors as the fit.
 
-mod acting;
-mod balls;
-mod borne_out;
-mod checks;
-mod choices;
-mod course;
-mod elastic;
-mod empirical;
-mod findings;
-mod findings_json;
-mod gain;
-mod gates;
-mod ladder;
-mod local;
-#[cfg(test)]
-mod made;
-mod mechanism;
-mod memory;
-mod model;
-mod next_record;
-mod numbers;
-mod placebo;
-mod planned;
-mod possible;
-mod posterior;
-mod prepare;
-mod promise;
-mod refine;
-mod refit;
-mod screen;
-mod sentence;
-mod shown;
-mod signs;
-mod skins;
-mod slopes;
-mod spectrum;
-mod stiffness;
-mod trial;
-mod unlisted;
+pub(crate) mod findings;
+pub(crate) mod findings_json;
+pub(crate) mod pair_gates;
+pub(crate) mod gates;
+pub(crate) mod held_out_gate;
+pub(crate) mod effect_numbers;
+pub(crate) mod findings_content;
+pub(crate) mod detection_limits;
+pub(crate) mod wording;
+pub(crate) mod unlisted_finding;
+pub(crate) mod unlisted;
+pub(crate) mod next_recording;
+pub(crate) mod place;
+pub(crate) mod sentence;
 
+pub use crate::selection::cross_validation::{Gain, Spread};
 pub use findings::{
-    Curve, Diagnosis, Finding, Gain, Number, Rival, Spread, Suggestion, Switched, Verdict, When,
-    Where,
+    Curve, Diagnosis, Finding, Number, Rival, Suggestion, Switched, Verdict, When, Where,
 };
 pub use findings_json::findings_json;
-pub use unlisted::{Correction, Unlisted, words};
+pub use unlisted_finding::{Correction, Unlisted};
 
 use std::sync::{Mutex, PoisonError};
 
 use thenar_contact::Control;
 use thenar_recordings::Study;
 
-use crate::comparison::Comparison;
-use crate::fit::Fitting;
-use crate::{DiagnosisError, Options, compare};
-use course::Course;
-use gates::Decision;
-use ladder::Rungs;
-use prepare::{Prepared, form_note, prepare};
+use crate::compare::compare;
+use crate::comparison::result::Comparison;
+use crate::diagnose::gates::Decision;
+use crate::diagnose::pair_gates::is_pair;
+use crate::errors::DiagnosisError;
+use crate::fit::fitting::{Fitting, Options};
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::surrogate::prepared_study::{PreparedStudy, prepare};
+use crate::parameters::surrogate_priors::form_note;
+use crate::selection::scored::Rungs;
 
 /// What a diagnosis is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -97,17 +75,19 @@ pub fn diagnose(
     };
     let mut fitting = Fitting::new(study, &quiet)?;
     step(control, ("pressing the tools", 0.3))?;
-    if let Some(finer) = refine::refined(study, &fitting) {
+    if let Some(finer) = crate::forward::setup::refinement::refined(study, &fitting.replay) {
         fitting = Fitting::new(&finer, &quiet)?;
     }
-    let found = match prepare(study, &mut fitting, &quiet)? {
+    let found = match prepare(study, &mut fitting.replay, &quiet)? {
         Some(ready) => {
-            let climb = |within: &Control<'_>| ladder::climb(&ready, fitting.measured(), within);
+            let climb = |within: &Control<'_>| {
+                crate::selection::ladder::climb(&ready, fitting.measured(), within)
+            };
             let rungs = parts.run((0.4, 0.95), climb)?;
             let ladder = (&ready, &rungs);
             explained(study, (comparison, &mut fitting), ladder, (options, &quiet))?
         }
-        None => local::without_curves(study, comparison),
+        None => crate::diagnose::place::without_curves(study, comparison),
     };
     step(control, ("diagnosing", 1.0))?;
     Ok(found)
@@ -151,20 +131,29 @@ impl<'a> Parts<'a> {
 fn explained(
     study: &Study,
     (comparison, fitting): (Comparison, &mut Fitting),
-    (ready, rungs): (&Prepared, &Rungs),
+    (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, DiagnosisError> {
-    let (decision, gain) = borne_out::decide(ready, rungs, fitting.measured(), options.seed);
+    let (decision, gain) =
+        crate::diagnose::held_out_gate::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&decision.cannot_tell[..], quiet);
-    let next = next_record::suggestions(study, fitting, (ready, rungs), asked)?;
+    let next = crate::diagnose::next_recording::suggestions(
+        study,
+        &mut fitting.replay,
+        (ready, rungs),
+        asked,
+    )?;
     let ladder = (ready, rungs, decision);
     Ok(told(study, (comparison, fitting), (ladder, next, gain)))
 }
 
 /// What the recordings could not show.
-fn untested(courses: &[Course]) -> Option<String> {
-    let missing = match (course::goes_on(courses), course::unloads(courses)) {
-        (false, _) if !course::changes_speed(courses) => {
+fn untested(courses: &[ForceRecording]) -> Option<String> {
+    let missing = match (
+        crate::forward::surrogate::force_recording::goes_on(courses),
+        crate::forward::surrogate::force_recording::unloads(courses),
+    ) {
+        (false, _) if !crate::forward::surrogate::force_recording::changes_speed(courses) => {
             "memory, hysteresis, adhesion and drift were not tested: no recording holds, unloads or changes its speed"
         }
         (_, false) => "hysteresis and adhesion were not tested: no recording unloads",
@@ -174,7 +163,7 @@ fn untested(courses: &[Course]) -> Option<String> {
 }
 
 /// What was prepared, what the rungs found, and what they decide.
-type Climbed<'a> = (&'a Prepared, &'a Rungs, Decision<'a>);
+type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Decision<'a>);
 
 /// All that is said, from what was found.
 fn told(
@@ -182,41 +171,56 @@ fn told(
     (comparison, fitting): (Comparison, &Fitting),
     ((ready, rungs, decision), next, gain): (Climbed<'_>, Vec<Suggestion>, Option<Gain>),
 ) -> Diagnosis {
-    let probabilities = posterior::probabilities(rungs);
+    let probabilities =
+        crate::selection::model_weights::probabilities(rungs, |pair| is_pair(pair, rungs));
     let mut found = Diagnosis {
         comparison,
         verdict: decision.verdict,
         sentence: String::new(),
-        findings: shown::findings(study, (ready, rungs), &decision, &probabilities),
+        findings: crate::diagnose::findings_content::findings(
+            study,
+            (ready, rungs),
+            &decision,
+            &probabilities,
+        ),
         unlisted: None,
-        names_90: posterior::names_90(&probabilities),
+        names_90: crate::selection::model_weights::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
         gain,
-        smallest_seen: shown::smallest_seen(ready, rungs),
+        smallest_seen: crate::diagnose::detection_limits::smallest_seen(ready, rungs),
         record_next: next,
-        materials: shown::materials(fitting, (ready, rungs), &decision),
-        effects: shown::effects(ready, &decision),
-        rivals: shown::rivals(ready, rungs, &probabilities),
-        curves: shown::curves(ready, rungs, &decision),
-        evidence: shown::evidence(ready, rungs),
+        materials: crate::diagnose::findings_content::materials(
+            &fitting.replay,
+            (ready, rungs),
+            &decision,
+        ),
+        effects: crate::diagnose::findings_content::effects(ready, &decision),
+        rivals: crate::diagnose::findings_content::rivals(ready, rungs, &probabilities),
+        curves: crate::diagnose::findings_content::curves(ready, rungs, &decision),
+        evidence: crate::diagnose::findings_content::evidence(ready, rungs),
         notes: vec![decision.reason.clone()],
     };
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
     let mut reason = decision.reason.clone();
-    let restless = checks::restless(&ready.noise, rungs.unsteady);
-    found.notes.extend(restless.filter(|told| *told != reason));
+    let unmodeled_repeat_noise = crate::checks::heteroscedasticity::unmodeled_repeat_noise(
+        &ready.noise,
+        rungs.heteroscedasticity,
+    );
+    found
+        .notes
+        .extend(unmodeled_repeat_noise.filter(|told| *told != reason));
     if found.verdict == Verdict::Unlisted {
-        let described = unlisted::unlisted(study, ready, rungs);
+        let described = crate::diagnose::unlisted::unlisted(study, ready, rungs);
         reason = format!("{reason}; {}", described.told());
         if let Some(correction) = &described.correction {
-            unlisted::draw(ready, rungs, correction, &mut found.curves);
+            crate::diagnose::unlisted::draw(ready, rungs, correction, &mut found.curves);
         }
         found.unlisted = Some(described);
     }
     add_notes(study, &mut found, ready);
-    found.sentence = sentence::sentence(
+    found.sentence = crate::diagnose::sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
         (&found.cannot_tell, &decision.beside, &found.record_next),
@@ -226,7 +230,7 @@ fn told(
 }
 
 /// What a reader should be told besides, and the place that maps show.
-fn add_notes(study: &Study, found: &mut Diagnosis, ready: &Prepared) {
+fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
     if found.gain.as_ref().is_some_and(is_no_better) {
         found.notes.push(
@@ -234,7 +238,7 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &Prepared) {
                 .to_owned(),
         );
     }
-    local::add_place(study, found);
+    crate::diagnose::place::add_place(study, found);
     found.notes.push(form_note(&ready.elastic));
     found.notes.extend(untested(&ready.courses));
 }

@@ -1,24 +1,8 @@
-//! The sentence that a designer reads first.
+//! The verdict in one sentence.
 
-use super::findings::{Finding, Gain, Suggestion, Verdict};
-
-/// Words for an effect.
-pub fn words(effect: &str) -> String {
-    match effect {
-        "bone" => "another thickness of the tissue over bone".into(),
-        "stiff_skin" => "a stiff skin over soft pulp".into(),
-        "stiffening_law" => "another law of stiffening".into(),
-        "inclusion" => "a place that is stiffer or softer".into(),
-        "compressibility" => "tissue that gives up volume".into(),
-        "drift" => "drift of the sensor".into(),
-        "offset" => "a zero error of the sensor".into(),
-        "gain" => "a step in the sensor's gain".into(),
-        "saturation" => "a sensor that saturates".into(),
-        "threshold" => "a sensor that is blind to small forces".into(),
-        "timing" => "a clock that is late".into(),
-        other => other.replace('_', " "),
-    }
-}
+use crate::diagnose::findings::{Finding, Suggestion, Verdict};
+use crate::diagnose::wording::{effect_in_words, phase_in_words};
+use crate::selection::cross_validation::Gain;
 
 /// The verdict in one sentence.
 pub fn sentence(
@@ -27,7 +11,7 @@ pub fn sentence(
     (pairs, beside, next): (&[[&'static str; 2]], &[&'static str], &[Suggestion]),
     reason: &str,
 ) -> String {
-    let names: Vec<String> = findings.iter().map(|f| words(f.effect)).collect();
+    let names: Vec<String> = findings.iter().map(|f| effect_in_words(f.effect)).collect();
     let names = names.join(" and ");
     let sure = findings.iter().map(|f| f.confidence).fold(1.0, f64::min);
     match verdict {
@@ -48,9 +32,9 @@ pub fn sentence(
         Verdict::CannotTell => {
             let told: Vec<String> = pairs
                 .iter()
-                .map(|[a, b]| format!("{} and {}", words(a), words(b)))
+                .map(|[a, b]| format!("{} and {}", effect_in_words(a), effect_in_words(b)))
                 .collect();
-            let with: Vec<String> = beside.iter().map(|name| words(name)).collect();
+            let with: Vec<String> = beside.iter().map(|name| effect_in_words(name)).collect();
             let with = match with.is_empty() {
                 true => String::new(),
                 false => format!(", each of them together with {}", with.join(" and ")),
@@ -70,7 +54,7 @@ pub fn sentence(
         Verdict::MissingPhysics => {
             let when = findings.first().and_then(|f| f.when.as_ref());
             let when = when.map_or(String::new(), |w| {
-                format!(", seen most {}", when_in_words(w.phase))
+                format!(", seen most {}", phase_in_words(w.phase))
             });
             let gained = gain.map_or(String::new(), |g| {
                 format!(
@@ -83,17 +67,6 @@ pub fn sentence(
                 100.0 * sure
             )
         }
-    }
-}
-
-/// A phase as a person would say it.
-pub fn when_in_words(phase: &str) -> &str {
-    match phase {
-        "load" => "while pressing in",
-        "hold" => "while holding",
-        "slide" => "while sliding",
-        "unload" => "while letting go",
-        _ => "at rest",
     }
 }
 
@@ -134,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_every_explanation_holds_is_told_beside_what_cannot_be_told_apart() {
+    fn sentence_names_the_effects_common_to_all_rivals() {
         let pairs = [["bone", "fixture_compliance"]];
         let told = |beside: &[&'static str]| {
             sentence(
@@ -151,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_that_seldom_settles_is_given_with_its_reserve() {
+    fn unlikely_next_recording_is_advised_with_reserve() {
         assert_eq!(
             said(Some(0.6)),
             " Record next: Press (settles it in 60 % of cases, takes about 30 minutes)."

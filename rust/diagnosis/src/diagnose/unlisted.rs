@@ -1,129 +1,35 @@
-//! What is missing and has no name: on what it depends, and a correction from the recordings alone, which is no physics.
+//! Misfit that no listed effect explains: the variables it depends on, by held-out improvement of an empirical correction.
 //!
 //! What repeats share of the misfit is drawn over one variable after the other, as a factor of the force that is smooth in it, and each is
 //! judged by what it removes on protocols that it was not fitted to.
 
-use super::checks::restless;
-use super::course::{Course, Row};
-use super::elastic::radius;
-use super::empirical::{Factors, Point, VARIABLES, removed};
-use super::findings::Curve;
-use super::ladder::Rungs;
-use super::prepare::Prepared;
-use super::sentence::when_in_words;
-use super::shown;
-use crate::noise::Rhythm;
 use thenar_recordings::Study;
 
-/// What it may depend on, and units.
-const NAMES: [(&str, &str); VARIABLES] = [
-    ("depth", "mm"),
-    ("force", "N"),
-    ("contact_radius", "mm"),
-    ("time", "s"),
-    ("cycle", ""),
-    ("rate", "mm/s"),
-];
+use crate::checks::heteroscedasticity::unmodeled_repeat_noise;
+use crate::diagnose::findings::Curve;
+use crate::diagnose::unlisted_finding::{Correction, NAMES, Unlisted};
+use crate::diagnose::wording::phase_name;
+use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::tables::elastic_table::radius;
+use crate::noise::periodic_component::Rhythm;
+use crate::selection::empirical_factor::{Factors, Point, VARIABLES, removed};
+use crate::selection::scored::Rungs;
+
 /// Part of a recording's largest force below which its misfit is no part of the force.
 const LOADED: f64 = 0.05;
 /// Part that a variable must remove on protocols it was not fitted to, for it to be told; and that up and down apart must add.
 const TOLD: f64 = 0.25;
 const APART: f64 = 0.05;
 
-/// Something that is on no list.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unlisted {
-    /// What it depends on, and what a correction by that removes on protocols it was not fitted to (0 to 1); the most first.
-    pub depends_on: Vec<(&'static str, f64)>,
-    /// By the first of these.
-    pub correction: Option<Correction>,
-    /// What beats, if repeats show that.
-    pub rhythm: Option<Rhythm>,
-    /// Where and in which phase most of it shows; None where repeats do not share it.
-    pub place: Option<(String, &'static str)>,
-}
-
-/// A factor of the force that recordings ask for: empirical, and good for nothing that was not recorded.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Correction {
-    variable: usize,
-    /// Over that variable.
-    pub factors: Factors,
-    /// Part of what repeats share of the misfit that it removes on protocols it was not fitted to.
-    pub removed: f64,
-}
-
-impl Unlisted {
-    /// In words, after "something that is not in the list: ".
-    pub fn told(&self) -> String {
-        let Some(correction) = &self.correction else {
-            return match self.depends_on.is_empty() {
-                true => "what it depends on cannot be told: no correction holds on a protocol that it was not fitted to".to_owned(),
-                false => "no correction can be given, since it is another in every repeat".to_owned(),
-            };
-        };
-        let (name, unit) = correction.by();
-        let (least, most) = correction.extremes();
-        // What is small beside the other end is the curve's own roundness.
-        let counts = 0.1 * f64::max(-least.1, most.1);
-        let part = |(at, change): (f64, f64), word: &str| {
-            let told = format!("{:.0} % {word} at {at:.3} {unit}", 100.0 * change.abs());
-            (change.abs() > counts).then_some(told)
-        };
-        let when = self.place.as_ref();
-        let when = when.map_or(String::new(), |(_, phase)| {
-            format!(" and shows most {}", when_in_words(phase))
-        });
-        let mut ends = [(least, "smaller"), (most, "larger")];
-        ends.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-        let ends = ends.map(|(end, word)| part(end, word));
-        format!(
-            "it goes with {}{when}: the force is {} than parameters have it, and an empirical correction by that alone removes {:.0} % of it on \
-             protocols that it was not fitted to",
-            words(name),
-            ends.into_iter().flatten().collect::<Vec<_>>().join(" and "),
-            100.0 * correction.removed
-        )
-    }
-}
-
-impl Correction {
-    /// Variable and unit.
-    pub fn by(&self) -> (&'static str, &'static str) {
-        NAMES[self.variable]
-    }
-
-    /// Where it takes most off the force and where it adds most, and what part.
-    fn extremes(&self) -> ((f64, f64), (f64, f64)) {
-        let each = || {
-            let (at, sides) = (&self.factors.knots, self.factors.change.iter());
-            sides.flat_map(|side| at.iter().copied().zip(side.iter().copied()))
-        };
-        let none = (0.0, 0.0);
-        (
-            each().fold(none, |a, b| if b.1 < a.1 { b } else { a }),
-            each().fold(none, |a, b| if b.1 > a.1 { b } else { a }),
-        )
-    }
-}
-
-/// A variable as a person would say it.
-pub fn words(variable: &str) -> &str {
-    match variable {
-        "contact_radius" => "the size of the contact",
-        "time" => "time in contact",
-        "cycle" => "the count of presses",
-        "rate" => "speed",
-        _ => variable,
-    }
-}
-
 /// What is known of what has no name.
-pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
+pub fn unlisted(study: &Study, ready: &PreparedStudy, rungs: &Rungs) -> Unlisted {
     let points = points(ready, rungs);
     let mut found = of_points(&points);
     found.rhythm = ready.noise.rhythm.filter(Rhythm::is_clear);
-    if found.correction.is_none() && restless(&ready.noise, rungs.unsteady).is_some() {
+    if found.correction.is_none()
+        && unmodeled_repeat_noise(&ready.noise, rungs.heteroscedasticity).is_some()
+    {
         // What grows under load and is not shared.
         found.depends_on.push(("force", f64::NAN));
         found
@@ -133,7 +39,7 @@ pub fn unlisted(study: &Study, ready: &Prepared, rungs: &Rungs) -> Unlisted {
     }
     let site = |point: &Point| &study.recordings[point.recording].site;
     let sites: Vec<&String> = points.iter().map(site).collect();
-    let phases: Vec<&str> = points.iter().map(|p| shown::phase(p.phase)).collect();
+    let phases: Vec<&str> = points.iter().map(|p| phase_name(p.phase)).collect();
     let (site, phase) = (most(&points, &sites), most(&points, &phases));
     found.place = site.map(|site| (*site).clone()).zip(phase.copied());
     found
@@ -148,11 +54,11 @@ fn most<'a, K: PartialEq>(points: &[Point], keys: &'a [K]) -> Option<&'a K> {
     keys.iter().max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
 }
 
-fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
-    let alike = |a: &Course, b: &Course| {
+fn points(ready: &PreparedStudy, rungs: &Rungs) -> Vec<Point> {
+    let alike = |a: &ForceRecording, b: &ForceRecording| {
         a.protocol == b.protocol && a.place == b.place && a.rows.len() == b.rows.len()
     };
-    let mut protocols: Vec<Vec<&Course>> = Vec::new();
+    let mut protocols: Vec<Vec<&ForceRecording>> = Vec::new();
     for course in &ready.courses {
         match protocols.iter_mut().find(|p| alike(p[0], course)) {
             Some(protocol) => protocol.push(course),
@@ -160,7 +66,7 @@ fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
         }
     }
     let repeated = protocols.iter().enumerate().filter(|(_, p)| p.len() > 1);
-    let of = |(number, repeats): (usize, &Vec<&Course>)| -> Vec<Point> {
+    let of = |(number, repeats): (usize, &Vec<&ForceRecording>)| -> Vec<Point> {
         let rows = 0..repeats[0].rows.len();
         rows.filter_map(|n| point((ready, rungs), (number, repeats), n))
             .collect()
@@ -170,8 +76,8 @@ fn points(ready: &Prepared, rungs: &Rungs) -> Vec<Point> {
 
 /// Row `n` of a protocol; None where it is not in contact, or hardly loaded.
 fn point(
-    (ready, rungs): (&Prepared, &Rungs),
-    (protocol, repeats): (usize, &[&Course]),
+    (ready, rungs): (&PreparedStudy, &Rungs),
+    (protocol, repeats): (usize, &[&ForceRecording]),
     n: usize,
 ) -> Option<Point> {
     let samples: Option<Vec<usize>> = repeats.iter().map(|c| c.rows[n].sample).collect();
@@ -201,7 +107,11 @@ fn point(
 }
 
 /// What a row of a recording may depend on, by [`NAMES`]; None out of contact.
-fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<[f64; VARIABLES]> {
+fn variables(
+    ready: &PreparedStudy,
+    one: &ForceRecording,
+    (n, base): (usize, f64),
+) -> Option<[f64; VARIABLES]> {
     let row = &one.rows[n];
     let touch = one.rows.iter().find(|row| row.depth_mm > 0.0)?;
     let fastest = one.rows.windows(2).map(speed).fold(0.0, f64::max);
@@ -212,7 +122,7 @@ fn variables(ready: &Prepared, one: &Course, (n, base): (usize, f64)) -> Option<
 }
 
 /// Puts what a correction gives in the place of what was found into the curves of all recordings.
-pub fn draw(ready: &Prepared, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
+pub fn draw(ready: &PreparedStudy, rungs: &Rungs, correction: &Correction, curves: &mut [Curve]) {
     for (course, curve) in ready.courses.iter().zip(curves) {
         let rows = course.rows.iter().enumerate();
         let read = rows.filter_map(|(n, row)| Some((n, row, row.sample?)));
@@ -262,7 +172,7 @@ fn of_points(points: &[Point]) -> Unlisted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Phase;
+    use crate::observe::measured::Phase;
     use crate::random::Random;
 
     /// Four protocols of 60 rows to different depths by different tools; what is measured more is a part of the force, by depth and
@@ -295,7 +205,7 @@ mod tests {
 
     /// A pocket that gives way at half of the depth.
     #[test]
-    fn what_goes_with_depth_is_said_to_and_is_corrected_elsewhere() {
+    fn depth_dependent_misfit_is_named_and_corrected_on_held_out_protocols() {
         let gives = |depth: f64, _: bool| -0.3 / (1.0 + libm::exp(-(depth - 0.5) / 0.05));
         let found = of_points(&study(gives));
         assert_eq!(found.depends_on[0].0, "depth", "{:?}", found.depends_on);
@@ -329,7 +239,7 @@ mod tests {
 
     /// Half of the squares are noise, which no correction removes and none need remove.
     #[test]
-    fn what_is_removed_is_a_part_of_what_noise_leaves() {
+    fn removed_share_is_relative_to_reducible_misfit() {
         let points = study(|_, _| -0.016);
         let (squares, count) = (
             points.iter().map(|p| p.weight * p.off * p.off).sum::<f64>(),
@@ -344,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn up_and_down_are_told_apart_where_they_differ() {
+    fn loading_and_unloading_get_separate_factors_where_they_differ() {
         let found = of_points(&study(
             |depth, out| if out { -0.2 * depth } else { 0.1 * depth },
         ));
@@ -354,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn most_is_where_most_of_it_is() {
+    fn place_of_most_misfit_is_the_largest_sum() {
         let points = study(|_, out| if out { -0.2 } else { 0.02 });
         let phases: Vec<Phase> = points.iter().map(|p| p.phase).collect();
         assert_eq!(most(&points, &phases), Some(&Phase::Unload));
@@ -363,7 +273,7 @@ mod tests {
 
     /// Noise is no misfit, and what is another in every protocol holds on none.
     #[test]
-    fn nothing_is_told_of_what_does_not_hold_elsewhere() {
+    fn no_correction_without_held_out_improvement() {
         let noise = of_points(&study(|_, _| 0.0));
         assert!(noise.correction.is_none(), "{:?}", noise.depends_on);
         let mut other = study(|_, _| 0.0);

@@ -1,13 +1,13 @@
-//! What was found, in words.
+//! Sentences of a located mismatch.
 
-use super::found::{Carrier, Mismatch, Place, When};
-use crate::Phase;
+use crate::location::mismatch::{Carrier, Mismatch, Place, When};
+use crate::observe::measured::Phase;
 
 /// Most recordings that a sentence names.
 const NAMED: usize = 3;
 
 /// A mismatch in a sentence.
-pub(super) fn of_mismatch(found: &Mismatch) -> String {
+pub(crate) fn of_mismatch(found: &Mismatch) -> String {
     let unit = found.shown.unit();
     let (what, side) = (
         found.shown.words(),
@@ -92,7 +92,7 @@ fn word(phase: Phase) -> &'static str {
 }
 
 /// Three digits.
-pub(super) fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     let size = value.abs();
     let places = if size >= 100.0 || size == 0.0 {
         0

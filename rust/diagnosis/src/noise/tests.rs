@@ -1,9 +1,12 @@
-//! Noise planted in made-up repeats is told again, and so is how repeats differ as a whole.
+//! Tests of the noise model on synthetic repeats with planted noise.
 
-use super::noise;
-use crate::observe::{Censoring, Measured, Moment, Phase, Quantity, Sample};
-use crate::random::Random;
 use nalgebra::Vector3;
+
+use crate::noise::channel::Channel;
+use crate::noise::estimate::noise;
+use crate::noise::repeat_alignment::{RepeatSeries, aligned};
+use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
+use crate::random::Random;
 
 const SAMPLES: usize = 90;
 const STEP_S: f64 = 0.05;
@@ -29,12 +32,13 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
     );
     let (mut moments, mut samples, mut colored) = (Vec::new(), Vec::new(), random.normal());
     for k in 0..SAMPLES {
-        let carry = if planted.memory_s > 0.0 {
+        let autocorrelation = if planted.memory_s > 0.0 {
             (-STEP_S / planted.memory_s).exp()
         } else {
             0.0
         };
-        colored = carry * colored + (1.0 - carry * carry).sqrt() * random.normal();
+        colored = autocorrelation * colored
+            + (1.0 - autocorrelation * autocorrelation).sqrt() * random.normal();
         let jump = if random.uniform() < planted.outliers {
             10.0 * random.normal()
         } else {
@@ -93,7 +97,7 @@ fn study(
 }
 
 #[test]
-fn what_is_planted_between_and_within_repeats_is_told() {
+fn planted_noise_within_and_between_repeats_is_recovered() {
     let planted = Planted {
         noise: 0.01,
         memory_s: 0.15,
@@ -124,7 +128,7 @@ fn what_is_planted_between_and_within_repeats_is_told() {
 }
 
 #[test]
-fn repeats_that_do_not_differ_as_a_whole_are_not_said_to() {
+fn identical_repeats_have_no_between_repeat_variance() {
     let planted = Planted {
         noise: 0.01,
         memory_s: 0.0,
@@ -145,7 +149,7 @@ fn repeats_that_do_not_differ_as_a_whole_are_not_said_to() {
 }
 
 #[test]
-fn without_repeats_noise_is_judged_by_roughness_and_that_is_said() {
+fn without_repeats_noise_comes_from_roughness_with_a_note() {
     let planted = Planted {
         noise: 0.01,
         memory_s: 0.0,
@@ -162,7 +166,7 @@ fn without_repeats_noise_is_judged_by_roughness_and_that_is_said() {
 
 /// A press and its map share a protocol, but the map has no force: it must not hide what the presses repeat.
 #[test]
-fn recordings_of_another_kind_do_not_hide_repeats() {
+fn repeats_are_grouped_by_channel() {
     let planted = Planted {
         noise: 0.01,
         memory_s: 0.0,
@@ -195,9 +199,7 @@ fn recordings_of_another_kind_do_not_hide_repeats() {
 /// A repeat whose first loading seems to have begun a little earlier, as the rows about it fell otherwise, is the same; one that began
 /// a tenth of its time earlier is another, and is joined by straight lines at the moments of the first.
 #[test]
-fn a_lag_of_rows_is_none_and_a_long_one_is_brought_to_the_same_moments() {
-    use super::Channel;
-    use super::alike::{Told, aligned};
+fn small_lag_is_ignored_and_large_lag_is_resampled() {
     let planted = Planted {
         noise: 0.0,
         memory_s: 0.0,
@@ -208,8 +210,8 @@ fn a_lag_of_rows_is_none_and_a_long_one_is_brought_to_the_same_moments() {
     let mut random = Random::new(1);
     let first = repeat("one", &planted, &mut random);
     let nothing = vec![0.0; SAMPLES];
-    fn told<'a>(measured: &'a Measured, nothing: &'a [f64]) -> Told<'a> {
-        Told {
+    fn told<'a>(measured: &'a Measured, nothing: &'a [f64]) -> RepeatSeries<'a> {
+        RepeatSeries {
             measured,
             simulated: nothing,
             slopes: nothing,

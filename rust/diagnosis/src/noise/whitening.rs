@@ -1,11 +1,12 @@
-//! Residuals turned into independent numbers of variance 1, censored samples among them.
+//! Whitening: residuals as independent numbers of variance 1, censored samples included.
 
 use nalgebra::DMatrix;
 
-use super::repeats::carry;
-use super::{CHANNELS, Channel, Noise};
-use crate::observe::{Censoring, Measured};
-use crate::statistics::{log_normal_cdf, log_normal_density};
+use crate::distributions::{log_normal_cdf, log_normal_density};
+use crate::noise::channel::{CHANNELS, Channel};
+use crate::noise::deviations::autocorrelation;
+use crate::noise::estimate::Noise;
+use crate::observe::measured::{Censoring, Measured};
 
 /// How each sample's residual is whitened: `w_k = (r_k / s_k - c r_j / s_j) / sqrt(1 - c^2)`, j the sample before it.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +53,8 @@ impl Whitening {
                 let is_seen = sample.censoring == Censoring::Seen;
                 let before = last[channel as usize].filter(|_| is_seen).map(|j: usize| {
                     let time = |k: usize| one.moments[one.samples[k].moment as usize].time_s;
-                    let carried = carry(time(k) - time(j), noise.memory_s[channel as usize]);
+                    let carried =
+                        autocorrelation(time(k) - time(j), noise.memory_s[channel as usize]);
                     (first + j, carried)
                 });
                 // Sensels of one frame stand beside each other in the list, not after each other in time.
@@ -144,9 +146,10 @@ impl Whitening {
 
     fn differenced(&self, k: usize, scaled: &dyn Fn(usize) -> f64) -> f64 {
         match self.before[k] {
-            Some((j, carry)) => {
-                let step = self.step[self.channel[k] as usize] * (1.0 - carry * carry).sqrt();
-                (scaled(k) - carry * scaled(j)) / step
+            Some((j, autocorrelation)) => {
+                let step = self.step[self.channel[k] as usize]
+                    * (1.0 - autocorrelation * autocorrelation).sqrt();
+                (scaled(k) - autocorrelation * scaled(j)) / step
             }
             None => scaled(k),
         }

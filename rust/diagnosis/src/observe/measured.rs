@@ -1,4 +1,4 @@
-//! A recording as the comparison sees it: moments of a protocol, and one list of samples with what each of them measures.
+//! An observed recording: moments of a protocol, and samples with what each of them measures.
 
 use nalgebra::Vector3;
 

@@ -1,11 +1,13 @@
-//! Table and sentence of a print.
+//! Table of measures and sentence of a handprint.
 
-use super::fitting::areas;
-use super::{Printed, TOUCHED_FROM};
-use crate::Mat;
-use crate::comparison::Measure;
-use crate::words::{number, percent};
 use nalgebra::Vector3;
+use thenar_recordings::handprint::TOUCHED_FROM;
+
+use crate::comparison::quantities::Measure;
+use crate::number_format::{number, percent};
+use crate::observe::measured::Mat;
+use crate::prints::paper_pose::areas;
+use crate::prints::printed::Printed;
 
 /// Areas, centers and overlap; `before` is the share of every cell where the fit began, the paper as it is said to lie.
 pub fn table(mat: &Mat, printed: &Printed, before: &[f64]) -> Vec<Measure> {
@@ -86,7 +88,9 @@ pub fn sentence(printed: &Printed, table: &[Measure]) -> String {
         find("overlap_of_measured").map_or_else(String::new, |row| percent(row.after)),
     );
     let [x, y, turn] = printed.pose;
-    let half = |part: super::PosePart, unit: f64| number(unit * 0.5 * (part.high - part.low));
+    let half = |part: crate::prints::printed::PosePart, unit: f64| {
+        number(unit * 0.5 * (part.high - part.low))
+    };
     let degree = 180.0 / std::f64::consts::PI;
     text += &format!(
         " The paper fits best {} \u{b1} {} mm along its columns, {} \u{b1} {} mm along its rows and {} \u{b1} {} degrees from where it is said to lie.",

@@ -1,21 +1,12 @@
-//! Ink and simulated contact on the skin: by vertex, and by region of the hand.
+//! Ink and simulated contact by vertex of the skin and by region of the hand.
 
-use super::fitting::{Cells, Fitted};
-use super::sheet::Sheet;
-use super::{Areas, PrintCase, TOUCHED_FROM, residual};
+use thenar_recordings::handprint::TOUCHED_FROM;
 
-/// Contact of one region, by the areas of its vertices.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PrintRegion {
-    /// Its name.
-    pub name: String,
-    /// Inked, mm2.
-    pub recorded_mm2: f64,
-    /// In simulated contact, mm2.
-    pub simulated_mm2: f64,
-    /// Both over either.
-    pub overlap: f64,
-}
+use crate::prints::contact_areas::{Areas, residual};
+use crate::prints::paper_pose::{Cells, Fitted};
+use crate::prints::paper_sheet::Sheet;
+use crate::prints::print_case::PrintCase;
+use crate::prints::print_region::PrintRegion;
 
 /// The cell on which each vertex comes to lie, the paper in its fitted pose.
 pub fn cell_of(
@@ -32,7 +23,7 @@ pub fn cell_of(
     case.pressed.positions.iter().map(cell).collect()
 }
 
-/// Residual by vertex as [`super::Printed::on_skin`], and the part of the force that presses beside the paper.
+/// Residual by vertex as [`crate::prints::Printed::on_skin`], and the part of the force that presses beside the paper.
 pub fn on_skin(case: &PrintCase<'_>, cell_of: &[Option<usize>]) -> (Vec<f64>, f64) {
     let (mut all, mut beside) = (0.0, 0.0);
     let mut at_vertex = |(vertex, cell): (usize, &Option<usize>)| {

@@ -1,7 +1,7 @@
 //! A frame with two axes: from numbers to places on a figure, with grid, ticks and titles.
 
-use super::svg::{Anchor, Svg, Type};
-use super::ticks::{round_up, ticks};
+use crate::report::svg::{Anchor, Svg, Type};
+use crate::report::ticks::{round_up, ticks};
 
 const GRID: &str = "stroke='#e4e9ed' stroke-width='1'";
 const ZERO: &str = "stroke='#59636b' stroke-width='1'";

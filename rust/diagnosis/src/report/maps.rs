@@ -1,11 +1,13 @@
 //! Frames of a mat and scans: measured, simulated and residual side by side, sensels true to their pitch.
 
-use super::colors::{diverging, viridis};
-use super::svg::{Anchor, Svg, Type};
-use super::ticks::{round_up, ticks};
-use crate::Mat;
-use crate::comparison::{Frame, Scanned};
 use nalgebra::{Matrix3, Vector3};
+
+use crate::comparison::result::Frame;
+use crate::comparison::scan_heights::Scanned;
+use crate::observe::measured::Mat;
+use crate::report::colors::{diverging, viridis};
+use crate::report::svg::{Anchor, Svg, Type};
+use crate::report::ticks::{round_up, ticks};
 
 /// Largest width and height of one map, px.
 const PANEL: [f64; 2] = [262.0, 300.0];

@@ -1,23 +1,23 @@
-//! A comparison as files: comparison.json for machines, and a page with plots for people. Writes no file itself.
+//! Reports: comparison.json for machines, and HTML pages with plots for people. Writes no file itself.
 //!
 //! The page is self-contained: style and figures stand in it, and it refers to nothing outside. The same comparison gives the
 //! same bytes.
 
-mod colors;
-mod svg;
-mod ticks;
-mod traces;
-mod axes;
-mod curves;
-mod bars;
-mod maps;
-mod prints;
-mod tables;
-mod sections;
-mod page;
-mod json;
-mod diagnosis;
+pub(crate) mod svg;
+pub(crate) mod colors;
+pub(crate) mod ticks;
+pub(crate) mod axes;
+pub(crate) mod residual_curves;
+pub(crate) mod trend_bars;
+pub(crate) mod maps;
+pub(crate) mod prints;
+pub(crate) mod before_after_plot;
+pub(crate) mod tables;
+pub(crate) mod sections;
+pub(crate) mod comparison_page;
+pub(crate) mod comparison_json;
+pub(crate) mod diagnosis_page;
 
-pub use diagnosis::diagnosis_html;
-pub use json::comparison_json;
-pub use page::comparison_html;
+pub use comparison_json::comparison_json;
+pub use comparison_page::comparison_html;
+pub use diagnosis_page::diagnosis_html;

@@ -1,13 +1,16 @@
 //! A handprint: ink and simulated contact over one another, their outlines, and a table by region of the hand.
 
-use super::colors::{SIMULATED, STANDS_OUT};
-use super::svg::{Anchor, Svg, Type, escaped};
-use super::tables;
-use crate::Mat;
-use crate::comparison::RecordingComparison;
-use crate::observe::scatter::median;
-use crate::prints::{Printed, TOUCHED_FROM};
 use std::collections::BTreeMap;
+
+use thenar_recordings::handprint::TOUCHED_FROM;
+
+use crate::comparison::result::RecordingComparison;
+use crate::observe::measured::Mat;
+use crate::observe::robust_scale::median;
+use crate::prints::printed::Printed;
+use crate::report::colors::{SIMULATED, STANDS_OUT};
+use crate::report::svg::{Anchor, Svg, Type, escaped};
+use crate::report::tables;
 
 /// Largest width and height of the picture, px.
 const LARGEST: [f64; 2] = [620.0, 560.0];
@@ -210,7 +213,7 @@ fn pitch(mat: &Mat, cells: &BTreeMap<[u32; 2], usize>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::prints::PosePart;
+    use crate::prints::printed::PosePart;
     use nalgebra::Vector3;
 
     /// Cells of 1 mm from the lower left row by row: both touch, ink alone, simulated alone, neither; half a cell touches.

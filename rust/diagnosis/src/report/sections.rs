@@ -1,13 +1,16 @@
 //! Sections of the page: one recording, and how the figures were made.
 
-use super::curves::{Against, curve};
-use super::maps::{self, Mark};
-use super::svg::escaped;
-use super::{bars, prints, tables};
-use crate::Place;
-use crate::comparison::{Comparison, Frame, RecordingComparison, Scanned, Trend};
-use crate::words::{capital, number};
 use std::fmt::Write;
+
+use crate::comparison::result::{Comparison, Frame, RecordingComparison};
+use crate::comparison::scan_heights::Scanned;
+use crate::comparison::trends::Trend;
+use crate::location::mismatch::Place;
+use crate::number_format::{capital, number};
+use crate::report::maps::{self, Mark};
+use crate::report::residual_curves::{Against, curve};
+use crate::report::svg::escaped;
+use crate::report::{prints, tables, trend_bars};
 
 /// A recording with its plots and tables.
 pub fn recording(number: usize, comparison: &Comparison) -> String {
@@ -111,7 +114,7 @@ pub fn location(comparison: &Comparison) -> String {
     };
     format!(
         "<section><h2>Where and when</h2>{body}<p class='meta'>{} places and times were looked at; all of them are paid for in p.</p></section>\n",
-        location.looks
+        location.look_elsewhere_count
     )
 }
 
@@ -172,7 +175,12 @@ fn trends(recording: &RecordingComparison) -> String {
     if recording.trends.is_empty() {
         return String::new();
     }
-    let one = |trend: &Trend| figure(bars::trend(trend, trend.kind.unit(recording.is_calibrated)));
+    let one = |trend: &Trend| {
+        figure(trend_bars::trend(
+            trend,
+            trend.kind.unit(recording.is_calibrated),
+        ))
+    };
     let plots: String = recording.trends.iter().map(one).collect();
     format!("<h3>Residual against what it may depend on</h3>\n<div class='small'>{plots}</div>\n")
 }
@@ -191,7 +199,7 @@ pub fn list(title: &str, texts: &[String]) -> String {
 
 /// How the figures were made.
 pub fn method(comparison: &Comparison) -> String {
-    let looks = comparison.looks;
+    let looks = comparison.look_elsewhere_count;
     format!(
         "<section><h2>How to read this</h2><ul>\
 <li><b>Residual</b> is measured minus simulated. \u{03c3} is the standard deviation of the noise that repeats of a protocol show; without repeats it is only how rough the recording itself is, and what stands out of that may still be noise. The band marks \u{00b1}2\u{03c3}.</li>\

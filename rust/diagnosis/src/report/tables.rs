@@ -1,12 +1,16 @@
-//! Tables of the page: estimates, measures, worst places.
+//! Tables of the page: estimates, measures, largest residuals.
 
-use super::bars;
-use super::svg::escaped;
-use crate::comparison::{Comparison, Measure, RecordingComparison, WorstPlace};
-use crate::prints::{PrintRegion, Printed};
-use crate::words::{capital, number, percent};
-use crate::{Estimate, Target};
 use std::fmt::Write;
+
+use crate::comparison::quantities::{Measure, WorstPlace};
+use crate::comparison::result::{Comparison, RecordingComparison};
+use crate::number_format::{capital, number, percent};
+use crate::parameters::estimate::Estimate;
+use crate::parameters::target::Target;
+use crate::prints::print_region::PrintRegion;
+use crate::prints::printed::Printed;
+use crate::report::svg::escaped;
+use crate::report::trend_bars;
 
 /// A table of rows; columns are numbers unless their head begins with `<`.
 fn table(heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -81,7 +85,7 @@ pub fn estimates(estimates: &[Estimate]) -> String {
             format!("<b>{}</b>{flag}", number(estimate.value)),
             range(estimate.low, estimate.high),
             range(low, high),
-            bars::estimate(estimate),
+            trend_bars::estimate(estimate),
         ]
     };
     table(&heads, estimates.iter().map(row))

@@ -31,7 +31,7 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<(f64, String)> {
 
 /// A tick as a power of ten, `5×10⁻⁹`: its digits are few, since ticks are round.
 fn in_powers(value: f64) -> String {
-    let text = crate::words::number(value);
+    let text = crate::number_format::number(value);
     match text.split_once('\u{00d7}') {
         Some((digits, power)) if digits.contains('.') => {
             let digits = digits.trim_end_matches('0').trim_end_matches('.');

@@ -1,0 +1,149 @@
+//! Derivatives of the surrogate's forces by its parameters.
+
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::mechanism::{Law, Mechanism};
+use crate::forward::surrogate::stiffness_factor::modes;
+use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::parameters::surrogate_parameter::Kind;
+
+impl Surrogate<'_> {
+    /// Derivative of one recording's forces by a coordinate, or None where it does not matter.
+    pub fn slopes(
+        &self,
+        (model, at): (&Model<'_>, &[f64]),
+        (number, course): (usize, usize),
+        forces: &[f64],
+    ) -> Option<Vec<f64>> {
+        let coordinate = &model.coordinates[number];
+        if !self.matters(model, coordinate.kind, course) {
+            return None;
+        }
+        let known = self.in_proportion((model, at), (coordinate.kind, course), forces);
+        if known.is_some() {
+            return known;
+        }
+        let (low, high) = coordinate.bounds;
+        let step = match high - at[number] > at[number] - low {
+            true => coordinate.step,
+            false => -coordinate.step,
+        };
+        let mut moved = at.to_vec();
+        moved[number] += step;
+        let moved = self.forces(model, &model.setting(self, &moved), course);
+        let slope = moved.iter().zip(forces).map(|(b, a)| (b - a) / step);
+        Some(slope.collect())
+    }
+
+    /// Whether a recording's forces depend on a number.
+    fn matters(&self, model: &Model<'_>, kind: Kind, course: usize) -> bool {
+        let one = &self.courses[course];
+        match kind {
+            Kind::Zero(c) | Kind::Gain(c) => c == course,
+            Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
+            Kind::Of(of, _) => match &model.mechanisms[of].law {
+                Law::GainStep { from } => one.order >= *from,
+                _ => true,
+            },
+            Kind::First | Kind::Limit => true,
+        }
+    }
+
+    /// The derivative by the logarithm of a factor on all that is read of a depth, where it is one: not beside what the instrument adds to
+    /// the force or takes off, nor, of the elastic answer, beside what remembers or clings.
+    fn in_proportion(
+        &self,
+        (model, at): (&Model<'_>, &[f64]),
+        (kind, course): (Kind, usize),
+        forces: &[f64],
+    ) -> Option<Vec<f64>> {
+        let all = |known: fn(&Mechanism) -> bool| model.mechanisms.iter().all(known);
+        match kind {
+            Kind::Gain(_) if all(Mechanism::is_read_in_proportion) => Some(forces.to_vec()),
+            Kind::Scale(_) if all(Mechanism::is_in_proportion) => Some(forces.to_vec()),
+            Kind::Form(place, mode) if all(Mechanism::is_in_proportion) => {
+                let table = &self.elastic.places[place];
+                let depths = self.depths(model, &model.setting(self, at), (course, forces));
+                let slope = |(d, f): (&f64, &f64)| f * modes(table, *d)[mode];
+                Some(depths.iter().zip(forces).map(slope).collect())
+            }
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use thenar_contact::effects::Effect;
+
+    use super::*;
+    use crate::forward::mesh::nuisance::KNOTS;
+    use crate::forward::surrogate::prepared_study::PreparedStudy;
+    use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+    use crate::observe::measured::Phase;
+    use crate::parameters::surrogate_parameter::Coordinate;
+    use crate::selection::candidates::singles;
+
+    /// A ball pressed to 2 mm, whose every shared number is free.
+    fn pressed() -> PreparedStudy {
+        let ball = |d: f64| 10.0 * d * d.sqrt();
+        let read = |time: f64| -> Reading { (time, time, Phase::Load, 0.9 * ball(time)) };
+        let readings = (0..=80).map(|k| read(f64::from(k) / 40.0)).collect();
+        let (mut made, _) = ready(vec![tool(2.0, ball, |d| d.sqrt())], &[(0, readings)], 0.1);
+        let kinds = [Kind::Gain(0), Kind::Scale(0), Kind::Touch(0), Kind::Zero(0)];
+        let forms = (0..KNOTS).map(|k| Kind::Form(0, k));
+        let free = kinds.into_iter().chain(forms).map(|kind| Coordinate {
+            kind,
+            start: 0.03,
+            bounds: (-1.0, 1.0),
+            prior: Some(0.1),
+            step: 1e-5,
+        });
+        made.shared.extend(free);
+        made
+    }
+
+    /// Most that slopes by a number are off central differences, over the largest slope.
+    fn off(surrogate: &Surrogate<'_>, (model, at): (&Model<'_>, &[f64]), number: usize) -> f64 {
+        let beside = |way: f64| {
+            let mut moved = at.to_vec();
+            moved[number] += way;
+            surrogate.all_forces(model, &moved).concat()
+        };
+        let (low, high) = (beside(-1e-5), beside(1e-5));
+        let forces = surrogate.all_forces(model, at).concat();
+        let slopes = surrogate
+            .slopes((model, at), (number, 0), &forces)
+            .expect("slopes");
+        let most = slopes.iter().fold(1e-3, |most: f64, s| most.max(s.abs()));
+        let ends = low.iter().zip(&high);
+        let off = slopes
+            .iter()
+            .zip(ends)
+            .map(|(slope, (a, b))| (slope - (b - a) / 2e-5).abs());
+        off.fold(0.0, f64::max) / most
+    }
+
+    /// Beside every mechanism that needs neither a table of its own nor a measured shape, and for every shared number: what a fit
+    /// steps by is what the forces do.
+    #[test]
+    fn derivatives_equal_central_differences() {
+        let ready = pressed();
+        let surrogate = ready.surrogate();
+        let mut tried = singles(ready.scales);
+        tried.retain(|m| !matches!(m.law, Law::Tabulated(_) | Law::Floor(_)));
+        let (effect, law) = (Effect::Gain, Law::GainStep { from: 0 });
+        tried.push(Mechanism { effect, law });
+        for mechanism in &tried {
+            let model = Model::new(&surrogate, std::slice::from_ref(mechanism));
+            let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
+            at[ready.shared.len()..].iter_mut().for_each(|x| *x += 0.1);
+            for number in 0..ready.shared.len() {
+                let (off, kind) = (
+                    off(&surrogate, (&model, &at), number),
+                    model.coordinates[number].kind,
+                );
+                assert!(off < 2e-2, "{} {kind:?}: {off}", mechanism.effect.name());
+            }
+        }
+    }
+}

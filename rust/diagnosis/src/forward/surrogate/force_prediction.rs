@@ -1,0 +1,286 @@
+//! Force prediction of the surrogate: elastic tables, relaxing springs, tissue laws, fixture compliance, and the instrument.
+//!
+//! It shares tables, noise and priors with the fit, and answers a hundred times faster than a protocol that is followed
+//! moment by moment on the skin's mesh.
+
+use crate::forward::surrogate::candidate_model::{Model, Setting};
+use crate::forward::surrogate::force_recording::Row;
+use crate::forward::surrogate::mechanism::Law;
+use crate::forward::surrogate::relaxing_springs::{SpringHistory, relaxation_loss};
+use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::observe::measured::Phase;
+
+/// Most rounds in which the force is sought to which a stage yields, the part of the largest force to which it is found, and the largest
+/// part of a round's change that the next may be foreseen to make.
+const YIELDS: usize = 6;
+const FOUND: f64 = 1e-6;
+const STIFFEST: f64 = 0.5;
+
+/// What a tool at its site answers for the numbers of a model.
+struct Answer {
+    /// Stiffness of the springs, N/mm.
+    springs: Vec<f64>,
+    /// Depths at which they touch, mm.
+    touches: Vec<f64>,
+}
+
+impl Surrogate<'_> {
+    /// Forces of one recording's rows, N.
+    pub fn forces(&self, model: &Model<'_>, set: &Setting, course: usize) -> Vec<f64> {
+        let rows = self.courses[course].rows.iter();
+        // Nothing is known where nothing was read yet.
+        let known: Vec<f64> = rows.map(|r| f64::max(r.force_n, 0.0)).collect();
+        let yields = model.mechanisms.iter().any(|m| m.law == Law::Compliance);
+        let mut forces = match yields {
+            true => self.with_compliance(model, set, (course, known)),
+            false => self.pressed(model, set, (course, &known)),
+        };
+        let gain = libm::exp(set.gain[course]);
+        self.read(model, set, (&self.courses[course], gain, &mut forces));
+        forces
+    }
+
+    /// Forces on the tool where the stage yields to them: what is measured is only where the search begins, and a stage that is as soft as
+    /// the skin would not let it end by itself (each row is led on by Aitken's rule).
+    fn with_compliance(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, mut at): (usize, Vec<f64>),
+    ) -> Vec<f64> {
+        for _ in 0..YIELDS {
+            let once = self.pressed(model, set, (course, &at));
+            let twice = self.pressed(model, set, (course, &once));
+            let mut off = 0.0f64;
+            for ((at, once), twice) in at.iter_mut().zip(&once).zip(&twice) {
+                let (first, second) = (once - *at, twice - once);
+                off = off.max(first.abs());
+                let part = match first == 0.0 {
+                    true => 0.0,
+                    false => (second / first).min(STIFFEST),
+                };
+                *at += first / (1.0 - part);
+            }
+            if off < FOUND * self.most.0 {
+                break;
+            }
+        }
+        at
+    }
+
+    /// Forces on the tool of one recording, where the stage yields to forces that are known.
+    fn pressed(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, known): (usize, &[f64]),
+    ) -> Vec<f64> {
+        let one = &self.courses[course];
+        let table = &self.elastic.places[one.place];
+        let depths = self.depths(model, set, (course, known));
+        let answer = self.answer(model, set, one.place);
+        let elastic = |d: &f64| match *d > 0.0 {
+            true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
+            false => 0.0,
+        };
+        let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
+        let (relaxation_branches, shares) = self.relaxation_branches(model, set, (one, &depths));
+        if !relaxation_branches.is_empty() {
+            let way = SpringHistory {
+                depths: &depths,
+                touches: &answer.touches,
+                relaxation_branches: &relaxation_branches,
+                shares: &shares,
+            };
+            let more = relaxation_loss(&way, &answer.springs);
+            forces.iter_mut().zip(more).for_each(|(f, m)| *f += m);
+        }
+        self.soften_by_use(model, set, ((one, &depths), &mut forces));
+        self.adhere(model, set, ((one, &depths), &mut forces));
+        forces
+    }
+
+    /// True depths of a recording's rows, mm.
+    pub(crate) fn depths(
+        &self,
+        model: &Model<'_>,
+        set: &Setting,
+        (course, known): (usize, &[f64]),
+    ) -> Vec<f64> {
+        let one = &self.courses[course];
+        let zero = set.zero[course] + set.touch[one.place];
+        let mut yields = 0.0;
+        for (number, mechanism) in model.mechanisms.iter().enumerate() {
+            if mechanism.law == Law::Compliance {
+                yields += set.of[number][0];
+            }
+        }
+        let depth = |(row, force): (&Row, &f64)| row.depth_mm - zero - yields * force.max(0.0);
+        one.rows.iter().zip(known).map(depth).collect()
+    }
+
+    fn answer(&self, model: &Model<'_>, set: &Setting, place: usize) -> Answer {
+        let table = &self.elastic.places[place];
+        let depths: Vec<f64> = table.roots.iter().map(|r| r * r).collect();
+        let force = |(d, f): (&f64, &f64)| f * self.factor(model, set, (place, *d));
+        let rungs: Vec<f64> = depths.iter().zip(&table.rungs).map(force).collect();
+        let secant = |k: usize| (rungs[k + 1] - rungs[k]) / (depths[k + 1] - depths[k]);
+        let springs = (0..rungs.len() - 1)
+            .map(|k| secant(k) - if k > 0 { secant(k - 1) } else { 0.0 })
+            .collect();
+        Answer {
+            springs,
+            touches: depths,
+        }
+    }
+
+    /// Stacked predictions of all samples; those that are not screened are what was measured.
+    pub fn stacked(&self, forces: &[Vec<f64>]) -> Vec<f64> {
+        let mut all = self.measured.to_vec();
+        for (course, forces) in self.courses.iter().zip(forces) {
+            for (row, force) in course.rows.iter().zip(forces) {
+                if let Some(sample) = row.sample {
+                    all[sample] = *force;
+                }
+            }
+        }
+        all
+    }
+
+    /// Forces of all recordings.
+    pub fn all_forces(&self, model: &Model<'_>, at: &[f64]) -> Vec<Vec<f64>> {
+        let set = model.setting(self, at);
+        (0..self.courses.len())
+            .map(|c| self.forces(model, &set, c))
+            .collect()
+    }
+
+    /// Phase of every screened sample, and the course it belongs to.
+    pub fn phases(&self) -> Vec<(usize, usize, Phase)> {
+        let mut all = Vec::new();
+        for (c, course) in self.courses.iter().enumerate() {
+            all.extend(
+                course
+                    .rows
+                    .iter()
+                    .filter_map(|r| r.sample.map(|s| (s, c, r.phase))),
+            );
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::parameters::surrogate_parameter::Coordinate;
+    use thenar_contact::effects::Effect;
+
+    use super::*;
+    use crate::forward::surrogate::mechanism::{Mechanism, Stage};
+    use crate::forward::surrogate::prepared_study::PreparedStudy;
+    use crate::forward::surrogate::synthetic::{ready, tool};
+    use crate::parameters::surrogate_parameter::Kind;
+
+    /// A press at 1 mm/s to 2 mm by a tool of that law; what was read is nothing.
+    fn pressed(force: impl Fn(f64) -> f64) -> PreparedStudy {
+        pressed_and_read(force, |_| 0.0)
+    }
+
+    /// The same with readings by depth.
+    fn pressed_and_read(force: impl Fn(f64) -> f64, reading: impl Fn(f64) -> f64) -> PreparedStudy {
+        let read = |k: u32| {
+            let time = f64::from(k) / 40.0;
+            (time, time, Phase::Load, reading(time))
+        };
+        let readings = (0..=80).map(read).collect();
+        ready(vec![tool(2.0, force, |_| 1.0)], &[(0, readings)], 0.1).0
+    }
+
+    /// Forces with a mechanism of that size, in tissue as it is.
+    fn forces(ready: &PreparedStudy, mechanism: (Effect, Law), size: f64) -> Vec<f64> {
+        let surrogate = ready.surrogate();
+        let (effect, law) = mechanism;
+        let all = [Mechanism { effect, law }];
+        let model = Model::new(&surrogate, &all);
+        let mut at: Vec<f64> = model.coordinates.iter().map(|c| c.start).collect();
+        *at.last_mut().unwrap() = size;
+        surrogate.all_forces(&model, &at).concat()
+    }
+
+    /// F = k (s - c F), so F = k s / (1 + c k), however soft the stage is against the skin; and for a ball, whose force is put in again.
+    #[test]
+    fn compliant_fixture_equals_closed_form() {
+        let yields = (Effect::FixtureCompliance, Law::Compliance);
+        for part in [0.1, 0.5, 0.8] {
+            // Of the deepest depth, at the force without.
+            let linear = forces(&pressed(|d| 10.0 * d), yields.clone(), 0.1 * part);
+            for (k, force) in linear.iter().enumerate() {
+                let wanted = 10.0 * k as f64 / 40.0 / (1.0 + part);
+                assert!((force - wanted).abs() < 1e-4, "{part}: {force} {wanted}");
+            }
+            let ball = |d: f64| 10.0 * libm::pow(d, 1.5);
+            let compliance = part * 2.0 / ball(2.0);
+            let planned = pressed_and_read(ball, |_| f64::NAN);
+            for ready in [pressed(ball), planned] {
+                let round = forces(&ready, yields.clone(), compliance);
+                for (k, force) in round.iter().enumerate() {
+                    let wanted = ball(k as f64 / 40.0 - compliance * force);
+                    assert!((force - wanted).abs() < 0.01, "{part}: {force} {wanted}");
+                }
+            }
+        }
+    }
+
+    /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.
+    #[test]
+    fn limits_apply_before_or_after_the_gain() {
+        let mut ready = pressed_and_read(|d| 10.0 * d, |_| f64::NAN);
+        ready.scales.forces = (20.0, 20.0);
+        let gain = 1.25f64;
+        ready.shared.push(Coordinate {
+            kind: Kind::Gain(0),
+            start: gain.ln(),
+            bounds: (-1.0, 1.0),
+            prior: Some(0.1),
+            step: 1e-4,
+        });
+        for (stage, limit) in [(Stage::First, 8.0 * gain), (Stage::Last, 8.0)] {
+            let ceiling = forces(
+                &ready,
+                (Effect::Saturation, Law::Saturation(stage)),
+                f64::ln(8.0 / 20.0),
+            );
+            let most = ceiling.iter().fold(0.0, |a, b| f64::max(a, *b));
+            assert!((most / limit - 1.0).abs() < 1e-6, "{stage:?}: {most}");
+            let floor = forces(&ready, (Effect::Threshold, Law::Floor(stage)), 8.0 / 20.0);
+            let seen = floor.iter().filter(|f| **f > 0.9 * limit);
+            let least = seen.fold(f64::INFINITY, |a, b| a.min(*b));
+            assert!((least / limit - 1.0).abs() < 0.06, "{stage:?}: {least}");
+        }
+    }
+
+    /// A reading beside a floor is off by the force that is lacking, not by all of it: skin that is stiffer or softer than the model.
+    #[test]
+    fn floor_residual_is_bounded_by_the_missing_force() {
+        for stiffer in [1.06, 0.94] {
+            let reading = |d: f64| match 10.0 * stiffer * d < 8.0 {
+                true => 0.0,
+                false => 10.0 * stiffer * d,
+            };
+            let mut ready = pressed_and_read(|d| 10.0 * d, reading);
+            ready.scales.forces = (20.0, 20.0);
+            let blind = (Effect::Threshold, Law::Floor(Stage::Last));
+            let told = forces(&ready, blind, 8.0 / 20.0);
+            let off = told.iter().zip(&ready.courses[0].rows).map(|(f, row)| {
+                let same_stiffness = row.force_n / stiffer;
+                (f - same_stiffness).abs()
+            });
+            assert!(
+                off.fold(0.0, f64::max) < 1.01 * 8.0 * 0.06 / 0.94,
+                "{stiffer}"
+            );
+            // Well below it nothing is read, well above it all of it.
+            assert!(told[20].abs() < 1e-9 && (told[70] - 17.5).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The noise model of a study: standard deviation of every sample, from repeats where there are any.
+
+use crate::noise::channel::{CHANNELS, Channel};
+use crate::noise::mat_smoothing::smoothed;
+use crate::noise::periodic_component::Rhythm;
+use crate::noise::repeat_scatter::Repeats;
+use crate::noise::scatter::Scatter;
+use crate::observe::measured::{Measured, Quantity};
+use crate::observe::robust_scale::noise_of;
+
+/// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
+const FLOOR: f64 = 2e-4;
+/// Standard deviation taken for a mat whose frames cannot tell it, as a part of the largest reading. A good film's
+/// coefficient of variation is 1.5 % (Yao 2019, Measurement 145:525), a common one's calibration error 2.7 % rms.
+const UNKNOWN_MAT: f64 = 0.03;
+
+/// What is known of the noise of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of every sample, in its unit, by recording.
+    pub sigma: Vec<Vec<f64>>,
+    /// Time over which noise forgets itself, s, by [`CHANNELS`]; 0: at once.
+    pub memory_s: [f64; CHANNELS.len()],
+    /// Degrees of freedom of the standard deviation; None without repeats.
+    pub degrees: Option<f64>,
+    /// Standard deviation between repeats of the logarithm of the gain; 0 where it cannot be told.
+    pub gain: f64,
+    /// Standard deviation between repeats of the depth of first touch, mm; None where it cannot be told.
+    pub zero_mm: Option<f64>,
+    /// By [`CHANNELS`]: standard deviation of what noise adds from sample to sample, over what the memory says.
+    pub step: [f64; CHANNELS.len()],
+    /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
+    pub drawn_from: [Vec<f64>; CHANNELS.len()],
+    /// The clearest rhythm in which the forces of repeats differ.
+    pub rhythm: Option<Rhythm>,
+    /// What a reader should be told.
+    pub notes: Vec<String>,
+}
+
+/// Noise of a study's recordings.
+///
+/// `simulated` are predictions by recording, and `slopes` their derivatives by depth (per mm): along these the repeats of a protocol may
+/// differ as a whole (gain, contact zero) without being noisy. `is_used` says which recordings may be looked at; `noise_n` is the
+/// data sheet's noise of a force.
+pub fn noise(
+    measured: &[Measured],
+    (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
+    is_used: &[bool],
+    noise_n: Option<f64>,
+) -> Noise {
+    let groups = crate::noise::repeat_scatter::groups(measured, is_used);
+    let scatter = CHANNELS.map(|channel| {
+        Repeats::new(channel, &groups, measured).scatter(measured, (simulated, slopes))
+    });
+    let degrees: f64 = scatter.iter().flatten().map(|s| s.degrees).sum();
+    let forces = scatter[0].as_ref();
+    let mut notes = Vec::new();
+    if degrees == 0.0 {
+        notes.push(
+            "no protocol was repeated: noise is judged by how rough each recording is, and whether the misfit is more than noise cannot be tested"
+                .to_owned(),
+        );
+    }
+    let sigma = measured
+        .iter()
+        .enumerate()
+        .map(|(recording, one)| sigma(one, recording, &scatter, noise_n))
+        .collect();
+    Noise {
+        sigma,
+        memory_s: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(0.0, |s| s.memory_s)),
+        degrees: (degrees > 0.0).then_some(degrees),
+        gain: forces.or(scatter[3].as_ref()).map_or(0.0, |s| s.gain),
+        zero_mm: forces.and_then(|s| s.zero_mm),
+        step: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(1.0, |s| s.step)),
+        drawn_from: [0, 1, 2, 3, 4].map(|c| {
+            scatter[c]
+                .as_ref()
+                .map_or_else(Vec::new, |s| s.drawn_from.clone())
+        }),
+        rhythm: forces.and_then(|s| s.rhythm),
+        notes,
+    }
+}
+
+/// Standard deviation of every sample of a recording.
+fn sigma(
+    measured: &Measured,
+    recording: usize,
+    scatter: &[Option<Scatter>; CHANNELS.len()],
+    noise_n: Option<f64>,
+) -> Vec<f64> {
+    let of_channel = CHANNELS.map(|channel| {
+        let is_it = |q: Quantity| Channel::of(q) == channel;
+        let samples = measured.samples.iter().filter(|s| is_it(s.quantity));
+        let values: Vec<f64> = samples.map(|s| s.value).collect();
+        let most = values.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
+        if channel == Channel::Scan {
+            // In mm: a scanner's noise does not grow with how far the skin was moved.
+            let single = measured.scan.as_ref().map_or(0.0, |scan| scan.scatter_mm);
+            let repeats = scatter[channel as usize].as_ref();
+            return (repeats.map_or(single, |s| s.share_of(recording)), 0.0);
+        }
+        let (share, proportional) = match &scatter[channel as usize] {
+            Some(scatter) => (scatter.share_of(recording), scatter.proportional),
+            None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),
+            None => (noise_of(&values) / most.max(f64::MIN_POSITIVE), 0.0),
+        };
+        let floor = match channel {
+            Channel::Force if scatter[0].is_none() => noise_n.unwrap_or(0.0),
+            _ => 0.0,
+        };
+        ((share.max(FLOOR) * most).max(floor), proportional)
+    });
+    let one = |quantity: Quantity, value: f64| {
+        let (constant, proportional) = of_channel[Channel::of(quantity) as usize];
+        constant.hypot(proportional * value).max(f64::MIN_POSITIVE)
+    };
+    let judged = smoothed(measured);
+    let samples = measured.samples.iter().zip(&judged);
+    samples.map(|(s, by)| one(s.quantity, *by)).collect()
+}

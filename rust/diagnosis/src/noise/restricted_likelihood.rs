@@ -1,0 +1,300 @@
+//! Memory and size of the noise in repeats by restricted likelihood: gain and first touch of every repeat are unknown, and what finding
+//! them hides of the noise is allowed for (Patterson & Thompson 1971; Harville 1977).
+//!
+//! Noise forgets itself as `exp(-t / memory)`, at whatever times the samples stand: a series of such noise is independent in
+//! `(r_k - c_k r_(k-1)) / sqrt(1 - c_k^2)`, and so are its gain and touch, which are found there by least squares.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::noise::deviations::{
+    Deviations, LEAST_FRESH, OUTLIER, autocorrelation, innovation, robust_deviation,
+};
+use crate::observe::robust_scale::median;
+
+/// Ratios of memory to sampling interval between which the likeliest is sought, and how finely.
+const LEAST: f64 = 0.15;
+const MOST: f64 = 30.0;
+const TRIED: usize = 24;
+const HALVINGS: usize = 4;
+/// How much likelier a memory must be than none, nats, to be believed.
+const BELIEVED: f64 = 2.0;
+
+/// What the repeats of all groups show.
+pub struct NoiseEstimate {
+    /// s; 0: none.
+    pub memory_s: f64,
+    /// By group: standard deviation, and its degrees of freedom.
+    pub sizes: Vec<(f64, f64)>,
+}
+
+/// The likeliest memory, and each group's size under it; outliers are left out.
+pub fn estimate(all: &[Deviations]) -> NoiseEstimate {
+    let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, None)).collect();
+    let rough = likeliest(all, &kept);
+    let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, Some(rough))).collect();
+    let memory_s = likeliest(all, &kept);
+    let pairs = all.iter().zip(&kept);
+    NoiseEstimate {
+        memory_s,
+        sizes: pairs
+            .map(|(d, kept)| {
+                let (sum, degrees, _) = left(d, kept, memory_s);
+                ((sum / degrees).sqrt(), degrees)
+            })
+            .collect(),
+    }
+}
+
+/// Samples that are no outliers: not far off, and, once a memory is known, not far from what their neighbors say of them.
+pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
+    let n = of.time.len();
+    let off = |series: &Vec<f64>, k: usize| -> f64 {
+        let Some(memory_s) = memory_s else {
+            return series[k];
+        };
+        let share = |at: Option<usize>| {
+            let at = at.filter(|at| *at < n)?;
+            Some((
+                series[at],
+                autocorrelation((of.time[k] - of.time[at]).abs(), memory_s),
+            ))
+        };
+        let ((a, before), (b, after)) = (
+            share(k.checked_sub(1)).unwrap_or((0.0, 0.0)),
+            share(Some(k + 1)).unwrap_or((0.0, 0.0)),
+        );
+        // Mean and deviation given both neighbors.
+        let (c, d) = (before * before, after * after);
+        let all = (1.0 - c * d).max(LEAST_FRESH);
+        let mean = (a * before * (1.0 - d) + b * after * (1.0 - c)) / all;
+        (series[k] - mean) / ((1.0 - c) * (1.0 - d) / all).max(LEAST_FRESH).sqrt()
+    };
+    let all: Vec<Vec<f64>> = of
+        .rest
+        .iter()
+        .map(|series| (0..n).map(|k| off(series, k)).collect())
+        .collect();
+    let most = OUTLIER * robust_deviation(&all.concat());
+    (0..n)
+        .filter(|&k| most == 0.0 || all.iter().all(|series| series[k].abs() <= most))
+        .collect()
+}
+
+/// The memory of largest restricted likelihood, s; none where it is hardly likelier than none.
+fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
+    let steps = all
+        .iter()
+        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
+    let step = median(&mut steps.collect::<Vec<f64>>());
+    let likelihood = |memory_s: f64| -> f64 {
+        let each = all.iter().zip(kept);
+        each.map(|(d, kept)| left(d, kept, memory_s).2).sum()
+    };
+    let at = |place: f64| step * LEAST * libm::pow(MOST / LEAST, place / TRIED as f64);
+    let tried = (0..=TRIED).map(|k| (likelihood(at(k as f64)), k as f64));
+    let mut best = tried.fold(
+        (f64::NEG_INFINITY, 0.0),
+        |a, b| if b.0 > a.0 { b } else { a },
+    );
+    for halving in 0..HALVINGS {
+        let width = libm::pow(0.5, halving as f64 + 1.0);
+        for place in [best.1 - width, best.1 + width] {
+            let found = likelihood(at(place));
+            if found > best.0 {
+                best = (found, place);
+            }
+        }
+    }
+    match best.0 > likelihood(0.0) + BELIEVED {
+        true => at(best.1),
+        false => 0.0,
+    }
+}
+
+/// Sum of the squares that gain and touch leave of the whitened deviations, their degrees of freedom, and the restricted likelihood with
+/// the size that these have, nats.
+fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
+    let repeats = of.rest.len() as f64 - 1.0;
+    let degrees = (repeats * (kept.len() as f64 - 2.0)).max(1.0);
+    let (mut before, mut log) = (None::<usize>, 0.0);
+    let (mut gram, mut pulls) = (Matrix2::zeros(), vec![Vector2::zeros(); of.rest.len()]);
+    let mut sum = 0.0;
+    for &k in kept {
+        let carried = before.map_or(0.0, |j| autocorrelation(of.time[k] - of.time[j], memory_s));
+        let of_all = |values: &dyn Fn(usize) -> f64| {
+            innovation(values(k), before.map_or(0.0, values), carried)
+        };
+        let along = Vector2::new(of_all(&|k| of.along[k].x), of_all(&|k| of.along[k].y));
+        gram += along * along.transpose();
+        for (series, pull) in of.rest.iter().zip(&mut pulls) {
+            let own = of_all(&|k| series[k]);
+            sum += own * own;
+            *pull += along * own;
+        }
+        log += libm::log((1.0 - carried * carried).max(LEAST_FRESH));
+        before = Some(k);
+    }
+    // Scaled, so that what one adds beside the other can be told.
+    let scale = Matrix2::from_diagonal(
+        &gram
+            .diagonal()
+            .map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt()),
+    );
+    let unit = scale * gram * scale;
+    let taken = unit.try_inverse().map_or(0.0, |inverse| {
+        let part = |pull: &Vector2<f64>| (scale * pull).dot(&(inverse * scale * pull));
+        pulls.iter().map(part).sum()
+    });
+    let sum = (sum - taken).max(f64::MIN_POSITIVE);
+    let both = libm::log(gram.determinant().max(f64::MIN_POSITIVE));
+    let likelihood = -0.5 * (repeats * (log + both) + degrees * libm::log(sum / degrees));
+    (sum, degrees, likelihood)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::random::Random;
+    use nalgebra::{DMatrix, DVector};
+
+    /// Moments of a fast press, a long hold and a fast way up, s.
+    fn times() -> Vec<f64> {
+        let steps = [(22, 0.02), (26, 0.3), (24, 0.02), (6, 0.5)];
+        let each = steps.iter().flat_map(|(n, step)| vec![*step; *n]);
+        let passed = each.scan(0.0, |now, step| {
+            *now += step;
+            Some(*now)
+        });
+        passed.collect()
+    }
+
+    /// Two repeats of noise of standard deviation 1 with that memory, with a gain and a touch of their own found and taken out.
+    pub fn deviations(memory_s: f64, random: &mut Random) -> Deviations {
+        let time = times();
+        let n = time.len();
+        let press = |t: f64| (t / 0.44).min(1.0).min(((time[n - 7] - t) / 0.48).max(0.0));
+        let columns = DMatrix::from_fn(n, 2, |k, j| match j {
+            0 => press(time[k]).powf(1.5),
+            _ => press(time[k]).sqrt(),
+        });
+        let mut draw = || {
+            let mut noise = vec![random.normal()];
+            for k in 1..n {
+                let carried = autocorrelation(time[k] - time[k - 1], memory_s);
+                noise.push(
+                    carried * noise[k - 1] + (1.0 - carried * carried).sqrt() * random.normal(),
+                );
+            }
+            DVector::from_vec(noise)
+        };
+        let half = 0.5 * (draw() - draw());
+        let gram = (columns.transpose() * &columns).try_inverse().unwrap();
+        let rest = &half - &columns * (&gram * (columns.transpose() * &half));
+        Deviations {
+            group: vec![0, 1],
+            time,
+            most: 1.0,
+            rest: vec![rest.as_slice().to_vec(), (-rest).as_slice().to_vec()],
+            whole: vec![Vector2::zeros(); 2],
+            along: columns
+                .row_iter()
+                .map(|r| Vector2::new(r[0], r[1]))
+                .collect(),
+        }
+    }
+
+    /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
+    /// it does to a slow signal, which goes as the variance times the memory.
+    #[test]
+    fn correlation_time_and_sigma_are_unbiased() {
+        for memory_s in [0.15, 0.6] {
+            let mut random = Random::new(5);
+            let studies = 60.0;
+            let mut logs = [0.0; 2];
+            for _ in 0..60 {
+                let all: Vec<Deviations> =
+                    (0..5).map(|_| deviations(memory_s, &mut random)).collect();
+                let found = estimate(&all);
+                let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
+                let ratio = found.memory_s / memory_s;
+                logs[0] += libm::log(ratio) / studies;
+                logs[1] += libm::log(ratio * variance) / studies;
+            }
+            assert!(
+                logs[0].abs() < 0.1 && logs[1].abs() < 0.1,
+                "{memory_s}: {logs:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn white_noise_has_zero_correlation_time() {
+        let mut random = Random::new(2);
+        let with = (0..100).filter(|_| {
+            let all: Vec<Deviations> = (0..5).map(|_| deviations(0.0, &mut random)).collect();
+            estimate(&all).memory_s > 0.0
+        });
+        // Twice two nats is beyond the 95 % point of a chi-square of one number, and a memory can only be longer than none.
+        let often = with.count();
+        assert!(often <= 7, "{often} of 100");
+    }
+
+    /// Without memory the size is that of plain least squares.
+    #[test]
+    fn white_noise_likelihood_is_least_squares() {
+        let of = deviations(0.15, &mut Random::new(1));
+        let n = of.time.len();
+        let all: Vec<usize> = (0..n).collect();
+        let (sum, degrees, _) = left(&of, &all, 0.0);
+        let squares: f64 = of.rest.iter().flatten().map(|r| r * r).sum();
+        assert!((sum / squares - 1.0).abs() < 1e-9);
+        assert_eq!(degrees, n as f64 - 2.0);
+    }
+
+    /// Against the restricted likelihood with whole matrices (Harville 1977), of every third sample left out: what it
+    /// gains from one memory to another, and the squares.
+    #[test]
+    fn restricted_likelihood_equals_dense_matrix_form() {
+        let of = deviations(0.4, &mut Random::new(3));
+        let kept: Vec<usize> = (0..of.time.len()).filter(|k| k % 3 != 1).collect();
+        let columns = DMatrix::from_fn(kept.len(), 2, |k, j| of.along[kept[k]][j]);
+        let whole = |memory_s: f64| {
+            let apart = |i: usize, j: usize| (of.time[kept[i]] - of.time[kept[j]]).abs();
+            let all = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+                libm::exp(-apart(i, j) / memory_s)
+            });
+            let root = all.cholesky().unwrap();
+            let gram = columns.transpose() * root.solve(&columns);
+            let inverse = gram.clone().try_inverse().unwrap();
+            let squares = of.rest.iter().map(|series| {
+                let own = DVector::from_fn(kept.len(), |k, _| series[kept[k]]);
+                let pull = columns.transpose() * root.solve(&own);
+                own.dot(&root.solve(&own)) - pull.dot(&(&inverse * &pull))
+            });
+            let sum: f64 = squares.sum();
+            let degrees = kept.len() as f64 - 2.0;
+            let logs = libm::log(root.determinant()) + libm::log(gram.determinant());
+            (sum, -0.5 * (logs + degrees * libm::log(sum / degrees)))
+        };
+        let own = |memory_s: f64| {
+            let (sum, _, likelihood) = left(&of, &kept, memory_s);
+            (sum, likelihood)
+        };
+        let gained = |by: &dyn Fn(f64) -> (f64, f64)| by(0.9).1 - by(0.2).1;
+        assert!((own(0.4).0 / whole(0.4).0 - 1.0).abs() < 1e-9);
+        assert!((gained(&own) - gained(&whole)).abs() < 1e-6);
+    }
+
+    /// A reading far from all others is left out, and so is one that is far only from its neighbors.
+    #[test]
+    fn outliers_are_left_out() {
+        let mut of = deviations(0.6, &mut Random::new(7));
+        let quiet = within(&of, Some(0.6)).len();
+        for (at, off, memory_s) in [(30, 8.0, None), (10, 2.5, Some(0.6))] {
+            of.rest[0][at] += off;
+            of.rest[1][at] -= off;
+            assert!(!within(&of, memory_s).contains(&at), "{at}");
+        }
+        assert!(quiet > of.time.len() - 4);
+    }
+}
