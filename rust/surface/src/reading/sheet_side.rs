@@ -1,9 +1,9 @@
 //! Which side of a sheet skin lies on.
 //!
-//! Skin far from the sheets is where it should be. From there on the side is followed along the edges of the skin's mesh: it changes where an
-//! edge crosses a sheet, and nowhere else. So skin that goes around the rim of a cup into it is outside, and skin that has come through
-//! its wall is not, wherever its normals point: at the rim of a contact they are about tangent to the sheet. Where sheets enclose skin that came
-//! in both ways, the wall counts.
+//! Skin that plainly faces a sheet from outside is where it should be, and so is, where nothing tells otherwise, skin far from all sheets.
+//! From there on the side is followed along the edges of the skin's mesh: it changes where an edge crosses a sheet, and nowhere else. So
+//! skin that goes around the rim of a cup into it is outside, and skin that has come through its wall is not, wherever its normals point: at
+//! the rim of a contact they are about tangent to the sheet. Where sheets enclose skin that came in both ways, the wall counts.
 
 use std::collections::VecDeque;
 
@@ -13,6 +13,9 @@ use crate::solid::gap::flipped;
 use crate::solid::gap::{Gap, GapLimits};
 use crate::solid::product::Product;
 use crate::tree::nearest::Pending;
+
+/// Cosine between a sheet's outward direction and the skin's normal below which the skin plainly faces it.
+const FACING: f64 = -0.7;
 
 /// Part of a way within which two crossings are one.
 const ON_EDGE: f64 = 1e-9;
@@ -40,34 +43,41 @@ pub(crate) fn read_by_side(
     let of_sheet = |gap: &Gap| product.is_sheet(gap.triangle as usize);
     let near: Vec<Option<Gap>> = plain.iter().map(|gap| gap.filter(of_sheet)).collect();
     let mut side = vec![SkinSide::Unknown; near.len()];
-    let mut queue = VecDeque::new();
-    for i in 0..near.len() {
-        let around = surface.adjacency.neighbors(i);
-        if near[i].is_none() && around.iter().any(|&j| near[j as usize].is_some()) {
-            side[i] = SkinSide::Outside;
-            queue.push_back(i);
-        }
-    }
     let mut pending = Pending::default();
     let mut crosses = |i: usize, j: usize| {
         let (from, to) = (skin.points[i], skin.points[j]);
         let is_near = near[j].is_some_and(|gap| gap.distance.abs() <= (to - from).norm());
         is_near && product.sheets_between(from, to, &mut pending) % 2 == 1
     };
+    let faces_it = |&i: &usize| {
+        let gap = near[i].as_ref();
+        let is_plain = |gap: &Gap| gap.distance > 0.0 && gap.normal.dot(&skin.normals[i]) < FACING;
+        // Skin deep in a hollow may face its other wall.
+        gap.is_some_and(is_plain) && !product.winds_around(skin.points[i])
+    };
+    let is_beyond = |&i: &usize| {
+        let around = surface.adjacency.neighbors(i);
+        near[i].is_none() && around.iter().any(|&j| near[j as usize].is_some())
+    };
+    let facing: VecDeque<usize> = (0..near.len()).filter(faces_it).collect();
+    let beyond: VecDeque<usize> = (0..near.len()).filter(is_beyond).collect();
     let mut through = Vec::new();
-    while let Some(i) = queue.pop_front() {
-        for &j in surface.adjacency.neighbors(i) {
-            let j = j as usize;
-            if near[j].is_none() || side[j] != SkinSide::Unknown {
-                continue;
-            }
-            side[j] = match (side[i], crosses(i, j)) {
-                (SkinSide::Through, false) | (SkinSide::Outside, true) => SkinSide::Through,
-                _ => SkinSide::Outside,
-            };
-            queue.push_back(j);
-            if side[j] == SkinSide::Through {
-                through.push(j);
+    for mut queue in [facing, beyond] {
+        queue.iter().for_each(|&i| side[i] = SkinSide::Outside);
+        while let Some(i) = queue.pop_front() {
+            for &j in surface.adjacency.neighbors(i) {
+                let j = j as usize;
+                if near[j].is_none() || side[j] != SkinSide::Unknown {
+                    continue;
+                }
+                side[j] = match (side[i], crosses(i, j)) {
+                    (SkinSide::Through, false) | (SkinSide::Outside, true) => SkinSide::Through,
+                    _ => SkinSide::Outside,
+                };
+                queue.push_back(j);
+                if side[j] == SkinSide::Through {
+                    through.push(j);
+                }
             }
         }
     }
