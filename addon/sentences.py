@@ -1,6 +1,7 @@
 """What the native module says of a press: its own sentences, unchanged, one per kind. Knows nothing of Blender."""
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import Any, Protocol
 
 SAME_KIND_IS_SAME_TEXT = "note"
@@ -15,6 +16,7 @@ class Named(Protocol):
     region_names: tuple[str, ...]
 
 
+@cache
 def region_title(name: str) -> str:
     """A region's name in words: `Index distal pad`. What is not a name in lower case and underscores stays as it is."""
     return name.replace("_", " ").capitalize() if name.isidentifier() and name.islower() else name
@@ -37,13 +39,15 @@ def remarks(contact: Any, job: Named) -> list[str]:
     """The sentences on a contact; of those of one kind the first, with the other regions that it holds for."""
     alike: dict[tuple[str, str], list[Any]] = {}
     for remark in contact.remarks:
-        own = remark.text if remark.kind == SAME_KIND_IS_SAME_TEXT else ""
-        alike.setdefault((remark.kind, own), []).append(remark)
+        kind = remark.kind
+        own = remark.text if kind == SAME_KIND_IS_SAME_TEXT else ""
+        alike.setdefault((kind, own), []).append(remark)
     return [_with_others(group, job.region_names) for group in alike.values()]
 
 
 def _with_others(group: list[Any], region_names: Sequence[str]) -> str:
     first, *others = group
-    places = [region_title(region_names[other.region]) for other in others if other.region is not None]
+    regions = (other.region for other in others)
+    places = [region_title(region_names[region]) for region in regions if region is not None]
     text: str = first.text
     return text + (f" (also: {', '.join(places)})" if places else "")
