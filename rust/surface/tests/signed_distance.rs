@@ -5,7 +5,7 @@
 mod shapes;
 
 use shapes::{Random, brute_distance, cuboid, cylinder, inside_out, sphere, v};
-use thenar_surface::{GapLimits, Product, Vec3};
+use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
 const FULL: GapLimits = GapLimits {
     cut_off_mm: f64::INFINITY,
@@ -82,4 +82,52 @@ fn inside_out_product_is_turned_and_told() {
     let product = Product::new(inside_out(&cuboid(v(0., 0., 0.), v(1., 2., 3.)))).unwrap();
     assert!(product.gap(v(0.5, 1.0, 1.5), None, FULL).unwrap().distance < 0.0);
     assert_eq!(product.warnings().len(), 1);
+}
+
+#[test]
+fn side_is_right_next_to_a_sliver_whose_normal_is_rounding() {
+    // A cube of 40 mm; on one edge a vertex off by 1e-6 mm makes a sliver that may face anywhere, as Booleans leave it.
+    let box_of = cuboid(Vec3::repeat(-20.0), Vec3::repeat(20.0));
+    let (a, b) = (Vec3::new(20.0, 20.0, -20.0), Vec3::new(20.0, 20.0, 20.0));
+    let at = |p: Vec3| {
+        box_of
+            .positions()
+            .iter()
+            .position(|q| (q - p).norm() < 1e-9)
+            .unwrap() as u32
+    };
+    let (a, b) = (at(a), at(b));
+    for turn in 0..12 {
+        let angle = f64::from(turn) * std::f64::consts::TAU / 12.0;
+        let off = Vec3::new(angle.cos(), angle.sin(), 0.0) * 1e-6;
+        let mut positions = box_of.positions().to_vec();
+        let middle = positions.len() as u32;
+        positions.push(Vec3::new(20.0, 20.0, 3.0) + off);
+        let mut triangles = Vec::new();
+        let mut is_split = false;
+        for t in box_of.triangles() {
+            let start = (0..3).find(|&k| t[k] == b && t[(k + 1) % 3] == a);
+            match start {
+                Some(k) => {
+                    let c = t[(k + 2) % 3];
+                    triangles.extend([[b, middle, c], [middle, a, c], [b, a, middle]]);
+                    is_split = true;
+                }
+                None => triangles.push(*t),
+            }
+        }
+        assert!(is_split);
+        let product = Product::new(Mesh::new(positions, triangles).unwrap()).unwrap();
+        for side in 0..24 {
+            let toward = f64::from(side) * std::f64::consts::TAU / 24.0 + 0.05;
+            let p = Vec3::new(20.0, 20.0, 2.0) + Vec3::new(toward.cos(), toward.sin(), 0.0) * 1.5;
+            let is_inside = p.x < 20.0 && p.y < 20.0;
+            let gap = product.gap(p, None, FULL).unwrap();
+            assert_eq!(
+                gap.distance < 0.0,
+                is_inside,
+                "{p:?}: {gap:?}, sliver {turn}"
+            );
+        }
+    }
 }

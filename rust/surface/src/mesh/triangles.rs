@@ -249,6 +249,13 @@ pub(crate) fn is_flat([a, b, c]: [Vec3; 3]) -> bool {
     !(ab.cross(&ac).norm() > FLAT * longest && longest > f64::MIN_POSITIVE)
 }
 
+/// Least height of a triangle, in units of its corners.
+pub(crate) fn least_height([a, b, c]: [Vec3; 3]) -> f64 {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let longest = ab.norm().max(ac.norm()).max(bc.norm());
+    ab.cross(&ac).norm() / longest.max(f64::MIN_POSITIVE)
+}
+
 fn check_positions(positions: &[Vec3]) -> Result<(), MeshError> {
     if positions.is_empty() {
         return Err(MeshError::NoVertices);

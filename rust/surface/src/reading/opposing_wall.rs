@@ -139,7 +139,13 @@ impl<'a> Facing<'a> {
         let tree = &product.tree;
         let plain = product.reading(query, &hit, Side::Inside);
         let skin = skin.filter(|m| *m != Vec3::zeros());
-        let away = skin.map_or(0.0, |m| tree.faces[hit.slot as usize].normal.dot(&m));
+        let face = &tree.faces[hit.slot as usize];
+        let outward = if product.is_sliver(face) {
+            plain.normal
+        } else {
+            face.normal
+        };
+        let away = skin.map_or(0.0, |m| outward.dot(&m));
         if away <= 0.0 || self.turned == Turned::Nearest {
             return Some(plain);
         }

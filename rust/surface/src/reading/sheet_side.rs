@@ -1,9 +1,9 @@
 //! Which side of a sheet skin lies on.
 //!
-//! Skin that plainly faces a sheet from outside is where it should be, and so is, where nothing tells otherwise, skin far from all sheets.
-//! From there on the side is followed along the edges of the skin's mesh: it changes where an edge crosses a sheet, and nowhere else. So
-//! skin that goes around the rim of a cup into it is outside, and skin that has come through its wall is not, wherever its normals point: at
-//! the rim of a contact they are about tangent to the sheet. Where sheets enclose skin that came in both ways, the wall counts.
+//! Skin that plainly faces a sheet from outside is where it should be, and so is skin far from all sheets. From the nearest of these on the
+//! side is followed along the edges of the skin's mesh: it changes where an edge crosses a sheet, and nowhere else. So skin that goes around
+//! the rim of a cup into it is outside, and skin that has come through its wall is not, wherever its normals point: at the rim of a contact
+//! they are about tangent to the sheet. Where sheets enclose skin that came in both ways, the wall counts.
 
 use std::collections::VecDeque;
 
@@ -59,25 +59,23 @@ pub(crate) fn read_by_side(
         let around = surface.adjacency.neighbors(i);
         near[i].is_none() && around.iter().any(|&j| near[j as usize].is_some())
     };
-    let facing: VecDeque<usize> = (0..near.len()).filter(faces_it).collect();
-    let beyond: VecDeque<usize> = (0..near.len()).filter(is_beyond).collect();
+    let is_known = |i: &usize| faces_it(i) || is_beyond(i);
+    let mut queue: VecDeque<usize> = (0..near.len()).filter(is_known).collect();
+    queue.iter().for_each(|&i| side[i] = SkinSide::Outside);
     let mut through = Vec::new();
-    for mut queue in [facing, beyond] {
-        queue.iter().for_each(|&i| side[i] = SkinSide::Outside);
-        while let Some(i) = queue.pop_front() {
-            for &j in surface.adjacency.neighbors(i) {
-                let j = j as usize;
-                if near[j].is_none() || side[j] != SkinSide::Unknown {
-                    continue;
-                }
-                side[j] = match (side[i], crosses(i, j)) {
-                    (SkinSide::Through, false) | (SkinSide::Outside, true) => SkinSide::Through,
-                    _ => SkinSide::Outside,
-                };
-                queue.push_back(j);
-                if side[j] == SkinSide::Through {
-                    through.push(j);
-                }
+    while let Some(i) = queue.pop_front() {
+        for &j in surface.adjacency.neighbors(i) {
+            let j = j as usize;
+            if near[j].is_none() || side[j] != SkinSide::Unknown {
+                continue;
+            }
+            side[j] = match (side[i], crosses(i, j)) {
+                (SkinSide::Through, false) | (SkinSide::Outside, true) => SkinSide::Through,
+                _ => SkinSide::Outside,
+            };
+            queue.push_back(j);
+            if side[j] == SkinSide::Through {
+                through.push(j);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::mesh::audit::{audit_of, cone_volumes, find, join};
 use crate::mesh::edges::{Side, joins, sides};
-use crate::mesh::triangles::{Mesh, Standing, Vec3, standings};
+use crate::mesh::triangles::{Mesh, Standing, Vec3, least_height, standings};
 use crate::mesh::welded_vertices::weld;
 use crate::solid::cells::{Verdict, verdicts};
 use crate::tree::winding_number::solid_angle;
@@ -17,6 +17,9 @@ const THIN: f64 = 1e-6;
 /// The same in mm: blocks laid side by side leave as much by rounding and by the tolerance of CAD. Skin cannot enter it.
 const THIN_MM: f64 = 0.001;
 
+/// Height, in parts of the product's extent, below which a triangle's normal is that of the rounding of its corners to f32.
+pub(crate) const SLIVER: f64 = 1e-6;
+
 /// How many triangles a warning names.
 const NAMED: usize = 6;
 
@@ -30,7 +33,7 @@ pub(crate) struct Oriented {
     pub is_open: bool,
     /// For each triangle, whether its part is a sheet without thickness rather than a body with small holes.
     pub is_sheet: Vec<bool>,
-    /// Whether angle-weighted pseudo-normals decide inside and outside: closed, manifold, no flat triangle, no parts that may overlap.
+    /// Whether angle-weighted pseudo-normals decide inside and outside: closed, manifold, no flat triangle and no sliver, no parts that may overlap.
     pub is_simple: bool,
     /// Whether parts may lie within each other.
     pub may_overlap: bool,
@@ -119,7 +122,8 @@ pub(crate) fn orient(mesh: Mesh) -> Oriented {
     let is_manifold = all.chunk_by(same_edge).all(|g| g.len() == 2);
     let has_flat = standing.contains(&Standing::Flat);
     let may_overlap = may_overlap(&parts, thin);
-    let is_simple = !is_open && is_manifold && !has_flat && !may_overlap;
+    let is_even = !has_flat && !has_slivers(&mesh, &standing);
+    let is_simple = !is_open && is_manifold && is_even && !may_overlap;
     let mesh = if flips.contains(&true) {
         let triangles = flipped(mesh.triangles(), &flips);
         mesh.with_triangles(triangles)
@@ -151,12 +155,24 @@ pub(crate) fn orient(mesh: Mesh) -> Oriented {
 
 /// What counts as no distance, mm.
 fn thin(mesh: &Mesh) -> f64 {
+    THIN_MM.max(THIN * extent(mesh))
+}
+
+/// Largest side of the box around a mesh, mm.
+fn extent(mesh: &Mesh) -> f64 {
     let p = mesh.positions();
     let low = p.iter().fold(Vec3::repeat(f64::INFINITY), |m, p| m.inf(p));
     let high = p
         .iter()
         .fold(Vec3::repeat(f64::NEG_INFINITY), |m, p| m.sup(p));
-    THIN_MM.max(THIN * (high - low).amax())
+    (high - low).amax()
+}
+
+/// Whether some sound triangle has no normal that its corners could tell, as Booleans leave them: pseudo-normals next to it are wrong.
+fn has_slivers(mesh: &Mesh, standing: &[Standing]) -> bool {
+    let least = SLIVER * extent(mesh);
+    let is_sliver = |t: usize| least_height(mesh.corners(t)) < least;
+    (0..standing.len()).any(|t| standing[t] == Standing::Sound && is_sliver(t))
 }
 
 /// The sentence on triangles within the solid, which names them.

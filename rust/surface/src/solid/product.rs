@@ -4,13 +4,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::mesh::closest_point::{Feature, closest_point};
 use crate::mesh::normals::vertex_areas;
-use crate::mesh::triangles::{Mesh, MeshError, Standing, Vec3};
+use crate::mesh::triangles::{Mesh, MeshError, Standing, Vec3, least_height};
 use crate::solid::gap::{Gap, Side};
 use crate::solid::interior::{Interior, Place};
-use crate::solid::orientation::orient;
+use crate::solid::orientation::{SLIVER, orient};
 use crate::solid::sign::Sign;
 use crate::solid::union::boundary;
 use crate::tree::bvh::{Query, Source, Tree};
+use crate::tree::face::Face;
 use crate::tree::nearest::{Hit, Pending};
 use crate::tree::winding_number::{Counted, Winding};
 
@@ -170,6 +171,12 @@ impl Product {
         hit.is_some_and(|hit| self.sign.is_inside(&self.tree, query.point, &hit))
     }
 
+    /// Whether a face has no normal that its corners could tell; there is none where pseudo-normals decide the side.
+    pub(crate) fn is_sliver(&self, face: &Face) -> bool {
+        let corners = [face.a, face.a + face.ab, face.a + face.ac];
+        matches!(self.sign, Sign::Winding(_)) && least_height(corners) * self.tree.shrink < SLIVER
+    }
+
     /// The gap to a face found, on the given side.
     pub(crate) fn reading(&self, query: &Query, hit: &Hit, side: Side) -> Gap {
         let face = &self.tree.faces[hit.slot as usize];
@@ -191,7 +198,8 @@ impl Product {
                 .normal(&self.tree, hit)
                 .try_normalize(0.0)
                 .unwrap_or(face.normal)
-        } else if hit.on.feature == Feature::Face || (face.is_piece && is_along(away, face.normal))
+        } else if (hit.on.feature == Feature::Face && !self.is_sliver(face))
+            || (face.is_piece && is_along(away, face.normal))
         {
             // Over a face it is the face's own: the difference of two points that all but touch tells it badly.
             face.normal * away.dot(&face.normal).signum()
