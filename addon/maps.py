@@ -32,7 +32,8 @@ class Map:
     """Setting that holds the top of its range; empty: 0 to `fixed`."""
     fixed: float = 1.0
     covers: str = "itself"
-    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin" or "mat"."""
+    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin",
+    "reference" or "mat"."""
     is_signed: bool = False
     """Whether the colours run from minus to plus the top of the range."""
 
@@ -56,6 +57,7 @@ class Scale:
 
 
 _NO_CONTACT = "there is no pressure yet; press Solve first"
+_NO_REFERENCE = "there is no reference; solve, then press Certify under Reference"
 _NO_SHEAR = "nothing shears the skin; add the effect friction, set a slide under Effects, and solve"
 
 MAPS = {
@@ -115,6 +117,27 @@ MAPS = {
             covers="contact",
         ),
         Map(
+            "REFERENCE",
+            names.REFERENCE_KPA,
+            "Reference",
+            "kPa",
+            "Pressure of the reference solve, in which the tissue is a solid between skin and bone",
+            _NO_REFERENCE,
+            limit="reference_kpa",
+        ),
+        Map(
+            "REFERENCE_DIFFERENCE",
+            names.REFERENCE_DIFFERENCE_KPA,
+            "Reference - fast",
+            "kPa",
+            "Reference minus fast pressure: red where the fast result is too low, blue where it is too high",
+            _NO_REFERENCE,
+            palette="COOLWARM",
+            limit="reference_difference_kpa",
+            covers="reference",
+            is_signed=True,
+        ),
+        Map(
             "RESIDUAL",
             names.RESIDUAL_KPA,
             "Residual",
@@ -162,6 +185,7 @@ def scale(view: Map, look: Any) -> Scale:
         "contact": colormap.EDGE * max(look.range_kpa, 1e-6),
         "skin": _BARELY,
         "mat": 1.0,
+        "reference": colormap.EDGE * max(look.maps.reference_kpa, 1e-6),
     }
     low = -high if view.is_signed else 0.0
     return Scale(high, view.palette or look.palette, edges[view.covers], low)
@@ -169,7 +193,8 @@ def scale(view: Map, look: Any) -> Scale:
 
 def covering(view: Map) -> str:
     """The attribute that decides where the map covers the surface."""
-    return {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT}.get(view.covers, view.attribute)
+    own = {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT, "reference": names.REFERENCE_KPA}
+    return own.get(view.covers, view.attribute)
 
 
 def peak(view: Map, result: Any) -> float:

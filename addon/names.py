@@ -22,6 +22,10 @@ RESIDUAL_KPA = "residual_kpa"
 """Measured minus simulated pressure; 0 away from the mat."""
 PRINT_RESIDUAL = "print_residual"
 """1 where a compared handprint is inked alone, -1 where the simulation alone touches, 0 where both or neither do."""
+REFERENCE_KPA = "reference_kpa"
+"""Pressure of the reference solve."""
+REFERENCE_DIFFERENCE_KPA = "reference_difference_kpa"
+"""Pressure of the reference solve minus that of the fast result."""
 ON_MAT = "on_mat"
 """1 where a compared mat or print lies, 0 elsewhere."""
 COLOR = "Thenar Pressure"
@@ -42,11 +46,14 @@ HAND_ATTRIBUTES = (
     THRESHOLD_SHARE,
     RESIDUAL_KPA,
     PRINT_RESIDUAL,
+    REFERENCE_KPA,
+    REFERENCE_DIFFERENCE_KPA,
     ON_MAT,
     COLOR,
     MAP_COLOR,
 )
 RESIDUAL_ATTRIBUTES = (RESIDUAL_KPA, PRINT_RESIDUAL, ON_MAT)
+REFERENCE_ATTRIBUTES = (REFERENCE_KPA, REFERENCE_DIFFERENCE_KPA)
 PRODUCT_ATTRIBUTES = (PRESSURE_KPA, *RESIDUAL_ATTRIBUTES, COLOR, MAP_COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"

@@ -18,6 +18,7 @@ FINGERS = ("thumb", "index", "middle", "ring", "little")
 def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, notes: Sequence[str]) -> PropertyGroup:
     """Fill `scene.thenar.result` from a native contact, the write report and the contact's notes. Returns it."""
     result.region_index = 0
+    result.reference.is_valid, result.reference.note = False, ""
     result.schema, result.is_valid = names.SCHEMA, True
     result.hand_name, result.product_name = job.hand_name, ", ".join(job.part_names)
     result.model, result.vertices = job.model, len(job.reading.hand.rest_mm)
@@ -55,7 +56,7 @@ def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, no
 def clear(result: PropertyGroup) -> None:
     """Forget the result."""
     _clear_rows(result)
-    result.is_valid = False
+    result.is_valid = result.reference.is_valid = False
     result.input_hash = result.state_hash = result.comfort = result.comfort_source = ""
     result.grade = result.reason = result.reason_kind = ""
     result.reason_vertex = -1
@@ -98,6 +99,7 @@ def as_dict(result):
         "over_threshold_mm2": result.over_mm2,
         "comfort": result.comfort,
         "comfort_source": result.comfort_source,
+        "reference": _reference_dict(result),
         "offset_mm": result.offset_mm,
         "direction": list(result.direction),
         "regions": rows,
@@ -190,6 +192,20 @@ def _items(record):
 def _row_dict(row):
     keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa", "threshold_kpa")
     return {key: getattr(row, key) for key in keys} | {"over_threshold_mm2": row.over_mm2}
+
+
+def _reference_dict(result):
+    """The reference solve's numbers, with the force of every region; None where it was not solved."""
+    reference = result.reference
+    if not reference.is_valid:
+        return None
+    return {
+        "force_n": reference.force_n,
+        "contact_area_mm2": reference.area_mm2,
+        "patch_peak_kpa": reference.patch_peak_kpa,
+        "note": reference.note,
+        "regions": [{"name": row.name, "force_n": row.reference_n} for row in result.regions],
+    }
 
 
 def _slip(contact):

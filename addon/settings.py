@@ -144,6 +144,7 @@ class ThenarRegionResult(bpy.types.PropertyGroup):
     shear_modulus_kpa: FloatProperty(name="G (kPa)")
     threshold_kpa: FloatProperty(name="Threshold (kPa)")
     over_mm2: FloatProperty(name="Over the Threshold (mm²)")
+    reference_n: FloatProperty(name="Reference Force (N)")
 
 
 class ThenarStage(bpy.types.PropertyGroup):
@@ -154,6 +155,16 @@ class ThenarStage(bpy.types.PropertyGroup):
 
 class ThenarText(bpy.types.PropertyGroup):
     """One line of text, in `name`."""
+
+
+class ThenarReference(bpy.types.PropertyGroup):
+    """What the reference solve found of the same contact."""
+
+    is_valid: BoolProperty(default=False)
+    force_n: FloatProperty()
+    area_mm2: FloatProperty()
+    patch_peak_kpa: FloatProperty()
+    note: StringProperty()
 
 
 class ThenarResult(bpy.types.PropertyGroup):
@@ -203,6 +214,7 @@ class ThenarResult(bpy.types.PropertyGroup):
     regions: CollectionProperty(type=ThenarRegionResult)
     region_index: IntProperty()
     fingers: CollectionProperty(type=ThenarRegionResult)
+    reference: PointerProperty(type=ThenarReference)
     stages: CollectionProperty(type=ThenarStage)
     warnings: CollectionProperty(type=ThenarText)
 
@@ -344,6 +356,7 @@ CLASSES = (
     *bake_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
+    ThenarReference,
     ThenarStage,
     ThenarText,
     ThenarResult,

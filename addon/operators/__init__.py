@@ -3,9 +3,9 @@
 import bpy
 
 from .. import reports, status
-from . import bake, clear, computing, display, effects, export, regions, report, sizing, solve
+from . import bake, certify, clear, computing, display, effects, export, regions, report, sizing, solve
 
-_MODULES = (solve, clear, display, regions, effects, export, bake, report, sizing)
+_MODULES = (solve, certify, clear, display, regions, effects, export, bake, report, sizing)
 
 
 def register():

@@ -4,7 +4,7 @@ import bpy
 
 from .. import grades, maps, status
 from . import text
-from .lists import SHARE, columns
+from .lists import SHARE, brief, columns
 from .main import Physics, Tab
 
 
@@ -117,6 +117,52 @@ class THENAR_PT_regions(Tab, bpy.types.Panel):
             columns(split, finger)
 
 
+class THENAR_PT_reference(Tab, bpy.types.Panel):
+    """The fast result beside the reference solve."""
+
+    bl_label = "Reference"
+    bl_parent_id = "THENAR_PT_result"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.thenar.result.is_valid
+
+    def draw(self, context):
+        layout, result = self.layout, context.scene.thenar.result
+        layout.operator("thenar.certify", icon="CHECKMARK")
+        reference = result.reference
+        if not reference.is_valid:
+            text.paragraph(layout, context, "Solves the tissue as a solid: minutes on a whole grasp")
+            return
+        box = layout.box().column(align=True)
+        _compared(box, "", ("Fast", "Reference", "Ratio"))
+        _compared(box, "Force, N", _three(result.force_n, reference.force_n, ".1f"))
+        _compared(box, "Area, cm²", _three(result.area_mm2 / 100, reference.area_mm2 / 100, ".1f"))
+        _compared(box, "24 mm², kPa", _three(result.patch_peak_kpa, reference.patch_peak_kpa, ".0f"))
+        box = layout.box().column(align=True)
+        for row in result.regions:
+            if row.force_n > 0.0 or row.reference_n > 0.0:
+                _compared(box, brief(row.name), _three(row.force_n, row.reference_n, ".1f"))
+        if reference.note:
+            text.paragraph(layout, context, reference.note, "ERROR")
+
+
+def _three(fast, reference, digits):
+    ratio = f"{fast / reference:.2f}" if reference > 0.0 else "-"
+    return f"{fast:{digits}}", f"{reference:{digits}}", ratio
+
+
+def _compared(column, name, values):
+    split = column.split(factor=0.4)
+    split.label(text=name)
+    row = split.row()
+    for value in values:
+        cell = row.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=value)
+
+
 class THENAR_PT_comfort(Tab, bpy.types.Panel):
     """Pressure held against a threshold."""
 
@@ -223,6 +269,7 @@ CLASSES = (
     THENAR_PT_result,
     THENAR_PT_physics_result,
     THENAR_PT_regions,
+    THENAR_PT_reference,
     THENAR_PT_comfort,
     THENAR_PT_bake,
     THENAR_PT_notes,

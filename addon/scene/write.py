@@ -97,7 +97,7 @@ def _hide_correction(undo: ExitStack, hand: Object) -> None:
 def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
     """The hand's attributes and its colours for Solid view."""
     mesh, pressure = hand.data, units.kpa(fields.pressure_mpa)
-    attributes.remove(mesh, names.RESIDUAL_ATTRIBUTES)  # they belong to the contact before
+    attributes.remove(mesh, (*names.RESIDUAL_ATTRIBUTES, *names.REFERENCE_ATTRIBUTES))  # of the contact before
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
     attributes.write(mesh, names.DEPTH_MM, "FLOAT", fields.depth_mm)
     attributes.write(mesh, names.REGION, "INT", fields.regions)
@@ -112,6 +112,20 @@ def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
         write_thickness(mesh, fields.thickness_mm)
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
     mesh.update()
+
+
+def write_reference(hand: Object, pressure_kpa: Floats) -> None:
+    """Pressure of the reference solve (n), and how much more it is than the fast result's. All or nothing."""
+    fast = attributes.read(hand.data, names.PRESSURE_KPA)
+    restore = attributes.snapshot(hand.data, names.REFERENCE_ATTRIBUTES)
+    try:
+        attributes.write(hand.data, names.REFERENCE_KPA, "FLOAT", pressure_kpa)
+        more = pressure_kpa - (0.0 if fast is None else fast)
+        attributes.write(hand.data, names.REFERENCE_DIFFERENCE_KPA, "FLOAT", more)
+    except BaseException:
+        restore()
+        raise
+    hand.data.update()
 
 
 def write_thickness(mesh: Mesh, thickness_mm: Floats) -> None:

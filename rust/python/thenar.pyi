@@ -606,6 +606,38 @@ def hand(
     *,
     cancel: _Cancel | None = None,
 ) -> Record: ...
+def reference_press(
+    posed_vertices_mm: ArrayLike,
+    triangles: ArrayLike,
+    bone_mm: ArrayLike,
+    shear_modulus_mpa: ArrayLike,
+    product_vertices_mm: ArrayLike | Product,
+    product_triangles: ArrayLike | None = None,
+    *,
+    held: Sequence[bool] | None = None,
+    stiffening: float = 0.0,
+    layers: int = 3,
+    bulk_ratio: float = 100.0,
+    cancel: _Cancel | None = None,
+    progress: _Progress | None = None,
+) -> Record:
+    """Presses soft tissue, meshed from the skin to the bone, at finite strain: the reference of model "layer".
+
+    Raises `MeshError`, `SolveError`, `Cancelled`.
+    """
+
+def bone_points(
+    vertices_mm: ArrayLike,
+    triangles: ArrayLike,
+    thickness_mm: ArrayLike,
+    heads_mm: ArrayLike | None = None,
+    tails_mm: ArrayLike | None = None,
+    palmar: ArrayLike | None = None,
+    is_last: Sequence[bool] | None = None,
+    weights: ArrayLike | None = None,
+) -> _Floats:
+    """Point of the bone under every vertex of a hand at rest, as `reference_press` needs it. Raises `MeshError`."""
+
 def press_ball(
     radius_mm: float,
     depths_mm: ArrayLike,

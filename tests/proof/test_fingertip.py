@@ -1,4 +1,4 @@
-"""The layer with lateral escape against a pad over bone at finite strain (fingertip_by_finite_elements.json, FElupe).
+"""The layer with lateral escape against a pad over bone at finite strain (by_finite_elements/fingertip.json, FElupe).
 
 The base model bonds an incompressible layer of even thickness to bone without end. A fingertip's bone ends and its
 sides are free, so tissue escapes sideways: the base model is too stiff there, and a Poisson's ratio below 1/2 stands
@@ -15,7 +15,7 @@ import thenar
 
 from proof import meshes, pressing
 
-TABLE = json.loads(Path(__file__).with_name("fingertip_by_finite_elements.json").read_text())
+TABLE = json.loads(Path(__file__).with_name("by_finite_elements").joinpath("fingertip.json").read_text())
 SKIN_MM = np.array(TABLE["skin_semi_axes_mm"])
 SHEAR_MPA = TABLE["shear_modulus_mpa"]
 ESCAPE = 0.41  # Poisson's ratio that stands for tissue escaping sideways

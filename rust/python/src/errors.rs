@@ -7,6 +7,7 @@ use thenar_contact::ContactError;
 use thenar_diagnosis::DiagnosisError;
 use thenar_hand::HandError;
 use thenar_recordings::RecordingError as RecordingFault;
+use thenar_reference::ReferenceError;
 use thenar_surface::MeshError as MeshFault;
 
 create_exception!(
@@ -68,6 +69,7 @@ pub enum Failure {
     Hand(HandError),
     Recording(RecordingFault),
     Diagnosis(DiagnosisError),
+    Reference(ReferenceError),
     Cancelled,
     /// An earlier panic left the prepared skin half changed.
     Spoiled,
@@ -102,12 +104,25 @@ impl From<Failure> for PyErr {
             Failure::Hand(error) => MeshError::new_err(error.to_string()),
             Failure::Recording(error) => RecordingError::new_err(error.to_string()),
             Failure::Diagnosis(error) => RecordingError::new_err(error.to_string()),
+            Failure::Reference(error) => from_reference(&error),
             Failure::Cancelled => {
                 Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
             }
             Failure::Spoiled => SolveError::new_err(
                 "an earlier error inside thenar spoiled this skin; prepare it again",
             ),
+        }
+    }
+}
+
+fn from_reference(error: &ReferenceError) -> PyErr {
+    match error {
+        ReferenceError::Cancelled => Failure::Cancelled.into(),
+        ReferenceError::Tissue { .. } => MeshError::new_err(error.to_string()),
+        ReferenceError::Unsolved { vertex, .. } => {
+            let raised = SolveError::new_err(error.to_string());
+            Python::attach(|py| drop(raised.value(py).setattr("vertices", vec![*vertex])));
+            raised
         }
     }
 }

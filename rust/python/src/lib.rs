@@ -17,7 +17,7 @@ mod contact;
 mod contact_records;
 mod instrument;
 mod hand;
-mod ball;
+mod references;
 mod complementarity;
 mod recordings;
 mod study;
@@ -51,6 +51,11 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<diagnosis::Diagnosis>()?;
     module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
+    module.add_function(wrap_pyfunction!(
+        references::solid::reference_press,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(references::solid::bone_points, module)?)?;
     module.add_function(wrap_pyfunction!(recordings::read_recording, module)?)?;
     module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;
     module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
@@ -63,7 +68,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module
     )?)?;
     module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
-    module.add_function(wrap_pyfunction!(ball::press_ball, module)?)?;
+    module.add_function(wrap_pyfunction!(references::ball::press_ball, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
     module.add_function(wrap_pyfunction!(effects::effects, module)?)?;
     module.add_function(wrap_pyfunction!(parquet_table::parquet, module)?)?;

@@ -18,6 +18,7 @@ const SOURCES: [&str; 8] = [
     "rust/surface",
     "rust/contact",
     "rust/hand",
+    "rust/reference",
     "rust/recordings",
     "rust/diagnosis",
     "rust/python",

@@ -1,4 +1,4 @@
-"""Makes fingertip_by_finite_elements.json: a pad over bone, pressed at finite strain by a plate and a rod, in FElupe.
+"""Makes fingertip.json: a pad over bone, pressed at finite strain by a plate and a rod, in FElupe.
 
 Knows nothing of Thenar. Run it by hand (half an hour): `pip install felupe pypardiso`, then this file with Python.
 The pad is half an ellipsoid of neo-Hookean tissue (nu = 0.49), fixed to a rigid ellipsoidal bone inside and to the

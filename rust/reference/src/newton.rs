@@ -1,0 +1,282 @@
+//! Equilibrium of tissue and product by a damped Newton iteration.
+
+use rayon::prelude::*;
+use thenar_surface::Vec3;
+
+use crate::factor::Factor;
+use crate::obstacle::{Obstacle, Penalty, Touch};
+use crate::pattern::Pattern;
+use crate::prism_energy::{Element, Law, Placed, evaluate};
+use crate::prisms::PrismMesh;
+
+/// Longest step of a node, mm.
+const MOST_STEP_MM: f64 = 1.5;
+/// Times that a step is shortened, each to this share.
+const SHORTER: (usize, f64) = (6, 0.4);
+/// Damping, as a share of the diagonal, that a step begins with where the plain one leads uphill or folds a prism; its growth; its end.
+const DAMPING: (f64, f64, f64) = (3e-3, 4.0, 1e3);
+/// Damping below which none is left.
+const NO_DAMPING: f64 = 2e-4;
+/// Least decrease of the energy for a step, as a share of what its slope promises.
+const DECREASE: f64 = 1e-4;
+
+/// Tissue, product and where the nodes lie.
+pub struct Equilibrium<'a> {
+    pub mesh: &'a PrismMesh,
+    pub pattern: &'a Pattern,
+    pub factor: Factor,
+    pub obstacle: Obstacle<'a>,
+    pub law: Law,
+    /// Where the nodes lie, mm.
+    pub places: Vec<Vec3>,
+    /// Newton steps so far.
+    pub steps: usize,
+    elements: Vec<Element>,
+    values: Vec<f64>,
+}
+
+/// Forces in one state.
+pub struct Forces {
+    /// Energy of tissue and penalty, N mm.
+    pub energy: f64,
+    /// Force that is not balanced, on the unknowns, N.
+    pub residual: Vec<f64>,
+    /// Contact.
+    pub touches: Vec<Touch>,
+}
+
+impl Forces {
+    /// Norm of the residual over that of the contact forces.
+    pub fn unbalanced(&self) -> f64 {
+        let contact: f64 = self.touches.iter().map(|t| t.force * t.force).sum();
+        norm(&self.residual) / (contact.sqrt() + 1e-6)
+    }
+}
+
+/// When an iteration ends.
+#[derive(Debug, Clone, Copy)]
+pub struct Limits {
+    /// Residual over the contact forces that is enough.
+    pub tolerance: f64,
+    pub most_steps: usize,
+}
+
+/// How an iteration ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    Balanced,
+    Stuck,
+    Cancelled,
+}
+
+impl<'a> Equilibrium<'a> {
+    /// `None` where there is not enough memory.
+    pub fn new(
+        (mesh, pattern): (&'a PrismMesh, &'a Pattern),
+        obstacle: Obstacle<'a>,
+        law: Law,
+    ) -> Option<Equilibrium<'a>> {
+        Some(Equilibrium {
+            mesh,
+            pattern,
+            factor: Factor::new(pattern)?,
+            obstacle,
+            law,
+            places: mesh.nodes.clone(),
+            steps: 0,
+            elements: vec![Element::default(); mesh.groups.len()],
+            values: vec![0.0; pattern.rows.len()],
+        })
+    }
+
+    /// Iterates until the residual is below the tolerance.
+    pub fn balance(
+        &mut self,
+        penalty: Penalty,
+        limits: Limits,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> (End, Option<Forces>) {
+        let places = std::mem::take(&mut self.places);
+        let (end, places, forces) = self.iterate(places, penalty, limits, is_cancelled);
+        self.places = places;
+        (end, forces)
+    }
+
+    fn iterate(
+        &mut self,
+        mut places: Vec<Vec3>,
+        penalty: Penalty,
+        limits: Limits,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> (End, Vec<Vec3>, Option<Forces>) {
+        let Some(mut forces) = self.forces(&places, penalty, true) else {
+            return (End::Stuck, places, None);
+        };
+        let mut damping = 0.0;
+        for _ in 0..limits.most_steps {
+            if forces.unbalanced() < limits.tolerance {
+                return (End::Balanced, places, Some(forces));
+            }
+            if is_cancelled() {
+                return (End::Cancelled, places, Some(forces));
+            }
+            self.steps += 1;
+            let Some((next, is_plain)) = self.step(&places, &forces, penalty, &mut damping) else {
+                return (End::Stuck, places, Some(forces));
+            };
+            if is_plain {
+                damping = if damping > NO_DAMPING {
+                    0.25 * damping
+                } else {
+                    0.0
+                };
+            }
+            places = next;
+            match self.forces(&places, penalty, true) {
+                Some(found) => forces = found,
+                None => return (End::Stuck, places, None),
+            }
+        }
+        let end = if forces.unbalanced() < limits.tolerance {
+            End::Balanced
+        } else {
+            End::Stuck
+        };
+        (end, places, Some(forces))
+    }
+
+    /// The next places, and whether the full step at the damping given went well; `None` where no step lowers the energy.
+    fn step(
+        &mut self,
+        places: &[Vec3],
+        forces: &Forces,
+        penalty: Penalty,
+        damping: &mut f64,
+    ) -> Option<(Vec<Vec3>, bool)> {
+        let mut is_first = true;
+        let unbalanced = norm(&forces.residual);
+        while *damping <= DAMPING.2 {
+            let mut values = self.values.clone();
+            for entry in self.pattern.diagonal() {
+                values[*entry] += *damping * values[*entry].abs();
+            }
+            let mut step: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
+            let is_definite = self.factor.solve(self.pattern, &values, &mut step);
+            let longest = step.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
+            if is_definite && longest.is_finite() {
+                let slope: f64 = step.iter().zip(&forces.residual).map(|(s, r)| s * r).sum();
+                let mut share = (MOST_STEP_MM / longest).min(1.0);
+                for attempt in 0..SHORTER.0 {
+                    let next = self.moved(places, &step, share);
+                    if let Some(found) = self.forces(&next, penalty, false) {
+                        let enough =
+                            forces.energy + DECREASE * share * slope + 1e-10 * forces.energy.abs();
+                        if found.energy <= enough || norm(&found.residual) < 0.5 * unbalanced {
+                            return Some((next, is_first && attempt == 0));
+                        }
+                    }
+                    share *= SHORTER.1;
+                }
+            }
+            is_first = false;
+            *damping = (DAMPING.1 * *damping).max(DAMPING.0);
+        }
+        None
+    }
+
+    /// Moves the product's side to where its penalty holds the skin at it; the deepest skin before that, mm.
+    pub fn shift_obstacle(&mut self) -> f64 {
+        let (mesh, places) = (self.mesh, &self.places);
+        self.obstacle.shift(|v| places[mesh.skin_node(v)])
+    }
+
+    /// Smallest and largest volume of a prism over its volume before, where the nodes were evaluated last.
+    pub fn dilatations(&self) -> [f64; 2] {
+        let all = self.elements.iter().map(|element| element.dilatation);
+        all.fold([1.0, 1.0], |[low, high], d| {
+            [f64::min(low, d), f64::max(high, d)]
+        })
+    }
+
+    fn moved(&self, places: &[Vec3], step: &[f64], share: f64) -> Vec<Vec3> {
+        let moved = places.iter().zip(&self.mesh.free).map(|(place, free)| {
+            let k = 3 * *free as usize;
+            match step.get(k..k + 3) {
+                Some(by) if *free != u32::MAX => place + Vec3::new(by[0], by[1], by[2]) * share,
+                _ => *place,
+            }
+        });
+        moved.collect()
+    }
+
+    /// Energy and forces at `places`, and the stiffness where asked for; `None` where a prism is folded.
+    fn forces(
+        &mut self,
+        places: &[Vec3],
+        penalty: Penalty,
+        with_stiffness: bool,
+    ) -> Option<Forces> {
+        let (mesh, law) = (self.mesh, self.law);
+        let work = self
+            .elements
+            .par_iter_mut()
+            .zip(&mesh.groups)
+            .with_min_len(128);
+        let is_sound = work.map(|(element, group)| {
+            let place = |k: u32| places.get(k as usize).copied().unwrap_or_default().into();
+            let corners = group.nodes.map(place);
+            let placed = Placed {
+                mesh,
+                group,
+                places: &corners,
+            };
+            evaluate(placed, law, with_stiffness, element)
+        });
+        if !is_sound.reduce(|| true, |a, b| a && b) {
+            return None;
+        }
+        let mut residual = vec![0.0; 3 * mesh.free_count];
+        for (element, group) in self.elements.iter().zip(&mesh.groups) {
+            for (a, node) in group.nodes.iter().enumerate() {
+                let free = mesh.free.get(*node as usize).copied().unwrap_or(u32::MAX);
+                if free != u32::MAX {
+                    for i in 0..3 {
+                        residual[3 * free as usize + i] += element.force[3 * a + i];
+                    }
+                }
+            }
+        }
+        let touches = self
+            .obstacle
+            .touches(|v| places[mesh.skin_node(v)], penalty);
+        for touch in &touches {
+            let free = mesh.free[mesh.skin_node(touch.vertex as usize)] as usize;
+            for i in 0..3 {
+                residual[3 * free + i] -= touch.force * touch.normal[i];
+            }
+        }
+        if with_stiffness {
+            self.values.fill(0.0);
+            self.pattern.add(mesh, &self.elements, &mut self.values);
+            for touch in &touches {
+                let free = mesh.free[mesh.skin_node(touch.vertex as usize)] as usize;
+                let n = touch.normal;
+                let block =
+                    std::array::from_fn(|i| std::array::from_fn(|j| touch.stiffness * n[i] * n[j]));
+                self.pattern.add_node(free, &block, &mut self.values);
+            }
+        }
+        let tissue: f64 = self.elements.iter().map(|e| e.energy).sum();
+        let contact: f64 = touches.iter().map(|t| t.energy).sum();
+        Some(Forces {
+            energy: tissue + contact,
+            residual,
+            touches,
+        })
+    }
+}
+
+/// Euclidean norm.
+pub fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+}

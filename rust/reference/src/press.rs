@@ -1,0 +1,238 @@
+//! The conductor: the product grows into the hand, then hardens.
+
+use thenar_surface::{Product, Vec3};
+
+use crate::newton::{End, Equilibrium, Forces, Limits};
+use crate::obstacle::{Obstacle, Penalty};
+use crate::pattern::Pattern;
+use crate::prism_energy::Law;
+use crate::prisms::PrismMesh;
+use crate::refine::Refined;
+use crate::result::ReferenceContact;
+use crate::{ReferenceError, Tissue};
+
+/// Product's hardness while it grows, and at the end, over the mean shear modulus, 1/mm.
+const GROWING: f64 = 5.0;
+const RIGID: f64 = 4000.0;
+/// Factor by which it hardens in a step, and the least before the solve gives up.
+const HARDER: f64 = 4.0;
+const LEAST_HARDER: f64 = 1.03;
+/// Skin deeper in the product than this, mm, has the product's side moved; at most so many times.
+const DEEPEST_MM: f64 = 0.01;
+const MOST_SHIFTS: usize = 2;
+/// How far outside the product skin is still refined, mm.
+const NEAR_MM: f64 = 1.0;
+/// The longest step of growth, mm, and the shortest before the solve gives up.
+const GROWTH_MM: (f64, f64) = (2.0, 0.02);
+/// Most nodes that move: with more, building the matrix alone would take too long.
+const MOST_NODES: usize = 400_000;
+/// Ends of a step of growth, and of one of hardening.
+const GROWTH_LIMITS: Limits = Limits {
+    tolerance: 0.03,
+    most_steps: 25,
+};
+const HARDENING_LIMITS: Limits = Limits {
+    tolerance: 0.009,
+    ..GROWTH_LIMITS
+};
+/// Most Newton steps at the end.
+const MOST_STEPS: usize = 60;
+
+/// Numbers of the computation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Layers of prisms between bone and skin.
+    pub layers: usize,
+    /// Bulk modulus over shear modulus; tissue keeps its volume, 100 lets it give way by a hundredth of a strain.
+    pub bulk_ratio: f64,
+    /// Edges longer than this are split, once, where the product is within `NEAR_MM`, mm; infinity: none.
+    pub longest_edge_mm: f64,
+    /// Largest residual over the contact forces.
+    pub tolerance: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            layers: 3,
+            bulk_ratio: 100.0,
+            longest_edge_mm: 1.6,
+            tolerance: 2e-4,
+        }
+    }
+}
+
+/// Called with the share done, 0 to 1; false stops the solve.
+pub type Progress<'a> = &'a (dyn Fn(f64) -> bool + Sync);
+
+/// Presses the tissue against a rigid, smooth product, where both lie.
+///
+/// The product is first made smaller all around by its overlap with the skin, and grows while its surface is soft, then hardens. This is
+/// the static solution of a press along the shortest way out, at any depth.
+///
+/// # Errors
+/// [`ReferenceError::Tissue`] for input that cannot be meshed, [`ReferenceError::Unsolved`], [`ReferenceError::Cancelled`].
+pub fn press(
+    tissue: &Tissue,
+    product: &Product,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<ReferenceContact, ReferenceError> {
+    tissue.check()?;
+    let near = Obstacle::near(tissue, product, NEAR_MM);
+    let refined = Refined::new(tissue, |v| near[v], settings.longest_edge_mm);
+    let (vertex_count, tissue) = (tissue.skin.len(), &refined.tissue);
+    let mesh = PrismMesh::new(tissue, settings.layers.clamp(1, 8))?;
+    if mesh.free_count > MOST_NODES {
+        return Err(too_large(&mesh));
+    }
+    let pattern = Pattern::new(&mesh);
+    let moves = |v: usize| mesh.free[mesh.skin_node(v)] != u32::MAX;
+    let obstacle = Obstacle::new(tissue, product, moves);
+    let law = Law {
+        stiffening: tissue.stiffening,
+        bulk_ratio: settings.bulk_ratio,
+    };
+    let equilibrium =
+        Equilibrium::new((&mesh, &pattern), obstacle, law).ok_or_else(|| too_large(&mesh))?;
+    let deepest = equilibrium.obstacle.deepest();
+    let moduli: f64 = tissue.shear_modulus_mpa.iter().sum();
+    let mut growth = Growth {
+        equilibrium,
+        modulus: moduli / tissue.shear_modulus_mpa.len() as f64,
+        deepest,
+        progress,
+    };
+    let forces = growth.run(settings.tolerance)?;
+    let Growth { equilibrium, .. } = growth;
+    Ok(ReferenceContact::new(tissue, &equilibrium, &forces, &mesh)
+        .without(vertex_count, &refined.parents))
+}
+
+fn too_large(mesh: &PrismMesh) -> ReferenceError {
+    ReferenceError::Tissue {
+        what: "the tissue's mesh is too large for the memory".to_owned(),
+        found: format!("{} nodes that move", mesh.free_count),
+        remedy: "hold what is far from the product, use fewer layers, or a coarser skin",
+    }
+}
+
+struct Growth<'a> {
+    equilibrium: Equilibrium<'a>,
+    /// Mean shear modulus, MPa.
+    modulus: f64,
+    /// Overlap before the press, mm.
+    deepest: f64,
+    progress: Progress<'a>,
+}
+
+impl Growth<'_> {
+    fn run(&mut self, tolerance: f64) -> Result<Forces, ReferenceError> {
+        let (mut grown, mut step) = (0.0, GROWTH_MM.0);
+        while grown < self.deepest {
+            let next = (grown + step).min(self.deepest);
+            let before: Vec<Vec3> = self.equilibrium.places.clone();
+            let (end, forces) = self.balance(GROWING, self.deepest - next, GROWTH_LIMITS)?;
+            if end == End::Balanced {
+                grown = next;
+                step = (2.0 * step).min(GROWTH_MM.0);
+                self.tell(0.7 * grown / self.deepest)?;
+            } else {
+                self.equilibrium.places = before;
+                step *= 0.5;
+                if step < GROWTH_MM.1 {
+                    return Err(self.unsolved(grown, forces.as_ref()));
+                }
+            }
+        }
+        let last = RIGID;
+        self.harden(last)?;
+        self.tell(0.8)?;
+        let last_limits = Limits {
+            tolerance,
+            most_steps: MOST_STEPS,
+        };
+        for round in 0.. {
+            let depth = self.equilibrium.shift_obstacle();
+            let is_last = depth <= DEEPEST_MM || round == MOST_SHIFTS;
+            let (end, forces) = self.balance(last, 0.0, last_limits)?;
+            match (end, forces) {
+                (End::Balanced, Some(forces)) if is_last => return Ok(forces),
+                (End::Balanced, _) => self.tell(0.8 + 0.02 * f64::from(round as u8))?,
+                (_, forces) => return Err(self.unsolved(self.deepest, forces.as_ref())),
+            }
+        }
+        Err(self.unsolved(self.deepest, None))
+    }
+
+    /// Hardens the product step by step; a step that fails is taken back and halved.
+    fn harden(&mut self, last: f64) -> Result<(), ReferenceError> {
+        let (mut hardness, mut factor) = (GROWING, HARDER);
+        while hardness < last {
+            let next = (hardness * factor).min(last);
+            let before = self.equilibrium.places.clone();
+            let limits = HARDENING_LIMITS;
+            let (end, forces) = self.balance(next, 0.0, limits)?;
+            if end == End::Balanced {
+                hardness = next;
+                factor = (factor * factor).min(HARDER);
+            } else {
+                self.equilibrium.places = before;
+                factor = factor.sqrt();
+                if factor < LEAST_HARDER {
+                    return Err(self.unsolved(self.deepest, forces.as_ref()));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn balance(
+        &mut self,
+        hardness: f64,
+        inset: f64,
+        limits: Limits,
+    ) -> Result<(End, Option<Forces>), ReferenceError> {
+        let penalty = Penalty {
+            stiffness: hardness * self.modulus,
+            inset,
+        };
+        let progress = self.progress;
+        let share = 0.7 * (1.0 - inset / self.deepest.max(1e-9));
+        let (end, forces) = self
+            .equilibrium
+            .balance(penalty, limits, &|| !progress(share));
+        match end {
+            End::Cancelled => Err(ReferenceError::Cancelled),
+            _ => Ok((end, forces)),
+        }
+    }
+
+    fn tell(&self, share: f64) -> Result<(), ReferenceError> {
+        if (self.progress)(share) {
+            Ok(())
+        } else {
+            Err(ReferenceError::Cancelled)
+        }
+    }
+
+    fn unsolved(&self, grown: f64, forces: Option<&Forces>) -> ReferenceError {
+        let mesh = self.equilibrium.mesh;
+        let mut vertex = 0;
+        if let Some(forces) = forces {
+            let size = |k: u32| {
+                (0..3)
+                    .map(|i| forces.residual[3 * k as usize + i].powi(2))
+                    .sum::<f64>()
+            };
+            let free = (0..mesh.nodes.len()).filter(|node| mesh.free[*node] != u32::MAX);
+            let worst = free.max_by(|a, b| size(mesh.free[*a]).total_cmp(&size(mesh.free[*b])));
+            vertex = worst.map_or(0, |node| node % mesh.skin_count);
+        }
+        ReferenceError::Unsolved {
+            share: 100.0 * grown / self.deepest.max(1e-9),
+            unbalanced: forces.map_or(f64::NAN, |f| 100.0 * f.unbalanced()),
+            vertex,
+        }
+    }
+}
