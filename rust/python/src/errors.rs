@@ -69,8 +69,6 @@ pub enum Failure {
     Recording(RecordingFault),
     Diagnosis(DiagnosisError),
     Cancelled,
-    /// An earlier panic left the prepared skin half changed.
-    Spoiled,
 }
 
 impl From<ContactError> for Failure {
@@ -105,9 +103,6 @@ impl From<Failure> for PyErr {
             Failure::Cancelled => {
                 Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
             }
-            Failure::Spoiled => SolveError::new_err(
-                "an earlier error inside thenar spoiled this skin; prepare it again",
-            ),
         }
     }
 }

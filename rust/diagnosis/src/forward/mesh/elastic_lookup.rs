@@ -167,7 +167,7 @@ impl Replay {
             false => Keep::Totals,
         };
         press_table(
-            &mut self.tissue.skin,
+            self.tissue.workspace.on(&self.tissue.skin),
             (&place.tool, place.direction),
             (place.deepest, rungs, keep),
             (&title, &quiet),

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use thenar_contact::effects::Effect;
 use thenar_contact::instrument::Placement;
 use thenar_contact::{
-    ActiveEffect, Control, Demand, Keep, Material, Protocol, Row, Run, Skin, Step,
+    ActiveEffect, Control, Demand, Keep, Material, Pressing, Protocol, Row, Run, Step, Workspace,
 };
 use thenar_surface::Vec3;
 
@@ -117,11 +117,11 @@ impl Replay {
         self.turn_skin(&first.key, (&title, control))?;
         let share = tasks.len().div_ceil(rayon::current_num_threads().max(1));
         let of_share = |tasks: &[Task]| -> Result<Vec<AtSkin>, DiagnosisError> {
-            // A skin keeps only what saves time: a copy gives the same bits.
-            let mut skin = self.tissue.skin.clone();
+            // A workspace keeps only what saves time: an empty one gives the same bits.
+            let mut workspace = Workspace::default();
             tasks
                 .iter()
-                .map(|task| self.run(&mut skin, task, control))
+                .map(|task| self.run(workspace.on(&self.tissue.skin), task, control))
                 .collect()
         };
         let found: Vec<Vec<AtSkin>> = tasks
@@ -146,7 +146,7 @@ impl Replay {
     /// Follows a protocol with the skin as it is.
     fn run(
         &self,
-        skin: &mut Skin,
+        mut skin: Pressing<'_>,
         task: &Task,
         control: &Control<'_>,
     ) -> Result<AtSkin, DiagnosisError> {

@@ -1,7 +1,7 @@
 //! Force and area of a tool at a series of depths: what a model without history needs to predict any protocol.
 
 use thenar_contact::instrument::PointLoad;
-use thenar_contact::{Control, Demand, Keep, Protocol, Row, Run, Skin};
+use thenar_contact::{Control, Demand, Keep, Pressing, Protocol, Row, Run};
 use thenar_surface::{Product, Vec3};
 
 use crate::errors::DiagnosisError;
@@ -31,7 +31,7 @@ pub struct PressTable {
 /// # Errors
 /// What the contact model says, of `what`.
 pub fn press_table(
-    skin: &mut Skin,
+    mut skin: Pressing<'_>,
     (tool, direction): (&Product, Vec3),
     (deepest, rungs, keep): (f64, usize, Keep),
     (what, control): (&str, &Control<'_>),

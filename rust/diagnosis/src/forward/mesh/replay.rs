@@ -168,8 +168,8 @@ impl Replay {
             .cloned()
             .collect();
         if of_skin != self.effects {
-            let changed = self.tissue.skin.set_effects(of_skin.clone(), control);
-            changed.map_err(DiagnosisError::of_contact("the effects"))?;
+            let changed = self.tissue.skin.with_effects(of_skin.clone(), control);
+            self.tissue.skin = changed.map_err(DiagnosisError::of_contact("the effects"))?;
             self.effects = of_skin;
         }
         self.instrument = effects.iter().filter(is_instrument).cloned().collect();
@@ -198,12 +198,12 @@ impl Replay {
     ) -> Result<(), DiagnosisError> {
         let skin = &mut self.tissue.skin;
         if skin.effects() != key.effects {
-            let changed = skin.set_effects(key.effects.clone(), control);
-            changed.map_err(DiagnosisError::of_contact(what))?;
+            let changed = skin.with_effects(key.effects.clone(), control);
+            *skin = changed.map_err(DiagnosisError::of_contact(what))?;
         }
         if skin.materials() != key.materials {
-            let changed = skin.set_materials(&key.materials, control);
-            changed.map_err(DiagnosisError::of_contact(what))?;
+            let changed = skin.with_materials(&key.materials, control);
+            *skin = changed.map_err(DiagnosisError::of_contact(what))?;
         }
         Ok(())
     }

@@ -40,7 +40,8 @@ impl Replay {
             cancelled: control.cancelled,
             progress: &|_, _| {},
         };
-        let course = self.tissue.skin.run(&run, &quiet);
+        let mut skin = self.tissue.workspace.on(&self.tissue.skin);
+        let course = skin.run(&run, &quiet);
         Ok(course.map_err(DiagnosisError::of_contact(what))?.last)
     }
 }

@@ -1,6 +1,6 @@
 //! The study's skin as the contact model takes it.
 
-use thenar_contact::{Control, Material, Model, Skin, SkinInput};
+use thenar_contact::{Control, Material, Model, Skin, SkinInput, Workspace};
 use thenar_recordings::study::{StudyMaterial, StudySkin};
 use thenar_surface::{Mesh, Vec3};
 
@@ -14,6 +14,8 @@ pub const ONE_REGION: &str = "default";
 pub struct Tissue {
     /// The skin.
     pub skin: Skin,
+    /// Scratch of its presses, but for those that several threads do at once.
+    pub workspace: Workspace,
     /// Names by region.
     pub regions: Vec<String>,
     /// Materials where the fit starts, by region.
@@ -71,6 +73,7 @@ pub fn tissue(study: &StudySkin, control: &Control<'_>) -> Result<Tissue, Diagno
         .map_err(DiagnosisError::of_contact("the study's skin"))?;
     Ok(Tissue {
         skin,
+        workspace: Workspace::default(),
         regions,
         materials,
         fitted,

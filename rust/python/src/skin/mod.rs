@@ -1,25 +1,29 @@
 //! `thenar.Skin`: a hand prepared once and pressed in any posture, from any thread.
 
+mod shared;
+
 use crate::arrays::{Argument, column};
 use crate::contact::Contact;
 use crate::effects::{Effect, effects_of};
-use crate::errors::Failure;
 use crate::material::Material;
 use crate::product::Surface;
 use crate::protocol::{Course, protocol_of};
 use crate::requests::{
-    Followed, Request, Target, drag_of, force_of, keep_named, model_named, table_of, target_of,
+    Followed, Request, drag_of, force_of, keep_named, model_named, table_of, target_of,
 };
 use crate::running::{Hooks, run};
 use crate::walk::Walk;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
-use std::time::{Duration, Instant};
-use thenar_contact::{ContactError, Control, Model, Press, Run, SkinInput, Start, Unsolved};
+pub(crate) use shared::Inner;
+use std::sync::Arc;
+use thenar_contact::{ContactError, Model, SkinInput, Start, Unsolved};
 use thenar_surface::Mesh;
 
-/// A skin prepared for presses. Safe to use from several threads: presses of one skin wait for each other.
+/// A skin prepared for presses. Several threads may press one skin at once, and each gets the bits that it gets alone.
+///
+/// What a press writes is in a workspace of its own, never in the skin. Two that are idle are kept for the next presses; more
+/// are there only while more presses run.
 ///
 /// `vertices_mm` (n, 3) rest positions; `triangles` (m, 3); `regions` (n,) with -1 for "no skin", None: all region 0;
 /// `materials`: one `Material`, a list by region, or a dict by number, name or "default", None: the model's preset for a
@@ -34,12 +38,6 @@ pub struct Skin {
     region_names: Arc<Vec<String>>,
     model: Model,
     vertex_count: usize,
-}
-
-pub(crate) struct Inner {
-    skin: Mutex<thenar_contact::Skin>,
-    /// The product of the last press from arrays: pressing it again needs no new tree.
-    last_product: Mutex<Option<Arc<thenar_surface::Product>>>,
 }
 
 #[pymethods]
@@ -87,18 +85,16 @@ impl Skin {
                 model,
             };
             let mut skin = thenar_contact::Skin::prepare_named(input, titles, control)?;
-            assumed.into_iter().for_each(|note| skin.note(note));
+            if let Some(note) = assumed {
+                skin = skin.with_note(note);
+            }
             if !effects.is_empty() {
-                skin.set_effects(effects, control)?;
+                skin = skin.with_effects(effects, control)?;
             }
             Ok(skin)
         })?;
-        let inner = Arc::new(Inner {
-            skin: Mutex::new(skin),
-            last_product: Mutex::new(None),
-        });
         Ok(Skin {
-            inner,
+            inner: Arc::new(Inner::new(skin)),
             materials,
             region_names: Arc::new(names),
             model,
@@ -113,8 +109,8 @@ impl Skin {
     /// `cancel`: a callable that returns a bool or an object with `is_set()`; `progress`: a callable of stage and
     /// fraction; with the effect friction, the product, where it stands, came there by `slide_mm` (3,) along the skin and
     /// `twist_rad` (3,) about the center of the contact, or was dragged by the force `drag_n` (3,); `warm_start`: begin
-    /// at the last result of this skin, faster and equal within the tolerances, else the
-    /// result depends on the arguments alone, bit for bit; `live`: the same for what moves before the eye, skin away from what
+    /// at the last result of this skin, that of the press that ended last before this one began, faster and equal within the
+    /// tolerances, else the result depends on the arguments alone, bit for bit; `live`: the same for what moves before the eye, skin away from what
     /// moved keeps its forces until it is off by 0.5 % of the deepest penetration, and no residual is above that;
     /// `keep_unsolved`: a contact that misses its tolerances is returned, graded "do not use", in place of a `SolveError` whose
     /// `vertices` say where, the worst first. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
@@ -228,51 +224,58 @@ impl Skin {
             .map(|direction| Argument::solve("direction", direction).vector())
             .transpose()?;
         let inner = Arc::clone(&self.inner);
-        let (product, state) = run(py, &Hooks::none(), move |control| {
-            let product = match target {
-                Target::Prepared(product) => product,
-                Target::Surface(surface) => inner.product_of(surface)?,
-            };
-            let skin = inner.skin(control)?;
-            Ok((product, thenar_contact::Walk::new(&skin, direction)?))
+        let (product, state) = run(py, &Hooks::none(), move |_| {
+            let product = inner.product(target)?;
+            Ok((
+                product,
+                thenar_contact::Walk::new(&inner.skin(), direction)?,
+            ))
         })?;
-        Ok(Walk {
-            inner: Arc::clone(&self.inner),
-            region_names: Arc::clone(&self.region_names),
-            product,
-            state: Arc::new(Mutex::new(state)),
-        })
+        let place = (Arc::clone(&self.inner), product);
+        Ok(Walk::new(place, state, Arc::clone(&self.region_names)))
     }
 
-    /// Switches effects on, in place of those before; the skin is prepared again only where they change it.
+    /// Switches effects on, in place of those before; the response is prepared again only where they change it. Presses that
+    /// run meanwhile end with those they began with.
     ///
     /// Raises `SolveError` for numbers that are not admissible; the skin then stays as it was.
     fn set_effects(&self, py: Python<'_>, effects: Vec<PyRef<'_, Effect>>) -> PyResult<()> {
         let (inner, effects) = (Arc::clone(&self.inner), effects_of(Some(effects)));
-        run(py, &Hooks::new(None, None)?, move |control| {
-            Ok(inner.skin(control)?.set_effects(effects, control)?)
+        run(py, &Hooks::none(), move |control| {
+            inner.change(inner.skin().with_effects(effects, control)?);
+            Ok(())
+        })
+    }
+
+    /// Another skin of the same hand with these effects: it shares all that is prepared, and the response where the effects
+    /// leave it as it is. Its warm starts are its own, and neither skin changes with the other's effects.
+    ///
+    /// Raises `SolveError` for numbers that are not admissible.
+    fn with_effects(&self, py: Python<'_>, effects: Vec<PyRef<'_, Effect>>) -> PyResult<Skin> {
+        let (inner, effects) = (Arc::clone(&self.inner), effects_of(Some(effects)));
+        let skin = run(py, &Hooks::none(), move |control| {
+            Ok(inner.skin().with_effects(effects, control)?)
+        })?;
+        Ok(Skin {
+            inner: Arc::new(Inner::new(skin)),
+            materials: self.materials.clone(),
+            region_names: Arc::clone(&self.region_names),
+            ..*self
         })
     }
 
     /// Effects switched on.
     #[getter]
-    fn effects(&self, py: Python<'_>) -> PyResult<Vec<Effect>> {
-        let inner = Arc::clone(&self.inner);
-        let effects = run(py, &Hooks::new(None, None)?, move |control| {
-            Ok(inner.skin(control)?.effects().to_vec())
-        })?;
-        Ok(effects.into_iter().map(Effect).collect())
+    fn effects(&self) -> Vec<Effect> {
+        let skin = self.inner.skin();
+        skin.effects().iter().cloned().map(Effect).collect()
     }
 
     /// (n,), mm, soft tissue over bone under every vertex, with the effects that are switched on; infinite where the
     /// material knows no bone, NaN away from the skin.
     #[getter]
-    fn thickness_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
-        let inner = Arc::clone(&self.inner);
-        let values = run(py, &Hooks::new(None, None)?, move |control| {
-            Ok(inner.skin(control)?.thickness())
-        })?;
-        Ok(column(py, values))
+    fn thickness_mm(&self, py: Python<'_>) -> Py<PyAny> {
+        column(py, self.inner.skin().thickness())
     }
 
     /// "layer" or "paper".
@@ -308,93 +311,5 @@ impl Skin {
             self.materials.len(),
             self.model()
         )
-    }
-}
-
-impl Inner {
-    fn press(
-        &self,
-        request: Request,
-        control: &Control,
-    ) -> Result<thenar_contact::Contact, Failure> {
-        let started = Instant::now();
-        (control.progress)("product", 0.0);
-        let product = match request.target {
-            Target::Prepared(product) => product,
-            Target::Surface(surface) => self.product_of(surface)?,
-        };
-        let prepared_in = started.elapsed().as_secs_f64();
-        let posed = request.posed.as_deref();
-        let press = Press {
-            product: &product,
-            posed,
-            force: request.force,
-            drag: request.drag,
-            start: request.start,
-            unsolved: request.unsolved,
-        };
-        let mut contact = self.skin(control)?.press(&press, control)?;
-        contact.seconds.insert(0, ("product", prepared_in));
-        Ok(contact)
-    }
-
-    fn follow(
-        &self,
-        request: Followed,
-        control: &Control,
-    ) -> Result<thenar_contact::Course, Failure> {
-        (control.progress)("product", 0.0);
-        let product = match request.target {
-            Target::Prepared(product) => product,
-            Target::Surface(surface) => self.product_of(surface)?,
-        };
-        let walk = Run {
-            product: &product,
-            posed: request.posed.as_deref(),
-            protocol: &request.protocol,
-            keep: request.keep,
-        };
-        let mut skin = self.skin(control)?;
-        let Some(effects) = request.effects else {
-            return Ok(skin.run(&walk, control)?);
-        };
-        let before = skin.effects().to_vec();
-        skin.set_effects(effects, control)?;
-        let course = skin.run(&walk, control);
-        skin.set_effects(before, &Control::none())?;
-        Ok(course?)
-    }
-
-    fn product_of(&self, surface: Surface) -> Result<Arc<thenar_surface::Product>, Failure> {
-        let last = || {
-            self.last_product
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
-        let known = last().clone();
-        if let Some(product) = known.filter(|product| {
-            product.mesh().triangles() == surface.triangles
-                && product.mesh().positions() == surface.vertices
-        }) {
-            return Ok(product);
-        }
-        let product = surface.into_product().map_err(ContactError::Product)?;
-        *last() = Some(Arc::clone(&product));
-        Ok(product)
-    }
-
-    /// The skin once no other press uses it; can be cancelled while waiting.
-    pub(crate) fn skin(
-        &self,
-        control: &Control,
-    ) -> Result<MutexGuard<'_, thenar_contact::Skin>, Failure> {
-        loop {
-            match self.skin.try_lock() {
-                Ok(skin) => return Ok(skin),
-                Err(TryLockError::Poisoned(_)) => return Err(Failure::Spoiled),
-                Err(TryLockError::WouldBlock) => control.check()?,
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        }
     }
 }
