@@ -22,6 +22,9 @@ ONE_FILE = {
     r"\bnumpy::|\buse numpy\b": "rust/python/src/arrays.rs",
 }
 PRINTING = r"\b(println|eprintln|print|eprint|dbg)!"
+# A prepared skin is only read: nobody writes to one or locks one, and what it holds cannot change behind `&`.
+WRITTEN_SKIN = r"&('\w+ )?mut (thenar_contact::)?Skin\b|\b(Mutex|RwLock|RefCell)<(thenar_contact::)?Skin\b"
+INNER_CHANGE = r"\b(Mutex|RwLock|RefCell|Cell|UnsafeCell|Atomic\w+)\b"
 INPUT_OUTPUT = r"\bstd::(fs|net|process|env)\b|\bstd::io::(stdin|stdout|stderr)\b"
 
 
@@ -66,6 +69,20 @@ def libraries_read_no_files(root):
     return _found_in_libraries(root, readers, INPUT_OUTPUT, "does input or output")
 
 
+def skins_are_only_read(root):
+    """No `&mut Skin`, no lock around one, no method of it with `&mut self`, and no interior mutability in its room."""
+    users = [crate for crate in sources.crates(root) if crate == "contact" or "contact" in ALLOWED.get(crate, ())]
+    wrong = _found_in_libraries(root, users, WRITTEN_SKIN, "writes to a skin")
+    for path in sorted(root.glob("rust/contact/src/**/*.rs")):
+        name, code = path.relative_to(root).as_posix(), sources.rust_code(path)
+        methods = "".join(re.findall(r"^impl Skin \{.*?^\}", code, re.DOTALL | re.MULTILINE))
+        if "&mut self" in methods:
+            wrong.append(f"{name}: a method of Skin takes &mut self")
+        if name.startswith("rust/contact/src/skin/") and (match := re.search(INNER_CHANGE, code)):
+            wrong.append(f"{name} writes to a skin: {match.group()}")
+    return wrong
+
+
 def lints_are_on(root):
     """`clippy -D warnings` forbids unwrap only where the workspace's lints are taken over and not allowed away."""
     wrong = [
@@ -103,6 +120,7 @@ ALL = [
     one_file_only,
     libraries_are_silent,
     libraries_read_no_files,
+    skins_are_only_read,
     lints_are_on,
     version_stands_once,
 ]
