@@ -10,12 +10,15 @@ ALLOWED = {
     "contact": {"surface"},
     "hand": {"surface"},
     "recordings": {"surface"},
-    "diagnosis": {"surface", "contact", "recordings"},
-    "python": {"surface", "contact", "hand", "recordings", "diagnosis"},
-    "cli": {"surface", "contact", "hand", "recordings", "diagnosis"},
+    "inference": {"surface", "contact", "recordings"},
+    "comparison": {"surface", "contact", "recordings", "inference"},
+    "diagnosis": {"surface", "contact", "recordings", "inference", "comparison"},
+    "report": {"surface", "contact", "recordings", "inference", "comparison", "diagnosis"},
+    "python": {"surface", "contact", "hand", "recordings", "inference", "comparison", "diagnosis", "report"},
+    "cli": {"surface", "contact", "hand", "recordings", "inference", "comparison", "diagnosis", "report"},
     "xtask": set(),
 }
-LIBRARIES = ["surface", "contact", "hand", "recordings", "diagnosis"]
+LIBRARIES = ["surface", "contact", "hand", "recordings", "inference", "comparison", "diagnosis", "report"]
 # Pattern -> the one file that may hold it.
 ONE_FILE = {
     r"\b(obvhs|glam)::|\buse (obvhs|glam)\b": "rust/surface/src/tree/bvh.rs",
