@@ -23,6 +23,9 @@ LIBRARIES = ["surface", "contact", "hand", "recordings", "inference", "compariso
 ONE_FILE = {
     r"\b(obvhs|glam)::|\buse (obvhs|glam)\b": "rust/surface/src/tree/bvh.rs",
     r"\bnumpy::|\buse numpy\b": "rust/python/src/arrays.rs",
+    r"\b1\.4826": "rust/inference/src/observe/robust_scale.rs",
+    r"\bfn huber\b": "rust/inference/src/least_squares/huber.rs",
+    r"\bdamping\b": "rust/inference/src/least_squares/levenberg_marquardt.rs",
 }
 PRINTING = r"\b(println|eprintln|print|eprint|dbg)!"
 INPUT_OUTPUT = r"\bstd::(fs|net|process|env)\b|\bstd::io::(stdin|stdout|stderr)\b"

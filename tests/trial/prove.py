@@ -13,7 +13,7 @@ the table and writes `table.json` and `page.html`. Exits with 1 if a row of the 
 be.
 
 The thresholds of the diagnosis (in rust/diagnosis/src/gates and rust/inference/src: checks,
-parameters/surrogate_priors.rs) were set on `--split calibration` and on larger draws of it, and what they rest on is
+parameters/priors.rs) were set on `--split calibration` and on larger draws of it, and what they rest on is
 printed with both (thresholds.py).
 """
 

@@ -10,7 +10,7 @@ use crate::gates::decision::Decision;
 use crate::wording::{PHASES, phase_number};
 use thenar_inference::checks::signatures::looked_for;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
-use thenar_inference::least_squares::surrogate_fit::huber;
+use thenar_inference::least_squares::huber::{HUBER, huber};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Findings of what is named.
@@ -89,7 +89,8 @@ fn depends_on(effect: Effect) -> Vec<&'static str> {
 fn ledger(ready: &PreparedStudy, rungs: &Rungs, scored: &Scored) -> [f64; 4] {
     let mut sums = [0.0; 4];
     for (sample, _, phase) in ready.surrogate().phases() {
-        let fall = huber(rungs.base.refit.residual[sample]) - huber(scored.refit.residual[sample]);
+        let fall = huber(rungs.base.refit.residual[sample], HUBER)
+            - huber(scored.refit.residual[sample], HUBER);
         sums[phase_number(phase)] += 0.5 * fall / rungs.overdispersion;
     }
     sums
@@ -100,8 +101,8 @@ fn when(ready: &PreparedStudy, rungs: &Rungs, scored: &Scored) -> Option<When> {
     let most = (0..4).fold(0, |best, k| if sums[k] > sums[best] { k } else { best });
     let mut by_course: Vec<(f64, usize)> = (0..ready.courses.len()).map(|c| (0.0, c)).collect();
     for (sample, course, _) in ready.surrogate().phases() {
-        by_course[course].0 +=
-            huber(rungs.base.refit.residual[sample]) - huber(scored.refit.residual[sample]);
+        by_course[course].0 += huber(rungs.base.refit.residual[sample], HUBER)
+            - huber(scored.refit.residual[sample], HUBER);
     }
     by_course.sort_by(|a, b| b.0.total_cmp(&a.0));
     let clearest = by_course.first()?.0;

@@ -6,6 +6,7 @@ pub mod errors;
 pub mod random;
 pub mod distributions;
 pub mod number_format;
+pub(crate) mod interpolation;
 
 pub mod observe;
 pub mod noise;

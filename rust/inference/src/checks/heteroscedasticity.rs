@@ -7,7 +7,7 @@ use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::noise::estimate::Noise;
 use crate::noise::periodic_component::Rhythm;
 use crate::observe::measured::Phase;
-use crate::observe::robust_scale::median;
+use crate::observe::robust_scale::trimmed_deviation;
 
 /// Fewest deviations with and without contact from which they are compared.
 const LEAST: (usize, usize) = (40, 24);
@@ -112,7 +112,7 @@ pub fn heteroscedasticity(
     }
     let spread = (0.5 / worth[0].max(1.0) + 0.5 / worth[1].max(1.0)).sqrt();
     Some(Heteroscedasticity {
-        ratio: size(&under) / size(&without).max(1e-9),
+        ratio: trimmed_deviation(&under, OUTLIER) / trimmed_deviation(&without, OUTLIER).max(1e-9),
         least: libm::exp(SURE * spread),
     })
 }
@@ -161,15 +161,6 @@ fn freed(found: &Deviations) -> Vec<f64> {
     let each = found.under.iter().zip(&found.along);
     each.map(|(off, along)| off - Vector2::from(*along).dot(&by))
         .collect()
-}
-
-/// Root mean square without outliers.
-fn size(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    let most = OUTLIER * 1.4826 * median(&mut sizes);
-    let kept = values.iter().filter(|v| v.abs() <= most);
-    let (sum, n) = kept.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
-    if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::errors::InferenceError;
 use crate::least_squares::objective::{Problem, is_load};
 use crate::parameters::model_inputs::setting;
-use crate::parameters::parameter::Kind;
+use crate::parameters::parameter::{Kind, Number};
 
 /// Steps in which counts per kPa are sought, as a logarithm.
 const STEP: f64 = 0.25;
@@ -32,7 +32,7 @@ pub(crate) fn scaled_start(
     let factor = if under > 0.0 { over / under } else { 1.0 };
     let shift = if factor > 0.0 { libm::log(factor) } else { 0.0 };
     for (at, parameter) in start.iter_mut().zip(problem.parameters) {
-        if parameter.name.starts_with("g0") || parameter.name.starts_with("g_lim") {
+        if matches!(parameter.kind, Kind::Tissue(_, Number::G0 | Number::GLim)) {
             *at = (*at + shift).clamp(parameter.bounds.0, parameter.bounds.1);
         }
     }

@@ -1,6 +1,5 @@
 //! Forward models: predicted samples for given parameters, by the mesh and by tables (surrogate).
 
-pub(crate) mod interpolation;
 pub mod setup;
 pub mod mesh;
 pub mod tables;

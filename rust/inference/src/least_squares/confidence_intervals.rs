@@ -3,8 +3,9 @@
 use nalgebra::DMatrix;
 
 use crate::distributions::t_95;
-use crate::least_squares::levenberg_marquardt::System;
-use crate::least_squares::objective::{Point, Problem, huber};
+use crate::least_squares::huber::huber;
+use crate::least_squares::levenberg_marquardt::{Point, System};
+use crate::least_squares::objective::Problem;
 use crate::noise::estimate::Noise;
 use crate::parameters::estimate::Estimate;
 use crate::parameters::parameter::Kind;
@@ -67,8 +68,11 @@ pub fn estimates(
         };
         let near = AT_BOUND * (high - low);
         let estimate = Estimate {
-            name: parameter.name.to_owned(),
-            target: parameter.target.clone(),
+            name: parameter.name(problem.effects).to_owned(),
+            target: parameter.target(
+                &problem.replay.tissue.regions,
+                &problem.replay.observed.measured,
+            ),
             start: parameter.value(parameter.start),
             value: parameter.value(at),
             low: parameter.value(ends.0),

@@ -1,4 +1,4 @@
-//! Objective of the mesh model's fit: Huber loss of whitened residuals plus priors, and its Jacobian.
+//! The mesh model as it is fitted: its predictions, their derivatives, and when its fit has settled.
 
 use std::ops::AddAssign;
 
@@ -7,14 +7,19 @@ use thenar_contact::{ActiveEffect, Control};
 
 use crate::errors::InferenceError;
 use crate::forward::mesh::replay::Replay;
-use crate::noise::whitening::{Whitened, Whitening};
+use crate::least_squares::huber::HUBER;
+use crate::least_squares::levenberg_marquardt::{Limits, Objective, Point, Stopping};
+use crate::noise::whitening::Whitening;
 use crate::observe::measured::Quantity;
+use crate::observe::robust_scale::median_deviation;
 use crate::parameters::effect_parameters::effects_at;
 use crate::parameters::model_inputs::setting;
 use crate::parameters::parameter::{Kind, Parameter};
 
-/// Residuals beyond this many standard deviations, or of the bulk's spread if that is wider, pull with a constant force (Huber).
-pub(crate) const HUBER: f64 = 3.0;
+/// Relative gain of the objective below which the fit has settled, twice in a row.
+const SETTLED: f64 = 1e-7;
+/// The same, once, where every step follows all protocols anew: a hundredth of what a standard error gains.
+const SETTLED_SLOWLY: f64 = 1e-5;
 
 /// A fit's data and model.
 pub struct Problem<'a> {
@@ -32,48 +37,22 @@ pub struct Problem<'a> {
     pub control: &'a Control<'a>,
 }
 
-/// The model at one place.
-#[derive(Debug, Clone)]
-pub struct Point {
-    /// Coordinates.
-    pub at: Vec<f64>,
-    /// Predictions by recording.
-    pub simulated: Vec<Vec<f64>>,
-    /// Whitened residuals, stacked.
-    pub whitened: Whitened,
-    /// What the fit makes small: sum of Huber's function over residuals and priors.
-    pub objective: f64,
-    /// Threshold of that function.
-    pub threshold: f64,
-}
+impl Objective for Problem<'_> {
+    type Error = InferenceError;
 
-impl Problem<'_> {
-    /// The model at `at`; `threshold` as [`Point::threshold`], None: from its own residuals.
-    ///
-    /// # Errors
-    /// Those of a replay.
-    pub fn point(&mut self, at: &[f64], threshold: Option<f64>) -> Result<Point, InferenceError> {
-        let simulated = self.predictions(at)?;
-        let whitened = self.whitening.residuals(&simulated.concat());
-        let threshold = threshold.unwrap_or_else(|| self.threshold(&whitened.residual, &simulated));
-        let misfit: f64 = whitened.residual.iter().map(|r| huber(*r, threshold)).sum();
-        let prior = self.parameters.iter().zip(at);
-        let prior: f64 = prior
-            .filter_map(|(p, x)| p.prior.map(|sd| (x / sd).powi(2)))
-            .sum();
-        Ok(Point {
-            at: at.to_vec(),
-            simulated,
-            whitened,
-            objective: misfit + prior,
-            threshold,
-        })
+    fn limits(&self) -> Vec<Limits> {
+        let limits = |p: &Parameter| Limits {
+            bounds: p.bounds,
+            prior: p.prior,
+        };
+        self.parameters.iter().map(limits).collect()
+    }
+
+    fn whitening(&self) -> &Whitening {
+        self.whitening
     }
 
     /// Predictions of the recordings in use; zeros for the others.
-    ///
-    /// # Errors
-    /// Those of a replay.
     fn predictions(&mut self, at: &[f64]) -> Result<Vec<Vec<f64>>, InferenceError> {
         self.turn_effects(at)?;
         let recordings = self.replay.observed.measured.len();
@@ -93,31 +72,22 @@ impl Problem<'_> {
         Ok(simulated)
     }
 
-    /// Gives the model the effects that it has at a place.
-    ///
-    /// # Errors
-    /// What the contact model says of them.
-    pub(crate) fn turn_effects(&mut self, at: &[f64]) -> Result<(), InferenceError> {
-        let effects = effects_at(self.effects, (self.parameters, at));
-        self.replay.set_effects(&effects, self.control)
+    fn stacked(&self, predictions: &[Vec<f64>]) -> Vec<f64> {
+        predictions.concat()
     }
 
-    /// Where a residual stands out from the bulk of them.
-    fn threshold(&self, residual: &[f64], simulated: &[Vec<f64>]) -> f64 {
-        let each = residual.iter().zip(simulated.iter().flatten()).enumerate();
+    fn threshold(&self, residual: &[f64], predictions: &[Vec<f64>]) -> f64 {
+        let each = residual
+            .iter()
+            .zip(predictions.iter().flatten())
+            .enumerate();
         let counting = each.filter(|(k, (_, f))| self.whitening.counts(*k, **f));
         let mut sizes: Vec<f64> = counting.map(|(_, (r, _))| r.abs()).collect();
-        let bulk = 1.4826 * crate::observe::robust_scale::median(&mut sizes);
+        let bulk = median_deviation(&mut sizes);
         HUBER * if bulk.is_finite() { bulk.max(1.0) } else { 1.0 }
     }
 
-    /// Derivatives of all predictions by all parameters, not whitened; rows stacked as the samples.
-    ///
-    /// Those by numbers of effects are taken from `kept`, if it is there: they cost most and change least.
-    ///
-    /// # Errors
-    /// Those of a replay.
-    pub(crate) fn jacobian(
+    fn jacobian(
         &mut self,
         point: &Point,
         kept: Option<&DMatrix<f64>>,
@@ -130,6 +100,8 @@ impl Problem<'_> {
                 Some(*next - one.len())
             })
             .collect();
+        // Those by numbers of effects cost most and change least.
+        let kept = kept.filter(|_| self.replay.remembers());
         let mut jacobian = DMatrix::zeros(self.whitening.len(), self.parameters.len());
         for column in 0..self.parameters.len() {
             match (self.parameters[column].kind, kept) {
@@ -159,6 +131,35 @@ impl Problem<'_> {
         }
         self.sum_touches(&mut jacobian);
         Ok(jacobian)
+    }
+
+    fn stopping(&self, objective: f64) -> Stopping {
+        let (settled, enough) = match self.replay.remembers() {
+            true => (SETTLED_SLOWLY, 1),
+            false => (SETTLED, 2),
+        };
+        let small = settled * (1.0 + objective);
+        Stopping {
+            small,
+            enough,
+            promised: small,
+        }
+    }
+
+    fn before_step(&self, share: f64) -> Result<(), InferenceError> {
+        let step = self.control.step("fitting", share);
+        step.map_err(|_| InferenceError::Cancelled)
+    }
+}
+
+impl Problem<'_> {
+    /// Gives the model the effects that it has at a place.
+    ///
+    /// # Errors
+    /// What the contact model says of them.
+    pub(crate) fn turn_effects(&mut self, at: &[f64]) -> Result<(), InferenceError> {
+        let effects = effects_at(self.effects, (self.parameters, at));
+        self.replay.set_effects(&effects, self.control)
     }
 
     /// Derivatives of all predictions by a number of an effect.
@@ -253,15 +254,6 @@ fn inward(parameter: &Parameter, here: f64) -> f64 {
     match high - here > here - low {
         true => parameter.step,
         false => -parameter.step,
-    }
-}
-
-/// Huber's function: the square, and beyond the threshold a straight line.
-pub fn huber(residual: f64, threshold: f64) -> f64 {
-    let size = residual.abs();
-    match size <= threshold {
-        true => size * size,
-        false => threshold * (2.0 * size - threshold),
     }
 }
 

@@ -1,15 +1,18 @@
-//! Levenberg-Marquardt with bounds and Huber loss, for the surrogate model; covariance and linearized misfit.
+//! The fit of a candidate model of the surrogate, its covariance, and what a fit would leave to first order.
 
-use nalgebra::{DMatrix, DVector};
+use std::convert::Infallible;
+
+use nalgebra::DMatrix;
 
 use crate::forward::surrogate::candidate_model::Model;
 use crate::forward::surrogate::surrogate_data::Surrogate;
-use crate::noise::whitening::Whitened;
+use crate::least_squares::huber::HUBER;
+use crate::least_squares::levenberg_marquardt::{
+    Limits, Objective, Point, Stopping, System, descend,
+};
+use crate::noise::whitening::Whitening;
+use crate::parameters::surrogate_parameter::Coordinate;
 
-/// Residuals beyond this many standard deviations pull with a constant force.
-pub(crate) const HUBER: f64 = 3.0;
-/// Most steps.
-const MOST_STEPS: usize = 60;
 /// Gain of the deviance below which a fit has settled.
 const SETTLED: f64 = 0.02;
 /// Gain of the deviance that a step must promise to be tried.
@@ -30,41 +33,67 @@ pub struct Refit {
     pub covariance: DMatrix<f64>,
 }
 
-struct Here {
-    at: Vec<f64>,
-    forces: Vec<Vec<f64>>,
-    simulated: Vec<f64>,
-    whitened: Whitened,
-    deviance: f64,
-}
+/// A candidate model with the surrogate that predicts for it.
+struct Candidate<'a>(&'a Surrogate<'a>, &'a Model<'a>);
 
-fn here(surrogate: &Surrogate<'_>, model: &Model<'_>, at: Vec<f64>) -> Here {
-    let forces = surrogate.all_forces(model, &at);
-    let simulated = surrogate.stacked(&forces);
-    let whitened = surrogate.whitening.residuals(&simulated);
-    let misfit: f64 = whitened.residual.iter().map(|r| huber(*r)).sum();
-    let prior = model.coordinates.iter().zip(&at);
-    let prior: f64 = prior
-        .filter_map(|(c, x)| c.prior.map(|sd| (x / sd).powi(2)))
-        .sum();
-    let deviance = match misfit.is_finite() {
-        true => misfit + prior,
-        false => f64::INFINITY,
-    };
-    Here {
-        at,
-        forces,
-        simulated,
-        whitened,
-        deviance,
+impl Objective for Candidate<'_> {
+    type Error = Infallible;
+
+    fn limits(&self) -> Vec<Limits> {
+        let limits = |c: &Coordinate| Limits {
+            bounds: c.bounds,
+            prior: c.prior,
+        };
+        self.1.coordinates.iter().map(limits).collect()
     }
-}
 
-/// Huber's function: the square, and beyond the threshold a straight line.
-pub fn huber(r: f64) -> f64 {
-    match r.abs() <= HUBER {
-        true => r * r,
-        false => HUBER * (2.0 * r.abs() - HUBER),
+    fn whitening(&self) -> &Whitening {
+        self.0.whitening
+    }
+
+    fn predictions(&mut self, at: &[f64]) -> Result<Vec<Vec<f64>>, Infallible> {
+        Ok(self.0.all_forces(self.1, at))
+    }
+
+    fn stacked(&self, predictions: &[Vec<f64>]) -> Vec<f64> {
+        self.0.stacked(predictions)
+    }
+
+    fn threshold(&self, _: &[f64], _: &[Vec<f64>]) -> f64 {
+        HUBER
+    }
+
+    fn jacobian(
+        &mut self,
+        point: &Point,
+        _: Option<&DMatrix<f64>>,
+    ) -> Result<DMatrix<f64>, Infallible> {
+        let Candidate(surrogate, model) = self;
+        let rows = point.whitened.residual.len();
+        let mut jacobian = DMatrix::zeros(rows, model.coordinates.len());
+        for number in 0..model.coordinates.len() {
+            for (c, course) in surrogate.courses.iter().enumerate() {
+                let forces = &point.simulated[c];
+                let found = surrogate.slopes((model, &point.at), (number, c), forces);
+                let Some(slopes) = found else {
+                    continue;
+                };
+                for (row, slope) in course.rows.iter().zip(slopes) {
+                    if let Some(sample) = row.sample {
+                        jacobian[(sample, number)] = slope;
+                    }
+                }
+            }
+        }
+        Ok(jacobian)
+    }
+
+    fn stopping(&self, _: f64) -> Stopping {
+        Stopping {
+            small: SETTLED,
+            enough: 2,
+            promised: PROMISED,
+        }
     }
 }
 
@@ -76,38 +105,21 @@ pub fn refit(surrogate: &Surrogate<'_>, model: &Model<'_>, start: &[f64]) -> Ref
     for (x, c) in at.iter_mut().zip(&model.coordinates) {
         *x = x.clamp(c.bounds.0, c.bounds.1);
     }
-    let mut now = here(surrogate, model, at);
-    let (mut normal, mut downhill) = system(model, &now, &slopes(surrogate, model, &now));
-    let (mut damping, mut small) = (1e-3, 0);
-    for _ in 0..MOST_STEPS {
-        let Some(next) = step(model, (&now.at, &normal, &downhill), damping) else {
-            break;
-        };
-        let is_worth_it = promised((&now.at, &next), &normal, &downhill) > PROMISED;
-        let next = is_worth_it.then(|| here(surrogate, model, next));
-        let Some(next) = next.filter(|next| next.deviance < now.deviance) else {
-            damping *= 10.0;
-            if damping > 1e6 {
-                break;
-            }
-            continue;
-        };
-        let gain = now.deviance - next.deviance;
-        small = if gain < SETTLED { small + 1 } else { 0 };
-        now = next;
-        (normal, downhill) = system(model, &now, &slopes(surrogate, model, &now));
-        damping = f64::max(damping * 0.2, 1e-9);
-        if small >= 2 {
-            break;
-        }
-    }
+    let Ok(found) = descend(&mut Candidate(surrogate, model), &at);
     Refit {
-        covariance: inverse(&normal),
-        at: now.at,
-        deviance: now.deviance,
-        residual: now.whitened.residual,
-        simulated: now.simulated,
+        covariance: inverse(&found.system.normal),
+        simulated: surrogate.stacked(&found.point.simulated),
+        at: found.point.at,
+        deviance: found.point.objective,
+        residual: found.point.whitened.residual,
     }
+}
+
+/// A model at a place, and the derivatives of its predictions, not whitened.
+fn about(candidate: &mut Candidate<'_>, at: &[f64]) -> (Point, DMatrix<f64>) {
+    let Ok(point) = candidate.point(at, None);
+    let Ok(jacobian) = candidate.jacobian(&point, None);
+    (point, jacobian)
 }
 
 /// Inverse of the normal matrix with priors where nothing is fitted: at `at`, the coordinates of `known` as they are there.
@@ -116,8 +128,10 @@ pub fn covariance(
     model: &Model<'_>,
     (at, known): (Vec<f64>, &[usize]),
 ) -> DMatrix<f64> {
-    let now = here(surrogate, model, at);
-    let (mut normal, _) = system(model, &now, &slopes(surrogate, model, &now));
+    let mut candidate = Candidate(surrogate, model);
+    let (point, jacobian) = about(&mut candidate, &at);
+    let limits = (&candidate.limits()[..], surrogate.whitening);
+    let mut normal = System::new(limits, (&point, &jacobian)).normal;
     for k in known {
         normal.row_mut(*k).fill(0.0);
         normal.column_mut(*k).fill(0.0);
@@ -133,8 +147,9 @@ pub fn left_by_fit(
     model: &Model<'_>,
     (at, changed): (&[f64], &[Vec<f64>]),
 ) -> Vec<f64> {
-    let now = here(surrogate, model, at.to_vec());
-    let jacobian = slopes(surrogate, model, &now);
+    let (point, jacobian) = about(&mut Candidate(surrogate, model), at);
+    let jacobian = surrogate.whitening.derivatives(&jacobian, &point.whitened);
+    let simulated = surrogate.stacked(&point.simulated);
     // Not as in a fit, where outliers weigh less: the change has none.
     let mut normal = jacobian.tr_mul(&jacobian);
     for (k, c) in model.coordinates.iter().enumerate() {
@@ -142,107 +157,13 @@ pub fn left_by_fit(
     }
     let inverse = inverse(&normal);
     let one = |changed: &Vec<f64>| {
-        let off = changed.iter().zip(&now.simulated).map(|(a, b)| a - b);
+        let off = changed.iter().zip(&simulated).map(|(a, b)| a - b);
         let off = DMatrix::from_iterator(changed.len(), 1, off);
-        let off = surrogate.whitening.derivatives(&off, &now.whitened);
+        let off = surrogate.whitening.derivatives(&off, &point.whitened);
         let pull = jacobian.tr_mul(&off);
         off.norm_squared() - pull.dot(&(&inverse * &pull))
     };
     changed.iter().map(one).collect()
-}
-
-/// Whitened derivatives of the predictions.
-fn slopes(surrogate: &Surrogate<'_>, model: &Model<'_>, now: &Here) -> DMatrix<f64> {
-    let mut raw = DMatrix::zeros(now.simulated.len(), model.coordinates.len());
-    for number in 0..model.coordinates.len() {
-        for (c, course) in surrogate.courses.iter().enumerate() {
-            let found = surrogate.slopes((model, &now.at), (number, c), &now.forces[c]);
-            let Some(slopes) = found else {
-                continue;
-            };
-            for (row, slope) in course.rows.iter().zip(slopes) {
-                if let Some(sample) = row.sample {
-                    raw[(sample, number)] = slope;
-                }
-            }
-        }
-    }
-    surrogate.whitening.derivatives(&raw, &now.whitened)
-}
-
-fn system(model: &Model<'_>, now: &Here, whitened: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
-    let residual = &now.whitened.residual;
-    let mut weighted = whitened.clone();
-    for (k, r) in residual.iter().enumerate() {
-        if r.abs() > HUBER {
-            weighted.row_mut(k).scale_mut(HUBER / r.abs());
-        }
-    }
-    let mut normal = whitened.tr_mul(&weighted);
-    let mut downhill = weighted.tr_mul(&DVector::from_column_slice(residual));
-    for (k, c) in model.coordinates.iter().enumerate() {
-        if let Some(sd) = c.prior {
-            normal[(k, k)] += 1.0 / (sd * sd);
-            downhill[k] -= now.at[k] / (sd * sd);
-        }
-    }
-    (normal, downhill)
-}
-
-/// By how much the deviance falls over a step if it is as its slopes and the normal matrix say.
-fn promised((from, to): (&[f64], &[f64]), normal: &DMatrix<f64>, downhill: &DVector<f64>) -> f64 {
-    let step = DVector::from_iterator(from.len(), to.iter().zip(from).map(|(b, a)| b - a));
-    2.0 * downhill.dot(&step) - step.dot(&(normal * &step))
-}
-
-/// The damped step within the bounds: what meets one stays there, and the rest is solved again.
-fn step(
-    model: &Model<'_>,
-    (from, normal, downhill): (&[f64], &DMatrix<f64>, &DVector<f64>),
-    damping: f64,
-) -> Option<Vec<f64>> {
-    let bounds: Vec<(f64, f64)> = model.coordinates.iter().map(|c| c.bounds).collect();
-    let mut free: Vec<usize> = (0..from.len())
-        .filter(|&k| {
-            let leads_out = (from[k] <= bounds[k].0 && downhill[k] < 0.0)
-                || (from[k] >= bounds[k].1 && downhill[k] > 0.0);
-            !leads_out && normal[(k, k)] > 0.0
-        })
-        .collect();
-    let mut at = from.to_vec();
-    while !free.is_empty() {
-        let matrix = DMatrix::from_fn(free.len(), free.len(), |a, b| {
-            let value = normal[(free[a], free[b])];
-            if a == b {
-                value * (1.0 + damping)
-            } else {
-                value
-            }
-        });
-        let mut side = DVector::from_fn(free.len(), |a, _| downhill[free[a]]);
-        for k in (0..from.len()).filter(|k| !free.contains(k)) {
-            let moved = at[k] - from[k];
-            if moved != 0.0 {
-                for (a, row) in free.iter().enumerate() {
-                    side[a] -= normal[(*row, k)] * moved;
-                }
-            }
-        }
-        let step = matrix.cholesky()?.solve(&side);
-        let mut met = Vec::new();
-        for (a, k) in free.iter().enumerate() {
-            let next = from[*k] + step[a];
-            if next < bounds[*k].0 || next > bounds[*k].1 {
-                met.push(*k);
-            }
-            at[*k] = next.clamp(bounds[*k].0, bounds[*k].1);
-        }
-        if met.is_empty() {
-            break;
-        }
-        free.retain(|k| !met.contains(k));
-    }
-    (at != from).then_some(at)
 }
 
 /// Inverse of a normal matrix, scaled; directions without information get a large variance.

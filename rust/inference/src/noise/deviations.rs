@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::observe::robust_scale::median;
+use crate::observe::robust_scale::trimmed_deviation;
 
 /// Deviations beyond this many standard deviations are outliers, and not noise.
 pub(crate) const OUTLIER: f64 = 3.5;
@@ -87,12 +87,5 @@ pub(crate) fn innovation(now: f64, before: f64, carried: f64) -> f64 {
 
 /// Standard deviation without outliers.
 pub(crate) fn robust_deviation(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    let rough = 1.4826 * median(&mut sizes);
-    let kept = values.iter().filter(|v| v.abs() <= OUTLIER * rough);
-    let (sum, count) = kept.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
-    if count == 0.0 || rough == 0.0 {
-        return rough;
-    }
-    (sum / count / KEPT_VARIANCE).sqrt()
+    trimmed_deviation(values, OUTLIER) / KEPT_VARIANCE.sqrt()
 }

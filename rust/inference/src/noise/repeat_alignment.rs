@@ -116,7 +116,7 @@ impl Series {
     fn at(&self, times: &[f64]) -> Aligned {
         let joined = |values: &[f64]| match values.is_empty() {
             true => Vec::new(),
-            false => crate::observe::pressure_map::interpolated(&self.time, values, times),
+            false => crate::interpolation::linear(&self.time, values, times),
         };
         Aligned {
             value: joined(&self.aligned.value),

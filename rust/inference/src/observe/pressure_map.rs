@@ -5,6 +5,7 @@ use thenar_recordings::study::PlacedSensel;
 use thenar_recordings::{Curve, PressureMap, PressureUnit};
 use thenar_surface::{GapLimits, Product};
 
+use crate::interpolation::linear;
 use crate::observe::downsampling::{bins, means};
 use crate::observe::first_touch::onset;
 use crate::observe::measured::{Censoring, Mat, Measured, Moment, Phase, Quantity, Sample};
@@ -206,7 +207,7 @@ impl Course {
         let of_motion = |name: &str| {
             let curve = seen.motion?;
             let values = curve.channel(name)?;
-            Some(interpolated(curve.channel("time_s")?, values, &time_s))
+            Some(linear(curve.channel("time_s")?, values, &time_s))
         };
         let depth_mm = own("depth_mm")
             .or_else(|| of_motion("depth_mm"))
@@ -308,20 +309,4 @@ impl Course {
         };
         (0..bins.len()).map(moment).collect()
     }
-}
-
-/// Values at other times, on straight lines; the ends are held.
-pub fn interpolated(time: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
-    let one = |t: &f64| {
-        let next = time.partition_point(|other| other < t);
-        if next == 0 {
-            return values[0];
-        }
-        if next == time.len() {
-            return values[next - 1];
-        }
-        let share = (t - time[next - 1]) / (time[next] - time[next - 1]);
-        values[next - 1] + share * (values[next] - values[next - 1])
-    };
-    at.iter().map(one).collect()
 }

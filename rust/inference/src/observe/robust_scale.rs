@@ -1,4 +1,4 @@
-//! Robust scale: roughness of a series about a smooth course, and the median.
+//! Robust scale: standard deviation from the median of sizes, of a series about a smooth course, and the median.
 
 /// Standard deviation of a series' noise, from its third differences: a smooth course leaves almost none, and the median is
 /// moved by neither turning points nor outliers. 0 for fewer than 5 values.
@@ -10,7 +10,21 @@ pub(crate) fn noise_of(values: &[f64]) -> f64 {
     }
     let third = |w: &[f64]| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs();
     let mut differences: Vec<f64> = values.windows(4).map(third).collect();
-    median(&mut differences) * 1.4826 / 20f64.sqrt()
+    median_deviation(&mut differences) / 20f64.sqrt()
+}
+
+/// Standard deviation of normal numbers from the median of their sizes, which sorts the list; NaN of none.
+pub fn median_deviation(sizes: &mut [f64]) -> f64 {
+    1.4826 * median(sizes)
+}
+
+/// Root mean square of the values within `most` deviations of 0, as the median of their sizes has it; NaN of none.
+pub fn trimmed_deviation(values: &[f64], most: f64) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    let most = most * median_deviation(&mut sizes);
+    let kept = values.iter().filter(|v| v.abs() <= most);
+    let (sum, count) = kept.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
+    f64::sqrt(sum / count)
 }
 
 /// Median, which sorts the list; NaN of none.

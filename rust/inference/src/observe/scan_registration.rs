@@ -3,7 +3,7 @@
 use nalgebra::{Matrix6, Rotation3, Vector3, Vector6};
 use thenar_surface::{Feature, GapLimits, Mesh, Product, closest_point, vertex_normals};
 
-use crate::observe::robust_scale::median;
+use crate::observe::robust_scale::median_deviation;
 
 /// Most steps of the first laying.
 const STEPS: usize = 30;
@@ -166,7 +166,7 @@ impl Surface {
                 .filter(|(p, foot)| !foot.is_at_end && counts(*p))
                 .collect();
             let mut sizes: Vec<f64> = feet.iter().map(|(_, f)| f.distance.abs()).collect();
-            let spread = (1.4826 * median(&mut sizes)).max(LEAST_SPREAD);
+            let spread = median_deviation(&mut sizes).max(LEAST_SPREAD);
             let step = step(&feet, center, TUKEY * spread)?;
             for (at, by) in pose.iter_mut().zip(step.iter()) {
                 *at += by;

@@ -7,14 +7,14 @@ use thenar_recordings::study::{Indenter, Site};
 use thenar_surface::{GapLimits, Mesh, Product};
 
 use crate::forward::setup::indenter::tool as tool_at;
+use crate::interpolation::linear;
 use crate::number_format::number;
 use crate::observe::indentation;
 use crate::observe::limits::MOST_MOMENTS;
 use crate::observe::measured::{
     Censoring, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint,
 };
-use crate::observe::pressure_map::interpolated;
-use crate::observe::robust_scale::median;
+use crate::observe::robust_scale::{median, median_deviation};
 use crate::observe::scan_registration::{Foot, Surface, moved};
 
 /// Most points of a scan that are looked at, and of those that lay it.
@@ -130,7 +130,7 @@ fn moments(seen: &Seen<'_>) -> Result<Vec<Moment>, String> {
     let time_s = at.unwrap_or(0.0);
     let of_motion = |curve: &Curve| {
         let (times, depths) = (curve.channel("time_s")?, curve.channel("depth_mm")?);
-        Some(interpolated(times, depths, &[time_s])[0])
+        Some(linear(times, depths, &[time_s])[0])
     };
     let Some(depth_mm) = depth.or_else(|| motion.and_then(of_motion)) else {
         return Err(
@@ -286,7 +286,7 @@ fn summed(kept: Vec<(ScanPoint, f64)>, moment: u32) -> (Vec<Sample>, Vec<ScanPoi
         points.extend(used.iter().map(|(point, _)| *point));
     }
     // A second difference of independent noise has the variance (1 + 4 + 1) s^2.
-    let single = median(&mut differences) * 1.4826 / 6f64.sqrt();
+    let single = median_deviation(&mut differences) / 6f64.sqrt();
     let mean = (counts / samples.len().max(1) as f64).sqrt();
     (samples, points, single * mean)
 }

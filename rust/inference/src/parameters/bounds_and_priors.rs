@@ -6,37 +6,11 @@ use crate::forward::setup::study_skin::Tissue;
 use crate::noise::estimate::Noise;
 use crate::observe::measured::{Measured, Phase, Quantity};
 use crate::parameters::parameter::{Kind, Number, Parameter};
-use crate::parameters::sensor_pose::{MOST_POSITION, poses};
-use crate::parameters::target::Target;
-
-/// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
-/// (subcutaneous Young's modulus of 2.2 MPa at 30 N over 3, Isogai 2022).
-const MODULUS: (f64, f64) = (4e-4, 0.74);
-
-/// A study that starts outside of them is not of skin: its bounds reach this factor beyond the start.
-const BEYOND_START: f64 = 20.0;
-
-/// Credible depths at which the modulus stops growing, mm, about the published 4 and 7 (Xie Eq. 3).
-const LIMIT_DEPTH: (f64, f64) = (1.0, 15.0);
-
-/// Credible thickness of soft tissue over bone in a hand, mm.
-const THICKNESS: (f64, f64) = (1.0, 40.0);
-
-/// Standard deviation of the depth of first touch as an operator judges it, mm: a sphere-like pad of radius 8 mm and 8 kPa bears
-/// 5 mN, a common trigger, at 0.1 mm (Hertz); half of that is taken.
-const TOUCH: f64 = 0.05;
-
-/// Part of a recording's depth that first touch may be off by where it is read from the force.
-const UNKNOWN_TOUCH: f64 = 0.15;
-
-/// First touch may lie this many standard deviations off.
-const MOST_TOUCH: f64 = 6.0;
-
-/// Standard deviation of a load cell's zero as a part of the largest force, where the recording itself had to tell it.
-const FORCE_ZERO: f64 = 0.01;
-
-/// Bounds of counts per kPa as logarithms.
-const COUNTS: f64 = 12.0;
+use crate::parameters::priors::{
+    BEYOND_START, COUNTS, DEEPEST_TOUCH, FORCE_ZERO, LIMIT_DEPTH, MODULUS, MOST, MOST_GAIN,
+    MOST_POSITION, THICKNESS, TOUCH, UNKNOWN_TOUCH,
+};
+use crate::parameters::sensor_pose::poses;
 
 /// What the parameters are chosen for.
 #[derive(Clone, Copy)]
@@ -72,36 +46,23 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
     };
     let sheet = case.instrument;
     if let Some(percent) = sheet.and_then(|s| s.gain_percent) {
-        all.push(gain(
-            Kind::InstrumentGain,
-            "gain",
-            Target::Instrument,
-            percent / 100.0,
-        ));
+        all.push(gain(Kind::InstrumentGain, percent / 100.0));
     }
     for (recording, measured) in case.measured.iter().enumerate() {
         if !case.is_used[recording] || measured.samples.is_empty() {
             continue;
         }
-        let target = || Target::Recording(measured.name.clone());
         all.extend(touch(case, recording));
         if !case.is_touch_known[recording] {
             all.extend(force_zero(recording, measured));
         }
         let is_scaled = measured.is_calibrated && carries_force(measured);
         if is_scaled && case.noise.gain > 0.0 {
-            all.push(gain(
-                Kind::Gain(recording),
-                "repeat_gain",
-                target(),
-                case.noise.gain,
-            ));
+            all.push(gain(Kind::Gain(recording), case.noise.gain));
         }
         if !measured.is_calibrated {
             all.push(Parameter {
                 kind: Kind::Counts(recording),
-                name: "counts_per_kpa",
-                target: target(),
                 start: 0.0,
                 bounds: (-COUNTS, COUNTS),
                 prior: None,
@@ -121,15 +82,7 @@ pub(crate) fn force_zero(recording: usize, measured: &Measured) -> Option<Parame
         .filter(|s| s.quantity == Quantity::Force);
     let most = forces.fold(0.0, |most, s| f64::max(most, s.value.abs()));
     let sd = FORCE_ZERO * most;
-    (sd > 0.0).then(|| Parameter {
-        kind: Kind::ForceZero(recording),
-        name: "force_zero_n",
-        target: Target::Recording(measured.name.clone()),
-        start: 0.0,
-        bounds: (-MOST_POSITION * sd, MOST_POSITION * sd),
-        prior: Some(sd),
-        step: sd,
-    })
+    (sd > 0.0).then(|| Parameter::about(Kind::ForceZero(recording), (sd, MOST_POSITION), sd))
 }
 
 pub(crate) fn carries_force(measured: &Measured) -> bool {
@@ -151,17 +104,13 @@ pub(crate) fn touch(case: Case<'_>, recording: usize) -> Vec<Parameter> {
     }
     let sheet = case.instrument.and_then(|s| s.position_mm);
     let judged = match case.is_touch_known[recording] {
-        true => sheet.unwrap_or(TOUCH).min(0.25 * deep),
+        true => sheet.unwrap_or(TOUCH).min(DEEPEST_TOUCH * deep),
         false => UNKNOWN_TOUCH * deep,
     };
-    let one = |kind: Kind, sd: f64| Parameter {
-        kind,
-        name: "contact_zero_mm",
-        target: Target::Recording(case.measured[recording].name.clone()),
-        start: 0.0,
-        bounds: (-MOST_TOUCH * sd, (MOST_TOUCH * sd).min(0.8 * deep)),
-        prior: Some(sd),
-        step: 1e-3 * deep,
+    let one = |kind: Kind, sd: f64| {
+        let mut one = Parameter::about(kind, (sd, MOST), 1e-3 * deep);
+        one.bounds.1 = one.bounds.1.min(0.8 * deep);
+        one
     };
     let place = case.place_of[recording];
     let shares = |r: usize| {
@@ -184,16 +133,8 @@ pub(crate) fn touch(case: Case<'_>, recording: usize) -> Vec<Parameter> {
     }
 }
 
-pub(crate) fn gain(kind: Kind, name: &'static str, target: Target, sd: f64) -> Parameter {
-    Parameter {
-        kind,
-        name,
-        target,
-        start: 0.0,
-        bounds: (-5.0 * sd, 5.0 * sd),
-        prior: Some(sd),
-        step: 1e-4,
-    }
+pub(crate) fn gain(kind: Kind, sd: f64) -> Parameter {
+    Parameter::about(kind, (sd, MOST_GAIN), 1e-4)
 }
 
 /// Credible values of a number of a material, wider where the study starts outside of them.
@@ -213,8 +154,8 @@ fn credible(number: Number, start: f64) -> (f64, f64) {
 
 pub(crate) fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
     let mut all = Vec::new();
-    for (region, name) in tissue.regions.iter().enumerate() {
-        for fitted in &tissue.fitted[region] {
+    for (region, fitted) in tissue.fitted.iter().enumerate() {
+        for fitted in fitted {
             let Some(number) = Number::named(fitted) else {
                 continue;
             };
@@ -226,13 +167,6 @@ pub(crate) fn of_tissue(tissue: &Tissue) -> Vec<Parameter> {
             let (low, high) = credible(number, start);
             all.push(Parameter {
                 kind: Kind::Tissue(region, number),
-                name: match number {
-                    Number::G0 => "g0_mpa",
-                    Number::GLim => "g_lim_mpa",
-                    Number::DLim => "d_lim_mm",
-                    Number::Thickness => "thickness_mm",
-                },
-                target: Target::Region(name.clone()),
                 start: libm::log(start),
                 bounds: (libm::log(low), libm::log(high)),
                 prior: None,

@@ -4,7 +4,6 @@ use thenar_contact::ActiveEffect;
 
 use crate::fit::result::Fit;
 use crate::parameters::parameter::{Kind, Parameter, Scale};
-use crate::parameters::target::Target;
 
 /// Step of a finite difference: of a logarithm, and of the bounds' distance.
 const STEP: (f64, f64) = (0.05, 0.02);
@@ -67,11 +66,6 @@ fn parameter(free: &Free, effect: &ActiveEffect) -> Parameter {
     };
     Parameter {
         kind: Kind::Effect(free.effect, free.number, scale),
-        name: match free.number {
-            None => "amplitude",
-            Some(number) => effect.entry().shape[number].name,
-        },
-        target: Target::Instrument,
         start: move_by(start),
         bounds: (move_by(low), move_by(high)),
         prior: None,

@@ -6,10 +6,7 @@
 
 use crate::forward::mesh::nuisance::KNOTS;
 use crate::parameters::parameter::{Kind, Parameter};
-use crate::parameters::target::Target;
-
-/// The factor may be off by this many standard deviations.
-const MOST: f64 = 5.0;
+use crate::parameters::priors::MOST_GAIN;
 
 /// One parameter a knot for each place in use, of standard deviation `share`; none for 0.
 pub(crate) fn form_parameters(share: f64, place_of: &[usize], is_used: &[bool]) -> Vec<Parameter> {
@@ -17,14 +14,8 @@ pub(crate) fn form_parameters(share: f64, place_of: &[usize], is_used: &[bool]) 
     let mut places: Vec<usize> = used.map(|(place, _)| *place).collect();
     places.sort_unstable();
     places.dedup();
-    let one = |(place, knot): (usize, usize)| Parameter {
-        kind: Kind::Form(place, knot),
-        name: "form",
-        target: Target::Instrument,
-        start: 0.0,
-        bounds: (-MOST * share, MOST * share),
-        prior: Some(share),
-        step: 1e-3,
+    let one = |(place, knot): (usize, usize)| {
+        Parameter::about(Kind::Form(place, knot), (share, MOST_GAIN), 1e-3)
     };
     match share > 0.0 {
         true => places

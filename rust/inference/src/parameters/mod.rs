@@ -2,6 +2,7 @@
 
 pub mod target;
 pub mod estimate;
+pub(crate) mod priors;
 pub(crate) mod parameter;
 pub(crate) mod bounds_and_priors;
 pub mod surrogate_parameter;

@@ -1,8 +1,9 @@
-//! A parameter of the mesh model's fit: what it is, its target, and the coordinate in which the fit moves it.
+//! A parameter: what it is, its name and target, its bounds and prior, and the coordinate in which a fit moves it.
 
-use thenar_contact::Material;
+use thenar_contact::{ActiveEffect, Material};
 
 use crate::forward::setup::study_skin::Tissue;
+use crate::observe::measured::Measured;
 use crate::parameters::estimate::Estimate;
 use crate::parameters::target::Target;
 
@@ -47,14 +48,20 @@ pub enum Number {
 }
 
 impl Number {
-    pub(crate) fn named(name: &str) -> Option<Number> {
-        match name {
-            "g0_mpa" => Some(Number::G0),
-            "g_lim_mpa" => Some(Number::GLim),
-            "d_lim_mm" => Some(Number::DLim),
-            "thickness_mm" => Some(Number::Thickness),
-            _ => None,
+    const ALL: [Number; 4] = [Number::G0, Number::GLim, Number::DLim, Number::Thickness];
+
+    /// Its key in a study.
+    pub fn name(self) -> &'static str {
+        match self {
+            Number::G0 => "g0_mpa",
+            Number::GLim => "g_lim_mpa",
+            Number::DLim => "d_lim_mm",
+            Number::Thickness => "thickness_mm",
         }
+    }
+
+    pub(crate) fn named(name: &str) -> Option<Number> {
+        Number::ALL.into_iter().find(|number| number.name() == name)
     }
 
     /// Its place in a material.
@@ -85,16 +92,12 @@ impl Tissue {
     }
 }
 
-/// A number that is fitted, in the coordinate in which the fit moves it (a logarithm where [`Kind`] says so).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
+/// A number that is fitted, in the coordinate in which the fit moves it (a logarithm where its kind says so).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter<K = Kind> {
     /// What it is.
-    pub kind: Kind,
-    /// Name with its unit.
-    pub name: &'static str,
-    /// What it belongs to.
-    pub target: Target,
-    /// Where the fit begins.
+    pub kind: K,
+    /// Where a fit begins.
     pub start: f64,
     /// Smallest and largest admissible value.
     pub bounds: (f64, f64),
@@ -102,6 +105,19 @@ pub struct Parameter {
     pub prior: Option<f64>,
     /// Step of a finite difference.
     pub step: f64,
+}
+
+impl<K> Parameter<K> {
+    /// A number about 0 of that standard deviation, at most so many of them off.
+    pub fn about(kind: K, (sd, most): (f64, f64), step: f64) -> Parameter<K> {
+        Parameter {
+            kind,
+            start: 0.0,
+            bounds: (-most * sd, most * sd),
+            prior: Some(sd),
+            step,
+        }
+    }
 }
 
 impl Parameter {
@@ -118,6 +134,41 @@ impl Parameter {
                 | Kind::Effect(_, _, Scale::Plain)
         );
         !is_plain
+    }
+
+    /// Name with its unit.
+    pub fn name(&self, effects: &[ActiveEffect]) -> &'static str {
+        const MAT: [&str; 3] = ["pose_x_mm", "pose_y_mm", "pose_turn_rad"];
+        const SCAN: [&str; 6] = [
+            "scan_x_mm",
+            "scan_y_mm",
+            "scan_z_mm",
+            "scan_turn_x_rad",
+            "scan_turn_y_rad",
+            "scan_turn_z_rad",
+        ];
+        match self.kind {
+            Kind::Tissue(_, number) => number.name(),
+            Kind::Zero(_) | Kind::Touch(_) => "contact_zero_mm",
+            Kind::Gain(_) => "repeat_gain",
+            Kind::InstrumentGain => "gain",
+            Kind::Pose(_, axis) => MAT[axis],
+            Kind::Scan(_, axis) => SCAN[axis],
+            Kind::ForceZero(_) => "force_zero_n",
+            Kind::Counts(_) => "counts_per_kpa",
+            Kind::Form(..) => "form",
+            Kind::Effect(_, None, _) => "amplitude",
+            Kind::Effect(effect, Some(number), _) => effects[effect].entry().shape[number].name,
+        }
+    }
+
+    /// What it belongs to, by the names of regions and the recordings.
+    pub fn target(&self, regions: &[String], measured: &[Measured]) -> Target {
+        match (self.kind, self.recording()) {
+            (Kind::Tissue(region, _), _) => Target::Region(regions[region].clone()),
+            (_, Some(recording)) => Target::Recording(measured[recording].name.clone()),
+            _ => Target::Instrument,
+        }
     }
 
     /// The number itself.

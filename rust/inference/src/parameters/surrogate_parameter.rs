@@ -1,19 +1,9 @@
-//! A parameter of the surrogate model: what it is, where a fit begins, its bounds and its prior.
+//! What the free numbers of the surrogate model are.
+
+use crate::parameters::parameter::Parameter;
 
 /// A free number of the candidate model.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coordinate {
-    /// What it is.
-    pub kind: Kind,
-    /// Where a fit begins.
-    pub start: f64,
-    /// Smallest and largest value.
-    pub bounds: (f64, f64),
-    /// Standard deviation about 0 before data are seen; None: anything within the bounds.
-    pub prior: Option<f64>,
-    /// Step of a finite difference.
-    pub step: f64,
-}
+pub type Coordinate = Parameter<Kind>;
 
 /// What a free number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

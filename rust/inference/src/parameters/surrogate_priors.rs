@@ -7,32 +7,10 @@ use crate::forward::mesh::nuisance::KNOTS;
 use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
 use crate::noise::estimate::Noise;
+use crate::parameters::priors::{
+    DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MOST, TOUCH, UNKNOWN_TOUCH,
+};
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
-
-/// Standard deviation of the factor by which the model's form may be off, for each tool at each site, by way (`stiffness_factor::modes`): of a ball
-/// on flat skin (`forward::tables::sphere`), of another tool there, and on any other skin.
-///
-/// Against the finite elements of the calibration's flat pads without effects balls are off by 0.4 % in the whole, by 0.3 % in their tilt and
-/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more; on the
-/// round fingertip of `tests/proof` the layer is off by up to 9 %.
-pub(crate) const FORM_ERROR: [[f64; KNOTS]; 3] = [
-    [0.006, 0.006, 0.003, 0.02],
-    [0.01, 0.01, 0.004, 0.02],
-    [0.05, 0.05, 0.03, 0.05],
-];
-
-/// Largest standard deviation of first touch as an operator judges it, mm, as the fit takes it. Where repeats show that first touch
-/// scatters by less, what a tool has in all its recordings is taken for no larger than that.
-pub(crate) const TOUCH: f64 = 0.05;
-
-/// Part of a recording's depth that first touch may be off by where it is read from the force.
-pub(crate) const UNKNOWN_TOUCH: f64 = 0.15;
-
-/// Bounds of a modulus against the study's own, as logarithms.
-pub(crate) const MODULUS: f64 = 3.0;
-
-/// Bounds in standard deviations.
-pub(crate) const MOST: f64 = 6.0;
 
 /// Moduli, first touch, gain, and the model's form.
 pub(crate) fn shared(
@@ -49,7 +27,7 @@ pub(crate) fn shared(
         };
         let deep = first.deepest();
         let judged = match known[first.recording] {
-            true => touch(noise.zero_mm).min(0.25 * deep),
+            true => touch(noise.zero_mm).min(DEEPEST_TOUCH * deep),
             false => UNKNOWN_TOUCH * deep,
         };
         let form = form_error(elastic, place);
@@ -72,7 +50,7 @@ pub(crate) fn moduli(material: &Material) -> [Coordinate; 2] {
         Coordinate {
             kind,
             start,
-            bounds: (start - MODULUS, start + MODULUS),
+            bounds: (start - LOG_MODULUS, start + LOG_MODULUS),
             prior: None,
             step: 1e-3,
         }
@@ -90,11 +68,15 @@ pub(crate) fn of_place(
     (judged, deep): (f64, f64),
     (form, has_regions): ([f64; KNOTS], bool),
 ) -> Vec<Coordinate> {
-    let mut all = vec![about(Kind::Touch(place), judged, 1e-3 * deep)];
+    let mut all = vec![Coordinate::about(
+        Kind::Touch(place),
+        (judged, MOST),
+        1e-3 * deep,
+    )];
     if has_regions {
-        all.push(about(Kind::Scale(place), 0.5, 1e-3));
+        all.push(Coordinate::about(Kind::Scale(place), (0.5, MOST), 1e-3));
     }
-    all.extend((0..KNOTS).map(|k| about(Kind::Form(place, k), form[k], 1e-3)));
+    all.extend((0..KNOTS).map(|k| Coordinate::about(Kind::Form(place, k), (form[k], MOST), 1e-3)));
     all
 }
 
@@ -131,19 +113,17 @@ pub fn form_note(elastic: &Elastic) -> String {
 /// What a recording may be off by: its first touch, and its gain where repeats show that it scatters.
 pub(crate) fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coordinate> {
     let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
-    let mut all = vec![about(Kind::Zero(course), zero, 1e-3 * deepest)];
+    let mut all = vec![Coordinate::about(
+        Kind::Zero(course),
+        (zero, MOST),
+        1e-3 * deepest,
+    )];
     if noise.gain > 0.0 {
-        all.push(about(Kind::Gain(course), noise.gain, 1e-4));
+        all.push(Coordinate::about(
+            Kind::Gain(course),
+            (noise.gain, MOST),
+            1e-4,
+        ));
     }
     all
-}
-
-pub(crate) fn about(kind: Kind, sd: f64, step: f64) -> Coordinate {
-    Coordinate {
-        kind,
-        start: 0.0,
-        bounds: (-MOST * sd, MOST * sd),
-        prior: Some(sd),
-        step,
-    }
 }

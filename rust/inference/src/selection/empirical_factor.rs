@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::interpolation::interval;
 use crate::observe::measured::Phase;
 
 /// Variables of a point.
@@ -126,12 +127,11 @@ fn fitted(points: &[&Point], (knots, variable): (&[f64], usize)) -> Vec<f64> {
 fn hats(knots: &[f64], x: f64) -> Vec<(usize, f64)> {
     let last = knots.len() - 1;
     let x = x.clamp(knots[0], knots[last]);
-    let k = knots.partition_point(|knot| *knot <= x).min(last);
-    if k == 0 {
+    if last == 0 {
         return vec![(0, 1.0)];
     }
-    let share = (x - knots[k - 1]) / (knots[k] - knots[k - 1]);
-    vec![(k - 1, 1.0 - share), (k, share)]
+    let (k, share) = interval(knots, x);
+    vec![(k, 1.0 - share), (k + 1, share)]
 }
 
 #[cfg(test)]

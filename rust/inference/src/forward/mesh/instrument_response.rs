@@ -8,8 +8,8 @@ use crate::errors::InferenceError;
 use crate::forward::mesh::at_skin::AtSkin;
 use crate::forward::mesh::nuisance::{KNOTS, Nuisance};
 use crate::forward::mesh::replay::Replay;
+use crate::interpolation::linear;
 use crate::observe::measured::{Measured, Moment, Quantity};
-use crate::observe::pressure_map::interpolated;
 
 impl Replay {
     /// Values for every sample of a recording, as its instrument shows them.
@@ -126,7 +126,7 @@ impl Replay {
                 let times: Vec<f64> = measured.moments.iter().map(|m| m.time_s).collect();
                 let delay = effect.amplitude * effect.number("delay_s");
                 let meant: Vec<f64> = times.iter().map(|t| t + delay).collect();
-                depths = interpolated(&times, &depths, &meant);
+                depths = linear(&times, &depths, &meant);
             }
             if effect.effect == Effect::FixtureCompliance {
                 let compliance = effect.amplitude * effect.number("compliance_mm_per_n");

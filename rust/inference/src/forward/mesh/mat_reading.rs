@@ -7,8 +7,8 @@ use thenar_contact::effects::Effect;
 use thenar_contact::instrument::{Mat as Sensels, MatLayout, Placement, PointLoad};
 
 use crate::errors::InferenceError;
-use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::Basis;
+use crate::interpolation::Table;
 use crate::observe::measured::Mat;
 
 /// Readings kept for each recording.

@@ -5,7 +5,7 @@ use thenar_contact::{Control, Demand, Keep, Protocol, Row, Run, Skin};
 use thenar_surface::{Product, Vec3};
 
 use crate::errors::InferenceError;
-use crate::forward::interpolation::Table;
+use crate::interpolation::Table;
 
 /// Depths of the ladder. With 24, a Hertz curve is joined to 1e-4 of its peak.
 pub(crate) const RUNGS: usize = 24;

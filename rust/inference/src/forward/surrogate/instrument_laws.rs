@@ -48,7 +48,7 @@ impl Surrogate<'_> {
                 Law::Delay => {
                     let times: Vec<f64> = one.rows.iter().map(|row| row.time_s).collect();
                     let meant: Vec<f64> = times.iter().map(|t| t - value).collect();
-                    *forces = crate::observe::pressure_map::interpolated(&times, forces, &meant);
+                    *forces = crate::interpolation::linear(&times, forces, &meant);
                 }
                 _ => {}
             }

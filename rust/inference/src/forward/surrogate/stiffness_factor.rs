@@ -7,6 +7,7 @@ use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::mechanism::{DeformationMeasure, Law};
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic_table::{Tabulated, radius, rung};
+use crate::interpolation::{interval, mixed};
 
 impl Surrogate<'_> {
     /// Modulus, form and changed response at a depth: force over the table's.
@@ -48,12 +49,9 @@ impl Surrogate<'_> {
             return 0.0;
         };
         let table = &self.elastic.places[place];
-        let (knot, share) = variant.between(value);
-        let (rung, between) = rung(table, depth);
-        let at = |knot: usize| {
-            let log = &variant.log_ratio[place][knot];
-            log[rung] * (1.0 - between) + log[rung + 1] * between
-        };
+        let (knot, share) = interval(&variant.knots, value);
+        let rung = rung(table, depth);
+        let at = |knot: usize| mixed(&variant.log_ratio[place][knot], rung);
         at(knot) * (1.0 - share) + at(knot + 1) * share
     }
 

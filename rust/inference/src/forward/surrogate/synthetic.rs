@@ -3,13 +3,13 @@
 use nalgebra::Vector3;
 use thenar_contact::Material;
 
-use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
 use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::forward::surrogate::mechanism::Scales;
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::elastic_table::Tabulated;
+use crate::interpolation::Table;
 use crate::noise::channel::CHANNELS;
 use crate::noise::estimate::Noise;
 use crate::noise::whitening::Whitening;

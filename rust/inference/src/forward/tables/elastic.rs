@@ -6,12 +6,12 @@ use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::InferenceError;
-use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
 use crate::forward::tables::elastic_table::{Tabulated, Variant};
 use crate::forward::tables::sphere::{self, SphereTable};
 use crate::forward::tables::stiff_skin;
 use crate::forward::tables::table_presses::{ratios, tables};
+use crate::interpolation::Table;
 
 /// Thickness over the base's at which bone is tabulated.
 const THICKNESSES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.8];

@@ -2,7 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
-use crate::forward::interpolation::Table;
+use crate::interpolation::{Table, interval, mixed};
 
 /// How a table was changed, and by how much at each of its knots.
 #[derive(Debug, Clone)]
@@ -34,33 +34,13 @@ pub struct Tabulated {
     pub is_exact: bool,
 }
 
-impl Variant {
-    /// Knot below a coordinate, and the share of the way to the next.
-    pub fn between(&self, at: f64) -> (usize, f64) {
-        let last = self.knots.len() - 2;
-        let k = self
-            .knots
-            .partition_point(|knot| *knot <= at)
-            .clamp(1, last + 1)
-            - 1;
-        (
-            k,
-            (at - self.knots[k]) / (self.knots[k + 1] - self.knots[k]),
-        )
-    }
-}
-
 /// Rung below a depth, and the share of the way to the next, along the root of depth.
 pub fn rung(table: &Tabulated, depth: f64) -> (usize, f64) {
-    let last = table.roots.len() - 1;
-    let root = depth.max(0.0).sqrt();
-    let next = table.roots.partition_point(|r| *r <= root).clamp(1, last);
-    let share = (root - table.roots[next - 1]) / (table.roots[next] - table.roots[next - 1]);
-    (next - 1, share.min(1.0))
+    let (k, share) = interval(&table.roots, depth.max(0.0).sqrt());
+    (k, share.min(1.0))
 }
 
 /// Contact radius at a depth, mm.
 pub fn radius(table: &Tabulated, depth: f64) -> f64 {
-    let (k, share) = rung(table, depth);
-    table.radius[k] * (1.0 - share) + table.radius[k + 1] * share
+    mixed(&table.radius, rung(table, depth))
 }

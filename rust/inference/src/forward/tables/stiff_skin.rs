@@ -10,11 +10,11 @@ use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::InferenceError;
-use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
 use crate::forward::tables::elastic_table::Variant;
 use crate::forward::tables::sphere::SphereTable;
 use crate::forward::tables::table_presses::{ratios, tables};
+use crate::interpolation::{Table, interval, mixed};
 
 /// Thicknesses that are tried, mm: a fingertip's horny layer has 0.3 (Adams 2013), all of its skin above the pulp about a millimetre.
 pub(crate) const THICKNESSES_MM: [f64; 3] = [0.3, 0.5, 0.9];
@@ -40,7 +40,7 @@ pub fn ratio(at: f64) -> f64 {
     let last = RATIOS.len() - 2;
     let k = (at.max(0.0) as usize).min(last);
     let share = at.max(0.0) - k as f64;
-    libm::exp(libm::log(RATIOS[k]) * (1.0 - share) + libm::log(RATIOS[k + 1]) * share)
+    libm::exp(mixed(&RATIOS.map(libm::log), (k, share)))
 }
 
 /// A thickness that is tried, mm, and the next ones below and above, which explain recordings nearly alike; beyond the ends in the same
@@ -183,10 +183,8 @@ fn of_plate(meshed: &[Vec<f64>], thickness_mm: f64) -> Vec<Vec<f64>> {
             1.0 => 0.0,
             _ => (libm::log(*ratio) + over).max(0.0),
         };
-        let log = |k: usize| libm::log(MESHED[k]);
-        let last = MESHED.len() - 2;
-        let k = (0..last).find(|k| at < log(k + 1)).unwrap_or(last);
-        let share = ((at - log(k)) / (log(k + 1) - log(k))).min(1.0);
+        let (k, share) = interval(&MESHED.map(libm::log), at);
+        let share = share.min(1.0);
         let both = meshed[k].iter().zip(&meshed[k + 1]);
         both.map(|(a, b)| a * (1.0 - share) + b * share).collect()
     };

@@ -4,8 +4,8 @@ use crate::forward::mesh::replay::Replay;
 use thenar_contact::{ActiveEffect, Control, Material};
 
 use crate::errors::InferenceError;
-use crate::forward::interpolation::Table;
 use crate::forward::mesh::press_table::PressTable;
+use crate::interpolation::Table;
 
 /// The tools of these places pressed with effects, materials and a number of depths.
 ///

@@ -1,4 +1,29 @@
-//! Monotone cubic interpolation (Fritsch & Carlson 1980).
+//! Interpolation between growing places: on straight lines, and by monotone cubics (Fritsch & Carlson 1980).
+
+/// The interval between two of growing `places` that holds `at`, and the share of the way through it; beyond the places the first or
+/// the last interval, with a share below 0 or above 1.
+pub fn interval(places: &[f64], at: f64) -> (usize, f64) {
+    let last = places.len() - 1;
+    let next = places.partition_point(|place| *place <= at).clamp(1, last);
+    let (from, to) = (places[next - 1], places[next]);
+    (next - 1, (at - from) / (to - from))
+}
+
+/// A value on the straight line through an interval.
+pub fn mixed(values: &[f64], (k, share): (usize, f64)) -> f64 {
+    values[k] * (1.0 - share) + values[k + 1] * share
+}
+
+/// Values at other places, on straight lines; the ends are held.
+pub fn linear(places: &[f64], values: &[f64], at: &[f64]) -> Vec<f64> {
+    let last = places.len() - 1;
+    let one = |at: &f64| match *at {
+        at if at >= places[last] => values[last],
+        at if at > places[0] => mixed(values, interval(places, at)),
+        _ => values[0],
+    };
+    at.iter().map(one).collect()
+}
 
 /// Values at growing places, joined by cubics with continuous slope.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,6 +89,17 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn straight_lines_meet_the_places_and_hold_the_ends() {
+        let (places, values) = ([1.0, 2.0, 4.0], [10.0, 20.0, 0.0]);
+        let at = [0.0, 1.0, 1.25, 2.0, 3.0, 4.0, 9.0];
+        let wanted = [10.0, 10.0, 12.5, 20.0, 10.0, 0.0, 0.0];
+        assert_eq!(linear(&places, &values, &at), wanted);
+        assert_eq!(linear(&[3.0], &[7.0], &[2.0, 3.0, 4.0]), [7.0; 3]);
+        assert_eq!(interval(&places, 0.0), (0, -1.0));
+        assert_eq!(interval(&places, 8.0), (1, 3.0));
+    }
 
     #[test]
     fn hertz_curve_is_interpolated_within_5e_4() {
