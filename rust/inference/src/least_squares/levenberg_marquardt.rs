@@ -158,15 +158,27 @@ pub fn descend<O: Objective>(model: &mut O, start: &[f64]) -> Result<Descent, O:
     let (mut damping, mut small_gains) = (DAMPING.0, 0);
     for step in 0..MOST_STEPS {
         model.before_step(step as f64 / MOST_STEPS as f64)?;
-        let Some(at) = now.system.step(&limits, &now.point.at, damping) else {
+        // A step that meets bounds may promise more when it is shorter.
+        let least = model.stopping(now.point.objective).promised;
+        let found = loop {
+            if damping > DAMPING.2 {
+                now.has_converged = true;
+                break None;
+            }
+            let Some(at) = now.system.step(&limits, &now.point.at, damping) else {
+                break None;
+            };
+            let promised = now.system.gain(&now.point.at, &at);
+            if promised > least {
+                break Some((at, promised));
+            }
+            now.has_converged = true;
+            damping *= 8.0;
+        };
+        let Some((at, promised)) = found else {
             break;
         };
-        let promised = now.system.gain(&now.point.at, &at);
-        now.has_converged =
-            promised <= model.stopping(now.point.objective).promised || damping > DAMPING.2;
-        if now.has_converged {
-            break;
-        }
+        now.has_converged = false;
         let mut next = model.point(&at, Some(now.point.threshold))?;
         let gain = now.point.objective - next.objective;
         if gain > 0.0 {
