@@ -4,8 +4,8 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use thenar_contact::ContactError;
-use thenar_diagnosis::DiagnosisError;
 use thenar_hand::HandError;
+use thenar_inference::InferenceError;
 use thenar_recordings::RecordingError as RecordingFault;
 use thenar_surface::MeshError as MeshFault;
 
@@ -67,7 +67,7 @@ pub enum Failure {
     Mesh(MeshFault),
     Hand(HandError),
     Recording(RecordingFault),
-    Diagnosis(DiagnosisError),
+    Diagnosis(InferenceError),
     Cancelled,
 }
 
@@ -83,10 +83,10 @@ impl From<MeshFault> for Failure {
     }
 }
 
-impl From<DiagnosisError> for Failure {
-    fn from(error: DiagnosisError) -> Failure {
+impl From<InferenceError> for Failure {
+    fn from(error: InferenceError) -> Failure {
         match error {
-            DiagnosisError::Cancelled => Failure::Cancelled,
+            InferenceError::Cancelled => Failure::Cancelled,
             error => Failure::Diagnosis(error),
         }
     }

@@ -12,14 +12,17 @@ use std::process::Command;
 const SUFFIX: &str = "-cp311-abi3-manylinux_2_28_x86_64.whl";
 
 /// What the wheel is made of, from the top of the repository.
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 11] = [
     "Cargo.toml",
     "Cargo.lock",
     "rust/surface",
     "rust/contact",
     "rust/hand",
     "rust/recordings",
+    "rust/inference",
+    "rust/comparison",
     "rust/diagnosis",
+    "rust/report",
     "rust/python",
 ];
 
