@@ -49,11 +49,6 @@ def product(key: str, make: Callable[[], T]) -> T:
     return kept
 
 
-def drop(key: str) -> None:
-    """Forget the skin of `key`: after a failure inside, it may not be whole."""
-    _skins.pop(key, None)
-
-
 def clear() -> None:
     """Drop everything."""
     _skins.clear()

@@ -42,7 +42,7 @@ def take(course, job, hooks):
     whole = _motion(first, job)
     posed = job.reading.hand.posed_mm + (job.reading.hand.origin_mm - first.reading.hand.origin_mm)
     cancel, progress = hooks
-    with workflow.telling(job, cancel):
+    with workflow.telling(job):
         if course.walk is None:
             course.walk, course.first = _start(job, hooks), job
         contact = course.walk.advance(

@@ -161,18 +161,16 @@ def compute(job: Job, cancel: Cancel | None = None, progress: Progress | None = 
     if job.refines_product:
         hand, product = job.reading.hand, job.reading.product
         job.reading = read.Reading(hand, refine.refined(product, hand))
-    with telling(job, cancel):
+    with telling(job):
         return _press(job, prepared(job, cancel, progress), cancel, progress)
 
 
 @contextmanager
-def telling(job: Job, cancel: Cancel | None = None) -> Iterator[None]:
-    """Errors of the native module leave with the objects' names, and the skin in which they happened is dropped."""
+def telling(job: Job) -> Iterator[None]:
+    """Errors of the native module leave with the objects' names."""
     try:
         yield
     except native.error_types() as error:
-        if cancel is None or not cancel.is_set():
-            cache.drop(_skin_key(job))
         raise sentences.named(error, job) from None
 
 

@@ -25,7 +25,7 @@ class Session:
     surface: list | None = None
     """What the scene showed of the product that is prepared, as `state.shapes`."""
     skin: object = None
-    """Prepared for this session alone: a solve of another scene must not change its effects or what it remembers."""
+    """Shares with the cached skin what is prepared. Effects and warm starts are its own: solves do not change them."""
     product: object = None
     painted: dict = field(default_factory=dict)
     is_warm: bool = False
@@ -59,8 +59,7 @@ def begin(context, hand, parts):
     context.view_layer.update()
     attributes.write(hand.data, names.REGION, "INT", job.reading.hand.regions)
     try:
-        skin = workflow.new_skin(job)
-        skin.set_effects([effect.native(native.module) for effect in job.effects])
+        skin = workflow.prepared(job).with_effects([effect.native(native.module) for effect in job.effects])
     except native.error_types() as error:
         raise sentences.named(error, job) from None
     write.write_thickness(hand.data, np.asarray(skin.thickness_mm))

@@ -126,7 +126,10 @@ class Product:
 
 @final
 class Skin:
-    """A hand prepared once and pressed in any posture: vertices (n, 3) mm, triangles (m, 3), regions (n,) or None."""
+    """A hand prepared once and pressed in any posture: vertices (n, 3) mm, triangles (m, 3), regions (n,) or None.
+
+    Several threads may press one skin at once.
+    """
 
     def __new__(
         cls,
@@ -226,6 +229,7 @@ class Skin:
     @property
     def effects(self) -> list[Effect]: ...
     def set_effects(self, effects: Sequence[Effect]) -> None: ...
+    def with_effects(self, effects: Sequence[Effect]) -> Skin: ...
 
 @final
 class Effect:

@@ -126,6 +126,20 @@ def test_frames_go_on_from_the_last_but_for_the_first_and_the_settled_one(scene,
     assert asked == [False, True, True, True, False, True], "the first frame is that of switching on"
 
 
+def test_the_skin_of_a_solve_is_not_prepared_again_and_keeps_its_effects(scene, monkeypatch):
+    stage.scene()
+    workflow.solve(bpy.context)
+    made = []
+    new_skin = workflow.new_skin
+    monkeypatch.setattr(workflow, "new_skin", lambda *arguments: (made.append(arguments), new_skin(*arguments))[1])
+    begun = session.begin(bpy.context, *workflow.check_objects(bpy.context))
+    assert not made
+    kept = workflow.prepared(begun.job)
+    assert kept is not begun.skin
+    kept.set_effects([native.module.Effect("friction")])
+    assert not begun.skin.effects and kept.effects
+
+
 def test_what_did_not_move_is_skipped(scene):
     hand, product = stage.scene()
     switch(True)

@@ -5,7 +5,7 @@
 Three spheres are pressed to 14 % of a pad's thickness within 0.05 s and held. Three forms are fitted to 9 s of the
 loads over those of the first moment, with a gain of its own for every tool: a spectrum with its clock as it is under
 every tool (relaxation), one whose times grow as the contact's radius to the 1.5, and that of
-`rust/diagnosis/src/forward/surrogate/tissue_laws.rs`, both with shares as what is lost in the end. Prints what is
+`rust/inference/src/forward/surrogate/tissue_laws.rs`, both with shares as what is lost in the end. Prints what is
 left, rms, as a part of the load, and before it the spectrum that each tool's load has by itself over 100 s.
 """
 

@@ -12,8 +12,8 @@ one with a recording drawn by lot in `<case>/at_random`. A wrong exit counts as 
 the table and writes `table.json` and `page.html`. Exits with 1 if a row of the diagnosis falls short of what it must
 be.
 
-The thresholds of the diagnosis (in rust/diagnosis/src: diagnose/gates.rs, diagnose/pair_gates.rs, checks,
-parameters/surrogate_priors.rs) were set on `--split calibration` and on larger draws of it, and what they rest on is
+The thresholds of the diagnosis (in rust/diagnosis/src/gates and rust/inference/src: checks,
+parameters/priors.rs) were set on `--split calibration` and on larger draws of it, and what they rest on is
 printed with both (thresholds.py).
 """
 

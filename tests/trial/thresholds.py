@@ -1,6 +1,6 @@
 """What the thresholds of the diagnosis rest on: evidence that is reached, led by and taken up where it should not be.
 
-Printed by `cargo xtask prove -- --split calibration`. The thresholds stand in rust/diagnosis/src/diagnose/gates.rs; no
+Printed by `cargo xtask prove -- --split calibration`. The thresholds stand in rust/diagnosis/src/gates/decision.rs; no
 case of the trial is looked at for them.
 """
 

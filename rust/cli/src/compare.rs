@@ -7,11 +7,12 @@ use crate::results::{self, Output};
 use crate::{interrupt, threads};
 use std::fmt::Write;
 use std::path::Path;
+use thenar_comparison::Comparison;
+use thenar_comparison::{compare, of_what};
 use thenar_contact::Control;
-use thenar_diagnosis::comparison::Comparison;
-use thenar_diagnosis::report::{comparison_html, comparison_json};
-use thenar_diagnosis::{Options, compare};
+use thenar_inference::Options;
 use thenar_recordings::Study;
+use thenar_report::{comparison_html, comparison_json};
 
 /// Loads, compares, writes, and tells what came out on the terminal.
 ///
@@ -104,7 +105,7 @@ fn told(study: &Study, comparison: &Comparison, out: &Path) -> String {
     for estimate in &comparison.estimates {
         text += &format!(
             "{} {} = {} ({} to {})\n",
-            estimate.of_what(),
+            of_what(&estimate.target),
             estimate.name,
             short(estimate.value),
             short(estimate.low),

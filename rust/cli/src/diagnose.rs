@@ -7,9 +7,9 @@ use crate::results::{self, Output};
 use crate::{interrupt, threads};
 use std::path::Path;
 use thenar_contact::Control;
-use thenar_diagnosis::report::{comparison_json, diagnosis_html};
 use thenar_diagnosis::{DiagnoseOptions, Diagnosis, diagnose, findings_json};
 use thenar_recordings::Study;
+use thenar_report::{comparison_json, diagnosis_html};
 
 /// Loads, diagnoses, writes, and tells what came out on the terminal.
 ///

@@ -1,7 +1,7 @@
 //! Why the binary ends without a result, and the exit code that says so.
 
 use thenar_contact::ContactError;
-use thenar_diagnosis::DiagnosisError;
+use thenar_inference::InferenceError;
 use thenar_recordings::RecordingError;
 
 /// One sentence each.
@@ -50,10 +50,10 @@ impl From<RecordingError> for Fault {
     }
 }
 
-impl From<DiagnosisError> for Fault {
-    fn from(error: DiagnosisError) -> Fault {
+impl From<InferenceError> for Fault {
+    fn from(error: InferenceError) -> Fault {
         match error {
-            DiagnosisError::Cancelled => Fault::cancelled(),
+            InferenceError::Cancelled => Fault::cancelled(),
             error => Fault::Input(error.to_string()),
         }
     }

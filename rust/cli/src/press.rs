@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use thenar_contact::{
     Contact, Control, ForceTarget, Keep, Model, Press, Run, Skin, SkinInput, Start, Unsolved,
+    Workspace,
 };
 use thenar_recordings::meshes::{self, MeshFile};
 use thenar_surface::{Mesh, Product, Vec3};
@@ -74,13 +75,15 @@ fn press(
         model,
     };
     let mut skin = Skin::prepare_named(input, regions.names.clone(), control)?;
-    notes.concat().into_iter().for_each(|note| skin.note(note));
-    if arguments.materials.is_none() {
-        skin.note(model.preset_note());
+    let assumed = arguments.materials.is_none().then(|| model.preset_note());
+    for note in notes.concat().into_iter().chain(assumed) {
+        skin = skin.with_note(note);
     }
     if let Some(file) = &arguments.effects {
-        skin.set_effects(effects::read(file, &regions)?, control)?;
+        skin = skin.with_effects(effects::read(file, &regions)?, control)?;
     }
+    let mut workspace = Workspace::default();
+    let mut pressing = workspace.on(&skin);
     let posed = posed.as_ref().map(|posed| posed.positions.as_slice());
     let direction = arguments.direction.map(Vec3::from);
     if let Some(file) = &arguments.protocol {
@@ -90,7 +93,7 @@ fn press(
             protocol: &protocol::read(file, direction)?,
             keep: Keep::Totals,
         };
-        let course = skin.run(&run, control)?;
+        let course = pressing.run(&run, control)?;
         let table = protocol::table(&course);
         return Ok((course.last, regions, Some(table)));
     }
@@ -104,7 +107,7 @@ fn press(
         start: Start::Fresh,
         unsolved: Unsolved::kept_if(arguments.keep_unsolved),
     };
-    Ok((skin.press(&press, control)?, regions, None))
+    Ok((pressing.press(&press, control)?, regions, None))
 }
 
 fn scaled(file: &Path, arguments: &PressArguments) -> Result<MeshFile, Fault> {

@@ -33,3 +33,5 @@ pub use skin::parameters;
 pub use skin::prepare::Skin;
 pub use solve::{Solution, solve_dense};
 pub use sphere_indentation as ball;
+pub use workspace::warm_start::WarmStart;
+pub use workspace::{Pressing, Workspace};

@@ -3,7 +3,7 @@
 
 mod scenes;
 
-use scenes::{lattice, paraboloid, press};
+use scenes::{Bench, lattice, paraboloid, press};
 use thenar_contact::{
     ActiveEffect, Control, Course, Demand, Keep, Material, Model, Protocol, Row, Run, Skin,
     SkinInput, Step,
@@ -23,7 +23,7 @@ fn work() -> f64 {
         / (9.0 * std::f64::consts::PI * RADIUS * RADIUS)
 }
 
-fn skin(spacing: f64, extent: f64, effects: Vec<ActiveEffect>) -> Skin {
+fn skin(spacing: f64, extent: f64, effects: Vec<ActiveEffect>) -> Bench {
     let material = Material {
         g0_mpa: SHEAR_MODULUS,
         g_lim_mpa: SHEAR_MODULUS,
@@ -36,7 +36,7 @@ fn skin(spacing: f64, extent: f64, effects: Vec<ActiveEffect>) -> Skin {
         materials: vec![material],
         model: Model::Layer,
     };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
+    let mut skin = Bench::from(Skin::prepare(input, &Control::none()).unwrap());
     skin.set_effects(effects, &Control::none()).unwrap();
     skin
 }
@@ -47,7 +47,7 @@ fn adhesion(work: f64, range_mm: f64) -> ActiveEffect {
     effect.with("range_mm", range_mm).unwrap()
 }
 
-fn follow(skin: &mut Skin, product: &Product, depths: impl Iterator<Item = f64>) -> Course {
+fn follow(skin: &mut Bench, product: &Product, depths: impl Iterator<Item = f64>) -> Course {
     let row = |(k, depth): (usize, f64)| Row {
         time_s: k as f64,
         demand: Demand::Offset(depth),
@@ -67,7 +67,7 @@ fn follow(skin: &mut Skin, product: &Product, depths: impl Iterator<Item = f64>)
 }
 
 /// Force over pi w R and contact radius (mm) by depth.
-fn path(skin: &mut Skin, work: f64, depths: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+fn path(skin: &mut Bench, work: f64, depths: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
     let course = follow(skin, &paraboloid(RADIUS, 0.0, 3.0), depths);
     let unit = std::f64::consts::PI * work * RADIUS;
     let one = |step: &Step| (step.force / unit, (step.area / std::f64::consts::PI).sqrt());

@@ -3,11 +3,11 @@
 
 mod scenes;
 
-use scenes::{flat_skin, material, paraboloid, revolve};
-use thenar_contact::{ActiveEffect, Control, Course, Keep, Model, Protocol, Run, Skin};
+use scenes::{Bench, flat_skin, material, paraboloid, revolve};
+use thenar_contact::{ActiveEffect, Control, Course, Keep, Model, Protocol, Run};
 use thenar_surface::{Product, Vec3};
 
-fn follow(skin: &mut Skin, product: &Product, path: &[(f64, f64)]) -> Course {
+fn follow(skin: &mut Bench, product: &Product, path: &[(f64, f64)]) -> Course {
     let (times, depths): (Vec<f64>, Vec<f64>) = path.iter().copied().unzip();
     let protocol = Protocol {
         direction: Some(-Vec3::z()),

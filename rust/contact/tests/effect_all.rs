@@ -3,7 +3,7 @@
 
 mod scenes;
 
-use scenes::{Dice, flat_skin, lattice, paraboloid, press};
+use scenes::{Bench, Dice, flat_skin, lattice, paraboloid, press};
 use thenar_contact::effects::{CATALOGUE, Effect, Entry};
 use thenar_contact::{
     ActiveEffect, Contact, Control, Course, Keep, Material, Model, Protocol, Run, Skin, SkinInput,
@@ -24,7 +24,7 @@ fn tissue() -> impl DoubleEndedIterator<Item = &'static (Effect, &'static Entry)
     CATALOGUE.iter().filter(|(_, entry)| !entry.is_instrument())
 }
 
-fn two_regions() -> Skin {
+fn two_regions() -> Bench {
     let mesh = lattice(9.0, 1.5, 0.3);
     let regions = mesh
         .positions()
@@ -37,10 +37,10 @@ fn two_regions() -> Skin {
         materials: vec![material(); 2],
         model: Model::Layer,
     };
-    Skin::prepare(input, &Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
-fn follow(skin: &mut Skin, product: &Product, protocol: &Protocol) -> Course {
+fn follow(skin: &mut Bench, product: &Product, protocol: &Protocol) -> Course {
     let run = Run {
         product,
         posed: None,
@@ -63,7 +63,7 @@ fn cycle() -> Protocol {
     protocol
 }
 
-fn set(skin: &mut Skin, effects: Vec<ActiveEffect>) {
+fn set(skin: &mut Bench, effects: Vec<ActiveEffect>) {
     skin.set_effects(effects, &Control::none()).unwrap();
 }
 
@@ -174,7 +174,7 @@ fn closed_path(dice: &mut Dice) -> Protocol {
 
 /// Work that came out of the most generous of `runs` random closed paths, relative to what went in.
 fn most_gained(
-    skin: &mut Skin,
+    skin: &mut Bench,
     runs: usize,
     (dice, draw): (&mut Dice, impl Fn(&mut Dice) -> Vec<ActiveEffect>),
 ) -> f64 {

@@ -3,7 +3,7 @@
 
 mod scenes;
 
-use scenes::{lattice, paraboloid, press};
+use scenes::{Bench, lattice, paraboloid, press};
 use thenar_contact::{ActiveEffect, ContactError, Control, Material, Model, Skin, SkinInput};
 use thenar_surface::Mesh;
 
@@ -18,14 +18,14 @@ fn material(thickness_mm: f64) -> Material {
     }
 }
 
-fn prepare(mesh: Mesh, regions: Vec<i32>, materials: Vec<Material>) -> Skin {
+fn prepare(mesh: Mesh, regions: Vec<i32>, materials: Vec<Material>) -> Bench {
     let input = SkinInput {
         mesh,
         regions,
         materials,
         model: Model::Layer,
     };
-    Skin::prepare(input, &Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
 /// Flat skin in two regions, parted by the plane x = 0.
@@ -36,7 +36,7 @@ fn halves() -> (Mesh, Vec<i32>) {
     (mesh, regions)
 }
 
-fn set(skin: &mut Skin, effects: Vec<ActiveEffect>) {
+fn set(skin: &mut Bench, effects: Vec<ActiveEffect>) {
     skin.set_effects(effects, &Control::none()).unwrap();
 }
 
@@ -80,7 +80,7 @@ fn painted_and_sloping_bone_lie_between_their_extremes() {
     let tool = paraboloid(8.0, 1.0, 8.0);
     let mesh = lattice(SIZE, 1.0, 0.3);
     let mut skin = prepare(mesh.clone(), vec![], vec![material(9.0)]);
-    let level = |skin: &mut Skin, h: f64| {
+    let level = |skin: &mut Bench, h: f64| {
         set(
             skin,
             vec![named("bone", 1.0).with("thickness_mm", h).unwrap()],

@@ -3,7 +3,7 @@
 
 mod scenes;
 
-use scenes::press;
+use scenes::{Bench, press};
 use thenar_contact::{Contact, Material, Model, Skin, SkinInput};
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -128,7 +128,7 @@ fn a_flat_pad_feels_the_side_of_a_plate_that_it_is_pressed_on() {
     }
 }
 
-fn soft_skin(mesh: Mesh) -> Skin {
+fn soft_skin(mesh: Mesh) -> Bench {
     let soft = Material {
         g0_mpa: 0.01,
         g_lim_mpa: 0.02,
@@ -141,11 +141,11 @@ fn soft_skin(mesh: Mesh) -> Skin {
         materials: vec![soft],
         model: Model::Layer,
     };
-    Skin::prepare(input, &thenar_contact::Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &thenar_contact::Control::none()).unwrap())
 }
 
 /// A ball of 8 mm about the origin.
-fn ball(rings: u32, sectors: u32) -> Skin {
+fn ball(rings: u32, sectors: u32) -> Bench {
     soft_skin(round(rings, sectors, |polar, angle| {
         8.0 * Vec3::new(
             polar.sin() * angle.cos(),
@@ -156,7 +156,7 @@ fn ball(rings: u32, sectors: u32) -> Skin {
 }
 
 /// A pad of 40 x 40 mm, 8 mm thick, flat above and below, with rounded sides.
-fn pouch() -> Skin {
+fn pouch() -> Bench {
     soft_skin(round(56, 72, |polar, angle| {
         let flat = |x: f64, power: f64| x.signum() * x.abs().powf(power);
         let out = 20.0 * flat(polar.sin(), 0.8);

@@ -4,15 +4,15 @@
 mod scenes;
 
 use nalgebra::{Rotation3, Vector3};
-use scenes::{SHEAR_MODULUS, lattice, paraboloid, rubbing_skin};
+use scenes::{Bench, SHEAR_MODULUS, lattice, paraboloid, rubbing_skin};
 use thenar_contact::{
-    ActiveEffect, Contact, ContactError, Control, Drag, Press, Shear, Skin, Start, Unsolved,
+    ActiveEffect, Contact, ContactError, Control, Drag, Press, Shear, Start, Unsolved,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
 const MU: f64 = 0.4;
 
-fn drag(skin: &mut Skin, product: &Product, drag: Option<Drag>) -> Result<Contact, ContactError> {
+fn drag(skin: &mut Bench, product: &Product, drag: Option<Drag>) -> Result<Contact, ContactError> {
     let press = Press {
         product,
         posed: None,

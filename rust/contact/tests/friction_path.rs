@@ -3,8 +3,8 @@
 
 mod scenes;
 
-use scenes::{lattice, rubbing_skin};
-use thenar_contact::{Control, Course, Demand, Keep, Protocol, Row, Run, Skin};
+use scenes::{Bench, lattice, rubbing_skin};
+use thenar_contact::{Control, Course, Demand, Keep, Protocol, Row, Run};
 use thenar_surface::{Mesh, Product, Vec3};
 
 const MU: f64 = 0.4;
@@ -17,7 +17,7 @@ fn row(time_s: f64, depth: f64, slide: f64) -> Row {
     }
 }
 
-fn follow(skin: &mut Skin, product: &Product, rows: Vec<Row>) -> Course {
+fn follow(skin: &mut Bench, product: &Product, rows: Vec<Row>) -> Course {
     let protocol = Protocol {
         rows,
         direction: Some(-Vec3::z()),

@@ -2,8 +2,8 @@
 
 mod scenes;
 
-use scenes::{Dice, flat_skin, lattice, paraboloid, press_posed};
-use thenar_contact::{Material, Model, Skin};
+use scenes::{Bench, Dice, flat_skin, lattice, paraboloid, press_posed};
+use thenar_contact::{Material, Model};
 use thenar_surface::{Mesh, Product, Vec3};
 
 const MODULUS: f64 = 0.02;
@@ -11,7 +11,7 @@ const RADIUS: f64 = 10.0;
 const DEPTH: f64 = 1.0;
 const CONTACT_RADIUS: f64 = 3.162_277_66;
 
-fn skin(spacing: f64) -> (Skin, Mesh) {
+fn skin(spacing: f64) -> (Bench, Mesh) {
     let size = 4.0 * CONTACT_RADIUS;
     (
         flat_skin(size, spacing, half_space(), Model::Layer),
@@ -33,7 +33,7 @@ fn half_space() -> Material {
 }
 
 /// Force and contact radius over Hertz's, minus one, for one spacing.
-fn errors((skin, mesh): &mut (Skin, Mesh), product: &Product, offset: Vec3) -> (f64, f64) {
+fn errors((skin, mesh): &mut (Bench, Mesh), product: &Product, offset: Vec3) -> (f64, f64) {
     let (radius, depth) = (RADIUS, DEPTH);
     let a = (radius * depth).sqrt();
     let exact = 16.0 / 3.0 * MODULUS * radius.sqrt() * depth.powf(1.5);

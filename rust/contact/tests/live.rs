@@ -5,7 +5,7 @@ mod scenes;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use scenes::{lattice, material, paraboloid, press_posed};
+use scenes::{Bench, lattice, material, paraboloid, press_posed};
 use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start, Unsolved};
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
@@ -19,17 +19,17 @@ const PLACE: f64 = 0.03;
 /// Largest distance between the written surface and the product where they press, and largest penetration elsewhere, mm.
 const FIT: f64 = 0.02;
 
-fn skin(mesh: &Mesh) -> Skin {
+fn skin(mesh: &Mesh) -> Bench {
     let input = SkinInput {
         mesh: mesh.clone(),
         regions: Vec::new(),
         materials: vec![material(5.0)],
         model: Model::Layer,
     };
-    Skin::prepare(input, &Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
-fn follow(skin: &mut Skin, product: &Product, posed: &[Vec3], start: Start) -> Contact {
+fn follow(skin: &mut Bench, product: &Product, posed: &[Vec3], start: Start) -> Contact {
     let press = Press {
         product,
         posed: Some(posed),

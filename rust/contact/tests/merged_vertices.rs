@@ -3,7 +3,7 @@
 
 mod scenes;
 
-use scenes::{lattice, material};
+use scenes::{Bench, lattice, material};
 use thenar_contact::{Contact, Control, Model, Press, Skin, SkinInput, Start, Unsolved};
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -78,7 +78,7 @@ fn pressed(mesh: &Mesh, posed: Option<&[Vec3]>, shift: Vec3) -> Contact {
         materials: vec![material(10.0)],
         model: Model::Layer,
     };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
+    let mut skin = Bench::from(Skin::prepare(input, &Control::none()).unwrap());
     let text = skin.warnings().join(" ");
     assert!(
         text.contains("1 vertices are nearer to another one than a quarter"),

@@ -4,10 +4,8 @@
 mod scenes;
 
 use rayon::prelude::*;
-use scenes::{Dice, flat_skin, paraboloid};
-use thenar_contact::{
-    ActiveEffect, Control, Demand, Keep, Material, Model, Protocol, Row, Run, Skin,
-};
+use scenes::{Bench, Dice, flat_skin, paraboloid};
+use thenar_contact::{ActiveEffect, Control, Demand, Keep, Material, Model, Protocol, Row, Run};
 use thenar_surface::{Product, Vec3};
 
 const MEMORY: [&str; 4] = [
@@ -20,7 +18,7 @@ const MEMORY: [&str; 4] = [
 /// tissue is zero, and what is left is the effects'.
 const GRID: f64 = 0.1;
 
-fn skin() -> Skin {
+fn skin() -> Bench {
     let material = Material {
         g0_mpa: 0.01,
         g_lim_mpa: 0.02,
@@ -97,7 +95,7 @@ fn closed_path(dice: &mut Dice) -> Protocol {
 }
 
 /// Energy that a closed cycle gives, over the range of its work: above zero only if it gives any.
-fn gained(skin: &mut Skin, tool: &Product, protocol: &Protocol) -> f64 {
+fn gained(skin: &mut Bench, tool: &Product, protocol: &Protocol) -> f64 {
     let run = Run {
         product: tool,
         posed: None,
@@ -153,7 +151,7 @@ fn denser(protocol: &Protocol) -> Protocol {
 ///
 /// The work is a sum of trapezoids. Where skin leaps on and off the product between rows, and softens on the way, they do not
 /// cancel: a cycle that clings and seems to give energy is followed again by denser rows, and must give none then.
-fn follow(skin: &mut Skin, tool: &Product, drawn: &Draw) -> f64 {
+fn follow(skin: &mut Bench, tool: &Product, drawn: &Draw) -> f64 {
     let names: Vec<&str> = drawn.effects.iter().map(|e| e.entry().name).collect();
     skin.set_effects(drawn.effects.clone(), &Control::none())
         .unwrap();

@@ -4,7 +4,7 @@
 mod scenes;
 
 use nalgebra::{Rotation3, Vector3};
-use scenes::{Dice, flat_skin, lattice, paraboloid, press, press_posed};
+use scenes::{Bench, Dice, flat_skin, lattice, paraboloid, press, press_posed};
 use thenar_contact::{
     Contact, ContactError, Control, ForceTarget, Material, Model, Press, Skin, SkinInput, Start,
     Unsolved,
@@ -20,14 +20,14 @@ fn soft() -> Material {
     }
 }
 
-fn skin_of(mesh: &Mesh, regions: Vec<i32>, materials: Vec<Material>) -> Skin {
+fn skin_of(mesh: &Mesh, regions: Vec<i32>, materials: Vec<Material>) -> Bench {
     let input = SkinInput {
         mesh: mesh.clone(),
         regions,
         materials,
         model: Model::Layer,
     };
-    Skin::prepare(input, &Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
 #[test]

@@ -3,14 +3,14 @@
 
 mod scenes;
 
-use scenes::{flat_skin, lattice, material, paraboloid, press};
+use scenes::{Bench, flat_skin, lattice, material, paraboloid, press};
 use thenar_contact::{
-    ActiveEffect, Control, Course, Demand, Keep, Model, Motion, Protocol, Row, Run, Skin, Stand,
-    Step, Walk,
+    ActiveEffect, Control, Course, Demand, Keep, Model, Motion, Protocol, Row, Run, Stand, Step,
+    Walk,
 };
 use thenar_surface::{Product, Vec3};
 
-fn skin(names: &[&str]) -> Skin {
+fn skin(names: &[&str]) -> Bench {
     let mut skin = flat_skin(7.0, 1.0, material(7.0), Model::Layer);
     let effect = |name: &&str| ActiveEffect::named(name, 0.8).unwrap();
     skin.set_effects(names.iter().map(effect).collect(), &Control::none())
@@ -31,7 +31,7 @@ fn rows() -> Vec<Row> {
     (0..14).map(row).collect()
 }
 
-fn run(skin: &mut Skin, product: &Product, rows: Vec<Row>) -> Course {
+fn run(skin: &mut Bench, product: &Product, rows: Vec<Row>) -> Course {
     let protocol = Protocol {
         rows,
         direction: Some(-Vec3::z()),
@@ -230,7 +230,7 @@ fn a_row_that_fails_leaves_the_walk_where_it_stood() {
     let mut skin = skin(&["relaxation"]);
     let mut walk = Walk::new(&skin, Some(-Vec3::z())).unwrap();
     let all = rows();
-    let take = |skin: &mut Skin, walk: &mut Walk, row: &Row| {
+    let take = |skin: &mut Bench, walk: &mut Walk, row: &Row| {
         skin.advance(walk, (&stand(&tool, None), row), &Control::none())
     };
     take(&mut skin, &mut walk, &all[3]).unwrap();

@@ -5,13 +5,13 @@ mod scenes;
 
 use std::sync::Mutex;
 
-use scenes::{lattice, paraboloid, press};
+use scenes::{Bench, lattice, paraboloid, press};
 use thenar_contact::{
     ContactError, Control, ForceTarget, Material, Model, Press, Skin, SkinInput, Start, Unsolved,
 };
 use thenar_surface::Vec3;
 
-fn named(thickness_mm: f64, names: &[&str]) -> Skin {
+fn named(thickness_mm: f64, names: &[&str]) -> Bench {
     let mesh = lattice(14.0, 1.3, 0.3);
     let halves = mesh.positions().iter().map(|p| i32::from(p.x > 0.0));
     let input = SkinInput {
@@ -27,7 +27,7 @@ fn named(thickness_mm: f64, names: &[&str]) -> Skin {
         model: Model::Layer,
     };
     let names = names.iter().map(|name| (*name).to_owned()).collect();
-    Skin::prepare_named(input, names, &Control::none()).unwrap()
+    Bench::from(Skin::prepare_named(input, names, &Control::none()).unwrap())
 }
 
 #[test]
@@ -85,8 +85,8 @@ fn warnings_and_errors_call_regions_by_their_names() {
 
 #[test]
 fn a_note_is_repeated_by_every_result() {
-    let mut skin = named(7.0, &[]);
-    skin.note(Model::Layer.preset_note());
+    let skin = named(7.0, &[]).skin;
+    let mut skin = Bench::from(skin.with_note(Model::Layer.preset_note()));
     for depth in [0.5, 1.0] {
         let said = press(&mut skin, &paraboloid(9.0, depth, 8.0)).warnings;
         assert!(

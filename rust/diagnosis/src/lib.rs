@@ -1,39 +1,28 @@
-//! Comparison of recordings with the simulation, and what explains the difference; reads no files and knows nothing of Blender.
+//! From what the parameters leave to a verdict, its findings, and the next recording; reads no files and knows nothing of Blender.
 #![doc = include_str!("../README.md")]
+#![warn(missing_docs)]
 
-mod errors;
-mod random;
-mod distributions;
-mod number_format;
+mod wording;
+mod findings;
+mod effect_numbers;
+mod gates;
+mod findings_content;
+mod unlisted_finding;
+mod unlisted;
+mod next_recording;
+mod place;
+mod sentence;
+mod findings_json;
+mod diagnose;
+#[cfg(test)]
+#[path = "../../inference/tests/synthetic_rungs/mod.rs"]
+mod synthetic_rungs;
 
-mod observe;
-mod noise;
-mod forward;
-mod parameters;
-mod least_squares;
-mod fit;
-mod checks;
-mod selection;
-mod design;
-
-pub mod comparison;
-mod location;
-pub mod prints;
-mod compare;
-
-pub mod diagnose;
-pub mod report;
-
-pub use compare::compare;
-pub use diagnose::{DiagnoseOptions, Diagnosis, diagnose, findings_json};
-pub use errors::DiagnosisError;
-pub use fit::fitting::{Fitting, Options, fit_study};
-pub use fit::result::Fit;
-pub use location::locate::{Search, locate};
-pub use location::mismatch::{Carrier, Location, Mismatch, Place, Shown, When};
-pub use observe::measured::{
-    Censoring, Mat, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint,
+pub use diagnose::{DiagnoseOptions, diagnose};
+pub use findings::{
+    Curve, Diagnosis, Finding, Number, Rival, Suggestion, Switched, Verdict, When, Where,
 };
-pub use parameters::effect_parameters::{EffectFit, Found, Free};
-pub use parameters::estimate::Estimate;
-pub use parameters::target::Target;
+pub use findings_json::findings_json;
+pub use thenar_inference::selection::cross_validation::{Gain, Spread};
+pub use unlisted_finding::{Correction, Unlisted};
+pub use wording::variable_in_words;

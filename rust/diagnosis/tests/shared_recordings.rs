@@ -1,13 +1,15 @@
 //! Real recordings that are shared beside the repository: compared where they can be, and what they cannot tell is said.
 #![allow(clippy::unwrap_used)]
 
+#[path = "../../inference/tests/scenes/mod.rs"]
 mod scenes;
 
 use std::path::{Path, PathBuf};
 
 use scenes::{add, material, pad, study};
 use thenar_contact::Control;
-use thenar_diagnosis::{DiagnoseOptions, Fitting, Options, diagnose, fit_study};
+use thenar_diagnosis::{DiagnoseOptions, diagnose};
+use thenar_inference::{Fitting, Options, fit_study};
 use thenar_recordings::meshes::MeshFile;
 use thenar_recordings::study::Shape;
 use thenar_recordings::{Curve, read};

@@ -11,17 +11,17 @@ use crate::study::Study;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
-use thenar_diagnosis::comparison::{
+use thenar_comparison::{
     Measure, RecordingComparison, Series, Still, WorstPlace, compare_still, on_skin,
 };
-use thenar_diagnosis::report::{comparison_html, comparison_json};
-use thenar_diagnosis::{Estimate, Mat, Options, Target};
+use thenar_inference::{Estimate, Mat, Options, Target};
+use thenar_report::{comparison_html, comparison_json};
 use thenar_surface::{Mesh, Vec3, vertex_areas};
 
 /// What separates simulation and recordings.
 #[pyclass(frozen, module = "thenar")]
 pub struct Comparison {
-    inner: Arc<thenar_diagnosis::comparison::Comparison>,
+    inner: Arc<thenar_comparison::Comparison>,
 }
 
 /// Fits a study's parameters to its recordings and compares what is left.
@@ -44,7 +44,7 @@ pub fn compare(
             seed,
             ..Options::default()
         };
-        Ok(thenar_diagnosis::compare(&study, &options, control)?)
+        Ok(thenar_comparison::compare(&study, &options, control)?)
     })?;
     Ok(Comparison::new(inner))
 }
@@ -181,7 +181,7 @@ pub fn mat_of(mat: &Bound<'_, PyAny>) -> PyResult<(Mat, Vec<bool>)> {
 
 impl Comparison {
     /// Of the library's.
-    pub fn new(inner: thenar_diagnosis::comparison::Comparison) -> Comparison {
+    pub fn new(inner: thenar_comparison::Comparison) -> Comparison {
         Comparison {
             inner: Arc::new(inner),
         }

@@ -8,9 +8,9 @@ use crate::study::Study;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use thenar_diagnosis::diagnose::Curve;
-use thenar_diagnosis::report::diagnosis_html;
+use thenar_diagnosis::Curve;
 use thenar_diagnosis::{DiagnoseOptions, findings_json};
+use thenar_report::diagnosis_html;
 
 /// What a study's recordings show that the model leaves out.
 #[pyclass(frozen, module = "thenar")]

@@ -4,8 +4,8 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use thenar_contact::ContactError;
-use thenar_diagnosis::DiagnosisError;
 use thenar_hand::HandError;
+use thenar_inference::InferenceError;
 use thenar_recordings::RecordingError as RecordingFault;
 use thenar_reference::ReferenceError;
 use thenar_surface::MeshError as MeshFault;
@@ -68,11 +68,9 @@ pub enum Failure {
     Mesh(MeshFault),
     Hand(HandError),
     Recording(RecordingFault),
-    Diagnosis(DiagnosisError),
+    Diagnosis(InferenceError),
     Reference(ReferenceError),
     Cancelled,
-    /// An earlier panic left the prepared skin half changed.
-    Spoiled,
 }
 
 impl From<ContactError> for Failure {
@@ -87,10 +85,10 @@ impl From<MeshFault> for Failure {
     }
 }
 
-impl From<DiagnosisError> for Failure {
-    fn from(error: DiagnosisError) -> Failure {
+impl From<InferenceError> for Failure {
+    fn from(error: InferenceError) -> Failure {
         match error {
-            DiagnosisError::Cancelled => Failure::Cancelled,
+            InferenceError::Cancelled => Failure::Cancelled,
             error => Failure::Diagnosis(error),
         }
     }
@@ -108,9 +106,6 @@ impl From<Failure> for PyErr {
             Failure::Cancelled => {
                 Cancelled::new_err("cancelled before it was done, as asked; nothing was changed")
             }
-            Failure::Spoiled => SolveError::new_err(
-                "an earlier error inside thenar spoiled this skin; prepare it again",
-            ),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::running::{Hooks, run};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use thenar_diagnosis::prints::{PosePart, Pressed, Printed, StillPrint, compare_print as compare};
+use thenar_comparison::{PosePart, Pressed, Printed, StillPrint, compare_print as compare};
 use thenar_recordings::PressureMap;
 use thenar_recordings::handprint::{Handprint, Ink, PrintOptions, Scale};
 use thenar_surface::{Mesh, vertex_areas};

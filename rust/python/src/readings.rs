@@ -4,8 +4,8 @@ use crate::arrays::{column, rows};
 use crate::record::record;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use thenar_diagnosis::Mat;
-use thenar_diagnosis::comparison::{Frame, RecordingComparison, Scanned};
+use thenar_comparison::{Frame, RecordingComparison, Scanned};
+use thenar_inference::Mat;
 
 /// A scan: heights over the skin at rest by place, mm.
 pub fn scan(py: Python<'_>, scan: &Scanned) -> PyResult<Py<PyAny>> {

@@ -6,21 +6,30 @@ use crate::errors::{Failure, SolveError};
 use crate::running::{Hooks, run};
 use crate::skin::Inner;
 use pyo3::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
-use thenar_contact::{Control, Demand, Motion, Row, Stand, Step};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
+use thenar_contact::{Control, Demand, Motion, Row, Stand, Step, Workspace};
 use thenar_surface::Vec3;
 
 /// How far a motion may be from rigid.
 const RIGID: f64 = 1e-5;
 
 /// A protocol followed one row at a time, begun by `Skin.start`: posture and product may move between rows, and the tissue
-/// remembers. Rows of one walk wait for each other; other presses of the skin may come between.
+/// remembers. It has a workspace of its own, which it shares with its copies: their rows wait for each other, and other presses
+/// of the skin may run at the same time.
 #[pyclass(frozen, module = "thenar")]
 pub struct Walk {
-    pub(crate) inner: Arc<Inner>,
-    pub(crate) region_names: Arc<Vec<String>>,
-    pub(crate) product: Arc<thenar_surface::Product>,
-    pub(crate) state: Arc<Mutex<thenar_contact::Walk>>,
+    followed: Followed,
+    region_names: Arc<Vec<String>>,
+}
+
+/// What a row goes on from.
+#[derive(Clone)]
+struct Followed {
+    inner: Arc<Inner>,
+    product: Arc<thenar_surface::Product>,
+    workspace: Arc<Mutex<Workspace>>,
+    state: Arc<Mutex<thenar_contact::Walk>>,
 }
 
 /// One row as it came from Python.
@@ -81,11 +90,8 @@ impl Walk {
                 },
             },
         };
-        let (inner, product) = (Arc::clone(&self.inner), Arc::clone(&self.product));
-        let state = Arc::clone(&self.state);
-        let contact = run(py, &hooks, move |control| {
-            follow((&inner, &product, &state), &asked, control)
-        })?;
+        let followed = self.followed.clone();
+        let contact = run(py, &hooks, move |control| followed.take(&asked, control))?;
         Ok(Contact::new(contact, Arc::clone(&self.region_names)))
     }
 
@@ -129,10 +135,11 @@ impl Walk {
     /// A walk of its own from where this one stands: to try rows and go back.
     fn copy(&self) -> Walk {
         Walk {
-            inner: Arc::clone(&self.inner),
+            followed: Followed {
+                state: Arc::new(Mutex::new(self.state())),
+                ..self.followed.clone()
+            },
             region_names: Arc::clone(&self.region_names),
-            product: Arc::clone(&self.product),
-            state: Arc::new(Mutex::new(self.state())),
         }
     }
 
@@ -144,11 +151,26 @@ impl Walk {
 }
 
 impl Walk {
+    /// A walk that stands where `state` does, on the skin of now.
+    pub(crate) fn new(
+        (inner, product): (Arc<Inner>, Arc<thenar_surface::Product>),
+        state: thenar_contact::Walk,
+        region_names: Arc<Vec<String>>,
+    ) -> Walk {
+        let followed = Followed {
+            inner,
+            product,
+            workspace: Arc::new(Mutex::new(Workspace::default())),
+            state: Arc::new(Mutex::new(state)),
+        };
+        Walk {
+            followed,
+            region_names,
+        }
+    }
+
     fn state(&self) -> thenar_contact::Walk {
-        self.state
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        self.followed.state().clone()
     }
 
     fn of_step(&self, value: impl Fn(&Step) -> f64) -> f64 {
@@ -156,28 +178,47 @@ impl Walk {
     }
 }
 
-fn follow(
-    (inner, product, state): (
-        &Inner,
-        &thenar_surface::Product,
-        &Mutex<thenar_contact::Walk>,
-    ),
-    asked: &Asked,
+impl Followed {
+    fn take(&self, asked: &Asked, control: &Control) -> Result<thenar_contact::Contact, Failure> {
+        let mut workspace = once_free(&self.workspace, control)?;
+        let skin = self.inner.skin();
+        let stand = Stand {
+            product: &self.product,
+            posed: asked.posed.as_deref(),
+            motion: asked.motion,
+        };
+        // A copy goes ahead: what is cancelled or panics leaves the walk where it stood.
+        let mut walk = self.state().clone();
+        let row = (&stand, &asked.row);
+        workspace.on(&skin).advance(&mut walk, row, control)?;
+        let contact = walk.contact(&skin, &stand)?;
+        *self.state() = walk;
+        Ok(contact)
+    }
+
+    fn state(&self) -> MutexGuard<'_, thenar_contact::Walk> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The workspace once no other row uses it; can be cancelled while waiting.
+fn once_free<'a>(
+    workspace: &'a Mutex<Workspace>,
     control: &Control,
-) -> Result<thenar_contact::Contact, Failure> {
-    let mut skin = inner.skin(control)?;
-    let locked = || state.lock().unwrap_or_else(PoisonError::into_inner);
-    let stand = Stand {
-        product,
-        posed: asked.posed.as_deref(),
-        motion: asked.motion,
-    };
-    // A copy goes ahead: what is cancelled or panics leaves the walk where it stood.
-    let mut walk = locked().clone();
-    skin.advance(&mut walk, (&stand, &asked.row), control)?;
-    let contact = walk.contact(&skin, &stand)?;
-    *locked() = walk;
-    Ok(contact)
+) -> Result<MutexGuard<'a, Workspace>, Failure> {
+    loop {
+        match workspace.try_lock() {
+            Ok(free) => return Ok(free),
+            Err(TryLockError::Poisoned(half_changed)) => {
+                let mut free = half_changed.into_inner();
+                *free = Workspace::default();
+                workspace.clear_poison();
+                return Ok(free);
+            }
+            Err(TryLockError::WouldBlock) => control.check()?,
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
 }
 
 fn demand_of(given: [(&str, Option<&Bound<'_, PyAny>>); 3]) -> PyResult<Demand> {

@@ -1,4 +1,4 @@
-//! Equilibrium of tissue and product by a damped Newton iteration.
+//! Equilibrium of tissue and product by a Newton iteration with a regularized diagonal.
 
 use rayon::prelude::*;
 use thenar_surface::Vec3;
@@ -13,10 +13,10 @@ use crate::prisms::PrismMesh;
 const MOST_STEP_MM: f64 = 1.5;
 /// Times that a step is shortened, each to this share.
 const SHORTER: (usize, f64) = (6, 0.4);
-/// Damping, as a share of the diagonal, that a step begins with where the plain one leads uphill or folds a prism; its growth; its end.
-const DAMPING: (f64, f64, f64) = (3e-3, 4.0, 1e3);
-/// Damping below which none is left.
-const NO_DAMPING: f64 = 2e-4;
+/// Regularization, as a share of the diagonal, that a step begins with where the plain one leads uphill or folds a prism; its growth; its end.
+const REGULARIZATION: (f64, f64, f64) = (3e-3, 4.0, 1e3);
+/// Regularization below which none is left.
+const NO_REGULARIZATION: f64 = 2e-4;
 /// Least decrease of the energy for a step, as a share of what its slope promises.
 const DECREASE: f64 = 1e-4;
 
@@ -112,7 +112,7 @@ impl<'a> Equilibrium<'a> {
         let Some(mut forces) = self.forces(&places, penalty, true) else {
             return (End::Stuck, places, None);
         };
-        let mut damping = 0.0;
+        let mut regularization = 0.0;
         for _ in 0..limits.most_steps {
             if forces.unbalanced() < limits.tolerance {
                 return (End::Balanced, places, Some(forces));
@@ -121,12 +121,13 @@ impl<'a> Equilibrium<'a> {
                 return (End::Cancelled, places, Some(forces));
             }
             self.steps += 1;
-            let Some((next, is_plain)) = self.step(&places, &forces, penalty, &mut damping) else {
+            let Some((next, is_plain)) = self.step(&places, &forces, penalty, &mut regularization)
+            else {
                 return (End::Stuck, places, Some(forces));
             };
             if is_plain {
-                damping = if damping > NO_DAMPING {
-                    0.25 * damping
+                regularization = if regularization > NO_REGULARIZATION {
+                    0.25 * regularization
                 } else {
                     0.0
                 };
@@ -145,20 +146,20 @@ impl<'a> Equilibrium<'a> {
         (end, places, Some(forces))
     }
 
-    /// The next places, and whether the full step at the damping given went well; `None` where no step lowers the energy.
+    /// The next places, and whether the full step at the regularization given went well; `None` where no step lowers the energy.
     fn step(
         &mut self,
         places: &[Vec3],
         forces: &Forces,
         penalty: Penalty,
-        damping: &mut f64,
+        regularization: &mut f64,
     ) -> Option<(Vec<Vec3>, bool)> {
         let mut is_first = true;
         let unbalanced = norm(&forces.residual);
-        while *damping <= DAMPING.2 {
+        while *regularization <= REGULARIZATION.2 {
             let mut values = self.values.clone();
             for entry in self.pattern.diagonal() {
-                values[*entry] += *damping * values[*entry].abs();
+                values[*entry] += *regularization * values[*entry].abs();
             }
             let mut step: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
             let is_definite = self.factor.solve(self.pattern, &values, &mut step);
@@ -179,7 +180,7 @@ impl<'a> Equilibrium<'a> {
                 }
             }
             is_first = false;
-            *damping = (DAMPING.1 * *damping).max(DAMPING.0);
+            *regularization = (REGULARIZATION.1 * *regularization).max(REGULARIZATION.0);
         }
         None
     }

@@ -12,7 +12,7 @@ use std::process::Command;
 const SUFFIX: &str = "-cp311-abi3-manylinux_2_28_x86_64.whl";
 
 /// What the wheel is made of, from the top of the repository.
-const SOURCES: [&str; 8] = [
+const SOURCES: [&str; 12] = [
     "Cargo.toml",
     "Cargo.lock",
     "rust/surface",
@@ -20,7 +20,10 @@ const SOURCES: [&str; 8] = [
     "rust/hand",
     "rust/reference",
     "rust/recordings",
+    "rust/inference",
+    "rust/comparison",
     "rust/diagnosis",
+    "rust/report",
     "rust/python",
 ];
 

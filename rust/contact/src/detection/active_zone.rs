@@ -2,6 +2,7 @@
 
 use crate::detection::gaps::Detection;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::{ContactError, Model};
 
 /// Least thickness in vertex spacings for which a vertex still yields to its own force (0.34 in theory).
@@ -35,10 +36,11 @@ pub fn widened_zone(skin: &Skin, detection: &Detection, last: &[u32]) -> Vec<u32
 }
 
 /// The last zone where it still serves, else the sites that may touch.
-pub fn active_zone(skin: &Skin, detection: &Detection) -> Vec<u32> {
+pub fn active_zone(pressing: &Pressing<'_>, detection: &Detection) -> Vec<u32> {
+    let (skin, workspace) = (pressing.skin, &pressing.workspace);
     let zone = candidates(skin, detection);
-    let last = &skin.workspace.problem.zone;
-    let is_warm = !skin.workspace.warm_start.last.force.is_empty();
+    let last = &workspace.problem.zone;
+    let is_warm = !workspace.warm_start.last.force.is_empty();
     let distance = |s: u32| detection.distances[skin.sites.vertex[s as usize] as usize];
     let is_known = |&s: &u32| distance(s) < f64::INFINITY;
     let serves = is_warm

@@ -6,6 +6,7 @@ use thenar_surface::{Gap, GapLimits, Mesh, PosedSkin, Product, SkinSurface, Vec3
 
 use crate::ContactError;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::workspace::posture::PostureShape;
 
 /// Reach of the distance query outside the product, mm.
@@ -62,13 +63,14 @@ pub fn limits() -> GapLimits {
 /// # Errors
 /// [`ContactError::Swallowed`] if skin lies deeper than any tissue yields.
 pub fn detect(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     posed: &Mesh,
     product: &Product,
     shift: Vec3,
 ) -> Result<Detection, ContactError> {
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
-    let seen = &mut skin.workspace.posture;
+    let skin = pressing.skin;
+    let seen = &mut pressing.workspace.posture;
     let PostureShape { normals, areas } = seen.shape(posed);
     let facing = PosedSkin {
         points: &positions,

@@ -47,9 +47,8 @@ pub fn skin(side: u32, thickness: [f64; 3], effects: Vec<ActiveEffect>) -> Skin 
         materials: thickness.map(layer).to_vec(),
         model: Model::Layer,
     };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
-    skin.set_effects(effects, &Control::none()).unwrap();
-    skin
+    let bare = Skin::prepare(input, &Control::none()).unwrap();
+    bare.with_effects(effects, &Control::none()).unwrap()
 }
 
 pub fn all(skin: &Skin) -> Vec<u32> {
@@ -126,7 +125,7 @@ fn the_product_is_the_direct_sum_for_every_kind_of_layer() {
 
 #[test]
 fn near_entries_are_those_of_the_rows() {
-    let mut skin = skin(40, [3.0, 6.0, 11.0], Vec::new());
+    let skin = skin(40, [3.0, 6.0, 11.0], Vec::new());
     let hierarchy = Hierarchy::of(skin.ground());
     let zone = all(&skin);
     skin.response.make_rows(&zone, &skin.sites);
@@ -141,7 +140,8 @@ fn near_entries_are_those_of_the_rows() {
         );
         for &(patch, offset) in skin.response.near(skin.sites.patch[j as usize]) {
             let (first, last) = skin.sites.patch_range[patch as usize];
-            let kept = &skin.response.row(j)[offset as usize..(offset + last - first) as usize];
+            let kept = &skin.response.row(j, &skin.sites)
+                [offset as usize..(offset + last - first) as usize];
             assert_eq!(
                 kept,
                 &row[first as usize..last as usize],

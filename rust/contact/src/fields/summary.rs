@@ -177,7 +177,7 @@ impl Fields {
             .detection
             .areas
             .iter()
-            .zip(&skin.rest_area)
+            .zip(&*skin.rest_area)
             .map(|(now, rest)| now.max(LEAST_AREA_SHARE * rest))
             .collect();
         let gap = pressed.detection.distances.clone();

@@ -9,6 +9,7 @@ use crate::detection::gaps::{Detection, distances_of, limits};
 use crate::press::solution::SolvedContact;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::{ContactError, Control};
 
 /// Displaced skin nearer to the product than this is measured again, mm; farther skin keeps a first-order gap.
@@ -43,12 +44,12 @@ impl DisplacedPosture {
     }
 }
 
-/// Displaces a posture by loads (N) on sites that have their rows of the response.
+/// Displaces a posture by loads (N) on sites.
 ///
 /// # Errors
 /// [`ContactError::Cancelled`].
 pub fn displace(
-    skin: &Skin,
+    pressing: &Pressing<'_>,
     posture: &TruePosture<'_>,
     loads: &[(u32, Vec3)],
     control: &Control,
@@ -58,12 +59,13 @@ pub fn displace(
         detection: truth,
         weight,
     } = posture;
+    let skin = pressing.skin;
     let load = |&(site, load): &(u32, Vec3)| Load {
         site,
         load: load * weight[site as usize],
     };
     let loads: Vec<Load> = loads.iter().map(load).collect();
-    let mut field = skin.displacement(loads, control)?.field;
+    let mut field = pressing.displacement(loads, control)?.field;
     for (site, u) in field.iter_mut().enumerate() {
         *u *= weight[site] * skin.sites.follow[site];
     }

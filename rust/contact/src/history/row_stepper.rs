@@ -21,6 +21,7 @@ use crate::press::force_control::{find_offset, mean_normal};
 use crate::press::pressed::{Pressed, Travel};
 use crate::skin::prepare::Skin;
 use crate::stage_times::{Seconds, Watch};
+use crate::workspace::Pressing;
 use crate::workspace::warm_start::WarmStart;
 use crate::{ActiveEffect, Contact, ContactError, Control};
 
@@ -195,15 +196,15 @@ impl Walk {
     /// Solves a row, and drags the product as far as it says.
     fn press(
         &mut self,
-        skin: &mut Skin,
+        pressing: &mut Pressing<'_>,
         (product, row): (&Product, &Row),
         control: &Control,
     ) -> Result<(f64, Pressed), ContactError> {
-        if let (Some(history), Some(last)) = (skin.history.as_mut(), &self.last) {
+        if let (Some(history), Some(last)) = (&mut pressing.workspace.history, &self.last) {
             history.seconds = row.time_s - last.row.time_s;
         }
         let touch = if Walk::needs_touch(row.demand) {
-            self.touch(skin, product)?
+            self.touch(pressing.skin, product)?
         } else {
             0.0
         };
@@ -222,7 +223,7 @@ impl Walk {
             Demand::Force(0.0) => touch - CLEARANCE,
             Demand::Force(newton) => {
                 if let Some(last) = &self.last {
-                    skin.workspace.warm_start.offset =
+                    pressing.workspace.warm_start.offset =
                         last.step.offset + last.pace * (row.time_s - last.row.time_s);
                 }
                 let target = ForceTarget {
@@ -230,22 +231,27 @@ impl Walk {
                     direction: Some(direction),
                 };
                 let place = (&*posed, product);
-                let (travel, pressed) = find_offset(skin, place, target, watch)?;
+                let (travel, pressed) = find_offset(pressing, place, target, watch)?;
                 return Ok((travel.offset, pressed));
             }
         };
         let shift = direction * offset;
-        let pressed = press_at(skin, &posed, (product, shift), watch)?;
+        let pressed = press_at(pressing, &posed, (product, shift), watch)?;
         Ok((offset, pressed))
     }
 
     /// The totals of a step, and the memory of it.
-    fn keep(&self, skin: &mut Skin, row: &Row, (offset, pressed): (f64, &Pressed)) -> Option<Step> {
+    fn keep(
+        &self,
+        Pressing { skin, workspace }: &mut Pressing<'_>,
+        row: &Row,
+        (offset, pressed): (f64, &Pressed),
+    ) -> Option<Step> {
         let totals = totals(skin, self.posed.as_ref()?, pressed);
         let sheared = pressed.shear.as_ref().map(|shear| &shear.end);
         let shear = sheared.map_or_else(Vec3::zeros, StickSlipStep::force);
-        if let (Some(history), Some(recalled)) = (skin.history.as_mut(), &pressed.recalled) {
-            let place = (&skin.sites, &totals.region_area[..]);
+        if let (Some(history), Some(recalled)) = (&mut workspace.history, &pressed.recalled) {
+            let place = (&*skin.sites, &totals.region_area[..]);
             let borne = (&recalled.bearing[..], &recalled.clings[..]);
             history.commit(&recalled.recall, borne, place);
         }
@@ -282,13 +288,13 @@ impl Walk {
     }
 }
 
-impl Skin {
+impl Pressing<'_> {
     /// Takes the next row of a walk: hand and product stand as `stand` says, and `row` asks for the rest, in the product's
     /// own frame. A product that stands where it should needs `Demand::Offset(0.0)`.
     ///
-    /// Other presses and walks of this skin may come between the rows. Where the posture has moved against the product since
-    /// the last row, remembered loads turn with the skin and friction feels the travel; the step's work is that of offset and
-    /// slide alone.
+    /// Other presses and walks may come between the rows, which may be taken in any workspace. Where the posture has moved
+    /// against the product since the last row, remembered loads turn with the skin and friction feels the travel; the step's
+    /// work is that of offset and slide alone.
     ///
     /// # Errors
     /// [`ContactError::Protocol`] naming the row and what is wrong, those of a press, or `Cancelled`; the walk then stands
@@ -300,7 +306,7 @@ impl Skin {
         control: &Control,
     ) -> Result<Step, ContactError> {
         row.check((walk.rows, walk.last.as_ref().map(|last| last.row.time_s)))?;
-        let (then, now) = (&walk.effects, self.effects());
+        let (then, now) = (&walk.effects, self.skin.effects());
         if then.len() != now.len() || !then.iter().zip(now).all(|(a, b)| a.acts_as(b)) {
             return Err(ContactError::Protocol {
                 row: walk.rows,
@@ -309,7 +315,7 @@ impl Skin {
             });
         }
         let mut next = walk.clone();
-        next.face(self, stand)?;
+        next.face(self.skin, stand)?;
         let step = self.take(&mut next, (stand.product, row), control)?;
         *walk = next;
         Ok(step)
@@ -322,10 +328,10 @@ impl Skin {
         place: (&Product, &Row),
         control: &Control,
     ) -> Result<Step, ContactError> {
-        std::mem::swap(&mut self.history, &mut walk.history);
+        std::mem::swap(&mut self.workspace.history, &mut walk.history);
         std::mem::swap(&mut self.workspace.warm_start, &mut walk.warm_start);
         let step = self.step(walk, place, control);
-        std::mem::swap(&mut self.history, &mut walk.history);
+        std::mem::swap(&mut self.workspace.history, &mut walk.history);
         std::mem::swap(&mut self.workspace.warm_start, &mut walk.warm_start);
         let row = walk.rows;
         let step = step.map_err(|error| match error {

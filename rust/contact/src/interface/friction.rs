@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use thenar_surface::{Gap, Product, Vec3};
 
 use super::friction_state::{FrictionMemory, ShearState};
-use super::shear_kernel::ShearTables;
 use super::shear_matrix::{ShearMatrix, tangents};
 use super::shear_response::{Pairs, Place, ShearResponse};
 use super::stick_slip::{SiteFriction, StickSlipProblem};
@@ -18,8 +17,8 @@ use crate::detection::gaps::limits;
 use crate::effects::{ActiveEffect, Effect, friction};
 use crate::press::pressed::Pressed;
 use crate::press::solution::SolvedContact;
-use crate::response::rows::extent;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::{ContactError, Control};
 
 /// Most sites in contact: their compliance takes 8 bytes a pair.
@@ -62,12 +61,13 @@ pub(crate) fn friction_memory(pressed: &Pressed, travel: Vec3) -> FrictionMemory
 /// # Errors
 /// [`ContactError::Effect`] if there are too many sites or friction cannot hold the force, `Direction`, `Cancelled`.
 pub(crate) fn drag(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     pressed: &mut Pressed,
     (drag, before): (Drag, &FrictionMemory),
     control: &Control,
 ) -> Result<(), ContactError> {
     check(drag)?;
+    let skin = pressing.skin;
     let at: Vec<usize> = (0..pressed.solved.zone.len())
         .filter(|&k| pressed.solved.force[k] > 0.0)
         .collect();
@@ -84,17 +84,13 @@ pub(crate) fn drag(
         });
     }
     control.step("friction", 0.0)?;
-    remember_tables(skin);
-    let Some(tables) = &skin.workspace.shear else {
-        return Ok(());
-    };
     let sites: Vec<u32> = at.iter().map(|&k| pressed.solved.zone[k]).collect();
-    let pairs = response(skin, tables).pairs(&sites, &skin.workspace.pairs);
-    let scene = FrictionProblem::new(skin, tables, (pressed, at), &pairs);
+    let pairs = response(skin).pairs(&sites, &pressing.workspace.pairs);
+    let scene = FrictionProblem::new(skin, (pressed, at), &pairs);
     let sheared = scene.drag((drag, before), control)?;
     control.check()?;
     pressed.shear = Some(sheared);
-    skin.workspace.pairs = if sites.len() <= MOST_KEPT {
+    pressing.workspace.pairs = if sites.len() <= MOST_KEPT {
         pairs
     } else {
         Pairs::default()
@@ -108,14 +104,6 @@ fn check(drag: Drag) -> Result<(), ContactError> {
         Drag::Motion { travel, turn } if is_finite(travel) && is_finite(turn) => Ok(()),
         Drag::Force(force) if is_finite(force) && force.norm() > 0.0 => Ok(()),
         _ => Err(ContactError::Drag),
-    }
-}
-
-fn remember_tables(skin: &mut Skin) {
-    let layers = skin.response.layers();
-    let known = skin.workspace.shear.as_ref();
-    if known.is_none_or(|tables| tables.layers() != layers) {
-        skin.workspace.shear = Some(ShearTables::new(layers, extent(&skin.sites)));
     }
 }
 
@@ -133,12 +121,7 @@ struct FrictionProblem {
 }
 
 impl FrictionProblem {
-    fn new(
-        skin: &Skin,
-        tables: &ShearTables,
-        (pressed, at): (&Pressed, Vec<usize>),
-        pairs: &Pairs,
-    ) -> FrictionProblem {
+    fn new(skin: &Skin, (pressed, at): (&Pressed, Vec<usize>), pairs: &Pairs) -> FrictionProblem {
         let solved = &pressed.solved;
         let place = |&k: &usize| place(skin, pressed, solved.zone[k]);
         let places: Vec<Place> = at.iter().map(place).collect();
@@ -151,7 +134,7 @@ impl FrictionProblem {
         let force: f64 = at.iter().map(|&k| solved.force[k]).sum();
         let weighted = |&k: &usize| solved.touch[k].closest * (solved.force[k] / force);
         let center = at.iter().map(weighted).sum();
-        let matrix = response(skin, tables).matrix(&places, &tangents, pairs);
+        let matrix = response(skin).matrix(&places, &tangents, pairs);
         let approach = approach(skin, &pressed.solved, &at);
         FrictionProblem {
             at,
@@ -285,9 +268,9 @@ fn place(skin: &Skin, pressed: &Pressed, site: u32) -> Place {
     }
 }
 
-fn response<'a>(skin: &'a Skin, tables: &'a ShearTables) -> ShearResponse<'a> {
+fn response(skin: &Skin) -> ShearResponse<'_> {
     ShearResponse {
-        tables,
+        tables: skin.shear_tables(),
         response: &skin.response,
         sites: &skin.sites,
     }
@@ -295,12 +278,11 @@ fn response<'a>(skin: &'a Skin, tables: &'a ShearTables) -> ShearResponse<'a> {
 
 /// Moves the skin as the shear forces do, along its own surface, and lays it on the product again.
 pub(crate) fn move_skin(skin: &Skin, product: &Product, pressed: &mut Pressed) {
-    let (Some(sheared), Some(tables)) = (pressed.shear.as_ref(), skin.workspace.shear.as_ref())
-    else {
+    let Some(sheared) = pressed.shear.as_ref() else {
         return;
     };
     let forces: Vec<Vec3> = sheared.end.traces.iter().map(|t| t.force).collect();
-    let response = response(skin, tables);
+    let response = response(skin);
     let mut moved: Vec<Vec3> = (0..skin.sites.len() as u32)
         .into_par_iter()
         .with_min_len(64)

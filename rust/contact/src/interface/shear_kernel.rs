@@ -79,11 +79,6 @@ impl ShearTables {
         }
     }
 
-    /// The layers that were tabulated.
-    pub fn layers(&self) -> &[Layer] {
-        &self.layers
-    }
-
     /// Geometric mean of 1 - nu of two layers: what their response along the wave vector goes with.
     pub fn softness(&self, a: usize, b: usize) -> f64 {
         softness([self.layers[a], self.layers[b]])

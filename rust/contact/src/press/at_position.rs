@@ -1,5 +1,6 @@
 //! One press at a fixed position: detection, response weights, active zone, solve; memory and adhesion displace the posture.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use thenar_surface::{Mesh, Product, Vec3};
@@ -18,6 +19,7 @@ use crate::interface::pulls::{Adhesion, Pull, steady};
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
 use crate::stage_times::{Watch, add_time};
+use crate::workspace::Pressing;
 use crate::workspace::warm_start::StartContact;
 use crate::{ContactError, Control};
 
@@ -35,23 +37,24 @@ struct Position<'a> {
 /// Presses with the product moved by `shift` (mm).
 ///
 /// # Errors
-/// Those of a press; see [`Skin::press`].
+/// Those of a press; see [`Pressing::press`].
 pub(crate) fn press_at(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     posed: &Mesh,
     (product, shift): (&Product, Vec3),
     watch: Watch<'_, '_>,
 ) -> Result<Pressed, ContactError> {
     let Watch { control, seconds } = watch;
+    let skin = pressing.skin;
     // Stage 1: detection.
     control.step("distances", 0.0)?;
     let started = Instant::now();
-    let detection = detect(skin, posed, product, shift)?;
+    let detection = detect(pressing, posed, product, shift)?;
     add_time(seconds, "distances", started);
     // Stage 3 as far as it follows from the depths: moduli and response weights. Rows and couplings are made for the zone.
     let started = Instant::now();
     let mut shear_modulus = region_moduli(skin, &detection);
-    let recall = recall(skin, &detection);
+    let recall = recall(pressing, &detection);
     if let Some(recall) = &recall {
         recall.soften(&mut shear_modulus);
     }
@@ -67,8 +70,11 @@ pub(crate) fn press_at(
         weight: &response.weight,
     };
     let (mut solved, adhesion) = match &attraction {
-        None => (solve_zone(skin, &position, &[], control)?, Adhesion::none()),
-        Some(attraction) => solve_adhesive(skin, attraction, &position, control)?,
+        None => (
+            solve_zone(pressing, &position, &[], control)?,
+            Adhesion::none(),
+        ),
+        Some(attraction) => solve_adhesive(pressing, attraction, &position, control)?,
     };
     let modulus_at = &mut response.modulus;
     let recalled = recall.map(|recall| {
@@ -97,30 +103,31 @@ pub(crate) fn press_at(
 }
 
 /// The effect of tissue memory on this step, if a protocol is followed.
-fn recall(skin: &Skin, detection: &Detection) -> Option<MemoryStep> {
-    let history = skin.history.as_ref()?;
-    Some(history.recall(&detection.max_penetration, &skin.sites))
+fn recall(pressing: &Pressing<'_>, detection: &Detection) -> Option<MemoryStep> {
+    let history = pressing.workspace.history.as_ref()?;
+    Some(history.recall(&detection.max_penetration, &pressing.skin.sites))
 }
 
 /// Finds the active zone and solves its contact, in the posture that memory and attraction make of the true one.
 fn solve_zone(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     position: &Position<'_>,
     pulls: &[Pull],
     control: &Control,
 ) -> Result<SolvedContact, ContactError> {
-    let moved = displaced(skin, position, pulls, control)?;
+    let skin = pressing.skin;
+    let moved = displaced(pressing, position, pulls, control)?;
     let detection = moved
         .as_ref()
         .map_or(position.detection, |moved| &moved.detection);
-    let zone = active_zone(skin, detection);
+    let zone = active_zone(pressing, detection);
     check_resolution(skin, &zone)?;
-    let last = std::mem::take(&mut skin.workspace.warm_start.last);
+    let last = Arc::clone(&pressing.workspace.warm_start.last);
     let elastic = position.recall.map(|recall| StartContact {
         force: recall.elastic(&last.force, &skin.sites),
         travel: Vec::new(),
     });
-    let start = elastic.as_ref().unwrap_or(&last);
+    let start = elastic.as_ref().unwrap_or(&*last);
     let setting = SolveSetting {
         product: position.product,
         detection,
@@ -128,14 +135,12 @@ fn solve_zone(
         start: (start.force.len() == skin.sites.len()).then_some(start),
         // What moves besides the product is solved to the end.
         accuracy: match &moved {
-            None => skin.workspace.warm_start.accuracy,
+            None => pressing.workspace.warm_start.accuracy,
             Some(_) => Accuracy::Full,
         },
         spacing: skin.spacing,
     };
-    let solved = solve(skin, zone, &setting, control);
-    skin.workspace.warm_start.last = last;
-    let mut solved = solved?;
+    let mut solved = solve(pressing, zone, &setting, control)?;
     if let Some(moved) = &moved {
         moved.add_to(&mut solved);
     }
@@ -144,7 +149,7 @@ fn solve_zone(
 
 /// The posture displaced by remembered loads and by attraction; None where there are none.
 fn displaced(
-    skin: &mut Skin,
+    pressing: &Pressing<'_>,
     position: &Position<'_>,
     pulls: &[Pull],
     control: &Control,
@@ -152,6 +157,7 @@ fn displaced(
     if position.recall.is_none() && pulls.is_empty() {
         return Ok(None);
     }
+    let skin = pressing.skin;
     let pulled: Vec<u32> = pulls.iter().map(|pull| pull.site).collect();
     if skin.hierarchy.is_none() {
         skin.response.make_rows(&pulled, &skin.sites);
@@ -170,7 +176,7 @@ fn displaced(
         detection: position.detection,
         weight: position.weight,
     };
-    let mut moved = displace(skin, &truth, &loads, control)?;
+    let mut moved = displace(pressing, &truth, &loads, control)?;
     if !pulls.is_empty() {
         moved.detection.deepen(skin);
     }
@@ -185,14 +191,15 @@ fn elastic(skin: &Skin, pull: &Pull, recall: &MemoryStep) -> (u32, Vec3) {
 
 /// Finds attraction and contact together, from the attraction of the step before.
 fn solve_adhesive(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     attraction: &AdhesionLaw,
     position: &Position<'_>,
     control: &Control,
 ) -> Result<(SolvedContact, Adhesion), ContactError> {
-    let mut pulls = skin.workspace.warm_start.pulls.clone();
+    let skin = pressing.skin;
+    let mut pulls = pressing.workspace.warm_start.pulls.clone();
     for solve in 1.. {
-        let solved = solve_zone(skin, position, &pulls, control)?;
+        let solved = solve_zone(pressing, position, &pulls, control)?;
         let mut next = attraction.pulls(skin, (position.product, position.detection), &solved);
         steady(&pulls, &mut next, solve);
         let is_settled = attraction.is_settled(&pulls, &next);
@@ -201,10 +208,10 @@ fn solve_adhesive(
         }
         pulls = next;
         if position.recall.is_none() {
-            skin.workspace.warm_start.last = StartContact {
+            pressing.workspace.warm_start.last = Arc::new(StartContact {
                 travel: Vec::new(),
                 ..solved.to_start(skin.sites.len())
-            };
+            });
         }
     }
     Err(ContactError::Cancelled)

@@ -11,6 +11,7 @@ use crate::press::live::extrapolation::can_reach;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
+use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
 
 /// Change of a load, over the largest, below which a live press defers it: all together move skin by some micrometres.
@@ -21,11 +22,12 @@ const WAITING: f64 = 1e-5;
 /// # Errors
 /// [`ContactError::Cancelled`].
 pub fn field(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     setting: &SolveSetting<'_>,
     found: &ZoneSolution<'_>,
     control: &Control,
 ) -> Result<(Vec<Vec3>, f64), ContactError> {
+    let skin = pressing.skin;
     if skin.model == Model::Paper {
         let field =
             paper_model::displacement(skin, setting, (found.zone, found.force, found.travel));
@@ -46,11 +48,11 @@ pub fn field(
         certificate,
     } = if setting.accuracy == Accuracy::Rough && skin.hierarchy.is_none() {
         FarFieldDisplacement {
-            field: displacement_by_changes(skin, loads),
+            field: displacement_by_changes(pressing, loads),
             certificate: 0.0,
         }
     } else {
-        skin.displacement(loads, control)?
+        pressing.displacement(loads, control)?
     };
     for (site, u) in field.iter_mut().enumerate() {
         *u *= setting.weight[site] * skin.sites.follow[site];
@@ -59,8 +61,9 @@ pub fn field(
 }
 
 /// Field of the loads by update of the last live press's field; small changes of load are deferred.
-fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
-    let mut live_field = std::mem::take(&mut skin.workspace.live_field);
+fn displacement_by_changes(pressing: &mut Pressing<'_>, loads: Vec<Load>) -> Vec<Vec3> {
+    let (skin, workspace) = (pressing.skin, &mut *pressing.workspace);
+    let live_field = &mut workspace.live_field;
     let sites = skin.sites.len();
     if !live_field.matches(sites) {
         live_field.load = vec![Vec3::zeros(); sites];
@@ -83,7 +86,7 @@ fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
             *before = *now;
         }
     }
-    let (ground, rows) = ((&skin.response, &skin.sites), &mut skin.workspace.quantized);
+    let (ground, rows) = ((&*skin.response, &*skin.sites), &mut workspace.quantized);
     rows.make(changes.iter().map(|change| change.site), ground);
     let more = rows.displacements(ground, &changes);
     let sums = live_field
@@ -98,9 +101,7 @@ fn displacement_by_changes(skin: &mut Skin, loads: Vec<Load>) -> Vec<Vec3> {
         // Sums of single precision leave a trace; skin that nothing presses has none.
         live_field.field.fill(Vec3::zeros());
     }
-    let field = live_field.field.clone();
-    skin.workspace.live_field = live_field;
-    field
+    live_field.field.clone()
 }
 
 /// Sets sites in contact, and those that the field would move into the product, to their solved travel along their direction.

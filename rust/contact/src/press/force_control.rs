@@ -1,5 +1,7 @@
 //! Force control: moves the product until the normal force along a direction meets its target.
 
+use std::sync::Arc;
+
 use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 
 use super::at_position::press_at;
@@ -8,6 +10,7 @@ use crate::api::ForceTarget;
 use crate::detection::gaps::limits;
 use crate::skin::prepare::Skin;
 use crate::stage_times::Watch;
+use crate::workspace::Pressing;
 use crate::workspace::warm_start::StartContact;
 use crate::{ContactError, Control};
 
@@ -31,7 +34,7 @@ const MOST_PRESSES: usize = 60;
 /// # Errors
 /// [`ContactError::ForceTarget`], `Direction`, `OutOfReach`, `ForceOutOfReach`, or those of a press.
 pub(crate) fn find_offset(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     (posed, product): (&Mesh, &Product),
     target: ForceTarget,
     watch: Watch<'_, '_>,
@@ -45,12 +48,12 @@ pub(crate) fn find_offset(
         Some(given) => given
             .try_normalize(0.0)
             .filter(|d| d.iter().all(|c| c.is_finite())),
-        None => Some(mean_normal(skin, posed, product)?),
+        None => Some(mean_normal(pressing.skin, posed, product)?),
     };
     let direction = direction.ok_or(ContactError::Direction)?;
-    let start = skin.workspace.warm_start.offset;
+    let start = pressing.workspace.warm_start.offset;
     let mut search = Search {
-        skin,
+        pressing: pressing.reborrow(),
         posed,
         product,
         direction,
@@ -62,7 +65,7 @@ pub(crate) fn find_offset(
         share: 0.0,
     };
     let offset = search.run(start)?;
-    search.skin.workspace.warm_start.slope = search.slope();
+    search.pressing.workspace.warm_start.slope = search.slope();
     match search.last {
         Some((at, pressed)) if at == offset => Ok((Travel { offset, direction }, pressed)),
         _ => {
@@ -116,7 +119,7 @@ enum Guess {
 }
 
 struct Search<'a, 'c> {
-    skin: &'a mut Skin,
+    pressing: Pressing<'a>,
     posed: &'a Mesh,
     product: &'a Product,
     direction: Vec3,
@@ -142,14 +145,14 @@ impl Search<'_, '_> {
             seconds: self.watch.seconds,
         };
         let there = (self.product, shift);
-        let pressed = press_at(self.skin, self.posed, there, watch);
+        let pressed = press_at(&mut self.pressing, self.posed, there, watch);
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.
-        self.skin.workspace.warm_start.last = StartContact {
+        self.pressing.workspace.warm_start.last = Arc::new(StartContact {
             travel: Vec::new(),
-            ..pressed.solved.to_start(self.skin.sites.len())
-        };
+            ..pressed.solved.to_start(self.pressing.skin.sites.len())
+        });
         Ok((pressed.force_along(&self.direction), pressed))
     }
 
@@ -180,7 +183,7 @@ impl Search<'_, '_> {
         let tried = self.probes.windows(2).last();
         let slope = tried.map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0));
         slope
-            .or(self.skin.workspace.warm_start.slope)
+            .or(self.pressing.workspace.warm_start.slope)
             .filter(|s| s.is_finite() && *s > 0.0)
     }
 
@@ -225,7 +228,7 @@ impl Search<'_, '_> {
     }
 
     fn run(&mut self, start: f64) -> Result<f64, ContactError> {
-        let guess = match self.skin.workspace.warm_start.slope {
+        let guess = match self.pressing.workspace.warm_start.slope {
             Some(slope) => self.by_slope(start, slope)?,
             None => Guess::Near(start),
         };

@@ -7,8 +7,8 @@ use super::setting::SolveSetting;
 use super::zone_state::ZoneState;
 use crate::response::assembly::compliance;
 use crate::response::near_field::directional::DirectionalNearField;
-use crate::skin::prepare::Skin;
 use crate::solve::{Accuracy, Axes, Compliance, DirectionalCompliance, Part, solve_contact};
+use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
 
 /// The linear problem of the solved sites: directions, weights, likely contacts, and the stored part of their compliance.
@@ -27,9 +27,9 @@ pub(crate) struct DirectionalProblem {
 
 impl ZoneState {
     /// Directions and outer loads of the compliance; no entry is stored yet.
-    pub(crate) fn directional_problem(&self, skin: &Skin) -> DirectionalProblem {
+    pub(crate) fn directional_problem(&self, pressing: &Pressing<'_>) -> DirectionalProblem {
         let places: Vec<u32> = self.solved().into_iter().map(|k| k as u32).collect();
-        let direction: Vec<Vec3> = match skin.model {
+        let direction: Vec<Vec3> = match pressing.skin.model {
             Model::Layer => places.iter().map(|&k| self.direction[k as usize]).collect(),
             Model::Paper => vec![Vec3::x(); places.len()],
         };
@@ -40,7 +40,7 @@ impl ZoneState {
         let axes = Axes::new(&direction);
         let near = match self.beyond {
             OuterLoads::Nothing => Vec::new(),
-            _ => skin.workspace.near.now().turn(&axes),
+            _ => pressing.workspace.near.now().turn(&axes),
         };
         DirectionalProblem {
             axes,
@@ -48,14 +48,18 @@ impl ZoneState {
             weight: Vec::new(),
             likely: places.iter().map(likely).collect(),
             part: Part::default(),
-            push: self.outer_displacement(skin, (&places, &direction)),
+            push: self.outer_displacement(pressing, (&places, &direction)),
             places,
         }
     }
 
     /// Displacement of the solved places by outer loads: that of the last live press less their own near-field contribution.
-    fn outer_displacement(&self, skin: &Skin, (places, direction): (&[u32], &[Vec3])) -> Vec<f64> {
-        let (live_field, near) = (&skin.workspace.live_field, skin.workspace.near.now());
+    fn outer_displacement(
+        &self,
+        Pressing { skin, workspace }: &Pressing<'_>,
+        (places, direction): (&[u32], &[Vec3]),
+    ) -> Vec<f64> {
+        let (live_field, near) = (&workspace.live_field, workspace.near.now());
         if self.beyond == OuterLoads::Nothing || !live_field.matches(skin.sites.len()) {
             return Vec::new();
         }
@@ -75,17 +79,17 @@ impl ZoneState {
         places.iter().zip(direction).zip(&own).map(push).collect()
     }
 
-    /// Compliance along the directions, seen along the normals: as weights, or written out into the skin's memory.
+    /// Compliance along the directions, seen along the normals: as weights, or written out into the workspace.
     pub(crate) fn matrix(
         &self,
-        skin: &mut Skin,
+        pressing: &mut Pressing<'_>,
         setting: &SolveSetting<'_>,
         problem: &mut DirectionalProblem,
     ) {
         let weight =
             |&k: &u32| setting.weight[self.zone[k as usize] as usize] * self.cosine[k as usize];
         problem.weight = problem.places.iter().map(weight).collect();
-        let workspace = &mut skin.workspace;
+        let (skin, workspace) = (pressing.skin, &mut *pressing.workspace);
         let direction = |&k: &u32| match skin.model {
             Model::Layer => self.direction[k as usize],
             Model::Paper => Vec3::x(),
@@ -108,12 +112,12 @@ impl ZoneState {
     /// Solves the linear problem of the present gaps, under the loads of reused sites.
     pub(crate) fn solve(
         &mut self,
-        skin: &Skin,
+        pressing: &Pressing<'_>,
         problem: &DirectionalProblem,
         how: (Accuracy, &Control),
     ) -> Result<(), ContactError> {
-        let workspace = &skin.workspace;
-        if let Some(matrix) = skin.far_field_compliance() {
+        let workspace = &pressing.workspace;
+        if let Some(matrix) = pressing.far_field_compliance() {
             return self.solve_linear(&matrix, problem, how);
         }
         if self.beyond != OuterLoads::Nothing {

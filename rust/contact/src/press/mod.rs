@@ -26,9 +26,9 @@ use crate::fields::summary::summarize;
 use crate::fields::warnings::Warning;
 use crate::interface::friction;
 use crate::interface::friction_state::FrictionMemory;
-use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
 use crate::stage_times::{Seconds, Watch, add_time};
+use crate::workspace::Pressing;
 use crate::workspace::warm_start::WarmStart;
 use crate::{ContactError, Control};
 use at_position::press_at;
@@ -38,12 +38,12 @@ use pressed::Travel;
 /// Share of a force target that may be missed without a word.
 const FORCE_MISS: f64 = 1e-3;
 
-impl Skin {
+impl Pressing<'_> {
     /// Presses the prepared skin, in rest or posed, against a product.
     ///
     /// # Errors
     /// [`ContactError`]: a posture that does not fit the skin, skin swallowed by the product, a force that is out of reach,
-    /// or `Cancelled`. The prepared skin stays usable after any of them.
+    /// or `Cancelled`. The workspace stays usable after any of them.
     pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
         if press.start == Start::Fresh {
             self.workspace.warm_start = WarmStart::default();
@@ -54,7 +54,8 @@ impl Skin {
             Start::Fresh | Start::Warm => Accuracy::Full,
         };
         let mut seconds = Seconds::new();
-        let posed = self.posed(press.posed)?;
+        let skin = self.skin;
+        let posed = skin.posed(press.posed)?;
         let watch = Watch {
             control,
             seconds: &mut seconds,
@@ -73,7 +74,7 @@ impl Skin {
             Some(target) => find_offset(self, (&posed, press.product), target, watch)?,
         };
         if press.unsolved == Unsolved::Refuse
-            && let Some(refusal) = pressed.solved.refusal(self)
+            && let Some(refusal) = pressed.solved.refusal(skin)
         {
             // What is known of it starts no other press.
             self.workspace.warm_start = WarmStart::default();
@@ -83,13 +84,13 @@ impl Skin {
             let started = Instant::now();
             let from_rest = (drag, &FrictionMemory::default());
             friction::drag(self, &mut pressed, from_rest, control)?;
-            friction::move_skin(self, press.product, &mut pressed);
+            friction::move_skin(skin, press.product, &mut pressed);
             add_time(&mut seconds, "friction", started);
         }
         control.step("fields", 0.0)?;
         let started = Instant::now();
-        let mut contact = summarize(self, (&posed, press.product), &pressed, travel);
-        move_out_of_product(self, press, travel.shift(), &mut contact);
+        let mut contact = summarize(skin, (&posed, press.product), &pressed, travel);
+        move_out_of_product(skin, press, travel.shift(), &mut contact);
         add_time(&mut seconds, "fields", started);
         if let Some(target) = press.force {
             let reached = pressed.force_along(&contact.direction);

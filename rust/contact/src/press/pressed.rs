@@ -1,5 +1,7 @@
 //! A press solved at one position: gaps, contact, moduli, and what memory, adhesion and friction add.
 
+use std::sync::Arc;
+
 use thenar_surface::Vec3;
 
 use super::solution::SolvedContact;
@@ -7,7 +9,7 @@ use crate::detection::gaps::Detection;
 use crate::history::tissue_memory::MemoryStep;
 use crate::interface::friction_state::ShearState;
 use crate::interface::pulls::Adhesion;
-use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 
 /// Travel of the product.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,10 +65,10 @@ impl Pressed {
         pushed + self.adhesion.force()
     }
 
-    /// Keeps it as what the next press of this skin starts from, the product having travelled `offset` (mm).
-    pub fn start_next(&self, skin: &mut Skin, offset: f64) {
-        let warm_start = &mut skin.workspace.warm_start;
-        warm_start.last = self.solved.to_start(skin.sites.len());
+    /// Keeps it as what the next press in this workspace starts from, the product having travelled `offset` (mm).
+    pub fn start_next(&self, pressing: &mut Pressing<'_>, offset: f64) {
+        let warm_start = &mut pressing.workspace.warm_start;
+        warm_start.last = Arc::new(self.solved.to_start(pressing.skin.sites.len()));
         warm_start.offset = offset;
         warm_start.pulls.clone_from(&self.adhesion.pulls);
     }

@@ -9,8 +9,8 @@ use super::live::reused_sites::{keep_solution, reused_sites, strays};
 use super::setting::SolveSetting;
 use super::solution::SolvedContact;
 use super::zone_state::ZoneState;
-use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
+use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
 
 /// Largest distance between written contact and product that ends the loop, mm.
@@ -37,12 +37,13 @@ const MOST_ROUNDS: usize = 4;
 /// # Errors
 /// [`ContactError::Cancelled`].
 pub fn solve(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     zone: Vec<u32>,
     setting: &SolveSetting<'_>,
     control: &Control,
 ) -> Result<SolvedContact, ContactError> {
-    let mut state = ZoneState::new(extrapolation::extrapolated_zone(skin, setting, zone));
+    let skin = pressing.skin;
+    let mut state = ZoneState::new(extrapolation::extrapolated_zone(pressing, setting, zone));
     let deepest = setting.detection.deepest();
     let tolerance = match setting.accuracy {
         Accuracy::Full => OUTER_TOLERANCE.min(OUTER_SHARE * deepest),
@@ -50,28 +51,28 @@ pub fn solve(
     };
     let mut strayed = Vec::new();
     for round in 1.. {
-        skin.workspace.near.turn_to(round);
+        pressing.workspace.near.turn_to(round);
         let again = (round > 1).then_some(&strayed[..]);
-        state.is_reused = reused_sites(skin, setting, &state.zone, again);
-        state.beyond = extrapolation::beyond(skin, setting, round);
+        state.is_reused = reused_sites(pressing, setting, &state.zone, again);
+        state.beyond = extrapolation::beyond(pressing, setting, round);
         match state.beyond {
-            OuterLoads::Nothing => skin.couple(&state.solved_sites(), control)?,
-            _ => extrapolation::couple(skin, (&state.zone, &state.solved_sites()), control)?,
+            OuterLoads::Nothing => pressing.couple(&state.solved_sites(), control)?,
+            _ => extrapolation::couple(pressing, (&state.zone, &state.solved_sites()), control)?,
         }
-        skin.workspace.problem.zone.clone_from(&state.zone);
-        state.open(skin, setting);
-        state.passes(skin, setting, (tolerance, control))?;
+        pressing.workspace.problem.zone.clone_from(&state.zone);
+        state.open(pressing, setting);
+        state.passes(pressing, setting, (tolerance, control))?;
         if round == 1 {
-            skin.workspace.live_field.begin();
+            pressing.workspace.live_field.begin();
         }
-        let (mut field, far_field) = field(skin, setting, &state.found(), control)?;
+        let (mut field, far_field) = field(pressing, setting, &state.found(), control)?;
         let (stray, far) = match state.beyond {
             OuterLoads::Nothing => (0.0, Vec::new()),
             _ => strays(&state.found(), &field, deepest),
         };
         keep_out_of_product(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
-        keep_solution(skin, setting, &state.found());
+        keep_solution(pressing, setting, &state.found());
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let written = Written {
@@ -136,22 +137,23 @@ impl ZoneState {
     /// Re-linearizes until the zone fits the product: roughly at first, to the end once it does.
     fn passes(
         &mut self,
-        skin: &mut Skin,
+        pressing: &mut Pressing<'_>,
         setting: &SolveSetting<'_>,
         (tolerance, control): (f64, &Control),
     ) -> Result<(), ContactError> {
-        let mut problem = self.directional_problem(skin);
-        self.matrix(skin, setting, &mut problem);
+        let skin = pressing.skin;
+        let mut problem = self.directional_problem(pressing);
+        self.matrix(pressing, setting, &mut problem);
         let (mut best, mut is_along_walls) = (Best::default(), false);
         for pass in 0..MOST_PASSES {
             control.step("solving", pass as f64 / MOST_PASSES as f64)?;
             self.convergence.passes = pass + 1;
             let before: Vec<(f64, f64)> = self.measured().collect();
-            self.solve(skin, &problem, (Accuracy::Rough, control))?;
+            self.solve(pressing, &problem, (Accuracy::Rough, control))?;
             self.place(skin, setting);
             if skin.model == Model::Layer && self.turn_strayed(skin, setting) {
-                problem = self.directional_problem(skin);
-                self.matrix(skin, setting, &mut problem);
+                problem = self.directional_problem(pressing);
+                self.matrix(pressing, setting, &mut problem);
                 best = Best::default();
                 continue;
             }
@@ -159,7 +161,7 @@ impl ZoneState {
             let is_stuck = best.is_stuck() && is_along_walls;
             let is_last = self.misfit <= tolerance || pass + 1 == MOST_PASSES || is_stuck;
             if is_last && setting.accuracy != Accuracy::Rough {
-                self.solve(skin, &problem, (setting.accuracy, control))?;
+                self.solve(pressing, &problem, (setting.accuracy, control))?;
                 self.place(skin, setting);
             }
             if self.misfit <= tolerance || is_stuck {
@@ -167,8 +169,8 @@ impl ZoneState {
             }
             if pass == 0 && skin.model == Model::Layer {
                 // From now on the normals where the skin lies; then held, so that facets cannot make them flicker.
-                self.update_cosines(skin);
-                self.matrix(skin, setting, &mut problem);
+                self.update_cosines(pressing);
+                self.matrix(pressing, setting, &mut problem);
             }
             if pass >= PLAIN_PASSES || !has_improved {
                 self.take_secants(&before, tolerance);
@@ -176,12 +178,12 @@ impl ZoneState {
                     is_along_walls = true;
                     // What does not fit along the averaged direction yields along the normal of its own wall.
                     self.yield_along_walls(skin, setting, tolerance);
-                    problem = self.directional_problem(skin);
+                    problem = self.directional_problem(pressing);
                     best = Best::default();
                 } else if !has_improved {
                     self.step_back(skin, setting, (&best.travel, &best.misfits));
                 }
-                self.matrix(skin, setting, &mut problem);
+                self.matrix(pressing, setting, &mut problem);
             }
         }
         Ok(())

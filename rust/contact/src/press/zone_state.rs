@@ -11,6 +11,7 @@ use crate::detection::press_direction::{LEAST_COSINE, Neighborhood, Sums, press_
 use crate::fields::result::Convergence;
 use crate::press::live::extrapolation::OuterLoads;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::workspace::live_cache::ReusedSite;
 
 /// Way in which a product's distance grows evenly, mm: over an edge of it the distance is then off by twice that at most (tests
@@ -70,7 +71,8 @@ impl ZoneState {
     }
 
     /// Takes gaps, normals and directions of the undeformed posture.
-    pub(crate) fn open(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
+    pub(crate) fn open(&mut self, pressing: &Pressing<'_>, setting: &SolveSetting<'_>) {
+        let skin = pressing.skin;
         let gap_of =
             |&site: &u32| setting.detection.gaps[skin.sites.vertex[site as usize] as usize];
         self.touch = self.zone.iter().filter_map(gap_of).collect();
@@ -80,7 +82,7 @@ impl ZoneState {
         self.sums = vec![Sums::default(); self.zone.len()];
         self.direction = match skin.model {
             Model::Paper => normal,
-            Model::Layer => self.averaged_directions(skin, setting, &normal),
+            Model::Layer => self.averaged_directions(pressing, setting, &normal),
         };
         self.travel = vec![0.0; self.zone.len()];
         let travel = setting.start.map_or(&[][..], |last| &last.travel);
@@ -89,16 +91,16 @@ impl ZoneState {
             self.travel = self.zone.iter().map(|&s| travel[s as usize]).collect();
         }
         if self.beyond == OuterLoads::Trend {
-            self.carry_travel_on(skin, setting);
+            self.carry_travel_on(pressing, setting);
         }
-        self.take_reused(skin);
+        self.take_reused(pressing);
         self.placed = vec![f64::NAN; self.zone.len()];
         if !travel.is_empty() && skin.model == Model::Layer {
             self.place(skin, setting);
         }
-        self.update_cosines(skin);
+        self.update_cosines(pressing);
         self.slack = self.reused_or(
-            skin,
+            pressing,
             |reused_site| reused_site.slack,
             vec![0.0; self.zone.len()],
         );
@@ -113,30 +115,37 @@ impl ZoneState {
         };
         let mut force = std::mem::take(&mut self.force);
         if self.beyond == OuterLoads::Trend {
-            self.carry_forces_on(skin, setting, &mut force);
+            self.carry_forces_on(pressing, setting, &mut force);
         }
-        self.force = self.reused_or(skin, |reused_site| reused_site.force, force);
+        self.force = self.reused_or(pressing, |reused_site| reused_site.force, force);
     }
 
     /// Extrapolates travels from the last live press: motion usually continues.
-    fn carry_travel_on(&mut self, skin: &Skin, setting: &SolveSetting<'_>) {
+    fn carry_travel_on(&mut self, pressing: &Pressing<'_>, setting: &SolveSetting<'_>) {
         for (k, &site) in self.zone.iter().enumerate() {
             // What joins the zone lay where the field carried it.
-            self.travel[k] = match skin.workspace.live_contact.of(site) {
+            self.travel[k] = match pressing.workspace.live_contact.of(site) {
                 Some(_) => {
                     self.travel[k]
-                        + extrapolation::extrapolated_change(skin, setting, site)
+                        + extrapolation::extrapolated_change(pressing, setting, site)
                             .dot(&self.direction[k])
                 }
-                None => extrapolation::extrapolated(skin, setting, site).dot(&self.direction[k]),
+                None => {
+                    extrapolation::extrapolated(pressing, setting, site).dot(&self.direction[k])
+                }
             };
         }
     }
 
     /// The same of forces.
-    fn carry_forces_on(&self, skin: &Skin, setting: &SolveSetting<'_>, force: &mut [f64]) {
-        let live_field = &skin.workspace.live_field;
-        if !live_field.matches(skin.sites.len()) {
+    fn carry_forces_on(
+        &self,
+        pressing: &Pressing<'_>,
+        setting: &SolveSetting<'_>,
+        force: &mut [f64],
+    ) {
+        let live_field = &pressing.workspace.live_field;
+        if !live_field.matches(pressing.skin.sites.len()) {
             return;
         }
         for (k, (force, &site)) in force.iter_mut().zip(&self.zone).enumerate() {
@@ -149,28 +158,28 @@ impl ZoneState {
     }
 
     /// What a place holds on to.
-    fn reused_site<'a>(&self, skin: &'a Skin, k: usize) -> Option<&'a ReusedSite> {
+    fn reused_site<'a>(&self, pressing: &'a Pressing<'_>, k: usize) -> Option<&'a ReusedSite> {
         let is_held = self.is_reused.get(k) == Some(&true);
-        is_held.then(|| skin.workspace.live_contact.of(self.zone[k]))?
+        is_held.then(|| pressing.workspace.live_contact.of(self.zone[k]))?
     }
 
     /// `values` by place in the zone, with reused sites' own values filled in.
     fn reused_or(
         &self,
-        skin: &Skin,
+        pressing: &Pressing<'_>,
         value: impl Fn(&ReusedSite) -> f64,
         mut values: Vec<f64>,
     ) -> Vec<f64> {
         for (k, own) in values.iter_mut().enumerate() {
-            *own = self.reused_site(skin, k).map_or(*own, &value);
+            *own = self.reused_site(pressing, k).map_or(*own, &value);
         }
         values
     }
 
     /// Takes over the solution of reused sites, before the other sites are measured.
-    fn take_reused(&mut self, skin: &Skin) {
+    fn take_reused(&mut self, pressing: &Pressing<'_>) {
         for k in 0..self.is_reused.len() {
-            if let Some(reused_site) = self.reused_site(skin, k) {
+            if let Some(reused_site) = self.reused_site(pressing, k) {
                 (self.touch[k], self.direction[k]) = (reused_site.touch, reused_site.direction);
                 self.travel[k] = reused_site.travel;
             }
@@ -192,10 +201,11 @@ impl ZoneState {
     /// Averages over the penetrating sites, whatever else the zone holds: the result must not depend on its history.
     fn averaged_directions(
         &mut self,
-        skin: &Skin,
+        pressing: &Pressing<'_>,
         setting: &SolveSetting<'_>,
         normal: &[Vec3],
     ) -> Vec<Vec3> {
+        let skin = pressing.skin;
         let inside: Vec<usize> = (0..self.zone.len())
             .filter(|&k| self.touch[k].distance < 0.0)
             .collect();
@@ -203,7 +213,7 @@ impl ZoneState {
         let normals: Vec<Vec3> = inside.iter().map(|&k| normal[k]).collect();
         let gaps: Vec<f64> = inside.iter().map(|&k| self.touch[k].distance).collect();
         let sums = |&k: &usize| {
-            self.reused_site(skin, k)
+            self.reused_site(pressing, k)
                 .map(|reused_site| reused_site.sums)
         };
         let known: Vec<Option<Sums>> = inside.iter().map(sums).collect();
@@ -221,11 +231,11 @@ impl ZoneState {
     }
 
     /// Takes the cosines between directions and the product's normals as they are now.
-    pub(crate) fn update_cosines(&mut self, skin: &Skin) {
+    pub(crate) fn update_cosines(&mut self, pressing: &Pressing<'_>) {
         let cosine = |(touch, direction): (&Gap, &Vec3)| touch.normal.dot(direction);
         let cosines = self.touch.iter().zip(&self.direction).map(cosine);
         let cosines = cosines.map(|c| c.max(LEAST_COSINE)).collect();
-        self.cosine = self.reused_or(skin, |reused_site| reused_site.cosine, cosines);
+        self.cosine = self.reused_or(pressing, |reused_site| reused_site.cosine, cosines);
     }
 
     /// Measures the displaced zone against the product; in a live press, what hardly travelled since it was measured is only

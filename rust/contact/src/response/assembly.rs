@@ -29,7 +29,7 @@ pub fn coupling((response, sites): (&Response, &Sites), zone: &[u32], matrix: &m
             own_offset(response, patch(&home[0])),
         );
         for &site in home {
-            let row = response.row(site);
+            let row = response.row(site, sites);
             let taken = take(row, &pieces, &mut values);
             let diagonal = f64::from(row[(own + site - first) as usize]);
             matrix.push(runs.iter().copied(), taken.iter().copied(), diagonal);
@@ -191,7 +191,7 @@ fn block_field(
                 ..sites.patch_range[last.0 as usize].1 as usize - begin;
             let row = first.1 as usize..first.1 as usize + there.len();
             let field = field.each_mut().map(|axis| &mut axis[there.clone()]);
-            add_loads(field, loads, |site| &response.row(site)[row.clone()]);
+            add_loads(field, loads, |site| &response.row(site, sites)[row.clone()]);
         }
     }
     let [x, y, z] = field;

@@ -32,7 +32,7 @@ pub struct QuantizedRows {
 }
 
 impl QuantizedRows {
-    /// Makes the rows of `wanted` that are missing, of those of the response, which are made.
+    /// Makes the rows of `wanted` that are missing, of those of the response.
     pub fn make(
         &mut self,
         wanted: impl Iterator<Item = u32>,
@@ -44,7 +44,7 @@ impl QuantizedRows {
             if row.entries.is_empty() {
                 let patch = sites.patch[site as usize];
                 let own = own_offset(response, patch) + site - sites.patch_range[patch as usize].0;
-                *row = Row::new(response.row(site), own as usize);
+                *row = Row::new(response.row(site, sites), own as usize);
             }
         }
     }
@@ -192,8 +192,8 @@ mod tests {
 
     #[test]
     fn fields_are_those_of_the_rows_but_for_the_rounding_of_entries() {
-        let (skin, pressed) = sheet();
-        let ground = (&skin.response, &skin.sites);
+        let (skin, _, pressed) = sheet();
+        let ground = (&*skin.response, &*skin.sites);
         let mut rows = QuantizedRows::default();
         rows.make(pressed.iter().copied(), ground);
         let load = |&site: &u32| {

@@ -3,6 +3,8 @@
 //! A row holds `K(r_ij)` (1/mm), so that `u_i = s_i s_j K_ij P_j` with `s = sqrt((1 - nu) / (2 pi G))`. It depends on the rest
 //! mesh and on thicknesses alone. The operator is symmetric: both members of a pair are computed by the same operations.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 use thenar_surface::SkinDistance;
 
@@ -25,7 +27,9 @@ const EXACT_LAYERS: usize = 4;
 /// Ratio of neighboring thicknesses where they are interpolated.
 const LADDER_RATIO: f64 = 1.3;
 
-/// Rows of the response that were needed so far.
+/// The response of a skin, and its rows that were needed so far.
+///
+/// Several presses may need rows at once: each row is made by the first that needs it, and is the same whoever makes it.
 #[derive(Debug, Clone)]
 pub struct Response {
     model: Model,
@@ -41,7 +45,7 @@ pub struct Response {
     pub(super) at_least: Vec<Vec<f64>>,
     pub(super) cuts: Vec<Cut>,
     pub(super) stiff: Option<StiffSkin>,
-    rows: Vec<Option<Box<[f32]>>>,
+    rows: Vec<OnceLock<Box<[f32]>>>,
 }
 
 impl Response {
@@ -84,7 +88,7 @@ impl Response {
             at_least,
             cuts: geometry.cuts.clone(),
             stiff,
-            rows: vec![None; sites.len()],
+            rows: vec![OnceLock::new(); sites.len()],
         }
     }
 
@@ -119,26 +123,18 @@ impl Response {
         self.near[patch as usize].last().map_or(0, end)
     }
 
-    /// Makes the rows of `wanted` that are missing.
-    pub fn make_rows(&mut self, wanted: &[u32], sites: &Sites) {
-        let is_missing = |j: &u32| self.rows[*j as usize].is_none();
+    /// Makes the rows of `wanted` that are missing, several at once.
+    pub fn make_rows(&self, wanted: &[u32], sites: &Sites) {
+        let is_missing = |j: &u32| self.rows[*j as usize].get().is_none();
         let missing: Vec<u32> = wanted.iter().copied().filter(is_missing).collect();
-        if missing.is_empty() {
-            return;
-        }
-        let made: Vec<Box<[f32]>> = missing
-            .par_iter()
-            .with_min_len(8)
-            .map(|&j| self.row_of(j as usize, sites))
-            .collect();
-        for (j, row) in missing.into_iter().zip(made) {
-            self.rows[j as usize] = Some(row);
-        }
+        missing.par_iter().with_min_len(8).for_each(|&j| {
+            self.row(j, sites);
+        });
     }
 
-    /// Row `j`, laid out as [`Response::near`] says; empty if it was not made.
-    pub fn row(&self, j: u32) -> &[f32] {
-        self.rows[j as usize].as_deref().unwrap_or(&[])
+    /// Row `j`, laid out as [`Response::near`] says; made here if it was not.
+    pub fn row(&self, j: u32, sites: &Sites) -> &[f32] {
+        self.rows[j as usize].get_or_init(|| self.row_of(j as usize, sites))
     }
 
     fn row_of(&self, j: usize, sites: &Sites) -> Box<[f32]> {

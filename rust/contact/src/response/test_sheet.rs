@@ -1,12 +1,13 @@
-//! Test fixture: a bent sheet of skin with its response rows.
+//! Test fixture: a bent sheet of skin with its quantized response rows.
 
 use super::near_field::NearField;
+use super::quantized_rows::QuantizedRows;
 use crate::skin::prepare::Skin;
-use crate::{Control, Material, Model, SkinInput};
+use crate::{Control, Material, Model, SkinInput, Workspace};
 use thenar_surface::{Mesh, Vec3};
 
-/// The sheet, of 28 by 28 vertices, and a zone of two thirds of its sites.
-pub fn sheet() -> (Skin, Vec<u32>) {
+/// The sheet, of 28 by 28 vertices, a workspace, and a zone of two thirds of its sites, which has its rows.
+pub fn sheet() -> (Skin, Workspace, Vec<u32>) {
     let side = 28;
     let place = |k: u32| {
         let (x, y) = (1.3 * f64::from(k % side), 1.4 * f64::from(k / side));
@@ -25,24 +26,20 @@ pub fn sheet() -> (Skin, Vec<u32>) {
         model: Model::Layer,
     };
     let control = Control::none();
-    let mut skin = Skin::prepare(input, &control).unwrap();
+    let skin = Skin::prepare(input, &control).unwrap();
     let zone = (0..skin.sites.len() as u32).filter(|site| site % 3 != 1);
     let zone: Vec<u32> = zone.collect();
-    skin.make_rows(&zone, &control).unwrap();
-    let ground = (&skin.response, &skin.sites);
-    skin.workspace.quantized.make(zone.iter().copied(), ground);
-    (skin, zone)
+    let (ground, mut workspace) = ((&*skin.response, &*skin.sites), Workspace::default());
+    let pressing = workspace.on(&skin);
+    let rows = &mut pressing.workspace.quantized;
+    rows.make(zone.iter().copied(), ground);
+    (skin, workspace, zone)
 }
 
 /// The coupling of a zone within a range, mm.
-pub fn near(skin: &Skin, zone: &[u32], range: f64) -> NearField {
+pub fn near((skin, rows): (&Skin, &QuantizedRows), zone: &[u32], range: f64) -> NearField {
     let mut near = NearField::default();
-    near.update(
-        (zone, zone),
-        &skin.workspace.quantized,
-        (&skin.response, &skin.sites),
-        range,
-    );
+    near.update((zone, zone), rows, (&skin.response, &skin.sites), range);
     near
 }
 

@@ -1,4 +1,6 @@
-//! The prepared skin: built once from a rest mesh, regions and materials; effects and materials may be changed.
+//! The prepared skin: built once from a rest mesh, regions and materials; never changed. Other effects or materials make another.
+
+use std::sync::{Arc, OnceLock};
 
 use thenar_surface::{Adjacency, Mesh, SkinDistance, Vec3, median_edge_length, vertex_areas};
 
@@ -6,16 +8,23 @@ use super::merged_vertices::MergedMesh;
 use super::sites::Sites;
 use super::tissue::{Place, Tissue};
 use crate::far_field::hierarchy::{Hierarchy, SkinResponse};
-use crate::history::tissue_memory::TissueMemory;
+use crate::interface::shear_kernel::ShearTables;
 use crate::response::kernel_grid::RANGE_IN_THICKNESSES;
-use crate::response::rows::Response;
-use crate::workspace::Workspace;
+use crate::response::rows::{Response, extent};
 use crate::{ActiveEffect, ContactError, Control, Material, Model, SkinInput};
 
 /// Spacing below which the paper's r0 makes its matrix indefinite, mm.
 pub(crate) const PAPER_SPACING: f64 = 0.8;
 
-/// A prepared skin. Presses reuse its compliance rows; results depend on input alone unless a warm start is asked for.
+/// A prepared skin: what presses only read. What they write is in a [`Workspace`](crate::Workspace).
+///
+/// Any number of threads may press one skin at once, each with a workspace of its own, and get the bits that each gets alone.
+/// Rows of the response are made when first needed, once for all of them.
+///
+/// Effects and materials are part of a skin. [`Skin::with_effects`] and [`Skin::with_materials`] make another one that shares
+/// the prepared geometry with this one, and the response with its rows where the change leaves it as it is. They do not travel
+/// with a press: they are composed and checked once, not in every press, and many workspaces can be on one response.
+/// Copies share all of it.
 #[derive(Debug, Clone)]
 pub struct Skin {
     pub(crate) model: Model,
@@ -24,23 +33,22 @@ pub struct Skin {
     effects: Vec<ActiveEffect>,
     /// What the effects make of the materials and the response.
     pub(crate) tissue: Tissue,
-    pub(crate) regions: Vec<i32>,
-    region_names: Vec<String>,
-    pub(crate) merged: MergedMesh,
-    pub(crate) adjacency: Adjacency,
-    pub(crate) metric: SkinDistance,
+    pub(crate) regions: Arc<[i32]>,
+    region_names: Arc<[String]>,
+    pub(crate) merged: Arc<MergedMesh>,
+    pub(crate) adjacency: Arc<Adjacency>,
+    pub(crate) metric: Arc<SkinDistance>,
     /// Range of the metric, mm.
     range: f64,
-    pub(crate) sites: Sites,
-    pub(crate) rest_area: Vec<f64>,
+    pub(crate) sites: Arc<Sites>,
+    pub(crate) rest_area: Arc<[f64]>,
     /// Median edge, mm.
     pub(crate) spacing: f64,
-    pub(crate) response: Response,
+    pub(crate) response: Arc<Response>,
     /// The hierarchy of a large skin, in place of response rows.
-    pub(crate) hierarchy: Option<Hierarchy>,
-    pub(crate) workspace: Workspace,
-    /// Memory of the tissue, while a protocol is followed.
-    pub(crate) history: Option<TissueMemory>,
+    pub(crate) hierarchy: Option<Arc<Hierarchy>>,
+    /// Kernels of shear of that response, once friction has needed them.
+    shear: Arc<OnceLock<ShearTables>>,
     warnings: Vec<String>,
 }
 
@@ -111,25 +119,23 @@ impl Skin {
         let hierarchy = Hierarchy::new(model, ground);
         control.step("preparing", 1.0)?;
         let rest_area = vertex_areas(&welded.mesh);
-        let workspace = Workspace::default();
         Ok(Skin {
             model,
             base: materials,
             effects: Vec::new(),
             tissue,
             range,
-            regions,
-            region_names,
-            merged: welded,
-            adjacency,
-            metric,
-            sites,
-            rest_area,
+            regions: regions.into(),
+            region_names: region_names.into(),
+            merged: Arc::new(welded),
+            adjacency: Arc::new(adjacency),
+            metric: Arc::new(metric),
+            sites: Arc::new(sites),
+            rest_area: rest_area.into(),
             spacing,
-            response,
-            hierarchy,
-            workspace,
-            history: None,
+            response: Arc::new(response),
+            hierarchy: hierarchy.map(Arc::new),
+            shear: Arc::default(),
             warnings,
         })
     }
@@ -139,9 +145,10 @@ impl Skin {
         &self.warnings
     }
 
-    /// Adds a sentence that every result repeats, such as what a caller assumed where nothing was given.
-    pub fn note(&mut self, sentence: String) {
+    /// The same skin with a sentence that every result repeats, such as what a caller assumed where nothing was given.
+    pub fn with_note(mut self, sentence: String) -> Skin {
         self.warnings.push(sentence);
+        self
     }
 
     /// What sentences call a region: "region 3", or "region 'index fingertip'" where it has a name.
@@ -164,26 +171,21 @@ impl Skin {
         &self.base
     }
 
-    /// Changes the materials, in place of those before. The response is prepared again only where they change it.
+    /// The skin with these materials in place of its own. The response is prepared again only where they change it.
     ///
     /// # Errors
-    /// [`ContactError::Material`] naming the region and the number, or `Cancelled`; the skin then stays as it was.
-    pub fn set_materials(
-        &mut self,
+    /// [`ContactError::Material`] naming the region and the number, or `Cancelled`.
+    pub fn with_materials(
+        &self,
         materials: &[Material],
         control: &Control,
-    ) -> Result<(), ContactError> {
+    ) -> Result<Skin, ContactError> {
         check_regions(
             &self.regions,
             (materials, &self.region_names),
             self.vertices(),
         )?;
-        let before = std::mem::replace(&mut self.base, materials.to_vec());
-        let changed = self.set_effects(self.effects.clone(), control);
-        if changed.is_err() {
-            self.base = before;
-        }
-        changed
+        self.derived(materials.to_vec(), self.effects.clone(), control)
     }
 
     /// The effects switched on.
@@ -205,38 +207,60 @@ impl Skin {
         self.merged.merged_of.iter().map(at).collect()
     }
 
-    /// Switches effects on, in place of those before. The response is prepared again only where they change it.
+    /// The skin with these effects in place of its own. The response is prepared again only where they change it.
     ///
     /// # Errors
-    /// [`ContactError::Effect`] naming the effect, the number and what is admissible, or `Cancelled`; the skin then stays
-    /// as it was.
-    pub fn set_effects(
-        &mut self,
+    /// [`ContactError::Effect`] naming the effect, the number and what is admissible, or `Cancelled`.
+    pub fn with_effects(
+        &self,
         effects: Vec<ActiveEffect>,
         control: &Control,
-    ) -> Result<(), ContactError> {
+    ) -> Result<Skin, ContactError> {
+        self.derived(self.base.clone(), effects, control)
+    }
+
+    /// True if it has the response of another one, with all that was made of it.
+    pub fn shares_response(&self, other: &Skin) -> bool {
+        Arc::ptr_eq(&self.response, &other.response)
+    }
+
+    fn derived(
+        &self,
+        base: Vec<Material>,
+        effects: Vec<ActiveEffect>,
+        control: &Control,
+    ) -> Result<Skin, ContactError> {
         for effect in &effects {
-            effect.validate(self.model, (self.base.len(), self.vertices()))?;
+            effect.validate(self.model, (base.len(), self.vertices()))?;
         }
         let place = Place {
             sites: &self.sites,
             metric: &self.metric,
             source: &self.merged.source,
         };
-        let tissue = Tissue::new(&self.base, &effects, &place)?;
+        let tissue = Tissue::new(&base, &effects, &place)?;
+        let mut skin = self.clone();
         if tissue.geometry != self.tissue.geometry {
             control.step("preparing", 0.0)?;
             let range = range(self.model, tissue.thickest());
             if range > self.range {
-                self.metric = SkinDistance::new(&self.merged.mesh, &self.adjacency, range);
-                self.range = range;
+                let metric = SkinDistance::new(&self.merged.mesh, &self.adjacency, range);
+                (skin.metric, skin.range) = (Arc::new(metric), range);
             }
-            self.response = Response::new(self.model, &tissue.geometry, &self.sites, &self.metric);
-            self.hierarchy = Hierarchy::new(self.model, self.ground());
-            self.workspace = Workspace::default();
+            let response = Response::new(self.model, &tissue.geometry, &self.sites, &skin.metric);
+            skin.response = Arc::new(response);
+            skin.hierarchy = Hierarchy::new(self.model, skin.ground()).map(Arc::new);
+            skin.shear = Arc::default();
         }
-        (self.tissue, self.effects) = (tissue, effects);
-        control.step("preparing", 1.0)
+        (skin.base, skin.effects, skin.tissue) = (base, effects, tissue);
+        control.step("preparing", 1.0)?;
+        Ok(skin)
+    }
+
+    /// Kernels of shear of its response.
+    pub(crate) fn shear_tables(&self) -> &ShearTables {
+        let tables = || ShearTables::new(self.response.layers(), extent(&self.sites));
+        self.shear.get_or_init(tables)
     }
 
     pub(crate) fn ground(&self) -> SkinResponse<'_> {

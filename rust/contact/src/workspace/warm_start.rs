@@ -1,21 +1,23 @@
 //! Warm-start state: forces and travels of the last solve, offset and slope of the last force search.
 
+use std::sync::Arc;
+
 use crate::interface::pulls::Pull;
 use crate::solve::Accuracy;
 
-/// State of the last solve that the next one starts from; a protocol keeps its own.
+/// State of the last solve that the next one starts from; a protocol keeps its own. Copies share what is large.
 #[derive(Debug, Clone, Default)]
 pub struct WarmStart {
     /// Forces and travels of the last solve.
-    pub last: StartContact,
+    pub(crate) last: Arc<StartContact>,
     /// Travel found by force control, mm.
-    pub offset: f64,
+    pub(crate) offset: f64,
     /// Slope of the force search at that travel, in its own measure of force per mm.
-    pub slope: Option<f64>,
+    pub(crate) slope: Option<f64>,
     /// Attraction of the last row of a protocol.
-    pub pulls: Vec<Pull>,
+    pub(crate) pulls: Vec<Pull>,
     /// Accuracy of the solves that start here.
-    pub accuracy: Accuracy,
+    pub(crate) accuracy: Accuracy,
 }
 
 /// A solved contact by site, for the next solve to start from; empty for none.

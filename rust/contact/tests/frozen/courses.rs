@@ -2,12 +2,11 @@
 
 use thenar_contact::effects::CATALOGUE;
 use thenar_contact::{
-    ActiveEffect, Control, Course, Demand, Keep, Model, Motion, Protocol, Row, Run, Skin, Stand,
-    Walk,
+    ActiveEffect, Control, Course, Demand, Keep, Model, Motion, Protocol, Row, Run, Stand, Walk,
 };
 use thenar_surface::{Product, Vec3};
 
-use crate::scenes::{flat_skin, lattice, material};
+use crate::scenes::{Bench, flat_skin, lattice, material};
 use crate::shapes::{bowl, halves, named, stiffening, switch_on};
 use crate::{Case, case};
 
@@ -84,7 +83,7 @@ fn followed(effects: Vec<ActiveEffect>, keep: Keep) -> Course {
     run(&mut skin, (&tool, &protocol), keep)
 }
 
-fn run(skin: &mut Skin, (product, protocol): (&Product, &Protocol), keep: Keep) -> Course {
+fn run(skin: &mut Bench, (product, protocol): (&Product, &Protocol), keep: Keep) -> Course {
     let run = Run {
         product,
         posed: None,

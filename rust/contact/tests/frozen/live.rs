@@ -1,11 +1,11 @@
 //! Presses in a row: warm starts, and Live while a part of the skin, all of it, or the product moves.
 
 use nalgebra::Rotation3;
-use thenar_contact::{Drag, ForceTarget, Model, Press, Skin, Start};
+use thenar_contact::{Drag, ForceTarget, Model, Press, Start};
 use thenar_surface::Vec3;
 
 use crate::presses::{of, pressed};
-use crate::scenes::{flat_skin, lattice, material, press_posed};
+use crate::scenes::{Bench, flat_skin, lattice, material, press_posed};
 use crate::shapes::{bowl, dome, halves, named, plain, stiffening, switch_on};
 use crate::{Bits, Case, case};
 
@@ -87,7 +87,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// 18 mm of skin in two regions.
-fn skin(effects: &[&str]) -> Skin {
+fn skin(effects: &[&str]) -> Bench {
     let mesh = lattice(18.0, 1.2, 0.3);
     let mut skin = halves(mesh, [material(5.0), stiffening()], Model::Layer);
     switch_on(
@@ -98,7 +98,7 @@ fn skin(effects: &[&str]) -> Skin {
 }
 
 /// Follows a motion, then presses the last posture from nothing.
-fn follow(bits: &mut Bits, skin: &mut Skin, start: Start, at: fn(&Vec3, usize) -> Vec3) {
+fn follow(bits: &mut Bits, skin: &mut Bench, start: Start, at: fn(&Vec3, usize) -> Vec3) {
     let rest = lattice(18.0, 1.2, 0.3).positions().to_vec();
     let product = bowl(90.0, 1.6, 32.0);
     let mut posed = rest.clone();

@@ -2,13 +2,13 @@
 
 use nalgebra::Rotation3;
 use thenar_contact::{
-    ActiveEffect, Contact, Control, Drag, ForceTarget, Material, Model, Press, Skin, SkinInput,
-    Start, Unsolved,
+    ActiveEffect, Contact, Control, Drag, ForceTarget, Material, Model, Press, SkinInput, Start,
+    Unsolved,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
 use crate::scenes::{
-    flat_skin, lattice, material, paraboloid, press, press_posed, revolve, rubbing_skin,
+    Bench, flat_skin, lattice, material, paraboloid, press, press_posed, revolve, rubbing_skin,
 };
 use crate::shapes::{bowl, dome, ellipsoid, halves, joined, named, plain, prepared, stiffening};
 use crate::shapes::{product, switch_on};
@@ -26,7 +26,7 @@ pub fn of(product: &Product) -> Press<'_> {
     }
 }
 
-pub fn pressed(skin: &mut Skin, request: &Press<'_>) -> Contact {
+pub fn pressed(skin: &mut Bench, request: &Press<'_>) -> Contact {
     skin.press(request, &Control::none()).unwrap()
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use thenar_contact::{ActiveEffect, Control, Material, Model, Skin, SkinInput};
 use thenar_surface::{Mesh, Product, Vec3};
 
-use crate::scenes::{lattice, revolve};
+use crate::scenes::{Bench, lattice, revolve};
 
 /// A modulus that grows with depth, on a bone.
 pub fn stiffening() -> Material {
@@ -17,12 +17,12 @@ pub fn stiffening() -> Material {
     }
 }
 
-pub fn prepared(input: SkinInput) -> Skin {
-    Skin::prepare(input, &Control::none()).unwrap()
+pub fn prepared(input: SkinInput) -> Bench {
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
 /// One region of one material.
-pub fn plain(mesh: Mesh, material: Material) -> Skin {
+pub fn plain(mesh: Mesh, material: Material) -> Bench {
     prepared(SkinInput {
         mesh,
         regions: Vec::new(),
@@ -32,7 +32,7 @@ pub fn plain(mesh: Mesh, material: Material) -> Skin {
 }
 
 /// Two regions that meet at x = 0.
-pub fn halves(mesh: Mesh, materials: [Material; 2], model: Model) -> Skin {
+pub fn halves(mesh: Mesh, materials: [Material; 2], model: Model) -> Bench {
     let side = |p: &Vec3| i32::from(p.x > 0.0);
     prepared(SkinInput {
         regions: mesh.positions().iter().map(side).collect(),
@@ -42,7 +42,7 @@ pub fn halves(mesh: Mesh, materials: [Material; 2], model: Model) -> Skin {
     })
 }
 
-pub fn switch_on(skin: &mut Skin, effects: Vec<ActiveEffect>) {
+pub fn switch_on(skin: &mut Bench, effects: Vec<ActiveEffect>) {
     skin.set_effects(effects, &Control::none()).unwrap();
 }
 

@@ -1,8 +1,11 @@
 //! Small meshes that the integration tests press: jittered flat skin, paraboloids, plates.
 #![allow(dead_code, clippy::unwrap_used)]
 
+use std::ops::Deref;
+
 use thenar_contact::{
-    ActiveEffect, Contact, Control, Material, Model, Press, Skin, SkinInput, Start, Unsolved,
+    ActiveEffect, Contact, ContactError, Control, Course, Material, Model, Press, Row, Run, Skin,
+    SkinInput, Stand, Start, Step, Unsolved, Walk, Workspace,
 };
 use thenar_surface::{Mesh, Product, Vec3};
 
@@ -16,6 +19,67 @@ impl Dice {
             .wrapping_mul(6364136223846793005)
             .wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A skin with one workspace for all its presses: each finds what the one before has left.
+#[derive(Clone)]
+pub struct Bench {
+    pub skin: Skin,
+    pub workspace: Workspace,
+}
+
+impl From<Skin> for Bench {
+    fn from(skin: Skin) -> Bench {
+        let workspace = Workspace::default();
+        Bench { skin, workspace }
+    }
+}
+
+impl Deref for Bench {
+    type Target = Skin;
+
+    fn deref(&self) -> &Skin {
+        &self.skin
+    }
+}
+
+impl Bench {
+    pub fn press(&mut self, press: &Press<'_>, control: &Control) -> Result<Contact, ContactError> {
+        self.workspace.on(&self.skin).press(press, control)
+    }
+
+    pub fn run(&mut self, run: &Run<'_>, control: &Control) -> Result<Course, ContactError> {
+        self.workspace.on(&self.skin).run(run, control)
+    }
+
+    pub fn advance(
+        &mut self,
+        walk: &mut Walk,
+        row: (&Stand<'_>, &Row),
+        control: &Control,
+    ) -> Result<Step, ContactError> {
+        self.workspace.on(&self.skin).advance(walk, row, control)
+    }
+
+    /// Goes on with the skin of these effects.
+    pub fn set_effects(
+        &mut self,
+        effects: Vec<ActiveEffect>,
+        control: &Control,
+    ) -> Result<(), ContactError> {
+        self.skin = self.skin.with_effects(effects, control)?;
+        Ok(())
+    }
+
+    /// Goes on with the skin of these materials.
+    pub fn set_materials(
+        &mut self,
+        materials: &[Material],
+        control: &Control,
+    ) -> Result<(), ContactError> {
+        self.skin = self.skin.with_materials(materials, control)?;
+        Ok(())
     }
 }
 
@@ -50,7 +114,7 @@ pub fn lattice(size: f64, spacing: f64, jitter: f64) -> Mesh {
     Mesh::new(positions, triangles).unwrap()
 }
 
-pub fn flat_skin(size: f64, spacing: f64, material: Material, model: Model) -> Skin {
+pub fn flat_skin(size: f64, spacing: f64, material: Material, model: Model) -> Bench {
     let mesh = lattice(size, spacing, 0.3);
     let input = SkinInput {
         mesh,
@@ -58,7 +122,7 @@ pub fn flat_skin(size: f64, spacing: f64, material: Material, model: Model) -> S
         materials: vec![material],
         model,
     };
-    Skin::prepare(input, &Control::none()).unwrap()
+    Bench::from(Skin::prepare(input, &Control::none()).unwrap())
 }
 
 /// A paraboloid z = r^2 / 2R - depth above the skin, capped, as a fine closed mesh of `extent` mm radius.
@@ -99,7 +163,7 @@ pub fn revolve(profile: impl Fn(f64) -> f64, extent: f64, rings: usize) -> Produ
     Product::new(Mesh::new(positions, triangles).unwrap()).unwrap()
 }
 
-pub fn press(skin: &mut Skin, product: &Product) -> Contact {
+pub fn press(skin: &mut Bench, product: &Product) -> Contact {
     let press = Press {
         product,
         posed: None,
@@ -111,7 +175,7 @@ pub fn press(skin: &mut Skin, product: &Product) -> Contact {
     skin.press(&press, &Control::none()).unwrap()
 }
 
-pub fn press_posed(skin: &mut Skin, product: &Product, posed: &[Vec3]) -> Contact {
+pub fn press_posed(skin: &mut Bench, product: &Product, posed: &[Vec3]) -> Contact {
     let press = Press {
         product,
         posed: Some(posed),
@@ -137,14 +201,14 @@ pub fn material(thickness_mm: f64) -> Material {
 }
 
 /// A skin of `material` with friction of coefficient `mu`.
-pub fn rubbing_skin(mesh: &Mesh, thickness_mm: f64, mu: f64) -> Skin {
+pub fn rubbing_skin(mesh: &Mesh, thickness_mm: f64, mu: f64) -> Bench {
     let input = SkinInput {
         mesh: mesh.clone(),
         regions: Vec::new(),
         materials: vec![material(thickness_mm)],
         model: Model::Layer,
     };
-    let mut skin = Skin::prepare(input, &Control::none()).unwrap();
+    let mut skin = Bench::from(Skin::prepare(input, &Control::none()).unwrap());
     let friction = ActiveEffect::named("friction", 1.0).unwrap();
     let friction = friction.with("coefficient", mu).unwrap();
     skin.set_effects(vec![friction], &Control::none()).unwrap();

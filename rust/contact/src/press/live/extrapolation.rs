@@ -5,6 +5,7 @@ use thenar_surface::{Gap, Vec3};
 use crate::press::setting::{SolveSetting, vertex};
 use crate::skin::prepare::Skin;
 use crate::solve::Accuracy;
+use crate::workspace::Pressing;
 use crate::workspace::live_cache::LiveField;
 use crate::{ContactError, Control, Model};
 
@@ -37,27 +38,28 @@ pub fn can_reach(u: &Vec3, distance: f64) -> bool {
 }
 
 /// Extrapolated displacement of a site, if the last change continues, mm; zero if unknown.
-pub fn extrapolated(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
-    moved(skin, setting, site, |live_field, site| {
+pub fn extrapolated(pressing: &Pressing<'_>, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
+    moved(pressing, setting, site, |live_field, site| {
         live_field.field[site] + live_field.field_change[site]
     })
 }
 
 /// Last change of a site's displacement, mm; zero if unknown.
-pub fn extrapolated_change(skin: &Skin, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
-    moved(skin, setting, site, |live_field, site| {
+pub fn extrapolated_change(pressing: &Pressing<'_>, setting: &SolveSetting<'_>, site: u32) -> Vec3 {
+    moved(pressing, setting, site, |live_field, site| {
         live_field.field_change[site]
     })
 }
 
 /// A `field` of the last live press at a site, mm.
 fn moved(
-    skin: &Skin,
+    pressing: &Pressing<'_>,
     setting: &SolveSetting<'_>,
     site: u32,
     field: impl Fn(&LiveField, usize) -> Vec3,
 ) -> Vec3 {
-    let (live_field, site) = (&skin.workspace.live_field, site as usize);
+    let skin = pressing.skin;
+    let (live_field, site) = (&pressing.workspace.live_field, site as usize);
     if !live_field.matches(skin.sites.len()) {
         return Vec3::zeros();
     }
@@ -68,21 +70,24 @@ fn moved(
 /// into it, and their neighbors.
 ///
 /// A wrong guess costs a round: sites outside the zone that the field carries into the product join it.
-pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<u32>) -> Vec<u32> {
-    if !is_live(skin, setting)
-        || zone.is_empty()
-        || !skin.workspace.live_field.matches(skin.sites.len())
+pub fn extrapolated_zone(
+    pressing: &Pressing<'_>,
+    setting: &SolveSetting<'_>,
+    mut zone: Vec<u32>,
+) -> Vec<u32> {
+    let (skin, workspace) = (pressing.skin, &pressing.workspace);
+    if !is_live(skin, setting) || zone.is_empty() || !workspace.live_field.matches(skin.sites.len())
     {
         return zone;
     }
     let gap = |site: u32| setting.detection.gaps[vertex(skin, site)].as_ref();
     let clearance = |site: u32| {
         let comes_by =
-            |gap: &Gap| gap.distance + gap.normal.dot(&extrapolated(skin, setting, site));
+            |gap: &Gap| gap.distance + gap.normal.dot(&extrapolated(pressing, setting, site));
         gap(site).map_or(f64::INFINITY, comes_by)
     };
     zone.retain(|&site| {
-        let most = match skin.workspace.live_contact.of(site) {
+        let most = match workspace.live_contact.of(site) {
             Some(_) => 2.0 * CLEAR,
             None => CLEAR,
         };
@@ -91,7 +96,7 @@ pub fn extrapolated_zone(skin: &Skin, setting: &SolveSetting<'_>, mut zone: Vec<
     let is_carried_in = |site: &u32| {
         let distance = setting.detection.distances[vertex(skin, *site)];
         distance < f64::INFINITY
-            && can_reach(&extrapolated(skin, setting, *site), distance)
+            && can_reach(&extrapolated(pressing, setting, *site), distance)
             && clearance(*site) < CLEARANCE
             && skin.sites.is_skin(*site as usize)
             && zone.binary_search(site).is_err()
@@ -110,10 +115,10 @@ pub fn is_live(skin: &Skin, setting: &SolveSetting<'_>) -> bool {
 }
 
 /// Loads on the sites solved in a `round` from outside their coupling.
-pub fn beyond(skin: &Skin, setting: &SolveSetting<'_>, round: usize) -> OuterLoads {
-    match is_live(skin, setting) {
+pub fn beyond(pressing: &Pressing<'_>, setting: &SolveSetting<'_>, round: usize) -> OuterLoads {
+    match is_live(pressing.skin, setting) {
         false => OuterLoads::Nothing,
-        true if round == 1 && !skin.workspace.live_contact.zone.is_empty() => OuterLoads::Trend,
+        true if round == 1 && !pressing.workspace.live_contact.zone.is_empty() => OuterLoads::Trend,
         true => OuterLoads::Last,
     }
 }
@@ -124,22 +129,22 @@ pub fn beyond(skin: &Skin, setting: &SolveSetting<'_>, round: usize) -> OuterLoa
 /// # Errors
 /// [`ContactError::TooLarge`](crate::ContactError) before memory is taken, or `Cancelled`.
 pub fn couple(
-    skin: &mut Skin,
+    pressing: &mut Pressing<'_>,
     (zone, open): (&[u32], &[u32]),
     control: &Control,
 ) -> Result<(), ContactError> {
     // Without a last live press nothing is known of what lies farther off: all of it is coupled.
-    let range = match skin.workspace.live_field.matches(skin.sites.len()) {
+    let (skin, workspace) = (pressing.skin, &mut *pressing.workspace);
+    let range = match workspace.live_field.matches(skin.sites.len()) {
         true => NEAR,
         false => f64::INFINITY,
     };
-    if skin.workspace.near.now().matches(open, range) {
+    if workspace.near.now().matches(open, range) {
         return Ok(());
     }
     control.step("response", 0.0)?;
     skin.make_rows(open, control)?;
-    let ground = (&skin.response, &skin.sites);
-    let workspace = &mut skin.workspace;
+    let ground = (&*skin.response, &*skin.sites);
     workspace.quantized.make(open.iter().copied(), ground);
     let near = workspace.near.now_mut();
     near.update((zone, open), &workspace.quantized, ground, range);
@@ -212,9 +217,10 @@ mod tests {
 
     #[test]
     fn a_zone_is_what_is_foreseen_to_touch() {
-        let (mut skin, _) = sheet();
+        let (skin, mut workspace, _) = sheet();
+        let mut pressing = workspace.on(&skin);
         let (product, mesh) = (plate(), skin.merged.mesh.clone());
-        let detection = detect(&mut skin, &mesh, &product, Vec3::zeros()).unwrap();
+        let detection = detect(&mut pressing, &mesh, &product, Vec3::zeros()).unwrap();
         let count = skin.sites.len();
         let weight = vec![0.5; count];
         let setting = SolveSetting {
@@ -233,18 +239,19 @@ mod tests {
             sites.filter(|s| distances[*s as usize] < most).collect()
         };
         let (still, wide) = (vec![0.0; count], within(0.9));
-        assert_eq!(extrapolated_zone(&skin, &setting, wide.clone()), wide);
+        assert_eq!(extrapolated_zone(&pressing, &setting, wide.clone()), wide);
 
         // Skin that is clear of the product is left out, and taken in when it comes nearer.
-        skin.workspace.live_field = live_field(&skin, 0.5, &still, &still);
+        pressing.workspace.live_field = live_field(&skin, 0.5, &still, &still);
         assert_eq!(
-            extrapolated_zone(&skin, &setting, wide.clone()),
+            extrapolated_zone(&pressing, &setting, wide.clone()),
             within(CLEAR)
         );
-        skin.workspace.live_field = live_field(&skin, 0.5, &vec![0.1; count], &vec![0.15; count]);
+        pressing.workspace.live_field =
+            live_field(&skin, 0.5, &vec![0.1; count], &vec![0.15; count]);
         let nearer = within(CLEAR + 0.25);
         assert!(nearer.len() > within(CLEAR).len() && nearer.len() < wide.len());
-        assert_eq!(extrapolated_zone(&skin, &setting, wide.clone()), nearer);
+        assert_eq!(extrapolated_zone(&pressing, &setting, wide.clone()), nearer);
 
         // One site lies half way there, and goes on by as much or by little: then its neighbors join too.
         let zone = within(0.2);
@@ -262,12 +269,15 @@ mod tests {
                 u[lifted] = share * distances[lifted];
                 u
             };
-            skin.workspace.live_field = live_field(&skin, 0.5, &up(0.5), &up(change));
-            assert_eq!(&extrapolated_zone(&skin, &setting, zone.clone()), wanted);
+            pressing.workspace.live_field = live_field(&skin, 0.5, &up(0.5), &up(change));
+            assert_eq!(
+                &extrapolated_zone(&pressing, &setting, zone.clone()),
+                wanted
+            );
         }
 
         // What was in it stays until it is twice as far away; what has left it has to come as near as any other.
-        skin.workspace.live_field = live_field(&skin, 0.5, &still, &still);
+        pressing.workspace.live_field = live_field(&skin, 0.5, &still, &still);
         let mut was = |zone: &[u32]| {
             let gap = |&site: &u32| detection.gaps[vertex(&skin, site)].unwrap();
             let (touch, zeros): (Vec<Gap>, _) =
@@ -283,8 +293,8 @@ mod tests {
                 sums: &vec![Sums::default(); zone.len()],
                 is_reused: &[],
             };
-            keep_solution(&mut skin, &setting, &found);
-            extrapolated_zone(&skin, &setting, wide.clone())
+            keep_solution(&mut pressing, &setting, &found);
+            extrapolated_zone(&pressing, &setting, wide.clone())
         };
         let stays = within(2.0 * CLEAR);
         assert!(stays.len() > within(CLEAR).len() && stays.len() < wide.len());

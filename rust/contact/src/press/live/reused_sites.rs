@@ -9,6 +9,7 @@ use super::extrapolation::{extrapolated, is_live};
 use crate::press::setting::{SolveSetting, vertex};
 use crate::press::solution::ZoneSolution;
 use crate::skin::prepare::Skin;
+use crate::workspace::Pressing;
 use crate::workspace::live_cache::{LiveContact, ReusedSite};
 
 /// Sites in patches nearer than this to a changed site are solved with it, mm (tests pass from 1 to 8).
@@ -27,12 +28,13 @@ const EARLY: f64 = 0.9;
 ///
 /// `strayed`: sites that exceeded the tolerance in this press, from its second round on; None in the first.
 pub fn reused_sites(
-    skin: &Skin,
+    pressing: &Pressing<'_>,
     setting: &SolveSetting<'_>,
     zone: &[u32],
     strayed: Option<&[u32]>,
 ) -> Vec<bool> {
-    let last = &skin.workspace.live_contact;
+    let skin = pressing.skin;
+    let last = &pressing.workspace.live_contact;
     if !is_live(skin, setting) || last.zone.is_empty() {
         return Vec::new();
     }
@@ -48,7 +50,7 @@ pub fn reused_sites(
     match strayed {
         Some(strayed) => changed.extend(strayed),
         None if changed.is_empty() => {}
-        None => changed.extend(will_stray(skin, setting, zone, &met)),
+        None => changed.extend(will_stray(pressing, setting, zone, &met)),
     }
     changed.sort();
     let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
@@ -65,7 +67,7 @@ pub fn reused_sites(
 
 /// Sites of `zone` that would exceed the tolerance if they were reused while the last change continues.
 fn will_stray(
-    skin: &Skin,
+    pressing: &Pressing<'_>,
     setting: &SolveSetting<'_>,
     zone: &[u32],
     met: &[Option<&ReusedSite>],
@@ -73,7 +75,7 @@ fn will_stray(
     let most = EARLY * STRAY * setting.detection.deepest();
     let strays = |(site, met): &(&u32, &Option<&ReusedSite>)| {
         let off = |met: &&ReusedSite| {
-            met.direction.dot(&extrapolated(skin, setting, **site)) - met.travel
+            met.direction.dot(&extrapolated(pressing, setting, **site)) - met.travel
         };
         met.as_ref().is_some_and(|met| off(met).abs() > most)
     };
@@ -98,12 +100,16 @@ fn near(skin: &Skin, sites: &[u32], reach: f64) -> Vec<bool> {
 /// Keeps the solution of a live solve for the next frame; clears it after any other solve.
 ///
 /// Sites that were reused stay as they are.
-pub fn keep_solution(skin: &mut Skin, setting: &SolveSetting<'_>, found: &ZoneSolution<'_>) {
+pub fn keep_solution(
+    pressing: &mut Pressing<'_>,
+    setting: &SolveSetting<'_>,
+    found: &ZoneSolution<'_>,
+) {
+    let (skin, kept) = (pressing.skin, &mut pressing.workspace.live_contact);
     if !is_live(skin, setting) {
-        skin.workspace.live_contact = LiveContact::default();
+        *kept = LiveContact::default();
         return;
     }
-    let mut kept = std::mem::take(&mut skin.workspace.live_contact);
     kept.met.resize_with(skin.sites.len(), || None);
     for site in &kept.zone {
         if found.zone.binary_search(site).is_err() {
@@ -128,7 +134,6 @@ pub fn keep_solution(skin: &mut Skin, setting: &SolveSetting<'_>, found: &ZoneSo
     }
     kept.zone.clear();
     kept.zone.extend_from_slice(found.zone);
-    skin.workspace.live_contact = kept;
 }
 
 /// Largest error of travel along the press directions over the deepest penetration, and the sites beyond the tolerance: reused

@@ -107,8 +107,9 @@ mod tests {
 
     #[test]
     fn without_a_range_products_are_those_of_the_whole_coupling() {
-        let (skin, zone) = sheet();
-        let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
+        let (skin, workspace, zone) = sheet();
+        let ground = (&skin, &workspace.quantized);
+        let (near, loads) = (near(ground, &zone, f64::INFINITY), loads(zone.len()));
         let mut whole = RowRuns::new();
         coupling((&skin.response, &skin.sites), &zone, &mut whole);
         let mut wanted = vec![0.0; zone.len()];

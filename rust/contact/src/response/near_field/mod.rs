@@ -268,8 +268,9 @@ mod tests {
 
     #[test]
     fn without_a_range_fields_are_those_of_the_whole_coupling() {
-        let (skin, zone) = sheet();
-        let (near, loads) = (near(&skin, &zone, f64::INFINITY), loads(zone.len()));
+        let (skin, workspace, zone) = sheet();
+        let ground = (&skin, &workspace.quantized);
+        let (near, loads) = (near(ground, &zone, f64::INFINITY), loads(zone.len()));
         let mut whole = RowRuns::new();
         coupling((&skin.response, &skin.sites), &zone, &mut whole);
         let field = near.field(&loads);
@@ -287,13 +288,14 @@ mod tests {
 
     #[test]
     fn a_range_leaves_out_what_lies_in_patches_beyond_it_and_nothing_else() {
-        let (skin, zone) = sheet();
+        let (skin, workspace, zone) = sheet();
+        let ground = (&skin, &workspace.quantized);
         let (range, loads) = (9.0, loads(zone.len()));
-        let near = near(&skin, &zone, range);
+        let near = near(ground, &zone, range);
         let field = near.field(&loads);
         let (mut left_out, mut most) = (0, 0.0f64);
         for (&i, ours) in zone.iter().zip(&field) {
-            let row = skin.response.row(i);
+            let row = skin.response.row(i, &skin.sites);
             let home = skin.sites.patch[i as usize];
             let mut wanted = Vec3::zeros();
             for (&j, load) in zone.iter().zip(&loads) {
@@ -325,16 +327,19 @@ mod tests {
 
     #[test]
     fn incremental_coupling_equals_full_rebuild() {
-        let (skin, zone) = sheet();
-        let ground = (&skin.response, &skin.sites);
-        let mut kept = near(&skin, &zone, 14.0);
+        let (skin, workspace, zone) = sheet();
+        let (ground, own) = (
+            (&skin, &workspace.quantized),
+            (&*skin.response, &*skin.sites),
+        );
+        let mut kept = near(ground, &zone, 14.0);
         // A corner, the sheet without it, some sites of all patches, and all again.
         let corner: Vec<u32> = zone[..zone.len() / 5].to_vec();
         let others: Vec<u32> = zone[zone.len() / 5..].to_vec();
         let some: Vec<u32> = zone.iter().copied().step_by(3).collect();
         for open in [&corner, &others, &some, &zone] {
-            kept.update((&zone, open), &skin.workspace.quantized, ground, 9.0);
-            let anew = near(&skin, open, 9.0);
+            kept.update((&zone, open), &workspace.quantized, own, 9.0);
+            let anew = near(ground, open, 9.0);
             let loads = loads(open.len());
             assert!(kept.matches(open, 9.0) && !kept.matches(open, 10.0));
             let (ours, wanted) = (kept.field(&loads), anew.field(&loads));
@@ -348,8 +353,9 @@ mod tests {
 
     #[test]
     fn some_rows_are_those_of_all_to_the_bit() {
-        let (skin, zone) = sheet();
-        let near = near(&skin, &zone, 12.0);
+        let (skin, workspace, zone) = sheet();
+        let ground = (&skin, &workspace.quantized);
+        let near = near(ground, &zone, 12.0);
         let turned = near.turn(&Axes::new(&loads(zone.len())));
         let x: Vec<f32> = (0..zone.len()).map(|k| (k as f32).cos()).collect();
         let mut all = vec![0.0; zone.len()];

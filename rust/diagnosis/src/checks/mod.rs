@@ -1,6 +1,0 @@
-//! Checks of recordings and residuals: lack of fit, signatures of effects, heteroscedasticity, change points of the gain.
-
-pub mod lack_of_fit;
-pub mod signatures;
-pub mod heteroscedasticity;
-pub mod gain_step;

@@ -1,6 +1,0 @@
-//! Design of the next recording: candidates, profile likelihood, and expected discrimination between two models.
-
-pub mod candidate_recordings;
-pub mod planned_recording;
-pub mod profile_likelihood;
-pub mod expected_discrimination;

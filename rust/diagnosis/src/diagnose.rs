@@ -1,0 +1,222 @@
+//! Conducts a diagnosis: from what the fitted parameters leave to a verdict, findings, and the next recording.
+//!
+//! The ladder is noise, parameters, instrument, one effect, two effects, unlisted. Candidates are fitted with the surrogate model
+//! (`forward::surrogate`), under the same noise and priors as the fit.
+
+use std::sync::{Mutex, PoisonError};
+
+use thenar_contact::Control;
+use thenar_recordings::Study;
+
+use crate::findings::{Diagnosis, Suggestion, Verdict};
+use crate::gates::decision::Decision;
+use crate::gates::pair_gates::is_pair;
+use thenar_comparison::Comparison;
+use thenar_comparison::compare;
+use thenar_inference::errors::InferenceError;
+use thenar_inference::fit::fitting::{Fitting, Options};
+use thenar_inference::forward::surrogate::force_recording::ForceRecording;
+use thenar_inference::forward::surrogate::prepared_study::{PreparedStudy, prepare};
+use thenar_inference::parameters::surrogate_priors::form_note;
+use thenar_inference::selection::cross_validation::Gain;
+use thenar_inference::selection::scored::Rungs;
+
+/// What a diagnosis is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DiagnoseOptions {
+    /// Seed of all that is drawn: the same seed gives the same bytes.
+    pub seed: u64,
+}
+
+impl Default for DiagnoseOptions {
+    fn default() -> Self {
+        DiagnoseOptions { seed: 1 }
+    }
+}
+
+/// Says what a study's recordings show that the model leaves out.
+///
+/// # Errors
+/// [`InferenceError`]: skin, tools or mats that cannot be used, presses that fail, too few samples, or `Cancelled`.
+pub fn diagnose(
+    study: &Study,
+    options: &DiagnoseOptions,
+    control: &Control<'_>,
+) -> Result<Diagnosis, InferenceError> {
+    let parts = Parts::new(control);
+    let asked = Options {
+        seed: options.seed,
+        ..Options::default()
+    };
+    let comparison = parts.run((0.0, 0.3), |within| compare(study, &asked, within))?;
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
+    let mut fitting = Fitting::new(study, &quiet)?;
+    step(control, ("pressing the tools", 0.3))?;
+    if let Some(finer) =
+        thenar_inference::forward::setup::refinement::refined(study, &fitting.replay)
+    {
+        fitting = Fitting::new(&finer, &quiet)?;
+    }
+    let found = match prepare(study, &mut fitting.replay, &quiet)? {
+        Some(ready) => {
+            let climb = |within: &Control<'_>| {
+                thenar_inference::selection::ladder::climb(&ready, fitting.measured(), within)
+            };
+            let rungs = parts.run((0.4, 0.95), climb)?;
+            let ladder = (&ready, &rungs);
+            explained(study, (comparison, &mut fitting), ladder, (options, &quiet))?
+        }
+        None => crate::place::without_curves(study, comparison),
+    };
+    step(control, ("diagnosing", 1.0))?;
+    Ok(found)
+}
+
+fn step(control: &Control<'_>, (stage, share): (&str, f64)) -> Result<(), InferenceError> {
+    let step = control.step(stage, share);
+    step.map_err(|_| InferenceError::Cancelled)
+}
+
+/// Parts of a run, each of which begins its own count; what the caller is told does not fall.
+struct Parts<'a> {
+    control: &'a Control<'a>,
+    furthest: Mutex<f64>,
+}
+
+impl<'a> Parts<'a> {
+    fn new(control: &'a Control<'a>) -> Parts<'a> {
+        Parts {
+            control,
+            furthest: Mutex::new(0.0),
+        }
+    }
+
+    /// Runs a part that takes this stretch of the whole.
+    fn run<T>(&self, (from, to): (f64, f64), part: impl FnOnce(&Control<'_>) -> T) -> T {
+        let tell = |stage: &str, share: f64| {
+            let share = from + (to - from) * share.clamp(0.0, 1.0);
+            let mut furthest = self.furthest.lock().unwrap_or_else(PoisonError::into_inner);
+            *furthest = f64::max(*furthest, share);
+            (self.control.progress)(stage, *furthest);
+        };
+        part(&Control {
+            cancelled: self.control.cancelled,
+            progress: &tell,
+        })
+    }
+}
+
+/// What the rungs decide, and what should be recorded next.
+fn explained(
+    study: &Study,
+    (comparison, fitting): (Comparison, &mut Fitting),
+    (ready, rungs): (&PreparedStudy, &Rungs),
+    (options, quiet): (&DiagnoseOptions, &Control<'_>),
+) -> Result<Diagnosis, InferenceError> {
+    let (decision, gain) =
+        crate::gates::held_out_gate::decide(ready, rungs, fitting.measured(), options.seed);
+    let asked = (&decision.cannot_tell[..], quiet);
+    let next =
+        crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
+    let ladder = (ready, rungs, decision);
+    Ok(told(study, (comparison, fitting), (ladder, next, gain)))
+}
+
+/// What the recordings could not show.
+fn untested(courses: &[ForceRecording]) -> Option<String> {
+    let missing = match (
+        thenar_inference::forward::surrogate::force_recording::goes_on(courses),
+        thenar_inference::forward::surrogate::force_recording::unloads(courses),
+    ) {
+        (false, _)
+            if !thenar_inference::forward::surrogate::force_recording::changes_speed(courses) =>
+        {
+            "memory, hysteresis, adhesion and drift were not tested: no recording holds, unloads or changes its speed"
+        }
+        (_, false) => "hysteresis and adhesion were not tested: no recording unloads",
+        _ => return None,
+    };
+    Some(missing.to_owned())
+}
+
+/// What was prepared, what the rungs found, and what they decide.
+type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Decision<'a>);
+
+/// All that is said, from what was found.
+fn told(
+    study: &Study,
+    (comparison, fitting): (Comparison, &Fitting),
+    ((ready, rungs, decision), next, gain): (Climbed<'_>, Vec<Suggestion>, Option<Gain>),
+) -> Diagnosis {
+    let probabilities = thenar_inference::selection::model_weights::probabilities(rungs, |pair| {
+        is_pair(pair, rungs)
+    });
+    let mut found = Diagnosis {
+        comparison,
+        verdict: decision.verdict,
+        sentence: String::new(),
+        findings: crate::findings_content::findings(
+            study,
+            (ready, rungs),
+            &decision,
+            &probabilities,
+        ),
+        unlisted: None,
+        names_90: thenar_inference::selection::model_weights::names_90(&probabilities),
+        cannot_tell: decision.cannot_tell.clone(),
+        gain,
+        smallest_seen: crate::gates::detection_limits::smallest_seen(ready, rungs),
+        record_next: next,
+        materials: crate::findings_content::materials(&fitting.replay, (ready, rungs), &decision),
+        effects: crate::findings_content::effects(ready, &decision),
+        rivals: crate::findings_content::rivals(ready, rungs, &probabilities),
+        curves: crate::findings_content::curves(ready, rungs, &decision),
+        evidence: crate::findings_content::evidence(ready, rungs),
+        notes: vec![decision.reason.clone()],
+    };
+    if found.verdict == Verdict::InsufficientData {
+        found.names_90 = Vec::new();
+    }
+    let mut reason = decision.reason.clone();
+    let unmodeled_repeat_noise =
+        thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise(
+            &ready.noise,
+            rungs.heteroscedasticity,
+        );
+    found
+        .notes
+        .extend(unmodeled_repeat_noise.filter(|told| *told != reason));
+    if found.verdict == Verdict::Unlisted {
+        let described = crate::unlisted::unlisted(study, ready, rungs);
+        reason = format!("{reason}; {}", described.told());
+        if let Some(correction) = &described.correction {
+            crate::unlisted::draw(ready, rungs, correction, &mut found.curves);
+        }
+        found.unlisted = Some(described);
+    }
+    add_notes(study, &mut found, ready);
+    found.sentence = crate::sentence::sentence(
+        found.verdict,
+        (&found.findings, found.gain.as_ref()),
+        (&found.cannot_tell, &decision.beside, &found.record_next),
+        &reason,
+    );
+    found
+}
+
+/// What a reader should be told besides, and the place that maps show.
+fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
+    let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
+    if found.gain.as_ref().is_some_and(is_no_better) {
+        found.notes.push(
+            "on held-out recordings the finding gains no more than its change on the wrong recordings at the wrong moments does"
+                .to_owned(),
+        );
+    }
+    crate::place::add_place(study, found);
+    found.notes.push(form_note(&ready.elastic));
+    found.notes.extend(untested(&ready.courses));
+}

@@ -1,0 +1,6 @@
+//! Gates of the verdict: what must be seen, beaten and predicted before a name is given, and what could have been seen at all.
+
+pub mod decision;
+pub mod pair_gates;
+pub mod held_out_gate;
+pub mod detection_limits;

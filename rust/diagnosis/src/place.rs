@@ -1,0 +1,122 @@
+//! Localized findings of maps: a place that stays with the skin (inclusion) or with the sensor.
+
+use thenar_recordings::Study;
+
+use crate::findings::{Diagnosis, Finding, Verdict, When, Where};
+use thenar_comparison::Comparison;
+use thenar_comparison::{Carrier, Mismatch};
+use thenar_inference::observe::measured::Phase;
+
+/// Adds the place that a comparison of maps located, where nothing stronger is said.
+pub fn add_place(study: &Study, found: &mut Diagnosis) {
+    let Some(mismatch) = placed(&found.comparison).cloned() else {
+        return;
+    };
+    let is_silent = matches!(found.verdict, Verdict::NothingMissing | Verdict::Parameters);
+    if !is_silent {
+        found.notes.push(mismatch.sentence);
+        return;
+    }
+    let carrier = mismatch.place.as_ref().map(|p| p.carrier);
+    match carrier {
+        Some(Carrier::Skin) => {
+            found.verdict = Verdict::MissingPhysics;
+            found.findings = vec![inclusion(study, &mismatch)];
+            found.names_90 = vec![vec!["inclusion"]];
+        }
+        Some(Carrier::Sensor) => {
+            found.verdict = Verdict::Instrument;
+            found
+                .notes
+                .push("what stands out stays with the sensels".into());
+            found.names_90 = vec![vec!["misregistration"], vec!["crosstalk"]];
+        }
+        _ => {
+            found.verdict = Verdict::CannotTell;
+            found.cannot_tell = vec![["inclusion", "misregistration"]];
+            found.names_90 = vec![vec!["inclusion"], vec!["misregistration"]];
+        }
+    }
+    found.notes.push(mismatch.sentence);
+}
+
+/// The strongest mismatch with a place.
+fn placed(comparison: &Comparison) -> Option<&Mismatch> {
+    let location = comparison.location.as_ref()?;
+    location.mismatches.iter().find(|m| m.place.is_some())
+}
+
+fn inclusion(study: &Study, mismatch: &Mismatch) -> Finding {
+    let place = mismatch.place.as_ref();
+    let center = place.and_then(|p| p.on_skin_mm).map(Into::into);
+    let when = &mismatch.when;
+    let phase = match when.phases.first() {
+        Some(Phase::Hold) => "hold",
+        Some(Phase::Unload) => "unload",
+        Some(Phase::Slide) => "slide",
+        Some(Phase::Apart) => "rest",
+        _ => "load",
+    };
+    Finding {
+        effect: "inclusion",
+        kind: "tissue",
+        confidence: (1.0 - mismatch.p).clamp(0.5, 0.99),
+        numbers: Vec::new(),
+        place: Some(Where {
+            site: study
+                .recordings
+                .first()
+                .map_or_else(String::new, |r| r.site.clone()),
+            region: None,
+            center_mm: center.or(place.map(|p| p.center_mm.into())),
+            radius_mm: place.map(|p| p.radius_mm),
+            area_90_mm2: place.map(|p| p.area_90_mm2),
+            vertices: place.map_or_else(Vec::new, |p| p.vertices.clone()),
+        }),
+        when: Some(When {
+            recordings: when.recordings.clone(),
+            phase,
+            time_s: when.time_s.unwrap_or([0.0, 0.0]),
+            depth_mm: when.depth_mm.unwrap_or([0.0, 0.0]),
+            cycles: when.cycles,
+        }),
+        depends_on: vec!["skin_position"],
+        consequences: Vec::new(),
+    }
+}
+
+/// A diagnosis of a study that holds no force over depth.
+pub fn without_curves(study: &Study, comparison: Comparison) -> Diagnosis {
+    let reason = "no recording gives force over depth, from which effects are told";
+    let mut found = Diagnosis {
+        comparison,
+        verdict: Verdict::InsufficientData,
+        sentence: format!("Too little was recorded to say what is missing: {reason}."),
+        findings: Vec::new(),
+        unlisted: None,
+        names_90: Vec::new(),
+        cannot_tell: Vec::new(),
+        gain: None,
+        smallest_seen: Vec::new(),
+        record_next: Vec::new(),
+        materials: Vec::new(),
+        effects: Vec::new(),
+        rivals: Vec::new(),
+        curves: Vec::new(),
+        evidence: Vec::new(),
+        notes: vec![reason.to_owned()],
+    };
+    if let Some(mismatch) = placed(&found.comparison)
+        && mismatch
+            .place
+            .as_ref()
+            .is_some_and(|p| p.carrier == Carrier::Skin)
+    {
+        let finding = inclusion(study, mismatch);
+        found.sentence = mismatch.sentence.clone();
+        found.findings = vec![finding];
+        found.verdict = Verdict::MissingPhysics;
+        found.names_90 = vec![vec!["inclusion"]];
+    }
+    found
+}

@@ -1,0 +1,138 @@
+//! The verdict in one sentence.
+
+use crate::findings::{Finding, Suggestion, Verdict};
+use crate::wording::{effect_in_words, phase_in_words};
+use thenar_inference::selection::cross_validation::Gain;
+
+/// The verdict in one sentence.
+pub fn sentence(
+    verdict: Verdict,
+    (findings, gain): (&[Finding], Option<&Gain>),
+    (pairs, beside, next): (&[[&'static str; 2]], &[&'static str], &[Suggestion]),
+    reason: &str,
+) -> String {
+    let names: Vec<String> = findings.iter().map(|f| effect_in_words(f.effect)).collect();
+    let names = names.join(" and ");
+    let sure = findings.iter().map(|f| f.confidence).fold(1.0, f64::min);
+    match verdict {
+        Verdict::NothingMissing => {
+            "Nothing is missing at this noise: the study's own parameters explain the recordings."
+                .into()
+        }
+        Verdict::Parameters => {
+            "Only the parameters were off: with the fitted moduli nothing is missing at this noise."
+                .into()
+        }
+        Verdict::InsufficientData => {
+            format!("Too little was recorded to say what is missing: {reason}.")
+        }
+        Verdict::Unlisted => {
+            format!("Something is missing that is not in the list of effects: {reason}.")
+        }
+        Verdict::CannotTell => {
+            let told: Vec<String> = pairs
+                .iter()
+                .map(|[a, b]| format!("{} and {}", effect_in_words(a), effect_in_words(b)))
+                .collect();
+            let with: Vec<String> = beside.iter().map(|name| effect_in_words(name)).collect();
+            let with = match with.is_empty() {
+                true => String::new(),
+                false => format!(", each of them together with {}", with.join(" and ")),
+            };
+            format!(
+                "These recordings cannot tell {} apart{with}.{}",
+                told.join(", nor "),
+                next.first().map_or(String::new(), advised)
+            )
+        }
+        Verdict::Instrument => {
+            format!(
+                "It is the instrument: {names} ({:.0} % sure).",
+                100.0 * sure
+            )
+        }
+        Verdict::MissingPhysics => {
+            let when = findings.first().and_then(|f| f.when.as_ref());
+            let when = when.map_or(String::new(), |w| {
+                format!(", seen most {}", phase_in_words(w.phase))
+            });
+            let gained = gain.map_or(String::new(), |g| {
+                format!(
+                    "; with it {:.0} % of the reducible error of held-out recordings goes away",
+                    100.0 * g.removed.max(0.0)
+                )
+            });
+            format!(
+                "What is missing is {names} ({:.0} % sure){when}{gained}.",
+                100.0 * sure
+            )
+        }
+    }
+}
+
+/// How often a recording settles a matter from which it is advised without reserve.
+const HOPEFUL: f64 = 0.2;
+
+/// What to record next, or that little is to be hoped of it.
+fn advised(next: &Suggestion) -> String {
+    let (text, outlook) = (&next.text, next.outlook());
+    match next.probability.is_none_or(|p| p >= HOPEFUL) {
+        true => format!(" Record next: {text} ({outlook})."),
+        false => format!(
+            " No recording with these tools is likely to settle it; the best would be: {text} ({outlook})."
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(probability: Option<f64>) -> String {
+        advised(&Suggestion {
+            text: "Press".into(),
+            indenter: None,
+            radius_mm: None,
+            in_turn_with: None,
+            site: String::new(),
+            speed_mm_s: 1.0,
+            hold_s: 8.0,
+            cycles: 1,
+            depth_mm: 1.0,
+            presses: 12,
+            settles: Vec::new(),
+            probability,
+            minutes: 30.0,
+        })
+    }
+
+    #[test]
+    fn sentence_names_the_effects_common_to_all_rivals() {
+        let pairs = [["bone", "fixture_compliance"]];
+        let told = |beside: &[&'static str]| {
+            sentence(
+                Verdict::CannotTell,
+                (&[], None),
+                (&pairs, beside, &[]),
+                "unused",
+            )
+        };
+        let apart = "These recordings cannot tell another thickness of the tissue over bone and fixture compliance apart";
+        assert_eq!(told(&[]), format!("{apart}."));
+        let with = ", each of them together with a zero error of the sensor.";
+        assert_eq!(told(&["offset"]), format!("{apart}{with}"));
+    }
+
+    #[test]
+    fn unlikely_next_recording_is_advised_with_reserve() {
+        assert_eq!(
+            said(Some(0.6)),
+            " Record next: Press (settles it in 60 % of cases, takes about 30 minutes)."
+        );
+        assert!(said(None).starts_with(" Record next: Press (takes"));
+        let poor = said(Some(0.01));
+        assert!(
+            poor.starts_with(" No recording with these tools") && poor.contains("1 % of cases")
+        );
+    }
+}

@@ -1,0 +1,124 @@
+//! Mean pressure over each sensel of a placed mat, against depth.
+
+use std::sync::Arc;
+
+use thenar_contact::ActiveEffect;
+use thenar_contact::effects::Effect;
+use thenar_contact::instrument::{Mat as Sensels, MatLayout, Placement, PointLoad};
+
+use crate::errors::InferenceError;
+use crate::forward::mesh::press_table::Basis;
+use crate::interpolation::Table;
+use crate::observe::measured::Mat;
+
+/// Readings kept for each recording.
+const MOST_KEPT: usize = 10;
+
+/// A mat that reads presses.
+pub struct Reader {
+    sensels: Sensels,
+    kept: Vec<(Arc<Basis>, Placement, Arc<Readings>)>,
+}
+
+/// Pressure over every sensel against the root of the depth, by part of the basis, kPa.
+pub struct Readings {
+    /// None for a sensel that no rung of the ladder loads.
+    parts: Vec<Vec<Option<Table>>>,
+}
+
+impl Readings {
+    /// Pressure over a sensel at a depth, kPa.
+    pub fn at(&self, sensel: usize, weights: &[f64], depth: f64) -> f64 {
+        if depth <= 0.0 {
+            return 0.0;
+        }
+        let root = depth.sqrt();
+        let of = |(part, w): (&Vec<Option<Table>>, &f64)| match &part[sensel] {
+            Some(table) => w * table.at(root),
+            None => 0.0,
+        };
+        self.parts.iter().zip(weights).map(of).sum::<f64>().max(0.0)
+    }
+}
+
+impl Reader {
+    /// A reader for a mat in skin coordinates at first touch, that of `recording`.
+    ///
+    /// # Errors
+    /// What the contact model says of the mat.
+    pub fn new(mat: &Mat, recording: &str) -> Result<Reader, InferenceError> {
+        let layout = MatLayout {
+            centers: mat.centers.clone(),
+            normals: mat.normals.clone(),
+            areas: mat.areas.clone(),
+            along: None,
+        };
+        let what = format!("the mat of recording '{recording}'");
+        let sensels = Sensels::new(layout).map_err(InferenceError::of_contact(what))?;
+        Ok(Reader {
+            sensels,
+            kept: Vec::new(),
+        })
+    }
+
+    /// The mat.
+    pub fn sensels(&self) -> &Sensels {
+        &self.sensels
+    }
+
+    /// Readings of a press with the mat so placed; the same again for the same input.
+    pub fn readings(&mut self, basis: &Arc<Basis>, placement: Placement) -> Arc<Readings> {
+        let is_kept = |(of, at, _): &&(Arc<Basis>, Placement, Arc<Readings>)| {
+            Arc::ptr_eq(of, basis) && *at == placement
+        };
+        if let Some((_, _, readings)) = self.kept.iter().find(is_kept) {
+            return readings.clone();
+        }
+        let read = |loads: &Vec<PointLoad>| self.sensels.read_at(loads, &placement);
+        let presses: Vec<Vec<Vec<f64>>> = basis
+            .loads
+            .iter()
+            .map(|rungs| rungs.iter().map(read).collect())
+            .collect();
+        let part = |mix: &Vec<f64>| -> Vec<Option<Table>> {
+            (0..self.sensels.len())
+                .map(|sensel| {
+                    let value = |rung: usize| -> f64 {
+                        presses
+                            .iter()
+                            .zip(mix)
+                            .map(|(press, m)| m * press[rung][sensel])
+                            .sum()
+                    };
+                    let is_loaded = presses
+                        .iter()
+                        .any(|p| p.iter().any(|rung| rung[sensel] != 0.0));
+                    let values = || (0..basis.roots.len()).map(value).collect();
+                    is_loaded.then(|| Table::new(&basis.roots, values()))
+                })
+                .collect()
+        };
+        let readings = Arc::new(Readings {
+            parts: basis.mix.iter().map(part).collect(),
+        });
+        if self.kept.len() == MOST_KEPT {
+            self.kept.remove(0);
+        }
+        self.kept.push((basis.clone(), placement, readings.clone()));
+        readings
+    }
+}
+
+/// A placement with what effects of misregistration add to it.
+pub fn misplaced(mut placement: Placement, effects: &[ActiveEffect]) -> Placement {
+    for effect in effects
+        .iter()
+        .filter(|e| e.effect == Effect::Misregistration)
+    {
+        let of = |name: &str| effect.amplitude * effect.number(name);
+        placement.shift_mm[0] += of("shift_1_mm");
+        placement.shift_mm[1] += of("shift_2_mm");
+        placement.turn_rad += of("turn_rad");
+    }
+    placement
+}

@@ -1,0 +1,262 @@
+//! Prepares a study for the surrogate: force recordings, noise, whitening, tables, and shared parameters.
+
+use crate::forward::mesh::replay::Replay;
+use nalgebra::Vector3;
+use thenar_contact::{Control, Material};
+use thenar_recordings::Study;
+use thenar_recordings::study::Shape;
+
+use crate::errors::InferenceError;
+use crate::forward::surrogate::force_recording::{ForceRecording, force_recordings};
+use crate::forward::surrogate::mechanism::Scales;
+use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::forward::tables::elastic::Elastic;
+use crate::forward::tables::elastic_table::radius;
+use crate::noise::estimate::{Noise, noise};
+use crate::noise::whitening::Whitening;
+use crate::observe::robust_scale::median;
+use crate::parameters::surrogate_parameter::{Coordinate, Kind};
+use crate::parameters::surrogate_priors::{form_error, of_course, of_place, shared, touch};
+
+/// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
+const FLAT: (f64, f64) = (0.03, 1.5);
+/// Standard deviations of the noise below which a floor under readings is none.
+const FLOOR: f64 = 4.0;
+
+/// A study that is ready.
+pub struct PreparedStudy {
+    /// Recordings of force over depth.
+    pub courses: Vec<ForceRecording>,
+    /// Tables.
+    pub elastic: Elastic,
+    /// The noise that repeats show.
+    pub noise: Noise,
+    /// How residuals are whitened.
+    pub whitening: Whitening,
+    /// Measured values, stacked.
+    pub values: Vec<f64>,
+    /// Standard deviations of the noise, stacked.
+    pub sigma: Vec<f64>,
+    /// What is free in every model.
+    pub shared: Vec<Coordinate>,
+    /// Sizes from which variants are chosen.
+    pub scales: Scales,
+    /// The study's own material, of the first region.
+    pub base_material: Material,
+}
+
+/// Observes, judges the noise and presses the tables; None where no recording gives force over depth.
+///
+/// # Errors
+/// What the contact model says, or `Cancelled`.
+pub fn prepare(
+    study: &Study,
+    replay: &mut Replay,
+    control: &Control<'_>,
+) -> Result<Option<PreparedStudy>, InferenceError> {
+    let mut found = force_recordings(study, &replay.observed.measured, &replay.place_of);
+    found.retain(|c| c.deepest() > 0.0 && c.most() > 0.0);
+    if found.is_empty() {
+        return Ok(None);
+    }
+    let g0 = replay.tissue.materials[0].g0_mpa;
+    let elastic = Elastic::new(replay, (g0, is_flat(study)), control)?;
+    Ok(Some(assemble(study, replay, (found, elastic))))
+}
+
+/// What is known without pressing.
+fn assemble(
+    study: &Study,
+    replay: &Replay,
+    (found, elastic): (Vec<ForceRecording>, Elastic),
+) -> PreparedStudy {
+    let is_modeled: Vec<bool> = (0..replay.observed.measured.len())
+        .map(|r| found.iter().any(|c| c.recording == r))
+        .collect();
+    let noise = judged(study, replay, ((&found, &elastic), &is_modeled));
+    let whitening = Whitening::new(&replay.observed.measured, &noise, &is_modeled);
+    let samples = replay.observed.measured.iter().flat_map(|m| &m.samples);
+    let values = samples.map(|s| s.value).collect();
+    let scales = scales(study, &found, &elastic);
+    let shared = shared(replay, (&found, &elastic), &noise);
+    let sigma = noise.sigma.concat();
+    PreparedStudy {
+        courses: found,
+        elastic,
+        noise,
+        whitening,
+        values,
+        sigma,
+        shared,
+        scales,
+        base_material: replay.tissue.materials[0],
+    }
+}
+
+/// The noise, from repeats along what gain and contact zero do to them.
+fn judged(
+    study: &Study,
+    replay: &Replay,
+    ((courses, elastic), is_modeled): ((&[ForceRecording], &Elastic), &[bool]),
+) -> Noise {
+    let measured = &replay.observed.measured;
+    let nothing = || -> Vec<Vec<f64>> {
+        measured
+            .iter()
+            .map(|m| vec![0.0; m.samples.len()])
+            .collect()
+    };
+    let (mut simulated, mut slopes) = (nothing(), nothing());
+    let material = replay.tissue.materials[0];
+    for course in courses {
+        let table = &elastic.places[course.place];
+        let force = |d: f64| match d > 0.0 {
+            true => table.force.at(d.sqrt()) * material.shear_modulus(d),
+            false => 0.0,
+        };
+        let step = 5e-3 * table.deepest;
+        for row in &course.rows {
+            if let Some(sample) = row.sample {
+                let at = sample - course.samples.0;
+                let here = force(row.depth_mm);
+                simulated[course.recording][at] = here;
+                slopes[course.recording][at] = (force(row.depth_mm + step) - here) / step;
+            }
+        }
+    }
+    let noise_n = study.instrument.as_ref().and_then(|i| i.noise_n);
+    noise(measured, (&simulated, &slopes), is_modeled, noise_n)
+}
+
+impl PreparedStudy {
+    /// Noise over the largest force of its recording, the median of all samples.
+    pub fn noise_share(&self) -> f64 {
+        let share = |c: &ForceRecording| {
+            let sample = c.rows.iter().find_map(|r| r.sample)?;
+            Some(self.sigma[sample] / c.most())
+        };
+        let mut shares: Vec<f64> = self.courses.iter().filter_map(share).collect();
+        median(&mut shares).clamp(1e-4, 0.1)
+    }
+
+    /// Coordinates of a recording that is yet to be made, as deep as `deepest` (mm): those of its tool's place, if the study has
+    /// not used it, and its own. `elastic` has that place, too.
+    pub(crate) fn coordinates_of(
+        &self,
+        elastic: &Elastic,
+        (place, course): (usize, usize),
+        deepest: f64,
+    ) -> (Vec<Coordinate>, Vec<Coordinate>) {
+        let has_regions = self.shared.iter().any(|c| matches!(c.kind, Kind::Scale(_)));
+        let of_place = match place < elastic.studied {
+            true => Vec::new(),
+            false => of_place(
+                place,
+                (touch(self.noise.zero_mm).min(0.25 * deepest), deepest),
+                (form_error(elastic, place), has_regions),
+            ),
+        };
+        (of_place, of_course(course, deepest, &self.noise))
+    }
+
+    /// The least reading that stands out of the noise, over the smallest peak: of the middle recording of those whose noise is small enough.
+    pub(crate) fn least_seen(&self) -> f64 {
+        let peak = self.scales.forces.0;
+        let seen = self.courses.iter().filter_map(|course| {
+            let samples = course.rows.iter().filter_map(|row| row.sample);
+            let least = FLOOR * samples.map(|k| self.sigma[k]).fold(0.0, f64::max);
+            let readings = course.rows.iter().filter(|row| row.sample.is_some());
+            let above = readings.map(|row| row.force_n).filter(|f| *f > least);
+            (least < 0.5 * peak).then(|| above.fold(peak, f64::min) / peak)
+        });
+        match &mut seen.collect::<Vec<f64>>()[..] {
+            [] => self.noise_share() * FLOOR,
+            found => median(found),
+        }
+    }
+
+    /// The screen of these recordings.
+    pub fn surrogate(&self) -> Surrogate<'_> {
+        Surrogate {
+            courses: &self.courses,
+            elastic: &self.elastic,
+            whitening: &self.whitening,
+            measured: &self.values,
+            shared: self.shared.clone(),
+            most: (self.scales.forces.1, self.scales.deepest),
+            least_peak: self.scales.forces.0,
+            least_floor: FLOOR * self.noise_share(),
+        }
+    }
+}
+
+fn scales(study: &Study, courses: &[ForceRecording], elastic: &Elastic) -> Scales {
+    let peaks = courses.iter().map(ForceRecording::most);
+    let forces = peaks.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), f| {
+        (low.min(f), high.max(f))
+    });
+    let deepest = courses
+        .iter()
+        .map(ForceRecording::deepest)
+        .fold(0.0, f64::max);
+    let logs = elastic
+        .places
+        .iter()
+        .map(|p| libm::log(radius(p, deepest).max(1e-3)));
+    let has_strain = courses.iter().any(|c| {
+        let name = &study.recordings[c.recording].indenter;
+        let tool = study.indenters.iter().find(|i| i.name == *name);
+        tool.is_some_and(|t| matches!(t.shape, Shape::Sphere { .. } | Shape::Cylinder { .. }))
+    });
+    Scales {
+        deepest,
+        radius: libm::exp(logs.sum::<f64>() / elastic.places.len() as f64),
+        forces,
+        has_bone: elastic
+            .variant(thenar_contact::effects::Effect::Bone, 0)
+            .is_some(),
+        has_strain,
+    }
+}
+
+/// True if the skin is a plane about every site, and goes on beyond what a press moves.
+fn is_flat(study: &Study) -> bool {
+    let thickness = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
+    let thickness = thickness.fold(f64::INFINITY, f64::min);
+    if !thickness.is_finite() {
+        return false;
+    }
+    study.sites.iter().all(|site| {
+        let (point, along): (Vector3<f64>, Vector3<f64>) =
+            (site.point_mm.into(), site.direction.into());
+        let reach = FLAT.1 * thickness;
+        let positions = || study.skin.mesh.positions.iter().map(|p| p - point);
+        positions().any(|off| off.norm() > reach)
+            && positions()
+                .all(|off| off.norm() > reach || off.dot(&along).abs() < FLAT.0 * thickness)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::synthetic::{ready, tool};
+
+    #[test]
+    fn form_prior_widens_from_sphere_to_mesh_to_round_skin() {
+        let tools = (0..2).map(|_| tool(1.0, |d| d, |_| 1.0)).collect();
+        let (mut ready, _) = ready(tools, &[], 0.1);
+        ready.elastic.places[1].is_exact = true;
+        let of = |elastic: &Elastic, place: usize| form_error(elastic, place)[0];
+        let flat = [0, 1].map(|place| of(&ready.elastic, place));
+        ready.elastic.is_flat = false;
+        let round = of(&ready.elastic, 0);
+        assert!(flat[1] < flat[0] && flat[0] < round);
+    }
+
+    #[test]
+    fn first_touch_prior_is_bounded_by_repeat_scatter() {
+        let all = [None, Some(0.02), Some(0.4)].map(touch);
+        assert_eq!(all, [0.05, 0.02, 0.05]);
+    }
+}

@@ -1,0 +1,121 @@
+//! Relaxation spectra: periods and shares of their branches.
+
+/// Branches of a load that fades, and what of them is free. Periods in s, or in s at the contact radius `reference_mm`, or in mm.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Spectrum {
+    /// Each share, of branches of these periods.
+    Free(Vec<f64>),
+    /// The sum of the shares, the logarithm of the median period and the width: a normal law over the logarithm of the period.
+    ///
+    /// Free shares let one clock imitate another wherever the contact's size does not change much. Tissue loses its load by a
+    /// smooth spectrum (Fung 1993, Biomechanics, 7.6), and so do layers that drain (Hu et al. 2010).
+    Smooth {
+        /// Smallest and largest width, in nats of the period.
+        widths: (f64, f64),
+    },
+}
+
+impl Spectrum {
+    /// Number of free numbers.
+    pub fn count(&self) -> usize {
+        match self {
+            Spectrum::Free(periods) => periods.len(),
+            Spectrum::Smooth { .. } => 3,
+        }
+    }
+
+    /// Period and share of every branch for the free numbers.
+    ///
+    /// Branches of a smooth spectrum move with its median: on periods that stay, a narrow one would be now between two branches
+    /// and now on one, and a fit would end between any two.
+    pub(crate) fn branches(&self, numbers: &[f64]) -> Vec<(f64, f64)> {
+        match (self, numbers) {
+            (Spectrum::Free(periods), shares) => {
+                let each = periods.iter().zip(shares);
+                each.map(|(period, share)| (*period, *share)).collect()
+            }
+            (Spectrum::Smooth { .. }, [sum, middle, width]) => {
+                let all: f64 = NODES.iter().map(|(_, weight)| weight).sum();
+                let branch =
+                    |(z, weight): &(f64, f64)| (libm::exp(middle + width * z), sum * weight / all);
+                NODES.iter().map(branch).collect()
+            }
+            (Spectrum::Smooth { .. }, _) => Vec::new(),
+        }
+    }
+}
+
+/// A normal law of mean 0 and variance 1 at even steps: places, and weights that do not sum to 1.
+const NODES: [(f64, f64); 7] = [
+    (-3.0 * STEP, TAILS[2]),
+    (-2.0 * STEP, TAILS[1]),
+    (-STEP, TAILS[0]),
+    (0.0, 1.0),
+    (STEP, TAILS[0]),
+    (2.0 * STEP, TAILS[1]),
+    (3.0 * STEP, TAILS[2]),
+];
+/// Step between them: 3/4, widened by what the cut tails take from the variance.
+const STEP: f64 = 0.773_9;
+/// `exp(-z^2 / 2)` at z = 3/4, 3/2 and 9/4.
+const TAILS: [f64; 3] = [0.754_84, 0.324_65, 0.079_56];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::mechanism::WIDTHS;
+
+    fn smooth(numbers: [f64; 3]) -> Vec<(f64, f64)> {
+        let widths = WIDTHS[0];
+        Spectrum::Smooth { widths }.branches(&numbers)
+    }
+
+    #[test]
+    fn log_normal_spectrum_has_its_moments() {
+        let all = smooth([0.3, 0.7, 1.5]);
+        let moment = |k: i32| -> f64 {
+            let of = |(period, share): &(f64, f64)| share * (libm::log(*period) - 0.7).powi(k);
+            all.iter().map(of).sum::<f64>() / 0.3
+        };
+        assert!((moment(0) - 1.0).abs() < 1e-12);
+        assert!(moment(1).abs() < 1e-12);
+        assert!((moment(2) / 1.5f64.powi(2) - 1.0).abs() < 1e-3);
+        let free = Spectrum::Free(vec![2.0, 3.0]).branches(&[0.1, 0.2]);
+        assert_eq!(free, [(2.0, 0.1), (3.0, 0.2)]);
+    }
+
+    /// The load left of the widest spectrum is that of the normal law itself, integrated at steps forty times as fine.
+    #[test]
+    fn discrete_spectrum_approximates_the_log_normal_relaxation() {
+        let (width, fine) = (WIDTHS[0].1, 2000);
+        let all = smooth([1.0, 0.0, width]);
+        for k in 0..=60 {
+            let time = 1e-3 * libm::pow(1e6, f64::from(k) / 60.0);
+            let ours: f64 = all.iter().map(|(t, s)| s * libm::exp(-time / t)).sum();
+            let (mut law, mut whole) = (0.0, 0.0);
+            for n in 0..=fine {
+                let z = -6.0 + 12.0 * f64::from(n) / f64::from(fine);
+                let weight = libm::exp(-0.5 * z * z);
+                law += weight * libm::exp(-time / libm::exp(width * z));
+                whole += weight;
+            }
+            assert!(
+                (ours - law / whole).abs() < 0.03,
+                "{time}: {ours} {}",
+                law / whole
+            );
+        }
+    }
+
+    /// Hu, Zhao, Vlassak & Suo 2010: `g = 0.491 exp(-0.908 tau^0.5) + 0.509 exp(-1.679 tau)`.
+    #[test]
+    fn spectrum_contains_the_poroelastic_half_space() {
+        let all = smooth([1.0, -0.367, WIDTHS[1].1]);
+        for k in 0..=60 {
+            let tau = 0.01 * libm::pow(3000.0, f64::from(k) / 60.0);
+            let hu = 0.491 * libm::exp(-0.908 * tau.sqrt()) + 0.509 * libm::exp(-1.679 * tau);
+            let ours: f64 = all.iter().map(|(t, s)| s * libm::exp(-tau / t)).sum();
+            assert!((ours - hu).abs() < 0.026, "tau {tau}: {ours} {hu}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Deviations of repeats from their mean, their scatter, and the first-order autoregressive correlation of noise.
+
+use nalgebra::Vector2;
+
+use crate::observe::robust_scale::trimmed_deviation;
+
+/// Deviations beyond this many standard deviations are outliers, and not noise.
+pub(crate) const OUTLIER: f64 = 3.5;
+
+/// Variance that values within `OUTLIER` standard deviations of a normal law keep.
+const KEPT_VARIANCE: f64 = 0.9935;
+
+/// Least part of a sample's variance that the one before does not tell.
+pub(crate) const LEAST_FRESH: f64 = 1e-6;
+
+/// Fewest samples of a channel from which noise is told.
+pub(crate) const LEAST_SAMPLES: usize = 8;
+
+/// Recordings of one protocol with one tool at one place, by number; two or more.
+pub type Group = Vec<usize>;
+
+/// Deviations within one group.
+pub struct Deviations {
+    pub(crate) group: Group,
+    /// s.
+    pub(crate) time: Vec<f64>,
+    /// Largest mean value.
+    pub(crate) most: f64,
+    /// Deviation by repeat and sample, with what differs as a whole taken out.
+    pub(crate) rest: Vec<Vec<f64>>,
+    /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and what each sample adds to them.
+    pub(crate) whole: Vec<Vector2<f64>>,
+    pub(crate) along: Vec<Vector2<f64>>,
+}
+
+impl Deviations {
+    /// Deviations made independent, over the standard deviation of the noise, by repeat.
+    pub(crate) fn whitened(&self, (sigma, memory_s): (f64, f64)) -> Vec<Vec<f64>> {
+        let m = self.rest.len() as f64;
+        // The repeats' own mean takes part of each.
+        let sigma = sigma * ((m - 1.0) / m).sqrt();
+        let steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
+        let series = |rest: &Vec<f64>| -> Vec<f64> {
+            (1..rest.len())
+                .map(|k| {
+                    let carried = autocorrelation(steps[k - 1], memory_s);
+                    innovation(rest[k], rest[k - 1], carried) / sigma
+                })
+                .collect()
+        };
+        match sigma > 0.0 {
+            true => self.rest.iter().map(series).collect(),
+            false => Vec::new(),
+        }
+    }
+
+    /// Variance of what differs as a whole, for noise of variance 1 with that memory.
+    pub(crate) fn unit_variance(&self, memory_s: f64) -> Vector2<f64> {
+        let mut sum = Vector2::zeros();
+        for (k, a) in self.along.iter().enumerate() {
+            sum += a.component_mul(a);
+            // Noise remembers little of what lies many memories back.
+            for j in (0..k).rev() {
+                let shared = autocorrelation(self.time[k] - self.time[j], memory_s);
+                if shared < 1e-3 {
+                    break;
+                }
+                sum += a.component_mul(&self.along[j]) * (2.0 * shared);
+            }
+        }
+        sum
+    }
+}
+
+/// Correlation of noise over `step`, s, if it forgets itself in `memory_s`.
+pub(crate) fn autocorrelation(step: f64, memory_s: f64) -> f64 {
+    match memory_s > 0.0 {
+        true => libm::exp(-step.max(0.0) / memory_s),
+        false => 0.0,
+    }
+}
+
+/// What is new in a value, of which `carried` of the one before is left, in units of all that it could be.
+pub(crate) fn innovation(now: f64, before: f64, carried: f64) -> f64 {
+    (now - carried * before) / (1.0 - carried * carried).max(LEAST_FRESH).sqrt()
+}
+
+/// Standard deviation without outliers.
+pub(crate) fn robust_deviation(values: &[f64]) -> f64 {
+    trimmed_deviation(values, OUTLIER) / KEPT_VARIANCE.sqrt()
+}

@@ -1,0 +1,27 @@
+//! What the free numbers of the surrogate model are.
+
+use crate::parameters::parameter::Parameter;
+
+/// A free number of the candidate model.
+pub type Coordinate = Parameter<Kind>;
+
+/// What a free number is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Logarithm of the modulus at first touch.
+    First,
+    /// Logarithm of the modulus at the depth where it stops growing.
+    Limit,
+    /// Logarithm of a factor on all loads of a tool at its site.
+    Scale(usize),
+    /// First touch that a tool has in all its recordings, mm.
+    Touch(usize),
+    /// First touch of one recording about that, mm (number of the course).
+    Zero(usize),
+    /// Logarithm of one recording's gain.
+    Gain(usize),
+    /// Logarithm of the factor by which the model's form is off, by tool and way.
+    Form(usize, usize),
+    /// A number of a mechanism: which of the model's, which number.
+    Of(usize, usize),
+}

@@ -1,0 +1,129 @@
+//! Bounds and priors of the surrogate model's parameters: moduli, first touch, gain, and the error of the model's form.
+
+use crate::forward::mesh::replay::Replay;
+use thenar_contact::Material;
+
+use crate::forward::mesh::nuisance::KNOTS;
+use crate::forward::surrogate::force_recording::ForceRecording;
+use crate::forward::tables::elastic::Elastic;
+use crate::noise::estimate::Noise;
+use crate::parameters::priors::{
+    DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MOST, TOUCH, UNKNOWN_TOUCH,
+};
+use crate::parameters::surrogate_parameter::{Coordinate, Kind};
+
+/// Moduli, first touch, gain, and the model's form.
+pub(crate) fn shared(
+    replay: &Replay,
+    (courses, elastic): (&[ForceRecording], &Elastic),
+    noise: &Noise,
+) -> Vec<Coordinate> {
+    let known = &replay.observed.is_touch_known;
+    let mut all = moduli(&replay.tissue.materials[0]).to_vec();
+    let has_regions = replay.tissue.regions.len() > 1;
+    for place in 0..elastic.places.len() {
+        let Some(first) = courses.iter().find(|c| c.place == place) else {
+            continue;
+        };
+        let deep = first.deepest();
+        let judged = match known[first.recording] {
+            true => touch(noise.zero_mm).min(DEEPEST_TOUCH * deep),
+            false => UNKNOWN_TOUCH * deep,
+        };
+        let form = form_error(elastic, place);
+        all.extend(of_place(place, (judged, deep), (form, has_regions)));
+    }
+    for (c, course) in courses.iter().enumerate() {
+        all.extend(of_course(c, course.deepest(), noise));
+    }
+    all
+}
+
+/// The modulus at first touch and the one at which it stops growing, about the study's own.
+pub(crate) fn moduli(material: &Material) -> [Coordinate; 2] {
+    let start = [
+        (Kind::First, material.g0_mpa),
+        (Kind::Limit, material.g_lim_mpa),
+    ];
+    start.map(|(kind, modulus)| {
+        let start = libm::log(modulus);
+        Coordinate {
+            kind,
+            start,
+            bounds: (start - LOG_MODULUS, start + LOG_MODULUS),
+            prior: None,
+            step: 1e-3,
+        }
+    })
+}
+
+/// Standard deviation of the first touch that a tool has in all its recordings, mm, from that between repeats.
+pub(crate) fn touch(scatter_mm: Option<f64>) -> f64 {
+    scatter_mm.map_or(TOUCH, |scatter| scatter.min(TOUCH))
+}
+
+/// What a tool at its site may be off by: its first touch as it was judged, against a depth (mm), and the model's form.
+pub(crate) fn of_place(
+    place: usize,
+    (judged, deep): (f64, f64),
+    (form, has_regions): ([f64; KNOTS], bool),
+) -> Vec<Coordinate> {
+    let mut all = vec![Coordinate::about(
+        Kind::Touch(place),
+        (judged, MOST),
+        1e-3 * deep,
+    )];
+    if has_regions {
+        all.push(Coordinate::about(Kind::Scale(place), (0.5, MOST), 1e-3));
+    }
+    all.extend((0..KNOTS).map(|k| Coordinate::about(Kind::Form(place, k), (form[k], MOST), 1e-3)));
+    all
+}
+
+/// As [`FORM_ERROR`] has it for the tool and the skin of a place.
+pub(crate) fn form_error(elastic: &Elastic, place: usize) -> [f64; KNOTS] {
+    let is_exact = elastic.places[place].is_exact;
+    FORM_ERROR[if is_exact {
+        0
+    } else {
+        1 + usize::from(!elastic.is_flat)
+    }]
+}
+
+/// How well the elastic answers of the study's tools are known, in words.
+pub fn form_note(elastic: &Elastic) -> String {
+    let percent = |form: [f64; KNOTS]| 100.0 * form[0];
+    let meshed = percent(FORM_ERROR[1 + usize::from(!elastic.is_flat)]);
+    let places = &elastic.places[..elastic.studied];
+    let balls = places.iter().filter(|place| place.is_exact).count();
+    let known = format!(
+        "a ball on flat skin is pressed without a mesh, and its force known to {} %",
+        percent(FORM_ERROR[0])
+    );
+    match (balls, places.len() - balls) {
+        (0, _) => format!("pressed on the mesh; its forces may be off by {meshed} %"),
+        (_, 0) => known,
+        (_, others) => format!(
+            "{known}; that of {others} of {} tools, on the mesh, to {meshed} %",
+            places.len()
+        ),
+    }
+}
+
+/// What a recording may be off by: its first touch, and its gain where repeats show that it scatters.
+pub(crate) fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coordinate> {
+    let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
+    let mut all = vec![Coordinate::about(
+        Kind::Zero(course),
+        (zero, MOST),
+        1e-3 * deepest,
+    )];
+    if noise.gain > 0.0 {
+        all.push(Coordinate::about(
+            Kind::Gain(course),
+            (noise.gain, MOST),
+            1e-4,
+        ));
+    }
+    all
+}

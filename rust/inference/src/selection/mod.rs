@@ -1,0 +1,10 @@
+//! Model selection: candidate effects, the ladder of fits, Akaike weights, cross-validation and its negative control.
+
+pub mod scored;
+pub mod candidates;
+pub(crate) mod candidate_fits;
+pub mod ladder;
+pub mod model_weights;
+pub mod cross_validation;
+pub(crate) mod negative_control;
+pub mod empirical_factor;

@@ -1,0 +1,308 @@
+//! The page of a diagnosis: the sentence, rivals, ledger by phase, curves before and after, and what to record next; then the comparison.
+
+use std::fmt::Write;
+
+use crate::before_after_plot::plot;
+use crate::comparison_page::page;
+use crate::svg::escaped;
+use thenar_diagnosis::variable_in_words;
+use thenar_diagnosis::{Correction, Unlisted};
+use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
+use thenar_inference::number_format::capital;
+use thenar_inference::selection::cross_validation::Gain;
+
+/// Recordings that are drawn.
+const MOST_CURVES: usize = 6;
+
+/// A self-contained page, UTF-8: the diagnosis first, then the comparison that it started from.
+pub fn diagnosis_html(found: &Diagnosis) -> String {
+    let mut html = "<section class='diagnosis'>\n".to_owned();
+    html += &findings(found);
+    if let Some(unlisted) = &found.unlisted {
+        html += &nameless(unlisted);
+    }
+    if let Some(gain) = &found.gain {
+        html += &gained(gain);
+    }
+    html += &next(found);
+    html += &rivals(&found.rivals);
+    html += &curves(found);
+    html += &smallest(found);
+    let notes: String = found
+        .notes
+        .iter()
+        .map(|note| format!("<li>{}</li>", escaped(note)))
+        .collect();
+    let _ = writeln!(
+        html,
+        "<h3>What stands behind it</h3><ul>{notes}</ul></section>\n<section><h2>With parameters alone</h2><p class='sentence'>{}</p>{}</section>",
+        escaped(&found.comparison.sentence),
+        match found.verdict {
+            Verdict::NothingMissing | Verdict::Parameters => "",
+            _ =>
+                "<p class='meta'>This weighs all that is left at once; what stands above was sought cause by cause, which finds smaller effects.</p>",
+        }
+    );
+    page(&found.comparison, (&found.sentence, &html))
+}
+
+fn findings(found: &Diagnosis) -> String {
+    let mut html = String::new();
+    for finding in &found.findings {
+        let _ = write!(
+            html,
+            "<h3>{} ({:.0} % sure)</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
+            escaped(&capital(&finding.effect.replace('_', " "))),
+            100.0 * finding.confidence
+        );
+        html.extend(finding.numbers.iter().map(number));
+        html.extend(found.choices(finding.effect).iter().map(choice));
+        html += "</table>\n";
+        html += &signs(&finding.consequences);
+    }
+    html
+}
+
+/// What is known of what has no name.
+fn nameless(of: &Unlisted) -> String {
+    let mut html = "<h3>What it depends on</h3>".to_owned();
+    if let Some(rhythm) = of.rhythm {
+        let _ = write!(
+            html,
+            "<p>Repeats differ by a rhythm of {:.2} Hz ({:.0} a minute) that grows with the force; noise alone would show one as clear in {}.</p>",
+            rhythm.hz,
+            rhythm.per_minute(),
+            share(rhythm.chance)
+        );
+    }
+    let told = of
+        .depends_on
+        .iter()
+        .filter(|(_, removed)| removed.is_finite());
+    let rows: String = told
+        .map(|(on, removed)| {
+            format!(
+                "<tr><td class='left'>{}</td><td>{:.0} %</td></tr>",
+                variable_in_words(on),
+                100.0 * removed
+            )
+        })
+        .collect();
+    if rows.is_empty() {
+        return html + "<p>No correction can be given.</p>\n";
+    }
+    let _ = write!(
+        html,
+        "<table><tr><th class='left'>goes with</th><th>removed on protocols not used</th></tr>{rows}</table>"
+    );
+    html + &of.correction.as_ref().map_or(String::new(), corrected)
+}
+
+fn corrected(of: &Correction) -> String {
+    let percent = |change: &f64| format!("<td>{:+.1}</td>", 100.0 * change);
+    let cells = |side: &[f64]| side.iter().map(percent).collect::<String>();
+    let at: String = of
+        .factors
+        .knots
+        .iter()
+        .map(|at| format!("<th>{}</th>", size(*at)))
+        .collect();
+    let [going_in, going_out] = [0, 1].map(|side| cells(&of.factors.change[side]));
+    let out = match going_in == going_out {
+        true => String::new(),
+        false => format!("<tr><td class='left'>going out, %</td>{going_out}</tr>"),
+    };
+    let first = if out.is_empty() {
+        "force, %"
+    } else {
+        "going in, %"
+    };
+    format!(
+        "<table><tr><th class='left'>{}, {}</th>{at}</tr><tr><td class='left'>{first}</td>{going_in}</tr>{out}</table><p class='meta'>An \
+empirical correction of the force with parameters alone: what the recordings ask for, not why. It holds for nothing that was not recorded.</p>\n",
+        variable_in_words(of.by().0),
+        of.by().1
+    )
+}
+
+/// Small shares as one in so many.
+fn share(of: f64) -> String {
+    match of < 1e-3 {
+        true => "fewer than one study in a thousand".to_owned(),
+        false => format!("at most {:.1} % of studies", 100.0 * of),
+    }
+}
+
+fn number(of: &Number) -> String {
+    let (between, unit) = of.told();
+    format!(
+        "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
+        spoken(of.name, unit),
+        of.value
+    )
+}
+
+/// A number's name without the unit that stands beside it: the work of `work_j_per_m2` in J/m2.
+fn spoken(name: &str, unit: &str) -> String {
+    let ending = format!("_{}", unit.to_lowercase().replace('/', "_per_"));
+    name.strip_suffix(&ending).unwrap_or(name).replace('_', " ")
+}
+
+fn choice((name, option): &(&'static str, &'static str)) -> String {
+    format!("<tr><td class='left'>{name}</td><td>{option}</td><td></td><td></td></tr>")
+}
+
+/// Three digits, for sizes of any unit.
+fn size(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = libm::log10(value.abs().max(1e-9)).floor();
+    let after = (2.0 - before).clamp(0.0, 9.0) as usize;
+    format!("{value:.after$}")
+}
+
+/// What must show in the recordings if the effect is there, and whether it does.
+fn signs(consequences: &[(String, bool)]) -> String {
+    if consequences.is_empty() {
+        return String::new();
+    }
+    let row = |(sentence, holds): &(String, bool)| {
+        let told = if *holds { "holds" } else { "does not hold" };
+        format!(
+            "<tr><td class='left'>{}</td><td class='left'>{told}</td></tr>",
+            escaped(sentence)
+        )
+    };
+    let rows: String = consequences.iter().map(row).collect();
+    format!(
+        "<table><tr><th class='left'>what must show if it is there</th><th class='left'>in these recordings</th></tr>{rows}</table>\n"
+    )
+}
+
+fn gained(gain: &Gain) -> String {
+    let placebo = gain.placebo.map_or(String::new(), |share| {
+        format!(
+            " The same change on the wrong recordings at the wrong moments removes {:.0} % at most (99 of 100 draws).",
+            100.0 * share
+        )
+    });
+    format!(
+        "<p>Predictions of recordings that were held out, protocol by protocol: {:.2} standard deviations of the noise before, {:.2} \
+after; repeats predict one another to {:.2}. Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %).{placebo}</p>\n",
+        gain.before.rms,
+        gain.after.rms,
+        gain.floor.rms,
+        100.0 * gain.removed,
+        100.0 * gain.interval.0,
+        100.0 * gain.interval.1
+    )
+}
+
+fn next(found: &Diagnosis) -> String {
+    if found.record_next.is_empty() {
+        return String::new();
+    }
+    let one = |next: &thenar_diagnosis::Suggestion| {
+        format!("<li>{} ({})</li>", escaped(&next.text), next.outlook())
+    };
+    let list: String = found.record_next.iter().map(one).collect();
+    format!("<h3>Record next</h3><ol>{list}</ol>\n")
+}
+
+fn rivals(all: &[Rival]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut html = "<h3>What was tried</h3><table><tr><th class='left'>explanation</th><th>evidence, nats</th><th>probability</th>\
+<th>shared misfit left</th><th>load</th><th>hold</th><th>unload</th><th>rest</th></tr>"
+        .to_owned();
+    for rival in all.iter().take(12) {
+        let names = rival.effects.join(" + ").replace('_', " ");
+        let _ = write!(
+            html,
+            "<tr><td class='left'>{}</td><td>{}</td><td>{:.0} %</td><td>{:.0} %</td>",
+            escaped(&names),
+            nats(rival.evidence),
+            100.0 * rival.probability,
+            100.0 * rival.left
+        );
+        for part in rival.ledger {
+            let _ = write!(html, "<td>{}</td>", nats(part));
+        }
+        html += "</tr>";
+    }
+    html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued. A pair one of which is not needed \
+counts as the other alone, and has no probability of its own.</p>\n"
+}
+
+/// Evidence with one decimal; what rounds to nothing has no sign.
+fn nats(evidence: f64) -> String {
+    format!("{:.1}", (10.0 * evidence).round() / 10.0 + 0.0)
+}
+
+fn smallest(found: &Diagnosis) -> String {
+    if found.smallest_seen.is_empty() {
+        return String::new();
+    }
+    let row = |(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
+        let size = value.map_or_else(|| "at no size".to_owned(), size);
+        format!(
+            "<tr><td class='left'>{}</td><td>{size}</td><td class='left'>{}</td></tr>",
+            escaped(&name.replace('_', " ")),
+            value.map_or_else(String::new, |_| escaped(unit))
+        )
+    };
+    let rows: String = found.smallest_seen.iter().map(row).collect();
+    format!(
+        "<h3>Smallest effect that would have been seen</h3><table><tr><th class='left'>effect</th><th>size</th><th class='left'>unit</th></tr>{rows}</table>\n"
+    )
+}
+
+fn curves(found: &Diagnosis) -> String {
+    let is_corrected = (found.unlisted.as_ref()).is_some_and(|u| u.correction.is_some());
+    if (found.findings.is_empty() && !is_corrected) || found.curves.is_empty() {
+        return String::new();
+    }
+    let what = match is_corrected {
+        true => "the empirical correction",
+        false => "what was found",
+    };
+    let plots: String = found.curves.iter().take(MOST_CURVES).map(plot).collect();
+    format!(
+        "<h3>Before and after</h3><div class='pair'>{plots}</div><p class='meta'>Above, force over time: dots measured, dashes with parameters \
+alone, blue with {what}. Below, the same less what parameters alone give: dots what they leave, blue what is added by {what}.</p>\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{nats, size, spoken};
+
+    #[test]
+    fn a_size_of_any_unit_has_three_digits() {
+        let told = [0.000_123_4, 0.0567, 0.2, 12.345, 4321.0].map(size);
+        assert_eq!(told, ["0.000123", "0.0567", "0.200", "12.3", "4321"]);
+        assert_eq!(size(0.0), "0");
+    }
+
+    #[test]
+    fn a_number_is_called_without_its_unit() {
+        let told = [
+            ("work_j_per_m2", "J/m2"),
+            ("offset_n", "N"),
+            ("loss", ""),
+            ("poisson_ratio", "1"),
+        ];
+        let names = told.map(|(name, unit)| spoken(name, unit));
+        assert_eq!(names, ["work", "offset", "loss", "poisson ratio"]);
+    }
+
+    #[test]
+    fn rounded_zero_has_no_sign() {
+        assert_eq!(
+            [-0.04, 0.04, -0.06, 12.34].map(nats),
+            ["0.0", "0.0", "-0.1", "12.3"]
+        );
+    }
+}
