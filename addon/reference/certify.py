@@ -17,6 +17,8 @@ from ..steps import Cancel, Progress, Steps
 SIDES_MM = 10.0
 """How far beyond the regions, along the skin, tissue may move; what is farther is held."""
 LAYERS = 3
+MOST_SIDEWAYS = 0.05
+"""Share of the force that pushes skin along itself from which a note is given."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,11 @@ def _notes(tissue: Tissue, found: Any) -> list[str]:
     if inside:
         out.append(
             f"in creases at {inside} vertices inside the product tissue could not be meshed; it presses less there"
+        )
+    if found.sideways_share > MOST_SIDEWAYS:
+        out.append(
+            f"{found.sideways_share:.0%} of the reference's force pushes skin sideways: the product is thinner there "
+            "than twice the depth, and its force is not to be used"
         )
     return out
 

@@ -17,6 +17,9 @@ const LIMITS: GapLimits = GapLimits {
     max_depth_mm: 100.0,
 };
 
+/// Cosine between a contact's normal and the skin's from which the skin is pushed along itself.
+const SIDEWAYS: f64 = -0.2;
+
 /// A rigid, smooth product before the skin of a posture.
 pub struct Obstacle<'a> {
     product: &'a Product,
@@ -47,6 +50,8 @@ pub struct Touch {
     pub stiffness: f64,
     /// Energy of the penalty, N mm.
     pub energy: f64,
+    /// Whether the product pushes the skin along itself and not back: a tool thinner than twice its depth does.
+    pub is_sideways: bool,
 }
 
 /// How hard the product is, and how much of it has grown.
@@ -137,8 +142,9 @@ impl<'a> Obstacle<'a> {
             .vertices
             .iter()
             .zip(&self.areas)
+            .zip(&self.facing)
             .zip(self.shifts.iter().zip(&gaps));
-        all.filter_map(|((vertex, area), (shift, gap))| {
+        all.filter_map(|(((vertex, area), facing), (shift, gap))| {
             let gap = gap.as_ref()?;
             // The onset lies inside: skin that does not reach the product bears nothing.
             let distance = gap.distance + penalty.inset - shift + ONSET_MM;
@@ -150,6 +156,7 @@ impl<'a> Obstacle<'a> {
                 force: pressure * area,
                 stiffness: slope * area,
                 energy: energy * area,
+                is_sideways: gap.normal.dot(facing) > SIDEWAYS,
             })
         })
         .collect()

@@ -41,9 +41,9 @@ const MOST_STEPS: usize = 60;
 /// Numbers of the computation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Layers of prisms between bone and skin.
+    /// Layers of prisms between bone and skin, 1 to 8.
     pub layers: usize,
-    /// Bulk modulus over shear modulus; tissue keeps its volume, 100 lets it give way by a hundredth of a strain.
+    /// Bulk modulus over shear modulus, 10 to 10,000; tissue keeps its volume, 100 lets it give way by a hundredth of a strain.
     pub bulk_ratio: f64,
     /// Edges longer than this are split, once, where the product is within `NEAR_MM`, mm; infinity: none.
     pub longest_edge_mm: f64,
@@ -59,6 +59,24 @@ impl Default for Settings {
             longest_edge_mm: 1.6,
             tolerance: 2e-4,
         }
+    }
+}
+
+impl Settings {
+    fn check(&self) -> Result<(), ReferenceError> {
+        let refuse = |what: &str, found: String, remedy| ReferenceError::Tissue {
+            what: what.to_owned(),
+            found,
+            remedy,
+        };
+        if !(1..=8).contains(&self.layers) {
+            return Err(refuse("layers", self.layers.to_string(), "give 1 to 8"));
+        }
+        if !(10.0..=1e4).contains(&self.bulk_ratio) {
+            let remedy = "give 10 (compressible) to 10000";
+            return Err(refuse("bulk_ratio", self.bulk_ratio.to_string(), remedy));
+        }
+        Ok(())
     }
 }
 
@@ -79,10 +97,11 @@ pub fn press(
     progress: Progress<'_>,
 ) -> Result<ReferenceContact, ReferenceError> {
     tissue.check()?;
+    settings.check()?;
     let near = Obstacle::near(tissue, product, NEAR_MM);
     let refined = Refined::new(tissue, |v| near[v], settings.longest_edge_mm);
     let (vertex_count, tissue) = (tissue.skin.len(), &refined.tissue);
-    let mesh = PrismMesh::new(tissue, settings.layers.clamp(1, 8))?;
+    let mesh = PrismMesh::new(tissue, settings.layers)?;
     if mesh.free_count > MOST_NODES {
         return Err(too_large(&mesh));
     }
@@ -101,6 +120,7 @@ pub fn press(
         equilibrium,
         modulus: moduli / tissue.shear_modulus_mpa.len() as f64,
         deepest,
+        done: 0.0,
         progress,
     };
     let forces = growth.run(settings.tolerance)?;
@@ -123,6 +143,8 @@ struct Growth<'a> {
     modulus: f64,
     /// Overlap before the press, mm.
     deepest: f64,
+    /// Share of the work done, never falling.
+    done: f64,
     progress: Progress<'a>,
 }
 
@@ -136,7 +158,7 @@ impl Growth<'_> {
             if end == End::Balanced {
                 grown = next;
                 step = (2.0 * step).min(GROWTH_MM.0);
-                self.tell(0.7 * grown / self.deepest)?;
+                self.advance(0.6 * grown / self.deepest)?;
             } else {
                 self.equilibrium.places = before;
                 step *= 0.5;
@@ -147,7 +169,7 @@ impl Growth<'_> {
         }
         let last = RIGID;
         self.harden(last)?;
-        self.tell(0.8)?;
+        self.advance(0.8)?;
         let last_limits = Limits {
             tolerance,
             most_steps: MOST_STEPS,
@@ -158,7 +180,7 @@ impl Growth<'_> {
             let (end, forces) = self.balance(last, 0.0, last_limits)?;
             match (end, forces) {
                 (End::Balanced, Some(forces)) if is_last => return Ok(forces),
-                (End::Balanced, _) => self.tell(0.8 + 0.02 * f64::from(round as u8))?,
+                (End::Balanced, _) => self.advance(0.85 + 0.05 * f64::from(round as u8))?,
                 (_, forces) => return Err(self.unsolved(self.deepest, forces.as_ref())),
             }
         }
@@ -175,6 +197,7 @@ impl Growth<'_> {
             let (end, forces) = self.balance(next, 0.0, limits)?;
             if end == End::Balanced {
                 hardness = next;
+                self.advance(0.6 + 0.2 * (hardness / GROWING).ln() / (last / GROWING).ln())?;
                 factor = (factor * factor).min(HARDER);
             } else {
                 self.equilibrium.places = before;
@@ -198,17 +221,18 @@ impl Growth<'_> {
             inset,
         };
         let progress = self.progress;
-        let share = 0.7 * (1.0 - inset / self.deepest.max(1e-9));
+        let done = self.done;
         let (end, forces) = self
             .equilibrium
-            .balance(penalty, limits, &|| !progress(share));
+            .balance(penalty, limits, &|| !progress(done));
         match end {
             End::Cancelled => Err(ReferenceError::Cancelled),
             _ => Ok((end, forces)),
         }
     }
 
-    fn tell(&self, share: f64) -> Result<(), ReferenceError> {
+    fn advance(&mut self, share: f64) -> Result<(), ReferenceError> {
+        self.done = share;
         if (self.progress)(share) {
             Ok(())
         } else {

@@ -26,6 +26,9 @@ pub struct ReferenceContact {
     pub patch_peak_mpa: f64,
     /// Deepest skin vertex inside the product, mm: what the penalty gives way.
     pub penetration_mm: f64,
+    /// Share of the force that pushes skin along itself and not back, as a tool does that is thinner than twice its depth: read no
+    /// force where it is large.
+    pub sideways_share: f64,
     /// Smallest and largest volume of a prism over its volume before.
     pub dilatation: [f64; 2],
     /// Norm of the residual over the contact forces.
@@ -51,10 +54,12 @@ impl ReferenceContact {
         for (v, gap) in gaps {
             distance[v] = gap;
         }
-        let mut penetration = 0.0_f64;
+        let (mut penetration, mut sideways, mut total) = (0.0_f64, 0.0, 0.0);
         for touch in &forces.touches {
             force_n[touch.vertex as usize] = touch.normal * touch.force;
             penetration = penetration.max(-touch.distance);
+            total += touch.force;
+            sideways += if touch.is_sideways { touch.force } else { 0.0 };
         }
         let mut nodal = vec![0.0; n];
         for triangle in &tissue.triangles {
@@ -98,6 +103,7 @@ impl ReferenceContact {
             contact_area_mm2: area,
             patch_peak_mpa: patch_peak(&force_n, &nodal, &(0..n).map(place).collect::<Vec<_>>()),
             penetration_mm: penetration,
+            sideways_share: if total > 0.0 { sideways / total } else { 0.0 },
             dilatation: sizes,
             force_n,
             unbalanced: forces.unbalanced(),

@@ -48,6 +48,11 @@ def test_forces_balance_and_the_skin_lies_at_the_product():
     assert len(found.folded) == 0
 
 
+def test_a_tool_thinner_than_twice_its_depth_is_said():
+    assert pressed().sideways_share < 0.01
+    assert pressed(z=-3.6).sideways_share > 0.5, "the sides of the block are nearer than its lower face"
+
+
 def test_no_contact_is_no_force():
     found = pressed(z=0.2)
     assert found.normal_force_n == 0.0 and np.abs(found.displacement_mm).max() == 0.0
@@ -73,6 +78,9 @@ def test_a_modulus_twice_as_large_gives_twice_the_force():
         ({"held": [True] * 289}, thenar.MeshError, "no skin vertex that can move"),
         ({"held": [True]}, thenar.MeshError, "array `is_held`"),
         ({"stiffening": -1.0}, thenar.MeshError, "stiffening"),
+        ({"layers": 0}, thenar.MeshError, "layers: found 0; give 1 to 8"),
+        ({"bulk_ratio": 1e12}, thenar.MeshError, "bulk_ratio"),
+        ({"bulk_ratio": float("nan")}, thenar.MeshError, "bulk_ratio"),
     ],
 )
 def test_input_that_cannot_be_computed_is_refused_by_name(change, error, words):
@@ -98,7 +106,7 @@ def test_it_stops_when_asked():
 def test_progress_never_goes_back():
     seen = []
     pressed(progress=lambda stage, share: seen.append(share))
-    assert seen == sorted(seen) and seen[-1] <= 1.0
+    assert seen == sorted(seen) and seen[0] >= 0.0 and 0.8 < seen[-1] <= 1.0
 
 
 def test_bone_lies_under_the_skin_at_its_thickness():

@@ -23,7 +23,8 @@ use crate::running::{Hooks, run};
 ///
 /// Returns a record: `displacement_mm` and `force_n` (n, 3) of the product on the skin, `pressure_mpa` (n,), `total_force_n` (3,) of the skin on the product,
 /// `normal_force_n`,
-/// `contact_area_mm2`, `patch_peak_mpa` (largest mean over 24 mm2), `penetration_mm`, `dilatation` (smallest and largest change of volume), `unbalanced` (residual over contact
+/// `contact_area_mm2`, `patch_peak_mpa` (largest mean over 24 mm2), `penetration_mm`, `sideways_share` (of the force that pushes skin along itself, as
+/// a tool does that is thinner than twice its depth), `dilatation` (smallest and largest change of volume), `unbalanced` (residual over contact
 /// force), `steps`, `folded` (vertices at whose triangles tissue could not be meshed). Raises `MeshError`, `SolveError`, `Cancelled`.
 #[pyfunction]
 #[pyo3(signature = (posed_vertices_mm, triangles, bone_mm, shear_modulus_mpa, product_vertices_mm, product_triangles=None, *, held=None, stiffening=0.0, layers=3, bulk_ratio=100.0, cancel=None, progress=None))]
@@ -87,6 +88,7 @@ fn as_record(py: Python<'_>, found: ReferenceContact) -> PyResult<Py<PyAny>> {
     entries.set_item("contact_area_mm2", found.contact_area_mm2)?;
     entries.set_item("patch_peak_mpa", found.patch_peak_mpa)?;
     entries.set_item("penetration_mm", found.penetration_mm)?;
+    entries.set_item("sideways_share", found.sideways_share)?;
     entries.set_item("dilatation", (found.dilatation[0], found.dilatation[1]))?;
     entries.set_item("unbalanced", found.unbalanced)?;
     entries.set_item("steps", found.steps)?;
