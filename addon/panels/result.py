@@ -136,7 +136,7 @@ class THENAR_PT_reference(Tab, bpy.types.Panel):
             text.paragraph(layout, context, "Solves the tissue as a solid: minutes on a whole grasp")
             return
         box = layout.box().column(align=True)
-        _compared(box, "", ("Fast", "Reference", "Ratio"))
+        _compared(box, "", ("Fast", "Ref.", "Ratio"))
         _compared(box, "Force, N", _three(result.force_n, reference.force_n, ".1f"))
         _compared(box, "Area, cm²", _three(result.area_mm2 / 100, reference.area_mm2 / 100, ".1f"))
         _compared(box, "24 mm², kPa", _three(result.patch_peak_kpa, reference.patch_peak_kpa, ".0f"))
