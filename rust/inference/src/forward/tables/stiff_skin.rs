@@ -2,7 +2,7 @@
 //!
 //! Where a tool answers as some ball on the bare layer does, the skin's part is that ball's (`thenar_contact::ball`), whose skin gives
 //! way through its thickness and stretches as it is pressed deep. Other tools are pressed on the mesh with a skin of
-//! [`MESHED_MM`], a plate at small strains; of that only its bending stiffness counts, which gives every thickness.
+//! `MESHED_MM`, a plate at small strains; of that only its bending stiffness counts, which gives every thickness.
 
 use crate::forward::mesh::replay::Replay;
 use thenar_contact::ball::{Ball, StiffSkin};
