@@ -175,12 +175,14 @@ def telling(job: Job) -> Iterator[None]:
 
 
 def prepared(job: Job, cancel: Cancel | None = None, progress: Progress | None = None) -> "native.Skin":
-    """The job's prepared skin with its effects."""
-    thenar, started = native.module, time.perf_counter()
+    """The job's prepared skin with its effects; no other job changes it."""
+    thenar, started, key = native.module, time.perf_counter(), _skin_key(job)
     if progress is not None:
         progress("prepare", 0.0)
-    skin = cache.skin(_skin_key(job), lambda: new_skin(job, cancel, progress))
-    skin.set_effects([effect.native(thenar) for effect in job.effects])
+    skin = cache.skin(key, lambda: new_skin(job, cancel, progress))
+    if job.effects:
+        bare, wanted = skin, [effect.native(thenar) for effect in job.effects]
+        skin = cache.skin(cache.content_hash(key, *effects.hashed(job.effects)), lambda: bare.with_effects(wanted))
     job.thickness_mm = np.asarray(skin.thickness_mm)
     job.seconds["prepare"] = time.perf_counter() - started
     return skin

@@ -131,3 +131,16 @@ def test_what_acts_over_time_is_said_after_a_press():
     stage.solve()
     told = [text.name for text in bpy.context.scene.thenar.result.warnings]
     assert "relaxation and drainage act over time: bake to see it" in told
+
+
+def test_two_jobs_of_one_hand_keep_their_own_effects():
+    """A job may be computed in its thread while another one is prepared."""
+    hand, product = stage.scene()
+    bare = workflow.read_job(bpy.context, hand, [product])
+    add("bone", thickness_mm=2.0)
+    thin = workflow.read_job(bpy.context, hand, [product])
+    skins = workflow.prepared(thin), workflow.prepared(bare)
+    assert [effect.name for effect in skins[0].effects] == ["bone"] and not skins[1].effects
+    assert workflow.prepared(thin) is skins[0], "prepared once"
+    forces = [float(np.asarray(workflow.compute(job).force_n).sum()) for job in (thin, bare)]
+    assert forces[0] > 1.1 * forces[1]
