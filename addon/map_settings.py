@@ -30,7 +30,6 @@ class ThenarMaps(bpy.types.PropertyGroup):
     shown: EnumProperty(name="Map", description="Quantity that the colors on the skin show", items=KINDS)
     shear_kpa: _range("Range (kPa)", "Shear, kPa,", 50)
     depth_mm: _range("Range (mm)", "Depth, mm,", 5)
-    reference_kpa: _range("Range (kPa)", "Pressure of the reference, kPa,", 100)
     reference_difference_kpa: _range("Range (kPa)", "Reference minus fast pressure, kPa,", 50)
     residual_kpa: _range("Range (kPa)", "Measured minus simulated pressure, kPa,", 50)
     thickness_mm: _range("Range (mm)", "Thickness, mm,", 20)

@@ -7,6 +7,8 @@ from . import colormap, names
 from .scene.units import Floats
 
 PRESSURE = "PRESSURE"
+REFERENCE = "REFERENCE"
+"""Shares the range of the pressure, so that the two can be compared."""
 THICKNESS = "THICKNESS"
 _BARELY = 0.01
 """Value from which a map covers all skin that carries one, in its unit."""
@@ -32,8 +34,7 @@ class Map:
     """Setting that holds the top of its range; empty: 0 to `fixed`."""
     fixed: float = 1.0
     covers: str = "itself"
-    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin",
-    "reference" or "mat"."""
+    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin" or "mat"."""
     is_signed: bool = False
     """Whether the colours run from minus to plus the top of the range."""
 
@@ -117,13 +118,13 @@ MAPS = {
             covers="contact",
         ),
         Map(
-            "REFERENCE",
+            REFERENCE,
             names.REFERENCE_KPA,
             "Reference",
             "kPa",
             "Pressure of the reference solve, in which the tissue is a solid between skin and bone",
             _NO_REFERENCE,
-            limit="reference_kpa",
+            limit="range_kpa",
         ),
         Map(
             "REFERENCE_DIFFERENCE",
@@ -134,7 +135,7 @@ MAPS = {
             _NO_REFERENCE,
             palette="COOLWARM",
             limit="reference_difference_kpa",
-            covers="reference",
+            covers="contact",
             is_signed=True,
         ),
         Map(
@@ -173,7 +174,7 @@ def setting(view: Map, look: Any) -> tuple[Any, str] | None:
     """The property group and the name of the property that holds the top of the map's range; None where it is fixed."""
     if not view.limit:
         return None
-    return (look if view.kind == PRESSURE else look.maps), view.limit
+    return (look if view.kind in (PRESSURE, REFERENCE) else look.maps), view.limit
 
 
 def scale(view: Map, look: Any) -> Scale:
@@ -185,7 +186,6 @@ def scale(view: Map, look: Any) -> Scale:
         "contact": colormap.EDGE * max(look.range_kpa, 1e-6),
         "skin": _BARELY,
         "mat": 1.0,
-        "reference": colormap.EDGE * max(look.maps.reference_kpa, 1e-6),
     }
     low = -high if view.is_signed else 0.0
     return Scale(high, view.palette or look.palette, edges[view.covers], low)
@@ -193,8 +193,7 @@ def scale(view: Map, look: Any) -> Scale:
 
 def covering(view: Map) -> str:
     """The attribute that decides where the map covers the surface."""
-    own = {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT, "reference": names.REFERENCE_KPA}
-    return own.get(view.covers, view.attribute)
+    return {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT}.get(view.covers, view.attribute)
 
 
 def peak(view: Map, result: Any) -> float:

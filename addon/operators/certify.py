@@ -25,13 +25,14 @@ class THENAR_OT_certify(computing.Computing, bpy.types.Operator):
     def _report(self, context, result):
         display.refresh(context)
         reference = result.reference
-        if reference.note:
-            self.report({"WARNING"}, reference.note)
-        self.report(
-            {"INFO"},
+        numbers = (
             f"reference {reference.force_n:.1f} N on {reference.area_mm2 / 100:.1f} cm², "
-            f"fast {result.force_n:.1f} N on {result.area_mm2 / 100:.1f} cm²",
+            f"fast {result.force_n:.1f} N on {result.area_mm2 / 100:.1f} cm²"
         )
+        if reference.note:
+            self.report({"WARNING"}, f"{reference.note} ({numbers})")
+        else:
+            self.report({"INFO"}, numbers)
         return {"FINISHED"}
 
 

@@ -88,15 +88,20 @@ class THENAR_PT_physics_result(Physics, bpy.types.Panel):
     draw = THENAR_PT_result.draw
 
 
-class THENAR_PT_regions(Tab, bpy.types.Panel):
-    """The result by region and finger."""
+class OfResult(Tab):
+    """A panel under the result, shown where there is one."""
 
-    bl_label = "Regions"
     bl_parent_id = "THENAR_PT_result"
 
     @classmethod
     def poll(cls, context):
         return context.scene.thenar.result.is_valid
+
+
+class THENAR_PT_regions(OfResult, bpy.types.Panel):
+    """The result by region and finger."""
+
+    bl_label = "Regions"
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
@@ -117,16 +122,11 @@ class THENAR_PT_regions(Tab, bpy.types.Panel):
             columns(split, finger)
 
 
-class THENAR_PT_reference(Tab, bpy.types.Panel):
-    """The fast result beside the reference solve."""
+class THENAR_PT_reference(OfResult, bpy.types.Panel):
+    """The fast result compared with the reference solve."""
 
     bl_label = "Reference"
-    bl_parent_id = "THENAR_PT_result"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.thenar.result.is_valid
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
@@ -163,16 +163,11 @@ def _compared(column, name, values):
         cell.label(text=value)
 
 
-class THENAR_PT_comfort(Tab, bpy.types.Panel):
+class THENAR_PT_comfort(OfResult, bpy.types.Panel):
     """Pressure held against a threshold."""
 
     bl_label = "Comfort"
-    bl_parent_id = "THENAR_PT_result"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.thenar.result.is_valid
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.thenar
@@ -242,16 +237,11 @@ class THENAR_PT_notes(Tab, bpy.types.Panel):
             text.paragraph(self.layout, context, note.name, "ERROR")
 
 
-class THENAR_PT_quality(Tab, bpy.types.Panel):
+class THENAR_PT_quality(OfResult, bpy.types.Panel):
     """How well the contact is solved and written, and where the time went."""
 
     bl_label = "Quality and Time"
-    bl_parent_id = "THENAR_PT_result"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.thenar.result.is_valid
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result

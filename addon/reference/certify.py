@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from .. import native, sentences, workflow
+from .. import names, native, sentences, workflow
 from ..hand import pads, reading, rig_axes, roles, skinning
 from ..scene import attributes, checks, units, write
 from ..scene.units import Bools, Floats, Ints
@@ -144,7 +144,7 @@ def _notes(tissue: Tissue, found: Any) -> list[str]:
 
 def _thickness(hand: Object, job: workflow.Job) -> Floats:
     """Tissue over bone (n), mm, as the solve wrote it; 0 away from the skin. Refuses tissue without bone."""
-    found = attributes.read(hand.data, write.names.THICKNESS_MM)
+    found = attributes.read(hand.data, names.THICKNESS_MM)
     if found is None or len(found) != len(job.reading.hand.rest_mm):
         raise checks.Refusal(f"'{hand.name}' has no thickness of its tissue; press Solve, then Certify")
     if (found >= write.NO_BONE_MM).any():
