@@ -86,8 +86,8 @@ def test_in_one_thread_presses_go_on_from_each_other_as_on_a_skin_of_its_own():
     skin, other = thenar.Skin(*SHEET), thenar.Skin(*SHEET)
     ours = presses(skin, BALLS[0])
     with Running(other):
-        beside = presses(other, BALLS[0])
-    assert all(same(a, b) for a, b in zip(ours, beside, strict=True))
+        meanwhile = presses(other, BALLS[0])
+    assert all(same(a, b) for a, b in zip(ours, meanwhile, strict=True))
 
 
 def test_a_warm_start_begins_at_the_last_result_in_whatever_workspace():

@@ -69,7 +69,11 @@ impl Free {
 }
 
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
-pub fn told(ready: &PreparedStudy, scored: &Scored, number: usize) -> (Vec<Number>, Switched) {
+pub fn numbers_of_effect(
+    ready: &PreparedStudy,
+    scored: &Scored,
+    number: usize,
+) -> (Vec<Number>, Switched) {
     let mechanism = &scored.mechanisms[number];
     let free = Free::of(ready, scored, number);
     let effect = mechanism.effect;
@@ -83,7 +87,7 @@ pub fn told(ready: &PreparedStudy, scored: &Scored, number: usize) -> (Vec<Numbe
     (list(effect, amplitude, &numbers), switched)
 }
 
-/// What is told of an effect. Where other numbers say how much, the amplitude of 1 with which they are switched on is none that was found.
+/// The numbers of an effect. Where other numbers say how much, the amplitude of 1 with which they are switched on is none that was found.
 fn list(effect: Effect, amplitude: Three, numbers: &[Named]) -> Vec<Number> {
     let unit = |name: &str| {
         let entry = effect.entry().shape.iter().find(|n| n.name == name);
@@ -149,11 +153,11 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
         }
         Law::Tabulated(form) if mechanism.effect == Effect::StiffSkin => (WHOLE, skin(*form, free)),
         law => {
-            let told = one(ready, (mechanism.effect, law)).map(|(name, scale)| {
+            let listed = one(ready, (mechanism.effect, law)).map(|(name, scale)| {
                 let three = interval(free, &*scale);
                 (name, three.0, three.1, three.2)
             });
-            (WHOLE, told.into_iter().collect())
+            (WHOLE, listed.into_iter().collect())
         }
     }
 }
@@ -259,7 +263,7 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
     (within(free.first(), 1.0), numbers)
 }
 
-/// Largest factor on a period that is told as its interval.
+/// Largest factor on a period that is stated as its interval.
 const MOST: f64 = 30.0;
 
 /// Amplitude and length of a load that is lost with travel.
@@ -325,8 +329,8 @@ mod tests {
     #[test]
     fn unit_amplitude_is_omitted_beside_other_numbers() {
         let names = |amplitude: Three, numbers: &[Named]| -> Vec<&str> {
-            let told = list(Effect::StiffSkin, amplitude, numbers);
-            told.iter().map(|number| number.name).collect()
+            let listed = list(Effect::StiffSkin, amplitude, numbers);
+            listed.iter().map(|number| number.name).collect()
         };
         let modulus = ("modulus_mpa", 0.2, 0.1, 0.3);
         assert_eq!(names(WHOLE, &[modulus]), ["modulus_mpa"]);

@@ -4,7 +4,7 @@ use thenar_contact::effects::{Effect, Sign};
 use thenar_inference::forward::mesh::replay::Replay;
 use thenar_recordings::Study;
 
-use crate::effect_numbers::told;
+use crate::effect_numbers::numbers_of_effect;
 use crate::findings::{Curve, Finding, Rival, Switched, When, Where};
 use crate::gates::decision::Decision;
 use crate::wording::{PHASES, phase_number};
@@ -29,7 +29,7 @@ pub fn findings(
     let of = |number: usize| {
         let mechanism = &named.mechanisms[number];
         let entry = mechanism.effect.entry();
-        let (numbers, _) = told(ready, named, number);
+        let (numbers, _) = numbers_of_effect(ready, named, number);
         Finding {
             effect: entry.name,
             kind: entry.kind(),
@@ -211,7 +211,7 @@ pub fn effects(ready: &PreparedStudy, decision: &Decision<'_>) -> Vec<Switched> 
         return Vec::new();
     };
     (0..named.mechanisms.len())
-        .map(|k| told(ready, named, k).1)
+        .map(|k| numbers_of_effect(ready, named, k).1)
         .collect()
 }
 

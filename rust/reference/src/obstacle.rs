@@ -30,8 +30,8 @@ pub struct Obstacle<'a> {
     facing: Vec<Vec3>,
     /// Area of each before the press, mm2.
     areas: Vec<f64>,
-    /// Overlap of each before the press, mm; 0 outside.
-    overlaps: Vec<f64>,
+    /// Deepest overlap before the press, mm; 0 outside.
+    pub deepest: f64,
     /// How far the product's side is moved toward each, mm, so that its penalty holds the skin at the product and not below it.
     shifts: Vec<f64>,
 }
@@ -86,7 +86,7 @@ impl<'a> Obstacle<'a> {
             vertices: Vec::new(),
             facing: Vec::new(),
             areas: Vec::new(),
-            overlaps: Vec::new(),
+            deepest: 0.0,
             shifts: Vec::new(),
         };
         let Ok(mesh) = Mesh::new(tissue.skin.clone(), tissue.triangles.clone()) else {
@@ -108,16 +108,11 @@ impl<'a> Obstacle<'a> {
                 obstacle.vertices.push(v as u32);
                 obstacle.facing.push(normals[v]);
                 obstacle.areas.push(areas[v]);
-                obstacle.overlaps.push((-gap.distance).max(0.0));
+                obstacle.deepest = obstacle.deepest.max(-gap.distance);
                 obstacle.shifts.push(0.0);
             }
         }
         obstacle
-    }
-
-    /// Deepest overlap before the press, mm.
-    pub fn deepest(&self) -> f64 {
-        self.overlaps.iter().copied().fold(0.0, f64::max)
     }
 
     /// Readings of the followed vertices where they lie at `places`, mm.

@@ -45,7 +45,7 @@ pub struct Settings {
     pub layers: usize,
     /// Bulk modulus over shear modulus, 10 to 10,000; tissue keeps its volume, 100 lets it give way by a hundredth of a strain.
     pub bulk_ratio: f64,
-    /// Edges longer than this are split, once, where the product is within `NEAR_MM`, mm; infinity: none.
+    /// Edges longer than this are split, once, within 1 mm of the product, mm; infinity: none.
     pub longest_edge_mm: f64,
     /// Largest residual over the contact forces.
     pub tolerance: f64,
@@ -114,7 +114,7 @@ pub fn press(
     };
     let equilibrium =
         Equilibrium::new((&mesh, &pattern), obstacle, law).ok_or_else(|| too_large(&mesh))?;
-    let deepest = equilibrium.obstacle.deepest();
+    let deepest = equilibrium.obstacle.deepest;
     let moduli: f64 = tissue.shear_modulus_mpa.iter().sum();
     let mut growth = Growth {
         equilibrium,
@@ -167,8 +167,7 @@ impl Growth<'_> {
                 }
             }
         }
-        let last = RIGID;
-        self.harden(last)?;
+        self.harden()?;
         self.advance(0.8)?;
         let last_limits = Limits {
             tolerance,
@@ -177,7 +176,7 @@ impl Growth<'_> {
         for round in 0.. {
             let depth = self.equilibrium.shift_obstacle();
             let is_last = depth <= DEEPEST_MM || round == MOST_SHIFTS;
-            let (end, forces) = self.balance(last, 0.0, last_limits)?;
+            let (end, forces) = self.balance(RIGID, 0.0, last_limits)?;
             match (end, forces) {
                 (End::Balanced, Some(forces)) if is_last => return Ok(forces),
                 (End::Balanced, _) => self.advance(0.85 + 0.05 * f64::from(round as u8))?,
@@ -188,16 +187,15 @@ impl Growth<'_> {
     }
 
     /// Hardens the product step by step; a step that fails is taken back and halved.
-    fn harden(&mut self, last: f64) -> Result<(), ReferenceError> {
+    fn harden(&mut self) -> Result<(), ReferenceError> {
         let (mut hardness, mut factor) = (GROWING, HARDER);
-        while hardness < last {
-            let next = (hardness * factor).min(last);
+        while hardness < RIGID {
+            let next = (hardness * factor).min(RIGID);
             let before = self.equilibrium.places.clone();
-            let limits = HARDENING_LIMITS;
-            let (end, forces) = self.balance(next, 0.0, limits)?;
+            let (end, forces) = self.balance(next, 0.0, HARDENING_LIMITS)?;
             if end == End::Balanced {
                 hardness = next;
-                self.advance(0.6 + 0.2 * (hardness / GROWING).ln() / (last / GROWING).ln())?;
+                self.advance(0.6 + 0.2 * (hardness / GROWING).ln() / (RIGID / GROWING).ln())?;
                 factor = (factor * factor).min(HARDER);
             } else {
                 self.equilibrium.places = before;

@@ -15,7 +15,7 @@ import felupe as fem
 import numpy as np
 import tensortrax.math as tm
 from felupe.tools._newton import NewtonConvergenceError
-from fingertip import nodal_areas, octant
+from fingertip import boundaries, nodal_areas, octant
 from pypardiso import spsolve
 
 PADS_MM = {  # semi-axes of skin and bone: along the finger, across it, down to the apex
@@ -102,21 +102,6 @@ def press(name, tool, stiffening):
     return rows
 
 
-def boundaries(mesh, displacement, on_bone):
-    """Bone and upper plane held, the planes of symmetry kept, the tool (the last point) moved along z."""
-    tool = np.arange(mesh.npoints) == mesh.npoints - 1
-    x, y, z = np.abs(mesh.points.T) < 1e-9
-    held = z & ~tool
-    held[on_bone] = True
-    return {
-        "held": fem.Boundary(displacement, mask=held),
-        "x": fem.Boundary(displacement, mask=x & ~tool, skip=(0, 1, 1)),
-        "y": fem.Boundary(displacement, mask=y & ~tool, skip=(1, 0, 1)),
-        "guide": fem.Boundary(displacement, mask=tool, skip=(0, 0, 1)),
-        "move": fem.Boundary(displacement, mask=tool, skip=(1, 1, 0)),
-    }
-
-
 def area_and_patch(points, faces, forces, on_skin):
     """Area of the touching nodes of the quarter, mm2, and mean pressure over 24 mm2 about the whole's apex, MPa."""
     areas = nodal_areas(points, faces)[on_skin]
@@ -130,7 +115,7 @@ def area_and_patch(points, faces, forces, on_skin):
 
 
 def main():
-    """Runs the pads named on the command line, or all, and keeps their rows in the table beside this file."""
+    """Runs the pads named on the command line, or all, and keeps their rows in the table next to this file."""
     path = Path(__file__).with_suffix(".json")
     pads = json.loads(path.read_text())["pads"] if path.exists() else {}
     for name in sys.argv[1:] or PADS_MM:

@@ -138,7 +138,7 @@ def touching(points, faces, is_inside):
 
 
 def main():
-    """Runs the bones named on the command line, or all, and keeps their rows in the table beside this file."""
+    """Runs the bones named on the command line, or all, and keeps their rows in the table next to this file."""
     path = Path(__file__).with_suffix(".json")
     pads = json.loads(path.read_text())["pads"] if path.exists() else {}
     for bone in sys.argv[1:] or BONES_MM:

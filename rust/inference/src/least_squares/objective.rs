@@ -18,7 +18,7 @@ use crate::parameters::parameter::{Kind, Parameter};
 
 /// Relative gain of the objective below which the fit has settled, twice in a row.
 const SETTLED: f64 = 1e-7;
-/// The same, once, where every step follows all protocols anew: a hundredth of what a standard error gains.
+/// The same, once, where every step follows all protocols again: a hundredth of what a standard error gains.
 const SETTLED_SLOWLY: f64 = 1e-5;
 
 /// A fit's data and model.

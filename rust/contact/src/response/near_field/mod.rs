@@ -339,10 +339,10 @@ mod tests {
         let some: Vec<u32> = zone.iter().copied().step_by(3).collect();
         for open in [&corner, &others, &some, &zone] {
             kept.update((&zone, open), &workspace.quantized, own, 9.0);
-            let anew = near(ground, open, 9.0);
+            let fresh = near(ground, open, 9.0);
             let loads = loads(open.len());
             assert!(kept.matches(open, 9.0) && !kept.matches(open, 10.0));
-            let (ours, wanted) = (kept.field(&loads), anew.field(&loads));
+            let (ours, wanted) = (kept.field(&loads), fresh.field(&loads));
             // Sums of as many terms in another order.
             let most = wanted.iter().map(Vec3::norm).fold(0.0, f64::max);
             for (ours, wanted) in ours.iter().zip(&wanted) {
