@@ -63,7 +63,7 @@ def _worker(_options):
 def _demo(options):
     from . import demo
 
-    demo.run(options.sample or options.samples, Path(options.out))
+    demo.run(options.sample or options.samples, Path(options.out), options.frames)
 
 
 def _samples(options):
@@ -98,6 +98,7 @@ def _parser():
     demo.add_argument("--sample", metavar="FILE.blend")
     demo.add_argument("--samples", metavar="DIR", default="blend-samples")
     demo.add_argument("--out", default="target/demo", metavar="DIR")
+    demo.add_argument("--frames", action="store_true", help="solve it at least, mean and greatest force (Xie Fig. 21)")
     demo.set_defaults(run=_demo)
     samples = commands.add_parser("samples", help="make the sample files again")
     samples.add_argument("--out", required=True, metavar="DIR")

@@ -14,7 +14,8 @@ DEEPEST = 4
 
 LIGHT_MM = {"distal": 2.6, "middle": 2.2, "proximal": 2.5, "palm": 3.0}
 FIRM_MM = {"distal": 3.8, "middle": 3.2, "proximal": 4.0, "palm": 5.7}
-"""Target depths by kind of pad: light is 2 to 3 mm, firm is what the contact areas of Xie Table 6 need."""
+"""Target depths by kind of pad: light is 2 to 3 mm, firm was chosen by the areas of Xie Table 6, which are a mat's and
+larger than the skin's; the samples of Table 6 are then fitted to its force."""
 
 DEEP_MM = 12.0
 """Tissue taken as this thick where a region's material stands on no bone."""

@@ -6,10 +6,9 @@ import pytest
 import thenar
 from hand_scenes import triangles_of
 from thenar_blender.hand import build, fitting, grasp, pads, products, studio
+from thenar_blender.recordings import table_6
 from thenar_blender.scene import units
 
-TABLE_6 = {48: (337.0, 165.0, 33.0), 60: (260.0, 150.0, 29.0), 100: (122.0, 138.0, 28.0)}
-"""Xie Table 6, measured on the cylinder of each diameter, mm: force, N, peak and mean pressure, kPa."""
 UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}
 
 
@@ -41,7 +40,7 @@ def test_grasp_fitted(arrays, diameter, targets):
     assert not found.warnings
 
 
-@pytest.mark.parametrize("diameter", TABLE_6)
+@pytest.mark.parametrize("diameter", table_6.PAPER)
 def test_grasp_fitted_to_a_force(blender, made, diameter):
     context = blender.context
     studio.set_units(context.scene)
@@ -51,7 +50,7 @@ def test_grasp_fitted_to_a_force(blender, made, diameter):
     context.view_layer.update()
     context.scene.thenar.hand, context.scene.thenar.product = hand, product
     assert units.mm_per_unit(context.scene) == 1000.0
-    wanted, peak, mean = TABLE_6[diameter]
+    wanted = table_6.PAPER[diameter]["force_n"][0]
     job = fitting.prepare(context, hand, [product], grasp.Wish(pads.FIRM_MM, **UPRIGHT), wanted)
     found, clock, work = timed(fitting.compute, job)
     print(f"{diameter} mm cylinder, {wanted:.0f} N: {clock:.2f} s, {work:.2f} s of processor; {found.force_n:.1f} N")
@@ -59,11 +58,7 @@ def test_grasp_fitted_to_a_force(blender, made, diameter):
     fitting.finish(context, job, found, "HAND")
     assert blender.ops.thenar.solve() == {"FINISHED"}
     result = context.scene.thenar.result
-    print(
-        f"  {result.force_n:.0f} N (measured {wanted:.0f}) on {result.area_mm2 / 100.0:.0f} cm2 "
-        f"(force over mean pressure: {10.0 * wanted / mean:.0f}); peak {result.peak_kpa:.0f} kPa "
-        f"(measured {peak:.0f}), mean {result.mean_kpa:.0f} kPa (measured {mean:.0f})"
-    )
+    print("\n".join(table_6.lines(table_6.read_scene(context))))
     assert result.force_n == pytest.approx(found.force_n, rel=0.01)
     touching = {region.name for region in result.regions if region.force_n > 0.0}
     assert len(touching) == 19, "every region touches in the paper's grasps"
