@@ -14,7 +14,7 @@ from ..scene.checks import Refusal
 PITCH_MM = 10.0 / 4.2**0.5
 """F-Scan, 4.2 sensels per cm² (Xie et al. 2013)."""
 THRESHOLDS_KPA = (0.0, 2.0, 5.0)
-"""A sensel counts as loaded above these. The paper does not print its threshold."""
+"""A sensel counts as loaded above these; the threshold of the paper's mat is not known."""
 PLACEMENTS = 24
 _STEP_AROUND = 7
 """Placement k lies k/24 of a pitch along the axis and 7k/24 around it: a lattice that fills the cell evenly."""
