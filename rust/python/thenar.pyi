@@ -628,7 +628,7 @@ def reference_press(
 ) -> Record:
     """Presses soft tissue, meshed from the skin to the bone, at finite strain: the reference of model "layer".
 
-    `can_touch` (n,): vertices that the product can touch. The record's `cut_mm` and `cut_share` tell how deep the product
+    `can_touch` (n,): vertices that the product can touch. `cut_mm` and `cut_share` of the record: how deep the product
     lies in the skin between vertices, and with how much of the overlap.
 
     Raises `MeshError`, `SolveError`, `Cancelled`.

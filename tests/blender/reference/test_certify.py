@@ -148,6 +148,26 @@ def test_tissue_without_bone_is_refused():
         bpy.ops.thenar.certify()
 
 
+def test_tissue_thicker_than_the_body_is_refused_by_region():
+    hand, _ = stage.scene()
+    hand.thenar.default_material.thickness_mm = 12.0
+    stage.solve()
+    with pytest.raises(
+        RuntimeError, match=r"skin vertex \d+ \(Whole skin\), where tissue is 1\d\.\d mm thick; give thinner"
+    ):
+        bpy.ops.thenar.certify()
+
+
+@pytest.mark.parametrize(("fineness", "says"), [(2, True), (3, False)])
+def test_skin_that_is_too_coarse_is_said(fineness, says):
+    hand, product = stage.pad(fineness=fineness), stage.plate()
+    settings = bpy.context.scene.thenar
+    settings.hand, settings.product = hand, product
+    stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+    assert ("mm apart, too far for the reference" in settings.result.reference.note) == says
+
+
 def test_seams_do_not_cut_the_tissue():
     """Vertices that stand twice, as an importer leaves them at seams, are one."""
     _, _, whole = certified()
