@@ -12,8 +12,8 @@ MOST_SIDEWAYS = 0.05
 MOST_CUT_MM = 0.1
 """How deep the product may lie in the skin between its vertices without a note."""
 WIDEST_MM = 3.2
-"""Spacing of the skin in contact from which a note is given: twice the edge to which the solve refines. On the index pad of
-`rust/reference/tests/pads.rs` the force is within 5 % of finite elements to 3.2 mm, 8 % (rms) off at 5 mm."""
+"""Spacing of the skin in contact from which a note is given: twice the edge to which the solve refines. On the
+index pad of `rust/reference/tests/pads.rs` the force is within 5 % to 3.2 mm, and 8 % (rms) off at 5 mm."""
 
 
 def of(tissue: Any, found: Any) -> Iterator[str]:
