@@ -32,7 +32,7 @@ pub enum ReferenceError {
     #[error(
         "the reference solve stopped at {share:.0} % of the depth: {unbalanced:.1} % of the contact force is not balanced, most at skin \
          vertex {vertex}; {}", if *.share > 99.0 && *.unbalanced < 5.0 {
-             "round sharp edges of the product there (Bevel), or press less deep"
+             "round sharp edges of the product there (Bevel), subdivide the skin, or press less deep"
          } else {
              "press less deep, or give thicker tissue there"
          }
@@ -111,5 +111,36 @@ impl ReferenceError {
             }
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At a sharp edge, as that of a hole, a small part of the force finds no balance at full depth.
+    #[test]
+    fn a_small_rest_at_full_depth_names_sharp_edges() {
+        let said = |share, unbalanced| {
+            let error = ReferenceError::Unsolved {
+                share,
+                unbalanced,
+                vertex: 7,
+            };
+            error.to_string()
+        };
+        assert!(said(100.0, 1.5).contains("(Bevel)") && said(100.0, 1.5).contains("skin vertex 7"));
+        assert!(said(60.0, 1.5).contains("thicker") && said(100.0, 30.0).contains("thicker"));
+    }
+
+    /// Vertices that were added follow those that were given.
+    #[test]
+    fn a_vertex_that_was_added_is_named_by_one_that_was_given() {
+        let error = ReferenceError::Cut {
+            vertex: 11,
+            depth_mm: 1.0,
+            share: 50.0,
+        };
+        assert_eq!(error.without(10, &[[3, 4], [10, 5]]).vertex(), Some(3));
     }
 }
