@@ -90,7 +90,7 @@ def publish(context, bake):
         if part.name in bake.done[0]["parts"]:
             copies.remove_copy(part.name)  # frames are shown on the part itself
     context.scene.render.use_lock_interface = True
-    settings.result.state_hash = ""
+    settings.result.state_hash, settings.result.reference.is_valid = "", False
 
 
 def _sum_up(told, bake):

@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from . import cache, certificate, comfort, effect_settings, effects, names, native, sentences, status
+from . import cache, certificate, comfort, effect_settings, effects, maps, names, native, sentences, status
 from . import result as results
 from .scene import checks, own, owned, read, refine, sizes, state, units, write
 from .scene import parts as parts_of
@@ -374,6 +374,7 @@ def clear(context: Context) -> bool:
     checks.check_writable(hand)
     write.clear(context, hand, parts)
     results.clear(settings.result)
+    settings.maps.shown = maps.PRESSURE
     status.set_stale(context.scene.name, False)
     return True
 

@@ -55,7 +55,7 @@ def prepare(context, hand_object, parts, wish, force_n=None):
 
 def read_hand(context, hand_object):
     """The `grasp.Hand` of a mesh on an armature: bones by role, pads from the regions listed under Materials."""
-    rig, role_names = reading.read_rig(context, hand_object)
+    rig, role_names = reading.read_free_rig(context, hand_object)
     armature = reading.armature_of(hand_object)
     joints = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
     rig = replace(rig, normals=normals.outward_normals(rig.vertices, mesh.triangles(hand_object.data)))

@@ -11,7 +11,7 @@ def apply_pose(context, hand, name):
     Raises `Refusal` if the hand has no readable rig.
     """
     checks.check_hand(context, hand)
-    rig, role_names = reading.read_rig(context, hand)
+    rig, role_names = reading.read_free_rig(context, hand)
     armature = reading.armature_of(hand)
     joints = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
     reading.write_angles(armature, rig, joints, roles.pose_angles(rig, joints, POSES[name]))

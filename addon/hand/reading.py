@@ -47,13 +47,24 @@ def read_rig(context, hand):
     world = np.diag([scale, scale, scale, 1.0]) @ np.array(armature.matrix_world, dtype=np.float64)
     basis = np.array([armature.pose.bones[name].matrix_basis for name in bone_names], dtype=np.float64)
     for role, name in stored.items():
-        if name in bone_names:
-            _check_constraints(armature, name)
-            if role != roles.WRIST:
-                basis[bone_names.index(name)] = np.eye(4)
+        if name in bone_names and role != roles.WRIST:
+            basis[bone_names.index(name)] = np.eye(4)
     axes = np.tile(np.eye(3), (len(bones), 1, 1))
     rig = Rig(bone_names, parents, rest, axes, basis, vertices, weights, world)
     return rig_axes.with_axes(rig, stored, armature.thenar_bones.axis), stored
+
+
+def read_free_rig(context, hand):
+    """`read_rig` of a hand whose bones are to be turned; raises `RigError` where a constraint would overrule that."""
+    rig, stored = read_rig(context, hand)
+    bones = armature_of(hand).pose.bones
+    for name in filter(rig.names.__contains__, stored.values()):
+        for constraint in bones[name].constraints:
+            if constraint.type not in FREE_CONSTRAINTS and not constraint.mute and constraint.influence > 0.0:
+                raise RigError(
+                    f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
+                )
+    return rig, stored
 
 
 def own_limits(armature, rig):
@@ -158,11 +169,3 @@ def _positions(hand):
         key.points.foreach_get("co", flat)
         out += key.value * (flat.reshape(-1, 3) - base)
     return out
-
-
-def _check_constraints(armature, name):
-    for constraint in armature.pose.bones[name].constraints:
-        if constraint.type not in FREE_CONSTRAINTS and not constraint.mute and constraint.influence > 0.0:
-            raise RigError(
-                f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
-            )

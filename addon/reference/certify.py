@@ -1,7 +1,7 @@
 """The reference solve of a contact: the hand's tissue as a solid between skin and bone."""
 
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -9,16 +9,15 @@ import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
 from .. import names, native, sentences, workflow
-from ..hand import pads, reading, rig_axes, roles, skinning
-from ..scene import attributes, checks, units, write
+from ..hand import normals
+from ..scene import attributes, checks, own, units, write
 from ..scene.units import Bools, Floats, Ints
 from ..steps import Cancel, Progress, Steps
+from . import bones, notes
 
 SIDES_MM = 10.0
 """How far beyond the regions, along the skin, tissue may move; what is farther is held."""
 LAYERS = 3
-MOST_SIDEWAYS = 0.05
-"""Share of the force that pushes skin along itself from which a note is given."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +29,15 @@ class Tissue:
     triangles: Ints
     bone_mm: Floats
     held: Bools
+    can_touch: Bools
     shear_modulus_mpa: Floats
     product_mm: Floats
     merged: Ints
     """(n): the vertex of the arrays above that every vertex of the hand is."""
+    first: Ints
+    """(k): the vertex of the hand that each of those above is."""
+    bones_note: str
+    """Why the bones of the rig are not known; empty where they are."""
 
 
 def steps(context: Context) -> Steps[PropertyGroup]:
@@ -57,27 +61,39 @@ def read(context: Context, taken: ExitStack) -> Tissue:
     triangles = merged[skin.triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     posed = skin.posed_mm[first]
-    bone = posed + _ways(context, hand, (posed, triangles, thickness[first]), first)
+    product_mm = job.reading.product.vertices_mm + result.offset_mm * np.array(result.direction)
+    triangles = _outward(hand, posed, triangles, native.module.Product(product_mm, job.reading.product.triangles))
+    ways, bones_note = bones.ways(context, hand, (posed, triangles, thickness[first]), first)
     return Tissue(
         job=job,
         posed_mm=posed,
         triangles=triangles,
-        bone_mm=bone,
+        bone_mm=posed + ways,
         held=_held(posed, triangles, skin.regions[first]),
+        can_touch=skin.regions[first] >= 0,
         shear_modulus_mpa=by_vertex[first],
-        product_mm=job.reading.product.vertices_mm + result.offset_mm * np.array(result.direction),
+        product_mm=product_mm,
         merged=merged,
+        first=first,
+        bones_note=bones_note,
     )
 
 
 def check(context: Context) -> None:
     """Refuse a scene without a fast result that fits it. Raises `Refusal`."""
-    result = context.scene.thenar.result
+    result, hand = context.scene.thenar.result, context.scene.thenar.hand
+    if hand is not None and own.bake_modifiers(hand):
+        raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then Solve and Certify")
     if not result.is_valid or workflow.is_out_of_date(context):
         raise checks.Refusal("the result is not of the scene as it is now; press Solve, then Certify")
     if result.model != "layer":
         raise checks.Refusal(
             f"the model '{result.model}' has no tissue that could be meshed; choose the model Layer and solve"
+        )
+    if own.contact_key(hand) is None:
+        raise checks.Refusal(
+            f"'{hand.name}' has no shape key '{names.SHAPE_KEY}': Apply made the contact part of the mesh; "
+            "undo Apply, or solve again"
         )
 
 
@@ -92,12 +108,13 @@ def press(tissue: Tissue, cancel: Cancel | None = None, progress: Progress | Non
             tissue.product_mm,
             tissue.job.reading.product.triangles,
             held=tissue.held.tolist(),
+            can_touch=tissue.can_touch.tolist(),
             layers=LAYERS,
             cancel=cancel,
             progress=progress,
         )
     except native.error_types() as error:
-        raise sentences.named(error, tissue.job) from None
+        raise _placed(sentences.named(error, tissue.job), tissue) from None
 
 
 def finish(context: Context, tissue: Tissue, found: Any) -> PropertyGroup:
@@ -117,29 +134,39 @@ def finish(context: Context, tissue: Tissue, found: Any) -> PropertyGroup:
     reference.is_valid = True
     reference.force_n, reference.area_mm2 = found.normal_force_n, found.contact_area_mm2
     reference.patch_peak_kpa = found.patch_peak_mpa * units.KPA_PER_MPA
-    reference.note = ". ".join(sentence[0].upper() + sentence[1:] for sentence in _notes(tissue, found))
+    reference.note = ". ".join(sentence[0].upper() + sentence[1:] for sentence in notes.of(tissue, found))
     return result
 
 
-def _notes(tissue: Tissue, found: Any) -> list[str]:
-    """What the reference does not know, or could not mesh."""
-    out = []
-    active = [effect.name for effect in tissue.job.effects if effect.amplitude > 0.0 and effect.name != "bone"]
-    if active:
-        out.append(f"the reference has no effects: {', '.join(active)} act in the fast result alone")
-    gaps = native.module.Product(tissue.product_mm, tissue.job.reading.product.triangles).gap_mm(tissue.posed_mm)
-    folded = np.asarray(found.folded, dtype=np.int64)
-    inside = int((np.asarray(gaps["gap_mm"])[folded] < 0.0).sum()) if len(folded) else 0
-    if inside:
-        out.append(
-            f"in creases at {inside} vertices inside the product tissue could not be meshed; it presses less there"
+def _placed(error: Exception, tissue: Tissue) -> Exception:
+    """The error with the hand's vertex and its region in place of the merged vertex."""
+    text, regions = str(error), tissue.job.reading.hand.regions
+    vertices = [int(tissue.first[vertex]) for vertex in vars(error)["vertices"]]
+    for merged, vertex in zip(vars(error)["vertices"], vertices, strict=True):
+        region = sentences.titles(tissue.job.region_names)[regions[vertex]] if regions[vertex] >= 0 else "no region"
+        text = text.replace(f"skin vertex {merged}", f"skin vertex {vertex} ({region})")
+    placed = type(error)(text)
+    vars(placed)["vertices"] = vertices
+    return placed
+
+
+def _outward(hand: Object, posed_mm: Floats, triangles: Ints, product: Any) -> Ints:
+    """The triangles turned outward: closed skin that is inside out is turned, as in a solve; open skin is refused."""
+    corners = posed_mm[triangles] - posed_mm.mean(axis=0)
+    if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) >= 0.0:
+        return triangles
+    sides = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    if (np.unique(sides, axis=0, return_counts=True)[1] == 2).all():
+        return triangles[:, ::-1].copy()
+    # The volume of a cupped patch is below zero as well; only skin that is inside out meets the product from behind.
+    gaps = product.gap_mm(posed_mm)
+    inside = np.asarray(gaps["gap_mm"]) < 0.0
+    if (np.asarray(gaps["normal"])[inside] * normals.vertex_normals(posed_mm, triangles)[inside]).sum() > 0.0:
+        raise checks.Refusal(
+            f"the skin of '{hand.name}' is inside out; turn the normals of the skin outward "
+            "(Mesh > Normals > Recalculate Outside), solve, and certify"
         )
-    if found.sideways_share > MOST_SIDEWAYS:
-        out.append(
-            f"{found.sideways_share:.0%} of the reference's force pushes skin sideways: the product is thinner there "
-            "than twice the depth, and its force is not to be used"
-        )
-    return out
+    return triangles
 
 
 def _thickness(hand: Object, job: workflow.Job) -> Floats:
@@ -154,38 +181,10 @@ def _thickness(hand: Object, job: workflow.Job) -> Floats:
     return np.asarray(found, dtype=np.float64)
 
 
-def _ways(context: Context, hand: Object, skin: tuple[Floats, Ints, Floats], first: Ints) -> Floats:
-    """From every posed vertex to the bone under it (k, 3), mm.
-
-    `skin`: posed vertices, triangles, thickness; `first`: the vertices of the hand that those are.
-    """
-    posed_mm, triangles, thickness = skin
-    try:
-        rig, stored = reading.read_rig(context, hand)
-        joints = roles.resolve(rig, stored)
-        armature = reading.armature_of(hand)
-    except (rig_axes.RigError, roles.RoleError):
-        bone = native.module.bone_points(posed_mm, triangles, thickness)
-        return np.asarray(bone) - posed_mm
-    rig = replace(rig.subset(first), normals=None)
-    scale = float(np.cbrt(np.linalg.det(rig.world_from_rig[:3, :3])))
-    heads, tails = rig.rest[:, :3, 3] * scale, reading.tails(rig, armature) * scale
-    palmar, is_last = np.zeros((len(rig.names), 3)), [False] * len(rig.names)
-    for role, bone in joints.bones.items():
-        if role != roles.WRIST and not role.endswith("metacarpal"):
-            palmar[bone], is_last[bone] = pads.palmar(rig, joints, role), role.endswith("distal")
-    at_rest = native.module.bone_points(
-        rig.vertices * scale, triangles, thickness, heads, tails, palmar, is_last, rig.weights
-    )
-    posed = np.array([armature.pose.bones[name].matrix for name in rig.names], dtype=np.float64)
-    moved = skinning.skin(replace(rig, vertices=np.asarray(at_rest) / scale), posed)
-    return moved - skinning.skin(rig, posed)
-
-
 def _merge(rest_mm: Floats) -> tuple[Ints, Ints]:
-    """Vertices at one place become one: the first of each place (k), and the place of every vertex (n)."""
+    """Vertices at one place become one, in their order: the first of each place (k), and the place of every one (n)."""
     _, first, merged = np.unique(np.round(rest_mm, 6), axis=0, return_index=True, return_inverse=True)
-    return first, merged.ravel()
+    return np.sort(first), np.argsort(np.argsort(first))[merged.ravel()]
 
 
 def _held(posed_mm: Floats, triangles: Ints, regions: Ints) -> Bools:

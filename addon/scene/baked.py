@@ -34,6 +34,7 @@ _OF_ONE_PRESS = (
     names.SHEAR_KPA,
     names.SLIP_MARGIN,
     names.THRESHOLD_SHARE,
+    *names.REFERENCE_ATTRIBUTES,
 )
 """Attributes of a press that are wrong once a bake plays, unless the bake plays them too."""
 _loaded: dict[str, dict[str, Any]] = {}

@@ -619,6 +619,7 @@ def reference_press(
     product_triangles: ArrayLike | None = None,
     *,
     held: Sequence[bool] | None = None,
+    can_touch: Sequence[bool] | None = None,
     stiffening: float = 0.0,
     layers: int = 3,
     bulk_ratio: float = 100.0,
@@ -626,6 +627,9 @@ def reference_press(
     progress: _Progress | None = None,
 ) -> Record:
     """Presses soft tissue, meshed from the skin to the bone, at finite strain: the reference of model "layer".
+
+    `can_touch` (n,): vertices that the product can touch. `cut_mm` and `cut_share` of the record: how deep the product
+    lies in the skin between vertices, and with how much of the overlap.
 
     Raises `MeshError`, `SolveError`, `Cancelled`.
     """

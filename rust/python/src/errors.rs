@@ -114,9 +114,10 @@ fn from_reference(error: &ReferenceError) -> PyErr {
     match error {
         ReferenceError::Cancelled => Failure::Cancelled.into(),
         ReferenceError::Tissue { .. } => MeshError::new_err(error.to_string()),
-        ReferenceError::Unsolved { vertex, .. } => {
+        _ => {
             let raised = SolveError::new_err(error.to_string());
-            Python::attach(|py| drop(raised.value(py).setattr("vertices", vec![*vertex])));
+            let vertices: Vec<usize> = error.vertex().into_iter().collect();
+            Python::attach(|py| drop(raised.value(py).setattr("vertices", vertices)));
             raised
         }
     }

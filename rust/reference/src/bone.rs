@@ -41,7 +41,7 @@ pub struct Segment {
 pub struct RestHand<'a> {
     /// Closed or open skin, turned outward, mm.
     pub mesh: &'a Mesh,
-    /// Soft tissue over bone at every vertex, mm; not finite or not above 0 where it is not known.
+    /// Soft tissue over bone at every vertex, mm; not finite or 0 where it is not known.
     pub thickness_mm: &'a [f64],
     /// The bones that move it; none where they are not known.
     pub segments: &'a [Segment],
@@ -67,6 +67,13 @@ pub fn bone_points(hand: RestHand<'_>) -> Result<Vec<Vec3>, ReferenceError> {
                 remedy: "give one thickness, and one weight of every bone, for every vertex",
             });
         }
+    }
+    if let Some(v) = hand.thickness_mm.iter().position(|h| *h < 0.0) {
+        return Err(ReferenceError::Tissue {
+            what: format!("array `thickness_mm`, vertex {v}"),
+            found: format!("{} mm", hand.thickness_mm[v]),
+            remedy: "give 0 or more, 0 where it is not known",
+        });
     }
     let adjacency = Adjacency::new(hand.mesh);
     let [over_normals, over_thickness, over_all] = SMOOTHING;

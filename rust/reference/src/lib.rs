@@ -5,6 +5,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod bone;
+mod cut;
 mod error;
 mod factor;
 mod matrix3;

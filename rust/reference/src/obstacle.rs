@@ -12,7 +12,7 @@ const ONSET_MM: f64 = 0.01;
 /// Farthest distance outside at which skin is still followed, mm.
 const REACH_MM: f64 = 12.0;
 
-const LIMITS: GapLimits = GapLimits {
+pub const LIMITS: GapLimits = GapLimits {
     cut_off_mm: REACH_MM,
     max_depth_mm: 100.0,
 };
@@ -32,6 +32,10 @@ pub struct Obstacle<'a> {
     areas: Vec<f64>,
     /// Deepest overlap before the press, mm; 0 outside.
     pub deepest: f64,
+    /// Which lie inside it then.
+    pressed: Vec<u32>,
+    /// Whether skin lies behind a sheet without thickness.
+    pub is_sheet: bool,
     /// How far the product's side is moved toward each, mm, so that its penalty holds the skin at the product and not below it.
     shifts: Vec<f64>,
 }
@@ -77,7 +81,7 @@ impl<'a> Obstacle<'a> {
     pub fn new(
         tissue: &Tissue,
         product: &'a Product,
-        moves: impl Fn(usize) -> bool,
+        can_touch: impl Fn(usize) -> bool,
     ) -> Obstacle<'a> {
         let limits = LIMITS;
         let mut obstacle = Obstacle {
@@ -87,6 +91,8 @@ impl<'a> Obstacle<'a> {
             facing: Vec::new(),
             areas: Vec::new(),
             deepest: 0.0,
+            pressed: Vec::new(),
+            is_sheet: false,
             shifts: Vec::new(),
         };
         let Ok(mesh) = Mesh::new(tissue.skin.clone(), tissue.triangles.clone()) else {
@@ -104,11 +110,20 @@ impl<'a> Obstacle<'a> {
         };
         let gaps = product.gaps_of_skin(&skin, limits);
         for (v, gap) in gaps.iter().enumerate() {
-            if let Some(gap) = gap.filter(|_| moves(v)) {
+            if let Some(gap) = gap.filter(|_| can_touch(v)) {
                 obstacle.vertices.push(v as u32);
                 obstacle.facing.push(normals[v]);
                 obstacle.areas.push(areas[v]);
                 obstacle.deepest = obstacle.deepest.max(-gap.distance);
+                if gap.distance < 0.0 {
+                    obstacle.pressed.push(v as u32);
+                }
+                // Skin behind a sheet, no farther than its flesh reaches, has met it.
+                let is_behind = gap.distance < 0.0 || gap.normal.dot(&normals[v]) > 0.0;
+                let reach = (tissue.skin[v] - tissue.bone[v]).norm();
+                obstacle.is_sheet |= is_behind
+                    && gap.distance.abs() < reach
+                    && product.is_sheet(gap.triangle as usize);
                 obstacle.shifts.push(0.0);
             }
         }
@@ -120,6 +135,45 @@ impl<'a> Obstacle<'a> {
         let points: Vec<Vec3> = self.vertices.iter().map(|v| place(*v as usize)).collect();
         self.product
             .gaps_along(&points, Some(&self.facing), self.limits, &[])
+    }
+
+    /// Whether all corners of a triangle of the skin may come to touch.
+    pub fn follows(&self, triangle: &[u32; 3]) -> bool {
+        triangle
+            .iter()
+            .all(|v| self.vertices.binary_search(v).is_ok())
+    }
+
+    /// Outward normal before the press at a point of a triangle that is followed.
+    pub fn facing(&self, corners: [usize; 3], shares: [f64; 3]) -> Vec3 {
+        let of = |v: usize| {
+            self.vertices
+                .binary_search(&(v as u32))
+                .map(|k| self.facing[k])
+        };
+        let all = corners.iter().zip(shares);
+        let normal: Vec3 = all
+            .map(|(v, share)| of(*v).unwrap_or_default() * share)
+            .sum();
+        normal.try_normalize(1e-9).unwrap_or_default()
+    }
+
+    /// Those that lie inside the product before the press.
+    pub fn pressed(&self) -> impl Iterator<Item = usize> {
+        self.pressed.iter().map(|v| *v as usize)
+    }
+
+    pub fn product(&self) -> &Product {
+        self.product
+    }
+
+    /// Signed distance of points that met the product facing as `facing`, mm; infinite where far.
+    pub fn distances(&self, points: &[Vec3], facing: &[Vec3]) -> Vec<f64> {
+        let gaps = self
+            .product
+            .gaps_along(points, Some(facing), self.limits, &[]);
+        let distance = |gap: Option<Gap>| gap.map_or(f64::INFINITY, |gap| gap.distance);
+        gaps.into_iter().map(distance).collect()
     }
 
     /// Signed distance of every followed vertex that has one, mm.

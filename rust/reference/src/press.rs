@@ -2,8 +2,9 @@
 
 use thenar_surface::{Product, Vec3};
 
+use crate::cut::Cut;
 use crate::newton::{End, Equilibrium, Forces, Limits};
-use crate::obstacle::{Obstacle, Penalty};
+use crate::obstacle::{LIMITS, Obstacle, Penalty};
 use crate::pattern::Pattern;
 use crate::prism_energy::Law;
 use crate::prisms::PrismMesh;
@@ -20,6 +21,12 @@ const LEAST_HARDER: f64 = 1.03;
 /// Skin deeper in the product than this, mm, has the product's side moved; at most so many times.
 const DEEPEST_MM: f64 = 0.01;
 const MOST_SHIFTS: usize = 2;
+/// Skin vertices deeper than this at the end are refused, mm.
+const MOST_DEPTH_MM: f64 = 0.02;
+/// Products are refused that lie deeper than this in the skin between its vertices, mm, with more than this share of the overlap.
+const MOST_CUT: [(f64, f64); 2] = [(0.5, 0.1), (0.1, 0.5)];
+/// Share of the vertices inside the product whose columns cross, from which tissue is refused.
+const MOST_CROSSED: f64 = 0.5;
 /// How far outside the product skin is still refined, mm.
 const NEAR_MM: f64 = 1.0;
 /// The longest step of growth, mm, and the shortest before the solve gives up.
@@ -100,14 +107,35 @@ pub fn press(
     settings.check()?;
     let near = Obstacle::near(tissue, product, NEAR_MM);
     let refined = Refined::new(tissue, |v| near[v], settings.longest_edge_mm);
-    let (vertex_count, tissue) = (tissue.skin.len(), &refined.tissue);
+    let count = tissue.skin.len();
+    match solve(&refined.tissue, product, settings, progress) {
+        Ok(found) => Ok(found.without(count, &refined.parents)),
+        Err(error) => Err(error.without(count, &refined.parents)),
+    }
+}
+
+fn solve(
+    tissue: &Tissue,
+    product: &Product,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<ReferenceContact, ReferenceError> {
     let mesh = PrismMesh::new(tissue, settings.layers)?;
     if mesh.free_count > MOST_NODES {
         return Err(too_large(&mesh));
     }
     let pattern = Pattern::new(&mesh);
-    let moves = |v: usize| mesh.free[mesh.skin_node(v)] != u32::MAX;
-    let obstacle = Obstacle::new(tissue, product, moves);
+    let touches = |v: usize| tissue.can_touch[v] && mesh.free[mesh.skin_node(v)] != u32::MAX;
+    let obstacle = Obstacle::new(tissue, product, touches);
+    if obstacle.is_sheet {
+        return Err(ReferenceError::Tissue {
+            what: "product where the skin lies in it".to_owned(),
+            found: "a sheet without thickness".to_owned(),
+            remedy: "give the sheet a thickness (Solidify)",
+        });
+    }
+    check_columns(tissue, &obstacle)?;
+    check_bone(tissue, &obstacle)?;
     let law = Law {
         stiffening: tissue.stiffening,
         bulk_ratio: settings.bulk_ratio,
@@ -125,8 +153,91 @@ pub fn press(
     };
     let forces = growth.run(settings.tolerance)?;
     let Growth { equilibrium, .. } = growth;
-    Ok(ReferenceContact::new(tissue, &equilibrium, &forces, &mesh)
-        .without(vertex_count, &refined.parents))
+    check_depth(tissue, &equilibrium.obstacle, &forces)?;
+    let places = &equilibrium.places[mesh.skin_node(0)..];
+    let cut = Cut::new(tissue, &equilibrium.obstacle, places);
+    let is_cut = |(depth_mm, share)| cut.depth_mm > depth_mm && cut.share > share;
+    if MOST_CUT.into_iter().any(is_cut) {
+        return Err(ReferenceError::Cut {
+            vertex: cut.vertex,
+            depth_mm: cut.depth_mm,
+            share: 100.0 * cut.share,
+        });
+    }
+    Ok(ReferenceContact::new(tissue, &equilibrium, (&forces, cut)))
+}
+
+/// Refuses tissue thicker than the body, whose columns from skin to bone cross under the product.
+fn check_columns(tissue: &Tissue, obstacle: &Obstacle<'_>) -> Result<(), ReferenceError> {
+    let mut crosses = vec![false; tissue.skin.len()];
+    for triangle in &tissue.triangles {
+        for k in 0..3 {
+            let [a, b] = [triangle[k], triangle[(k + 1) % 3]].map(|v| v as usize);
+            let (skin, bone) = (
+                tissue.skin[b] - tissue.skin[a],
+                tissue.bone[b] - tissue.bone[a],
+            );
+            if skin.dot(&bone) < 0.0 {
+                (crosses[a], crosses[b]) = (true, true);
+            }
+        }
+    }
+    let pressed: Vec<usize> = obstacle.pressed().collect();
+    let crossed: Vec<usize> = pressed.iter().copied().filter(|v| crosses[*v]).collect();
+    let thickness = |v: &usize| (tissue.skin[*v] - tissue.bone[*v]).norm();
+    let thickest = crossed
+        .iter()
+        .max_by(|a, b| thickness(a).total_cmp(&thickness(b)));
+    match thickest {
+        Some(vertex) if crossed.len() as f64 > MOST_CROSSED * pressed.len() as f64 => {
+            Err(ReferenceError::TooThick {
+                crossed: crossed.len(),
+                pressed: pressed.len(),
+                vertex: *vertex,
+                thickness_mm: thickness(vertex),
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a product that reaches into the bone under skin that lies in it.
+fn check_bone(tissue: &Tissue, obstacle: &Obstacle<'_>) -> Result<(), ReferenceError> {
+    let pressed: Vec<usize> = obstacle.pressed().collect();
+    let bone: Vec<Vec3> = pressed.iter().map(|v| tissue.bone[*v]).collect();
+    let gaps = obstacle.product().gaps(&bone, None, LIMITS);
+    let depths = pressed
+        .into_iter()
+        .zip(gaps)
+        .filter_map(|(vertex, gap)| Some((vertex, -gap?.distance)));
+    match depths.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((vertex, depth_mm)) if depth_mm > 0.0 => {
+            Err(ReferenceError::Bone { vertex, depth_mm })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses skin that stays inside the product.
+fn check_depth(
+    tissue: &Tissue,
+    obstacle: &Obstacle<'_>,
+    forces: &Forces,
+) -> Result<(), ReferenceError> {
+    let deepest = forces
+        .touches
+        .iter()
+        .min_by(|a, b| a.distance.total_cmp(&b.distance));
+    let Some(touch) = deepest.filter(|touch| -touch.distance > MOST_DEPTH_MM) else {
+        return Ok(());
+    };
+    let vertex = touch.vertex as usize;
+    let bone = obstacle.product().gap(tissue.bone[vertex], None, LIMITS);
+    Err(ReferenceError::Inside {
+        vertex,
+        depth_mm: -touch.distance,
+        bone_gap_mm: bone.map_or(f64::INFINITY, |gap| gap.distance),
+    })
 }
 
 fn too_large(mesh: &PrismMesh) -> ReferenceError {

@@ -218,6 +218,7 @@ mod tests {
             bone,
             triangles: vec![[0, 1, 2], [1, 3, 2]],
             is_held: vec![false; 4],
+            can_touch: vec![true; 4],
             shear_modulus_mpa: vec![0.01, 0.01, 0.02, 0.03],
             stiffening: 0.3,
         };

@@ -147,7 +147,7 @@ impl PrismMesh {
             return Err(ReferenceError::Tissue {
                 what: "tissue".to_owned(),
                 found: "no skin vertex that can move".to_owned(),
-                remedy: "hold fewer vertices, or put the bone under the skin: below every vertex, against its normal",
+                remedy: "hold fewer vertices, or put the bone under the skin: below every vertex, against its normal; triangles are turned outward",
             });
         }
         Ok(PrismMesh {

@@ -41,6 +41,8 @@ impl Refined {
                     ));
                     tissue.bone.push((tissue.bone[a] + tissue.bone[b]) / 2.0);
                     tissue.is_held.push(tissue.is_held[a] && tissue.is_held[b]);
+                    let can_touch = tissue.can_touch[a] && tissue.can_touch[b];
+                    tissue.can_touch.push(can_touch);
                     let moduli = [tissue.shear_modulus_mpa[a], tissue.shear_modulus_mpa[b]];
                     tissue.shear_modulus_mpa.push((moduli[0] + moduli[1]) / 2.0);
                     Some(tissue.skin.len() as u32 - 1)

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 use thenar_surface::Vec3;
 
 use crate::Tissue;
+use crate::cut::Cut;
 use crate::newton::{Equilibrium, Forces};
-use crate::prisms::PrismMesh;
 
 /// Contact of a reference solve; arrays by skin vertex.
 #[derive(Debug, Clone)]
@@ -26,6 +26,10 @@ pub struct ReferenceContact {
     pub patch_peak_mpa: f64,
     /// Deepest skin vertex inside the product, mm: what the penalty gives way.
     pub penetration_mm: f64,
+    /// How deep the product lies in the skin between its vertices, mm, where contact is not tested.
+    pub cut_mm: f64,
+    /// Volume that stays in the product between vertices over the volume of skin in it before the press, 0 to 1.
+    pub cut_share: f64,
     /// Share of the force that pushes skin along itself and not back, as a tool does that is thinner than twice its depth: read no
     /// force where it is large.
     pub sideways_share: f64,
@@ -43,9 +47,9 @@ impl ReferenceContact {
     pub(crate) fn new(
         tissue: &Tissue,
         equilibrium: &Equilibrium<'_>,
-        forces: &Forces,
-        mesh: &PrismMesh,
+        (forces, cut): (&Forces, Cut),
     ) -> ReferenceContact {
+        let mesh = equilibrium.mesh;
         let n = tissue.skin.len();
         let place = |v: usize| equilibrium.places[mesh.skin_node(v)];
         let mut force_n = vec![Vec3::zeros(); n];
@@ -103,6 +107,8 @@ impl ReferenceContact {
             contact_area_mm2: area,
             patch_peak_mpa: patch_peak(&force_n, &nodal, &(0..n).map(place).collect::<Vec<_>>()),
             penetration_mm: penetration,
+            cut_mm: cut.depth_mm,
+            cut_share: cut.share,
             sideways_share: if total > 0.0 { sideways / total } else { 0.0 },
             dilatation: sizes,
             force_n,

@@ -15,6 +15,8 @@ pub struct Tissue {
     pub bone: Vec<Vec3>,
     /// Skin vertices (n) whose tissue does not move: rims, nails, creases.
     pub is_held: Vec<bool>,
+    /// Skin vertices (n) that the product can touch; it passes through the others.
+    pub can_touch: Vec<bool>,
     /// Shear modulus at small strain at every skin vertex (n), MPa.
     pub shear_modulus_mpa: Vec<f64>,
     /// Exponent b of the stiffening, 0 for neo-Hookean tissue: `W = mu / (2 b) (exp(b (I1 - 3)) - 1)`, I1 at constant volume
@@ -32,6 +34,7 @@ impl Tissue {
         let lengths = [
             ("bone", self.bone.len()),
             ("is_held", self.is_held.len()),
+            ("can_touch", self.can_touch.len()),
             ("shear_modulus_mpa", self.shear_modulus_mpa.len()),
         ];
         for (name, length) in lengths {
@@ -48,7 +51,7 @@ impl Tissue {
                 return Err(error(
                     format!("array `{name}`, vertex {i}"),
                     format!("{:?}", points[i].as_slice()),
-                    "coordinates are finite, in mm",
+                    "give coordinates between -1e6 and 1e6 mm",
                 ));
             }
         }

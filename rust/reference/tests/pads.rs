@@ -90,6 +90,7 @@ fn pad(
         bone: scaled(bone),
         triangles,
         is_held: points.iter().map(|p| p.z > -1e-9).collect(),
+        can_touch: vec![true; points.len()],
         shear_modulus_mpa: vec![shear_modulus; points.len()],
         stiffening,
     }

@@ -1,5 +1,6 @@
 """The reference solve and the fast result: what is written, compared, refused, exported and forgotten."""
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ def certified(**options):
 def test_the_reference_is_compared_with_the_fast_result():
     hand, _, result = certified()
     reference = result.reference
-    assert reference.is_valid and reference.note == ""
+    assert reference.is_valid and reference.note.startswith("The bones of the rig are not known: 'Pad' has no armature")
+    assert reference.note.count(". ") == 0, "one note alone"
     assert reference.force_n == pytest.approx(result.regions[0].reference_n, rel=0.02)
     # A ball of 8 mm with a bone of 1 mm at its center is softer than a bonded layer without end.
     assert 0.4 < reference.force_n / result.force_n < 1.0
@@ -69,6 +71,70 @@ def test_a_scene_that_was_changed_is_refused():
     assert "reference_kpa" not in hand.data.attributes
 
 
+def test_a_contact_that_was_applied_is_refused():
+    stage.scene()
+    stage.solve()
+    assert bpy.ops.thenar.apply() == {"FINISHED"}
+    with pytest.raises(RuntimeError, match="undo Apply, or solve again"):
+        bpy.ops.thenar.certify()
+    stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+
+
+def test_skin_without_a_region_carries_no_force():
+    hand, _ = stage.scene()
+    right = [vertex.index for vertex in hand.data.vertices if vertex.co.x > 0.0]
+    hand.vertex_groups.new(name="right").add(right, 1.0, "REPLACE")
+    assert bpy.ops.thenar.assign_regions() == {"FINISHED"}
+    result = stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+    outside = stage.attribute(hand, "contact_region") < 0
+    assert stage.attribute(hand, "reference_kpa")[outside].max() == 0.0
+    assert result.reference.force_n == pytest.approx(result.regions[0].reference_n, rel=1e-6)
+    assert "inside the product the skin has no region" in result.reference.note
+
+
+def test_skin_that_is_inside_out_is_turned_where_closed_and_refused_where_open():
+    hand, _, result = certified()
+    expected = result.reference.force_n
+    hand.data.flip_normals()
+    stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+    assert result.reference.force_n == pytest.approx(expected, rel=1e-6)
+    opened = bmesh.new()
+    opened.from_mesh(hand.data)
+    bmesh.ops.delete(opened, geom=[max(opened.verts, key=lambda vertex: vertex.co.z)], context="VERTS")
+    bpy.ops.thenar.clear()
+    opened.to_mesh(hand.data)
+    opened.free()
+    stage.solve()
+    with pytest.raises(RuntimeError, match="turn the normals of the skin outward"):
+        bpy.ops.thenar.certify()
+
+
+def test_an_effect_that_the_reference_lacks_is_named_in_words():
+    hand, _ = stage.scene()
+    for name in ("friction", "bone"):
+        assert bpy.ops.thenar.effect_add(kind=name) == {"FINISHED"}
+    stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+    note = bpy.context.scene.thenar.result.reference.note
+    assert "The reference has no effects: friction acts in the fast result alone" in note
+
+
+def test_clear_and_bake_forget_the_reference(tmp_path):
+    hand, _, result = certified()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pad.blend"))
+    assert bpy.ops.thenar.show_map(kind="REFERENCE") == {"FINISHED"}
+    assert bpy.ops.thenar.bake(frame_start=1, frame_end=1) == {"FINISHED"}
+    assert not result.reference.is_valid and "reference_kpa" not in hand.data.attributes
+    with pytest.raises(RuntimeError, match="plays a bake; press Clear first, then Solve and Certify"):
+        bpy.ops.thenar.certify()
+    bpy.context.scene.thenar.maps.shown = "REFERENCE"
+    assert bpy.ops.thenar.clear() == {"FINISHED"}
+    assert bpy.context.scene.thenar.maps.shown == "PRESSURE"
+
+
 def test_without_a_result_the_button_says_what_to_do():
     stage.scene()
     assert not bpy.ops.thenar.certify.poll()
@@ -80,6 +146,26 @@ def test_tissue_without_bone_is_refused():
     stage.solve()
     with pytest.raises(RuntimeError, match="without bone"):
         bpy.ops.thenar.certify()
+
+
+def test_tissue_thicker_than_the_body_is_refused_by_region():
+    hand, _ = stage.scene()
+    hand.thenar.default_material.thickness_mm = 12.0
+    stage.solve()
+    with pytest.raises(
+        RuntimeError, match=r"skin vertex \d+ \(Whole skin\), where tissue is 1\d\.\d mm thick; give thinner"
+    ):
+        bpy.ops.thenar.certify()
+
+
+@pytest.mark.parametrize(("fineness", "says"), [(2, True), (3, False)])
+def test_skin_that_is_too_coarse_is_said(fineness, says):
+    hand, product = stage.pad(fineness=fineness), stage.plate()
+    settings = bpy.context.scene.thenar
+    settings.hand, settings.product = hand, product
+    stage.solve()
+    assert bpy.ops.thenar.certify() == {"FINISHED"}
+    assert ("mm apart, too far for the reference" in settings.result.reference.note) == says
 
 
 def test_seams_do_not_cut_the_tissue():

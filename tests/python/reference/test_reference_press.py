@@ -19,7 +19,7 @@ def slab(spacing=1.0, half=8.0):
     return vertices, triangles, vertices - [0.0, 0.0, 4.0], np.full(len(vertices), 0.01), held
 
 
-def block(z=-0.5, half=3.0):
+def block(z=-0.3, half=3.0):
     """A block over the skin, its lower face at `z`."""
     corners = np.array([[x, y, h] for x in (-half, half) for y in (-half, half) for h in (z, z + 10.0)])
     quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -27,7 +27,7 @@ def block(z=-0.5, half=3.0):
     return corners, faces
 
 
-def pressed(z=-0.5, **options):
+def pressed(z=-0.3, **options):
     vertices, triangles, bone, modulus, held = slab()
     return thenar.reference_press(vertices, triangles, bone, modulus, *block(z), held=held.tolist(), **options)
 
@@ -41,16 +41,18 @@ def test_forces_balance_and_the_skin_lies_at_the_product():
     assert found.unbalanced < 2e-4 and found.penetration_mm < 0.011
     assert np.abs(found.displacement_mm[held]).max() == 0.0
     under = np.abs(vertices[:, :2]).max(axis=1) < 2.5
-    assert found.displacement_mm[under, 2] == pytest.approx(-0.5, abs=0.011)
+    assert found.displacement_mm[under, 2] == pytest.approx(-0.3, abs=0.011)
     around = (np.abs(vertices[:, :2]).max(axis=1) > 3.5) & ~held
-    assert found.displacement_mm[around, 2].max() > 0.05, "tissue keeps its volume: it swells around the block"
+    assert found.displacement_mm[around, 2].max() > 0.03, "tissue keeps its volume: it swells around the block"
     assert found.pressure_mpa[~under & (np.abs(vertices[:, :2]).max(axis=1) > 4.0)].max() == 0.0
     assert len(found.folded) == 0
 
 
-def test_a_tool_thinner_than_twice_its_depth_is_said():
+def test_force_along_the_skin_is_said():
     assert pressed().sideways_share < 0.01
-    assert pressed(z=-3.6).sideways_share > 0.5, "the sides of the block are nearer than its lower face"
+    vertices, triangles, bone, modulus, held = slab(spacing=0.25, half=3.0)
+    found = thenar.reference_press(vertices, triangles, bone, modulus, *block(-0.45, half=1.6), held=held.tolist())
+    assert found.sideways_share > 0.2, "skin lies at the sides of the block"
 
 
 def test_no_contact_is_no_force():

@@ -17,17 +17,20 @@ use crate::running::{Hooks, run};
 /// Presses soft tissue, meshed from the skin to the bone, against a rigid and smooth product: the reference of model "layer".
 ///
 /// `posed_vertices_mm` (n, 3) and `triangles` (m, 3) of the skin where it is pressed; `bone_mm` (n, 3): the point of the bone under every
-/// vertex; `shear_modulus_mpa` (n,) at small strain; `held` (n,) bool: vertices whose tissue does not move; product as in `Skin.press`;
+/// vertex; `shear_modulus_mpa` (n,) at small strain; `held` (n,) bool: vertices whose tissue does not move; `can_touch`
+/// (n,) bool: vertices that the product can touch, all where it is not given; product as in `Skin.press`;
 /// `stiffening`: b of `W = G / (2 b) (exp(b (I1 - 3)) - 1)` at constant volume, 0: neo-Hookean; `layers` of prisms between bone and skin;
 /// `bulk_ratio`: bulk over shear modulus.
 ///
 /// Returns a record: `displacement_mm` and `force_n` (n, 3) of the product on the skin, `pressure_mpa` (n,), `total_force_n` (3,) of the skin on the product,
 /// `normal_force_n`,
-/// `contact_area_mm2`, `patch_peak_mpa` (largest mean over 24 mm2), `penetration_mm`, `sideways_share` (of the force that pushes skin along itself, as
+/// `contact_area_mm2`, `patch_peak_mpa` (largest mean over 24 mm2), `penetration_mm` of vertices, `cut_mm` (how deep the product lies in the skin between
+/// vertices, where contact is not tested), `cut_share` (of the overlap that stays there; cuts beyond 0.5 mm with more than 0.1,
+/// and beyond 0.1 mm with more than 0.5, are refused), `sideways_share` (of the force that pushes skin along itself, as
 /// a tool does that is thinner than twice its depth), `dilatation` (smallest and largest change of volume), `unbalanced` (residual over contact
 /// force), `steps`, `folded` (vertices at whose triangles tissue could not be meshed). Raises `MeshError`, `SolveError`, `Cancelled`.
 #[pyfunction]
-#[pyo3(signature = (posed_vertices_mm, triangles, bone_mm, shear_modulus_mpa, product_vertices_mm, product_triangles=None, *, held=None, stiffening=0.0, layers=3, bulk_ratio=100.0, cancel=None, progress=None))]
+#[pyo3(signature = (posed_vertices_mm, triangles, bone_mm, shear_modulus_mpa, product_vertices_mm, product_triangles=None, *, held=None, can_touch=None, stiffening=0.0, layers=3, bulk_ratio=100.0, cancel=None, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keywords of the public interface"
@@ -41,8 +44,9 @@ pub fn reference_press(
     product_vertices_mm: &Bound<'_, PyAny>,
     product_triangles: Option<&Bound<'_, PyAny>>,
     held: Option<Vec<bool>>,
+    can_touch: Option<Vec<bool>>,
     stiffening: f64,
-    layers: usize,
+    layers: i64,
     bulk_ratio: f64,
     cancel: Option<Bound<'_, PyAny>>,
     progress: Option<Bound<'_, PyAny>>,
@@ -55,6 +59,7 @@ pub fn reference_press(
     let tissue = Tissue {
         bone: Argument::mesh("bone_mm", bone_mm).points()?,
         is_held: held.unwrap_or_else(|| vec![false; count]),
+        can_touch: can_touch.unwrap_or_else(|| vec![true; count]),
         shear_modulus_mpa: Argument::material("shear_modulus_mpa", shear_modulus_mpa)
             .numbers_of(count)?,
         skin: skin.vertices,
@@ -63,7 +68,8 @@ pub fn reference_press(
     };
     let target = target_of(product_vertices_mm, product_triangles)?;
     let settings = Settings {
-        layers,
+        layers: usize::try_from(layers)
+            .map_err(|_| Topic::Mesh.error(format!("layers: found {layers}; give 1 to 8")))?,
         bulk_ratio,
         ..Settings::default()
     };
@@ -88,6 +94,8 @@ fn as_record(py: Python<'_>, found: ReferenceContact) -> PyResult<Py<PyAny>> {
     entries.set_item("contact_area_mm2", found.contact_area_mm2)?;
     entries.set_item("patch_peak_mpa", found.patch_peak_mpa)?;
     entries.set_item("penetration_mm", found.penetration_mm)?;
+    entries.set_item("cut_mm", found.cut_mm)?;
+    entries.set_item("cut_share", found.cut_share)?;
     entries.set_item("sideways_share", found.sideways_share)?;
     entries.set_item("dilatation", (found.dilatation[0], found.dilatation[1]))?;
     entries.set_item("unbalanced", found.unbalanced)?;
