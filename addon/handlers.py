@@ -3,7 +3,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cache, command_line, native, status, workflow
+from . import cache, command_line, material_settings, native, status, workflow
 from .operators import running
 from .scene import baked
 
@@ -25,6 +25,9 @@ def _scene_changed(scene, depsgraph=None):
 def _file_loaded(*_):
     status.forget()
     baked.forget()
+    for hand in bpy.data.objects:
+        for material in (*hand.thenar.materials, hand.thenar.default_material):
+            material_settings.bring_up_to_date(material)
     if bpy.context.scene is not None:
         _scene_changed(bpy.context.scene)
 

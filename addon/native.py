@@ -48,7 +48,7 @@ def effects() -> list[Any]:
 
 
 def published(preset: str) -> dict[str, float] | None:
-    """Numbers by parameter name of a published material ("finger", "palm", "finger_layer", "palm_layer"), or None."""
+    """Numbers by parameter name of a published material ("finger", "palm_layer" and so on), or None."""
     maker = getattr(module.Material, preset, None) if module is not None else None
     if maker is None:
         return None

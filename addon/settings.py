@@ -1,9 +1,4 @@
-"""Blender properties of Thenar: what to solve, materials by region, and the result kept in the file.
-
-Numbers of the tissue are not written here: presets come from the native module's published materials.
-"""
-
-from math import isfinite
+"""Blender properties of Thenar: what to solve, and the result kept in the file."""
 
 import bpy
 from bpy.props import (
@@ -17,95 +12,8 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import bake_settings, comfort_settings, effect_settings, map_settings, names, native, status
-from .scene.units import KPA_PER_MPA
-
-PRESETS = (
-    ("FINGER_LAYER", "Finger, layer on bone", "Finger pad as a soft layer on bone; for the layer model", 0),
-    ("PALM_LAYER", "Palm, layer on bone", "Palm as a soft layer on bone; for the layer model", 1),
-    ("FINGER", "Finger, published", "Fingertip of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 2),
-    ("PALM", "Palm, published", "Palm of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 3),
-    ("CUSTOM", "Own values", "Values entered by hand", 4),
-)
-
-
-def fill_from_preset(material, preset):
-    """Set a region's numbers to a preset; the sets of values stand in the native module."""
-    numbers = native.published(preset.lower())
-    if numbers is None:
-        return
-    _filling.append(preset)
-    for name, (prop, factor) in MATERIAL_NUMBERS.items():
-        setattr(material, prop, _shown(numbers[name], factor))
-    _filling.clear()
-
-
-MATERIAL_NUMBERS = {
-    "g0_mpa": ("g0_kpa", KPA_PER_MPA),
-    "g_lim_mpa": ("g_lim_kpa", KPA_PER_MPA),
-    "d_lim_mm": ("d_lim_mm", 1),
-    "thickness_mm": ("thickness_mm", 1),
-    "poisson_ratio": ("poisson_ratio", 1),
-    "zone_mm": ("zone_mm", 1),
-    "swelling_height_mm_per_n": ("swelling_height_mm_per_n", 1),
-    "swelling_radius_mm": ("swelling_radius_mm", 1),
-    "swelling_width_mm": ("swelling_width_mm", 1),
-}
-"""Parameter of the library -> property here, and what its value is multiplied with. Infinite thickness shows as 0."""
-
-_LABELS = {
-    "g0_kpa": "G0 (kPa)",
-    "g_lim_kpa": "G Limit (kPa)",
-    "d_lim_mm": "d Limit (mm)",
-    "thickness_mm": "Thickness (mm)",
-    "poisson_ratio": "Poisson Ratio",
-    "zone_mm": "Zone (mm)",
-    "swelling_height_mm_per_n": "Swell (mm/N)",
-    "swelling_radius_mm": "Radius (mm)",
-    "swelling_width_mm": "Width (mm)",
-}
-_DEFAULT_PRESET = "FINGER_LAYER"
-_filling = []
-"""Not empty while a preset writes its numbers, which are then not the user's own."""
-
-
-def _shown(value, factor):
-    return value * factor if isfinite(value) else 0.0
-
-
-def _preset_changed(self, _context):
-    if self.preset != "CUSTOM":
-        fill_from_preset(self, self.preset)
-
-
-def _value_changed(self, _context):
-    if not _filling and self.preset != "CUSTOM":
-        self.preset = "CUSTOM"
-
-
-def _number_properties():
-    """A float property for every parameter of the library's table; plain ones where that table is missing."""
-    table, defaults = native.parameters(), native.published(_DEFAULT_PRESET.lower()) or {}
-    properties = {}  # a thickness is anatomy: it does not make the preset one's own
-    for name, (prop, factor) in MATERIAL_NUMBERS.items():
-        row = table.get(name, {})
-        properties[prop] = FloatProperty(
-            name=_LABELS[prop],
-            description=_sentence(row, prop),
-            default=_shown(defaults.get(name, 1.0), factor),
-            min=0.0 if prop == "thickness_mm" else row.get("low", 0.0) * factor,
-            max=min(row.get("high", 1e6) * factor, 1e6),
-            precision=3,
-            update=None if prop == "thickness_mm" else _value_changed,
-        )
-    return properties
-
-
-def _sentence(row, prop):
-    if not row:
-        return _LABELS[prop]
-    zero = "; 0: no bone below" if prop == "thickness_mm" else ""
-    return f"{row['meaning'].capitalize()}{zero}. {row['source']}"
+from . import bake_settings, comfort_settings, effect_settings, map_settings, names, status
+from .material_settings import ThenarMaterial
 
 
 def _look_changed(_self, context):
@@ -116,21 +24,6 @@ def _look_changed(_self, context):
 def _live_switched(_self, context):
     for follow in status.live_switched:
         follow(context)
-
-
-class ThenarMaterial(bpy.types.PropertyGroup):
-    """Material of one region; `name` is the vertex group. Its numbers come from the library's table."""
-
-    __annotations__ = {
-        "preset": EnumProperty(
-            name="Preset",
-            description="Published values for this kind of skin",
-            items=PRESETS,
-            default=_DEFAULT_PRESET,
-            update=_preset_changed,
-        ),
-        **_number_properties(),
-    }
 
 
 class ThenarRegionResult(bpy.types.PropertyGroup):

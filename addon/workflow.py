@@ -12,10 +12,10 @@ from bpy.types import Context, Object, PropertyGroup
 
 from . import cache, certificate, comfort, effect_settings, effects, maps, names, native, sentences, status
 from . import result as results
+from .material_settings import ANATOMY, MATERIAL_NUMBERS
 from .scene import checks, own, owned, read, refine, sizes, state, units, write
 from .scene import parts as parts_of
 from .scene.units import Floats
-from .settings import MATERIAL_NUMBERS
 from .steps import PAUSE, Cancel, Progress, Steps, Work, at_once
 
 Numbers: TypeAlias = tuple[tuple[str, float], ...]
@@ -330,8 +330,8 @@ def _numbers(material: PropertyGroup) -> Numbers:
     numbers = {}
     for name, (prop, factor) in MATERIAL_NUMBERS.items():
         numbers[name] = float(f"{getattr(material, prop) / factor:.6g}")
-    if numbers["thickness_mm"] == 0.0:
-        numbers["thickness_mm"] = np.inf
+    for name in ANATOMY:
+        numbers[name] = numbers[name] or np.inf
     return tuple(numbers.items())
 
 

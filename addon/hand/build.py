@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 
 from .. import native
+from ..material_settings import preset_of
 from ..scene.checks import Refusal
 from ..scene.units import mm_per_unit
 from . import look, model, roles, shader, studio
@@ -151,8 +152,8 @@ def _set_materials(hand, made, groups):
     settings = getattr(hand, "thenar", None)
     if settings is None or not hasattr(settings, "materials"):
         return
-    for name, kind, thickness in zip(groups, made["kind"], made["thickness_mm"], strict=True):
+    for name, thickness in zip(groups, made["thickness_mm"], strict=True):
         material = settings.materials.add()
         material.name = name
-        material.preset = "PALM_LAYER" if kind == "palm" else "FINGER_LAYER"
+        material.preset = preset_of(name)
         material.thickness_mm = float(thickness)

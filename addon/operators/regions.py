@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import settings
+from .. import material_settings
 from ..scene import regions
 from . import polling, selecting
 
@@ -100,7 +100,7 @@ class THENAR_OT_region_remove(bpy.types.Operator):
 
 
 class THENAR_OT_region_preset(bpy.types.Operator):
-    """Set published values for all listed regions: the palm's where the name says palm or thenar, else the finger's"""
+    """Set published values for all listed regions: by the name: palm, phalanx or fingertip"""
 
     bl_idname = "thenar.region_preset"
     bl_label = "Published Values"
@@ -111,9 +111,8 @@ class THENAR_OT_region_preset(bpy.types.Operator):
         return polling.allows(cls, polling.no_regions(context))
 
     def execute(self, context):
-        suffix = "_LAYER" if context.scene.thenar.model == "LAYER" else ""
         for material in context.scene.thenar.hand.thenar.materials:
-            material.preset = kind_of(material.name) + suffix
+            material.preset = material_settings.preset_of(material.name, context.scene.thenar.model)
         return {"FINISHED"}
 
 
@@ -142,15 +141,10 @@ def add_region(hand, name):
     """Add a material for the vertex group of that name, with the published values of its kind."""
     material = hand.thenar.materials.add()
     material.name = name
-    material.preset = kind_of(name) + "_LAYER"
-    settings.fill_from_preset(material, material.preset)
+    material.preset = material_settings.preset_of(name)
+    material_settings.fill_from_preset(material, material.preset)
     hand.thenar.material_index = len(hand.thenar.materials) - 1
     return material
-
-
-def kind_of(region_name):
-    """FINGER or PALM, by the region's name."""
-    return "PALM" if any(word in region_name.lower() for word in ("palm", "thenar")) else "FINGER"
 
 
 def _bone_names(hand):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import material_settings
 from . import text
 from .main import OfHand
 
@@ -39,7 +40,8 @@ def _draw_material(layout, material, context):
     for name in ("g0_kpa", "g_lim_kpa", "d_lim_mm", "poisson_ratio"):
         column.prop(material, name)
     if context.scene.thenar.model == "LAYER":
-        column.prop(material, "thickness_mm")
+        for name in ("stiffening", *material_settings.ANATOMY):
+            column.prop(material, name)
     else:
         column.prop(material, "zone_mm")
         for name in ("swelling_height_mm_per_n", "swelling_radius_mm", "swelling_width_mm"):

@@ -31,6 +31,7 @@ class Tissue:
     held: Bools
     can_touch: Bools
     shear_modulus_mpa: Floats
+    stiffening: Floats
     product_mm: Floats
     merged: Ints
     """(n): the vertex of the arrays above that every vertex of the hand is."""
@@ -56,7 +57,10 @@ def read(context: Context, taken: ExitStack) -> Tissue:
     hand = context.scene.thenar.hand
     skin, thickness = job.reading.hand, _thickness(hand, job)
     modulus = np.array([row.shear_modulus_kpa for row in result.regions]) / units.KPA_PER_MPA
-    by_vertex = np.where(skin.regions >= 0, modulus[np.maximum(skin.regions, 0)], modulus.mean())
+    exponent = np.array([dict(numbers)["stiffening"] for numbers in job.materials])
+    by_region = np.maximum(skin.regions, 0)
+    modulus = np.where(skin.regions >= 0, modulus[by_region], modulus.mean())
+    exponent = np.where(skin.regions >= 0, exponent[by_region], exponent.mean())
     first, merged = _merge(skin.rest_mm)
     triangles = merged[skin.triangles]
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
@@ -71,7 +75,8 @@ def read(context: Context, taken: ExitStack) -> Tissue:
         bone_mm=posed + ways,
         held=_held(posed, triangles, skin.regions[first]),
         can_touch=skin.regions[first] >= 0,
-        shear_modulus_mpa=by_vertex[first],
+        shear_modulus_mpa=modulus[first],
+        stiffening=exponent[first],
         product_mm=product_mm,
         merged=merged,
         first=first,
@@ -108,6 +113,7 @@ def press(tissue: Tissue, cancel: Cancel | None = None, progress: Progress | Non
             tissue.product_mm,
             tissue.job.reading.product.triangles,
             held=tissue.held.tolist(),
+            stiffening=tissue.stiffening,
             can_touch=tissue.can_touch.tolist(),
             layers=LAYERS,
             cancel=cancel,

@@ -56,6 +56,9 @@ class Material:
         d_lim_mm: float | None = None,
         thickness_mm: float | None = None,
         poisson_ratio: float | None = None,
+        stiffening: float | None = None,
+        bone_half_width_mm: float | None = None,
+        bone_half_length_mm: float | None = None,
         zone_mm: float | None = None,
         swelling: tuple[float, float, float] | None = None,
         swelling_height_mm_per_n: float | None = None,
@@ -69,6 +72,8 @@ class Material:
     @staticmethod
     def finger_layer() -> Material: ...
     @staticmethod
+    def phalanx_layer() -> Material: ...
+    @staticmethod
     def palm_layer() -> Material: ...
     def replace(self, **numbers: float | tuple[float, float, float]) -> Material: ...
     @property
@@ -81,6 +86,12 @@ class Material:
     def thickness_mm(self) -> float: ...
     @property
     def poisson_ratio(self) -> float: ...
+    @property
+    def stiffening(self) -> float: ...
+    @property
+    def bone_half_width_mm(self) -> float: ...
+    @property
+    def bone_half_length_mm(self) -> float: ...
     @property
     def zone_mm(self) -> float: ...
     @property
@@ -620,7 +631,7 @@ def reference_press(
     *,
     held: Sequence[bool] | None = None,
     can_touch: Sequence[bool] | None = None,
-    stiffening: float = 0.0,
+    stiffening: ArrayLike | None = None,
     layers: int = 3,
     bulk_ratio: float = 100.0,
     cancel: _Cancel | None = None,

@@ -10,7 +10,9 @@ use thenar_contact::{Model, Swelling};
 ///
 /// `g0_mpa`, `g_lim_mpa`: shear modulus at first touch and from `d_lim_mm` on, MPa. `d_lim_mm`: mm.
 /// `thickness_mm`: soft tissue over bone, mm; `inf` gives a half space (model "layer").
-/// `poisson_ratio`: 0 to 0.5. `zone_mm`: reach of the active zone, mm (model "paper").
+/// `poisson_ratio`: 0 to 0.5. `stiffening`: b of `W = G / (2 b) (exp(b (I1 - 3)) - 1)`, the growth of the modulus with the
+/// strain of a place (model "layer"). `bone_half_width_mm`, `bone_half_length_mm`: of the bone under the tissue, mm; `inf` for
+/// bone without end (model "layer"). `zone_mm`: reach of the active zone, mm (model "paper").
 /// `swelling`: height (mm/N), radius (mm) and width (mm) of the swelling (model "paper"), or each by its name in
 /// `thenar.parameters()`.
 ///
@@ -55,6 +57,12 @@ impl Material {
         Material(thenar_contact::Material::finger_layer())
     }
 
+    /// Other pads of a finger over bone, for the model "layer".
+    #[staticmethod]
+    fn phalanx_layer() -> Material {
+        Material(thenar_contact::Material::phalanx_layer())
+    }
+
     /// Palm over bone, for the model "layer".
     #[staticmethod]
     fn palm_layer() -> Material {
@@ -84,6 +92,21 @@ impl Material {
     #[getter]
     fn poisson_ratio(&self) -> f64 {
         self.0.poisson_ratio
+    }
+
+    #[getter]
+    fn stiffening(&self) -> f64 {
+        self.0.stiffening
+    }
+
+    #[getter]
+    fn bone_half_width_mm(&self) -> f64 {
+        self.0.bone_half_width_mm
+    }
+
+    #[getter]
+    fn bone_half_length_mm(&self) -> f64 {
+        self.0.bone_half_length_mm
     }
 
     #[getter]
@@ -155,6 +178,9 @@ impl Material {
         numbers.set_item("d_lim_mm", self.0.d_lim_mm)?;
         numbers.set_item("thickness_mm", self.0.thickness_mm)?;
         numbers.set_item("poisson_ratio", self.0.poisson_ratio)?;
+        numbers.set_item("stiffening", self.0.stiffening)?;
+        numbers.set_item("bone_half_width_mm", self.0.bone_half_width_mm)?;
+        numbers.set_item("bone_half_length_mm", self.0.bone_half_length_mm)?;
         numbers.set_item("zone_mm", self.0.zone_mm)?;
         numbers.set_item("swelling", self.swelling())?;
         Ok(numbers)
@@ -182,13 +208,16 @@ fn set(
         "d_lim_mm" => &mut material.d_lim_mm,
         "thickness_mm" => &mut material.thickness_mm,
         "poisson_ratio" => &mut material.poisson_ratio,
+        "stiffening" => &mut material.stiffening,
+        "bone_half_width_mm" => &mut material.bone_half_width_mm,
+        "bone_half_length_mm" => &mut material.bone_half_length_mm,
         "zone_mm" => &mut material.zone_mm,
         "swelling_height_mm_per_n" => &mut material.swelling.height_mm_per_n,
         "swelling_radius_mm" => &mut material.swelling.radius_mm,
         "swelling_width_mm" => &mut material.swelling.width_mm,
         _ => {
             return Err(MaterialError::new_err(format!(
-                "a material has no {name:?}; it has g0_mpa, g_lim_mpa, d_lim_mm, thickness_mm, poisson_ratio, zone_mm and swelling"
+                "a material has no {name:?}; it has g0_mpa, g_lim_mpa, d_lim_mm, thickness_mm, poisson_ratio, stiffening, bone_half_width_mm, bone_half_length_mm, zone_mm and swelling"
             )));
         }
     };

@@ -6,7 +6,7 @@ use thenar_surface::Vec3;
 use crate::factor::Factor;
 use crate::obstacle::{Obstacle, Penalty, Touch};
 use crate::pattern::Pattern;
-use crate::prism_energy::{Element, Law, Placed, evaluate};
+use crate::prism_energy::{Element, Placed, evaluate};
 use crate::prisms::PrismMesh;
 
 /// Longest step of a node, mm.
@@ -26,7 +26,8 @@ pub struct Equilibrium<'a> {
     pub pattern: &'a Pattern,
     pub factor: Factor,
     pub obstacle: Obstacle<'a>,
-    pub law: Law,
+    /// Bulk modulus over shear modulus.
+    pub bulk_ratio: f64,
     /// Where the nodes lie, mm.
     pub places: Vec<Vec3>,
     /// Newton steps so far.
@@ -74,14 +75,14 @@ impl<'a> Equilibrium<'a> {
     pub fn new(
         (mesh, pattern): (&'a PrismMesh, &'a Pattern),
         obstacle: Obstacle<'a>,
-        law: Law,
+        bulk_ratio: f64,
     ) -> Option<Equilibrium<'a>> {
         Some(Equilibrium {
             mesh,
             pattern,
             factor: Factor::new(pattern)?,
             obstacle,
-            law,
+            bulk_ratio,
             places: mesh.nodes.clone(),
             steps: 0,
             elements: vec![Element::default(); mesh.groups.len()],
@@ -217,7 +218,7 @@ impl<'a> Equilibrium<'a> {
         penalty: Penalty,
         with_stiffness: bool,
     ) -> Option<Forces> {
-        let (mesh, law) = (self.mesh, self.law);
+        let (mesh, bulk_ratio) = (self.mesh, self.bulk_ratio);
         let work = self
             .elements
             .par_iter_mut()
@@ -231,7 +232,7 @@ impl<'a> Equilibrium<'a> {
                 group,
                 places: &corners,
             };
-            evaluate(placed, law, with_stiffness, element)
+            evaluate(placed, bulk_ratio, with_stiffness, element)
         });
         if !is_sound.reduce(|| true, |a, b| a && b) {
             return None;

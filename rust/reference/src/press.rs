@@ -6,7 +6,6 @@ use crate::cut::Cut;
 use crate::newton::{End, Equilibrium, Forces, Limits};
 use crate::obstacle::{LIMITS, Obstacle, Penalty};
 use crate::pattern::Pattern;
-use crate::prism_energy::Law;
 use crate::prisms::PrismMesh;
 use crate::refine::Refined;
 use crate::result::ReferenceContact;
@@ -136,12 +135,8 @@ fn solve(
     }
     check_columns(tissue, &obstacle)?;
     check_bone(tissue, &obstacle)?;
-    let law = Law {
-        stiffening: tissue.stiffening,
-        bulk_ratio: settings.bulk_ratio,
-    };
-    let equilibrium =
-        Equilibrium::new((&mesh, &pattern), obstacle, law).ok_or_else(|| too_large(&mesh))?;
+    let equilibrium = Equilibrium::new((&mesh, &pattern), obstacle, settings.bulk_ratio)
+        .ok_or_else(|| too_large(&mesh))?;
     let deepest = equilibrium.obstacle.deepest;
     let moduli: f64 = tissue.shear_modulus_mpa.iter().sum();
     let mut growth = Growth {

@@ -14,15 +14,6 @@ const OF_PRISM: usize = 3 * NODES;
 /// Share of its volume below which a point of a prism counts as folded.
 const LEAST_VOLUME: f64 = 0.02;
 
-/// Laws of a tissue that hold everywhere.
-#[derive(Debug, Clone, Copy)]
-pub struct Law {
-    /// Exponent b of the stiffening.
-    pub stiffening: f64,
-    /// Bulk modulus over shear modulus.
-    pub bulk_ratio: f64,
-}
-
 /// Force on the nodes and, where asked for, stiffness of a group.
 #[derive(Debug, Clone)]
 pub struct Element {
@@ -57,7 +48,12 @@ pub struct Placed<'a> {
 }
 
 /// Fills `element`. False where one of the group's prisms is folded.
-pub fn evaluate(placed: Placed<'_>, law: Law, with_stiffness: bool, element: &mut Element) -> bool {
+pub fn evaluate(
+    placed: Placed<'_>,
+    bulk_ratio: f64,
+    with_stiffness: bool,
+    element: &mut Element,
+) -> bool {
     let Placed {
         mesh,
         group,
@@ -77,7 +73,7 @@ pub fn evaluate(placed: Placed<'_>, law: Law, with_stiffness: bool, element: &mu
         modulus += prism.volume * prism.shear_modulus;
         *strain = found;
     }
-    let bulk = law.bulk_ratio * modulus / volume_before;
+    let bulk = bulk_ratio * modulus / volume_before;
     let dilatation = volume / volume_before;
     let pressure = bulk * (dilatation - 1.0);
     *element = Element::default();
@@ -93,7 +89,7 @@ pub fn evaluate(placed: Placed<'_>, law: Law, with_stiffness: bool, element: &mu
                 &strain.gradients[g],
                 strain.volumes[g],
                 prism.shear_modulus,
-                law.stiffening,
+                prism.stiffening,
             );
             let (weight, shape) = (prism.weights[g], &prism.gradients[g]);
             element.energy += weight * point.energy;
@@ -220,17 +216,14 @@ mod tests {
             is_held: vec![false; 4],
             can_touch: vec![true; 4],
             shear_modulus_mpa: vec![0.01, 0.01, 0.02, 0.03],
-            stiffening: 0.3,
+            stiffening: vec![0.3, 0.3, 0.2, 0.1],
         };
         let mesh = PrismMesh::new(&tissue, 1).expect("the prisms have volume");
         assert!(mesh.groups.len() == 1 && mesh.groups[0].prisms.1.is_some());
         mesh
     }
 
-    const LAW: Law = Law {
-        stiffening: 0.3,
-        bulk_ratio: 100.0,
-    };
+    const BULK_RATIO: f64 = 100.0;
 
     fn at_rest(mesh: &PrismMesh) -> [[f64; 3]; GROUP_NODES] {
         mesh.groups[0].nodes.map(|k| mesh.nodes[k as usize].into())
@@ -256,7 +249,7 @@ mod tests {
             group: &mesh.groups[0],
             places,
         };
-        evaluate(placed, LAW, with_stiffness, &mut element).then_some(element)
+        evaluate(placed, BULK_RATIO, with_stiffness, &mut element).then_some(element)
     }
 
     /// Force is the derivative of the energy, stiffness that of the force: central differences.

@@ -36,6 +36,8 @@ pub struct Prism {
     pub volume: f64,
     /// Shear modulus, MPa.
     pub shear_modulus: f64,
+    /// Exponent b of the stiffening.
+    pub stiffening: f64,
 }
 
 /// Nodes of a group.
@@ -115,13 +117,10 @@ impl PrismMesh {
         let mut is_used = vec![false; nodes.len()];
         for triangle in &tissue.triangles {
             let corners = triangle.map(|v| v as usize);
-            let modulus = corners
-                .map(|v| tissue.shear_modulus_mpa[v])
-                .iter()
-                .sum::<f64>()
-                / 3.0;
+            let mean = |of: &[f64]| corners.map(|v| of[v]).iter().sum::<f64>() / 3.0;
+            let law = (mean(&tissue.shear_modulus_mpa), mean(&tissue.stiffening));
             for layer in 0..layers {
-                match Prism::new(&nodes, corners.map(|v| v + layer * n), n, modulus) {
+                match Prism::new(&nodes, corners.map(|v| v + layer * n), n, law) {
                     Some(prism) => {
                         prism.nodes.iter().for_each(|k| is_used[*k as usize] = true);
                         prisms.push(prism);
@@ -231,7 +230,12 @@ fn neighbors(prisms: &[Prism]) -> Vec<Vec<u32>> {
 
 impl Prism {
     /// `None` where the prism has no volume at one of its points.
-    fn new(nodes: &[Vec3], low: [usize; 3], step: usize, shear_modulus: f64) -> Option<Prism> {
+    fn new(
+        nodes: &[Vec3],
+        low: [usize; 3],
+        step: usize,
+        (shear_modulus, stiffening): (f64, f64),
+    ) -> Option<Prism> {
         let numbers = [
             low[0],
             low[1],
@@ -247,6 +251,7 @@ impl Prism {
             weights: [0.0; POINTS],
             volume: 0.0,
             shear_modulus,
+            stiffening,
         };
         let points = IN_PLANE
             .iter()

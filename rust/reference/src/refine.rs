@@ -43,8 +43,9 @@ impl Refined {
                     tissue.is_held.push(tissue.is_held[a] && tissue.is_held[b]);
                     let can_touch = tissue.can_touch[a] && tissue.can_touch[b];
                     tissue.can_touch.push(can_touch);
-                    let moduli = [tissue.shear_modulus_mpa[a], tissue.shear_modulus_mpa[b]];
-                    tissue.shear_modulus_mpa.push((moduli[0] + moduli[1]) / 2.0);
+                    for values in [&mut tissue.shear_modulus_mpa, &mut tissue.stiffening] {
+                        values.push((values[a] + values[b]) / 2.0);
+                    }
                     Some(tissue.skin.len() as u32 - 1)
                 })
             });

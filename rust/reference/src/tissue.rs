@@ -21,7 +21,8 @@ pub struct Tissue {
     pub shear_modulus_mpa: Vec<f64>,
     /// Exponent b of the stiffening, 0 for neo-Hookean tissue: `W = mu / (2 b) (exp(b (I1 - 3)) - 1)`, I1 at constant volume
     /// (Fung; Demiray 1972).
-    pub stiffening: f64,
+    /// At every skin vertex (n).
+    pub stiffening: Vec<f64>,
 }
 
 impl Tissue {
@@ -36,6 +37,7 @@ impl Tissue {
             ("is_held", self.is_held.len()),
             ("can_touch", self.can_touch.len()),
             ("shear_modulus_mpa", self.shear_modulus_mpa.len()),
+            ("stiffening", self.stiffening.len()),
         ];
         for (name, length) in lengths {
             if length != n {
@@ -74,10 +76,11 @@ impl Tissue {
                 "give a number above 0 and below 1000 MPa",
             ));
         }
-        if !(0.0..=20.0).contains(&self.stiffening) {
+        let exponent = |b: &f64| (0.0..=20.0).contains(b);
+        if let Some(i) = self.stiffening.iter().position(|b| !exponent(b)) {
             return Err(error(
-                "stiffening".to_owned(),
-                format!("{}", self.stiffening),
+                format!("stiffening at vertex {i}"),
+                format!("{}", self.stiffening[i]),
                 "give a number from 0 to 20",
             ));
         }

@@ -92,7 +92,7 @@ fn pad(
         is_held: points.iter().map(|p| p.z > -1e-9).collect(),
         can_touch: vec![true; points.len()],
         shear_modulus_mpa: vec![shear_modulus; points.len()],
-        stiffening,
+        stiffening: vec![stiffening; points.len()],
     }
 }
 

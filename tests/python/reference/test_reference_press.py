@@ -61,7 +61,7 @@ def test_no_contact_is_no_force():
 
 
 def test_the_same_input_gives_the_same_bits():
-    first, second = pressed(stiffening=1.0), pressed(stiffening=1.0)
+    first, second = pressed(stiffening=np.ones(289)), pressed(stiffening=np.ones(289))
     assert np.array_equal(first.displacement_mm, second.displacement_mm)
     assert first.normal_force_n > pressed().normal_force_n, "stiffening tissue bears more"
 
@@ -79,7 +79,7 @@ def test_a_modulus_twice_as_large_gives_twice_the_force():
         ({"shear_modulus_mpa": np.zeros(289)}, thenar.MeshError, "shear modulus at vertex 0"),
         ({"held": [True] * 289}, thenar.MeshError, "no skin vertex that can move"),
         ({"held": [True]}, thenar.MeshError, "array `is_held`"),
-        ({"stiffening": -1.0}, thenar.MeshError, "stiffening"),
+        ({"stiffening": -np.ones(289)}, thenar.MeshError, "stiffening"),
         ({"layers": 0}, thenar.MeshError, "layers: found 0; give 1 to 8"),
         ({"bulk_ratio": 1e12}, thenar.MeshError, "bulk_ratio"),
         ({"bulk_ratio": float("nan")}, thenar.MeshError, "bulk_ratio"),

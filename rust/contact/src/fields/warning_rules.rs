@@ -109,7 +109,6 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
             title,
             depth,
             thickness,
-            taken_as: depth / KERNEL_LIMIT,
         });
     }
     said

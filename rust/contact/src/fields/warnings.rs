@@ -45,7 +45,6 @@ pub enum Warning {
         title: String,
         depth: f64,
         thickness: f64,
-        taken_as: f64,
     },
     /// A region is pressed deeper than it is thick.
     BeyondTissue {
@@ -202,12 +201,11 @@ impl fmt::Display for Warning {
                 title,
                 depth,
                 thickness,
-                taken_as,
                 ..
             } => write!(
                 f,
-                "{title} is pressed {depth:.2} mm deep, over half its {thickness:.2} mm of soft tissue: its stiffness is taken \
-                 as that of {taken_as:.2} mm, since small-strain theory ends there"
+                "{title} is pressed {depth:.2} mm deep, over half its {thickness:.2} mm of soft tissue: the layer was held \
+                 against solids up to half only; Certify solves the tissue as a solid"
             ),
             Warning::BeyondTissue {
                 title,

@@ -1,6 +1,7 @@
 //! Conducts a press: position or force control, drag, fields. `at_position` holds the stages of one position.
 
 pub mod at_position;
+pub mod deep_tissue;
 pub mod displacement_field;
 pub mod effective_modulus;
 pub mod force_control;

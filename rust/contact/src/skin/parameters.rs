@@ -34,6 +34,12 @@ pub enum ParameterId {
     Thickness,
     /// Poisson's ratio.
     PoissonRatio,
+    /// Growth of the modulus with depth over thickness at a place.
+    Stiffening,
+    /// Half the width of the bone under the tissue, mm.
+    BoneHalfWidth,
+    /// Half the length of that bone, mm.
+    BoneHalfLength,
     /// Reach of the active zone around colliding vertices (paper model), mm.
     Zone,
     /// Swelling height a0 (paper model), mm/N.
@@ -45,7 +51,7 @@ pub enum ParameterId {
 }
 
 /// Every material parameter, in the order of [`ParameterId`].
-pub const PARAMETERS: [Parameter; 9] = [
+pub const PARAMETERS: [Parameter; 12] = [
     Parameter {
         name: "g0_mpa",
         symbol: "G0",
@@ -95,6 +101,36 @@ pub const PARAMETERS: [Parameter; 9] = [
         high: 0.5,
         meaning: "Poisson's ratio; 0.5 keeps volume",
         source: "Xie Eq. 4",
+    },
+    Parameter {
+        name: "stiffening",
+        symbol: "b",
+        unit: "1",
+        default: 0.0,
+        low: 0.0,
+        high: 20.0,
+        meaning: "growth of the modulus with the strain of a place; 0 for none, layer model",
+        source: "b of W = G/(2b) (exp(b(I1-3)) - 1) (Fung; Demiray 1972)",
+    },
+    Parameter {
+        name: "bone_half_width_mm",
+        symbol: "w",
+        unit: "mm",
+        default: f64::INFINITY,
+        low: 0.05,
+        high: f64::INFINITY,
+        meaning: "half the width of the bone under the tissue; inf for bone without end, layer model",
+        source: "tissue gives way at the sides of a narrow bone; fitted to solids of pads over bones",
+    },
+    Parameter {
+        name: "bone_half_length_mm",
+        symbol: "l",
+        unit: "mm",
+        default: f64::INFINITY,
+        low: 0.05,
+        high: f64::INFINITY,
+        meaning: "half the length of the bone under the tissue; inf for a long bone, layer model",
+        source: "as bone_half_width_mm",
     },
     Parameter {
         name: "zone_mm",

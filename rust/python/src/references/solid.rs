@@ -19,7 +19,7 @@ use crate::running::{Hooks, run};
 /// `posed_vertices_mm` (n, 3) and `triangles` (m, 3) of the skin where it is pressed; `bone_mm` (n, 3): the point of the bone under every
 /// vertex; `shear_modulus_mpa` (n,) at small strain; `held` (n,) bool: vertices whose tissue does not move; `can_touch`
 /// (n,) bool: vertices that the product can touch, all where it is not given; product as in `Skin.press`;
-/// `stiffening`: b of `W = G / (2 b) (exp(b (I1 - 3)) - 1)` at constant volume, 0: neo-Hookean; `layers` of prisms between bone and skin;
+/// `stiffening` (n,): b of `W = G / (2 b) (exp(b (I1 - 3)) - 1)` at constant volume, 0 (the default): neo-Hookean; `layers` of prisms between bone and skin;
 /// `bulk_ratio`: bulk over shear modulus.
 ///
 /// Returns a record: `displacement_mm` and `force_n` (n, 3) of the product on the skin, `pressure_mpa` (n,), `total_force_n` (3,) of the skin on the product,
@@ -30,7 +30,7 @@ use crate::running::{Hooks, run};
 /// a tool does that is thinner than twice its depth), `dilatation` (smallest and largest change of volume), `unbalanced` (residual over contact
 /// force), `steps`, `folded` (vertices at whose triangles tissue could not be meshed). Raises `MeshError`, `SolveError`, `Cancelled`.
 #[pyfunction]
-#[pyo3(signature = (posed_vertices_mm, triangles, bone_mm, shear_modulus_mpa, product_vertices_mm, product_triangles=None, *, held=None, can_touch=None, stiffening=0.0, layers=3, bulk_ratio=100.0, cancel=None, progress=None))]
+#[pyo3(signature = (posed_vertices_mm, triangles, bone_mm, shear_modulus_mpa, product_vertices_mm, product_triangles=None, *, held=None, can_touch=None, stiffening=None, layers=3, bulk_ratio=100.0, cancel=None, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keywords of the public interface"
@@ -45,7 +45,7 @@ pub fn reference_press(
     product_triangles: Option<&Bound<'_, PyAny>>,
     held: Option<Vec<bool>>,
     can_touch: Option<Vec<bool>>,
-    stiffening: f64,
+    stiffening: Option<Bound<'_, PyAny>>,
     layers: i64,
     bulk_ratio: f64,
     cancel: Option<Bound<'_, PyAny>>,
@@ -64,7 +64,10 @@ pub fn reference_press(
             .numbers_of(count)?,
         skin: skin.vertices,
         triangles: skin.triangles,
-        stiffening,
+        stiffening: match stiffening {
+            None => vec![0.0; count],
+            Some(given) => Argument::material("stiffening", &given).numbers_of(count)?,
+        },
     };
     let target = target_of(product_vertices_mm, product_triangles)?;
     let settings = Settings {

@@ -57,7 +57,11 @@ pub fn tissue(study: &StudySkin, control: &Control<'_>) -> Result<Tissue, Infere
         .collect();
     let mut notes = Vec::new();
     if study.materials.is_empty() {
-        notes.push(Model::Layer.preset_note());
+        notes.push(
+            "no materials were given: all skin is taken as a fingertip's, 7.1 mm over bone without end; give regions and a \
+             material for each, since a palm is thicker and stiffer at first touch"
+                .to_owned(),
+        );
     }
     let (low, high) = positions.iter().fold(
         (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
@@ -83,7 +87,12 @@ pub fn tissue(study: &StudySkin, control: &Control<'_>) -> Result<Tissue, Infere
 }
 
 fn material(given: Option<&StudyMaterial>) -> Material {
-    let mut material = Model::Layer.preset();
+    // A study finds its moduli itself: one line by region over bone without end, and nothing else that bends the curve.
+    let mut material = Material {
+        g0_mpa: 0.0098,
+        g_lim_mpa: 0.029,
+        ..Material::default()
+    };
     let Some(given) = given else {
         return material;
     };

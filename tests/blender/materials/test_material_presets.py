@@ -1,0 +1,74 @@
+"""Presets by region, and materials that an older version saved."""
+
+import bpy
+import pytest
+import stage
+import thenar
+
+NEW = ("stiffening", "bone_half_width_mm", "bone_half_length_mm")
+
+
+@pytest.fixture
+def reopened(tmp_path):
+    """Reopens the scene after `NEW` were taken from its hand's material, as if an older version had saved it."""
+
+    def reopen(material):
+        for name in NEW:
+            material.property_unset(name)
+        path = str(tmp_path / "old.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.open_mainfile(filepath=path)
+        return bpy.context.scene.thenar.hand.thenar.default_material
+
+    return reopen
+
+
+def test_a_preset_that_an_older_version_saved_has_the_numbers_of_today(reopened):
+    hand, _ = stage.scene()
+    material = hand.thenar.default_material
+    material.preset, material.thickness_mm = "PALM_LAYER", 11.0
+    found, palm = reopened(material), thenar.Material.palm_layer()
+    assert (found.preset, found.thickness_mm) == ("PALM_LAYER", 11.0)
+    assert found.g0_kpa == pytest.approx(1000.0 * palm.g0_mpa)
+    assert found.bone_half_width_mm == palm.bone_half_width_mm and found.stiffening == palm.stiffening
+
+
+def test_own_values_that_an_older_version_saved_mean_what_they_meant(reopened):
+    hand, _ = stage.scene()
+    material = hand.thenar.default_material
+    material.g0_kpa = 12.0
+    found = reopened(material)
+    assert (found.preset, found.g0_kpa) == ("CUSTOM", 12.0)
+    assert [getattr(found, name) for name in NEW] == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("region", "preset"),
+    [
+        ("index_distal_pad", "FINGER_LAYER"),
+        ("middle_distal_pad", "FINGER_LAYER"),
+        ("middle_middle_pad", "PHALANX_LAYER"),
+        ("ring_proximal_pad", "PHALANX_LAYER"),
+        ("hypothenar", "PALM_LAYER"),
+        ("palm_hollow", "PALM_LAYER"),
+    ],
+)
+def test_published_values_follow_the_name_of_the_region(region, preset):
+    hand, _ = stage.scene()
+    hand.vertex_groups.new(name=region).add(range(len(hand.data.vertices)), 1.0, "REPLACE")
+    bpy.ops.thenar.assign_regions()
+    assert hand.thenar.materials[0].preset == preset
+    bpy.context.scene.thenar.model = "PAPER"
+    bpy.ops.thenar.region_preset()
+    assert hand.thenar.materials[0].preset == preset.replace("PHALANX", "FINGER").removesuffix("_LAYER")
+
+
+def test_bones_and_stiffening_change_the_force():
+    hand, _ = stage.scene(top=-5.5)
+    material = hand.thenar.default_material
+    narrow = stage.solve().force_n
+    material.bone_half_width_mm = 0.0
+    endless = stage.solve().force_n
+    assert 1.1 < endless / narrow < 1.45, "bone without end lets no tissue escape"
+    material.stiffening = 0.0
+    assert stage.solve().force_n < 0.97 * endless
