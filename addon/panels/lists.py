@@ -19,7 +19,7 @@ class THENAR_UL_regions(bpy.types.UIList):
     """Forces and pressures by region; a click on its arrow selects the region's vertices."""
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_name, index):  # noqa: PLR0913 - Blender's
-        split = layout.split(factor=SHARE)
+        split = layout.split(factor=NAME_SHARE)
         row = split.row(align=True)
         pick = row.operator("thenar.select_region", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         pick.index = index
@@ -29,6 +29,8 @@ class THENAR_UL_regions(bpy.types.UIList):
 
 SHARE = 0.56
 """Of a row's width, what its name takes."""
+NAME_SHARE = 0.5
+"""The same in the list of regions, whose arrow and scroll bar narrow the numbers: less cuts "Thumb prox.", more "22.6"."""
 
 
 def brief(name):
