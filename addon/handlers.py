@@ -25,11 +25,21 @@ def _scene_changed(scene, depsgraph=None):
 def _file_loaded(*_):
     status.forget()
     baked.forget()
-    for hand in bpy.data.objects:
-        for material in (*hand.thenar.materials, hand.thenar.default_material):
-            material_settings.bring_up_to_date(material)
+    _objects_came()
     if bpy.context.scene is not None:
         _scene_changed(bpy.context.scene)
+
+
+@persistent
+def _objects_came(*_):
+    for hand in bpy.data.objects:
+        material_settings.bring_up_to_date(hand)
+
+
+@persistent
+def _file_is_saved(*_):
+    for hand in bpy.data.objects:
+        material_settings.mark(hand)
 
 
 def _check():
@@ -54,6 +64,8 @@ _HANDLERS = (
     ("frame_change_post", _frame_changed),
     ("depsgraph_update_post", _scene_changed),
     ("load_post", _file_loaded),
+    ("blend_import_post", _objects_came),
+    ("save_pre", _file_is_saved),
     ("undo_post", _scene_changed),
     ("redo_post", _scene_changed),
 )
@@ -63,8 +75,8 @@ def register():
     """Hang the handlers in, each once, and offer `--command thenar`."""
     status.set_native_problem(native.problem())
     for event, handler in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, event)
-        if handler not in handlers:
+        handlers = getattr(bpy.app.handlers, event, None)  # older versions have no blend_import_post
+        if handlers is not None and handler not in handlers:
             handlers.append(handler)
     if hasattr(bpy.utils, "register_cli_command"):
         _state["command"] = bpy.utils.register_cli_command("thenar", command_line.main)
@@ -76,7 +88,7 @@ def unregister():
         bpy.utils.unregister_cli_command(_state["command"])
         _state["command"] = None
     for event, handler in _HANDLERS:
-        handlers = getattr(bpy.app.handlers, event)
+        handlers = getattr(bpy.app.handlers, event, ())
         if handler in handlers:
             handlers.remove(handler)
     if bpy.app.timers.is_registered(_check):

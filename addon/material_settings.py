@@ -3,6 +3,7 @@
 Numbers of the tissue are not written here: presets come from the native module's published materials.
 """
 
+import re
 from math import isfinite
 
 import bpy
@@ -44,21 +45,50 @@ def preset_of(region_name, model="LAYER"):
         return "PALM_LAYER" if model == "LAYER" else "PALM"
     if model != "LAYER":
         return "FINGER"
-    return (
-        "PHALANX_LAYER" if any(word in words for word in ("proximal", "middle_pad", "intermediate")) else "FINGER_LAYER"
-    )
+    return "PHALANX_LAYER" if _PHALANX.search(words) and "distal" not in words else "FINGER_LAYER"
 
 
-def bring_up_to_date(material):
-    """Give a material that an older version saved what it lacks: its preset's numbers of today, or neutral ones."""
-    missing = [prop for prop in ("stiffening", *ANATOMY[1:]) if not material.is_property_set(prop)]
-    if material.preset == "CUSTOM":
-        for prop in missing:
-            setattr(material, prop, 0.0)
-    elif missing and any(material.is_property_set(prop) for prop, _ in MATERIAL_NUMBERS.values()):
+_PHALANX = re.compile(r"proximal|intermediate|phalan|(thumb|index|middle|ring|little|pinky)[ _.-]*middle")
+FORMAT = 1
+"""Version of the numbers that a hand's file holds: 0 had no stiffening and no bones."""
+_IN_FORMAT_0 = {
+    "g0_kpa": 9.8,
+    "g_lim_kpa": 29.0,
+    "stiffening": 0.0,
+    "bone_half_width_mm": 0.0,
+    "bone_half_length_mm": 0.0,
+}
+"""What a material of one's own means there by the numbers that it does not hold."""
+
+
+def mark(hand):
+    """Note, as the file is saved, that the hand's materials hold the numbers of today."""
+    if hand.library is None and any(_is_filled(material) for material in _materials(hand)):
+        hand.thenar.format = FORMAT
+
+
+def bring_up_to_date(hand):
+    """Give a hand that an older version saved today's numbers of its presets; own values keep their meaning."""
+    if hand.thenar.format >= FORMAT:
+        return
+    for material in filter(_is_filled, _materials(hand)):
+        if material.preset == "CUSTOM":
+            for prop, value in _IN_FORMAT_0.items():
+                if not material.is_property_set(prop):
+                    setattr(material, prop, value)
+            continue
         thickness = material.thickness_mm
-        fill_from_preset(material, material.preset)
+        material.preset = preset_of(material.name) if material.preset == "FINGER_LAYER" else material.preset
         material.thickness_mm = thickness
+    mark(hand)
+
+
+def _materials(hand):
+    return (*hand.thenar.materials, hand.thenar.default_material)
+
+
+def _is_filled(material):
+    return any(material.is_property_set(prop) for prop, _ in MATERIAL_NUMBERS.values())
 
 
 MATERIAL_NUMBERS = {

@@ -131,6 +131,7 @@ class ThenarObject(bpy.types.PropertyGroup):
 
     materials: CollectionProperty(type=ThenarMaterial)
     material_index: IntProperty()
+    format: IntProperty(options={"HIDDEN"})
     default_material: PointerProperty(type=ThenarMaterial)
     effects: CollectionProperty(type=effect_settings.ThenarEffect)
     effect_index: IntProperty()

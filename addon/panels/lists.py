@@ -30,7 +30,7 @@ class THENAR_UL_regions(bpy.types.UIList):
 SHARE = 0.56
 """Of a row's width, what its name takes."""
 NAME_SHARE = 0.5
-"""The same in the list of regions, whose arrow and scroll bar narrow the numbers: less cuts "Thumb prox.", more "22.6"."""
+"""The same in the list of regions, where arrow and scroll bar take room: less cuts "Thumb prox.", more "22.6"."""
 
 
 def brief(name):

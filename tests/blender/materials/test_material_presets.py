@@ -4,19 +4,24 @@ import bpy
 import pytest
 import stage
 import thenar
+from thenar_blender import material_settings
 
 NEW = ("stiffening", "bone_half_width_mm", "bone_half_length_mm")
 
 
 @pytest.fixture
 def reopened(tmp_path):
-    """Reopens the scene after `NEW` were taken from its hand's material, as if an older version had saved it."""
+    """Saves and opens the scene; with `is_old` as if a version without `NEW` and without marks had saved it."""
 
-    def reopen(material):
-        for name in NEW:
-            material.property_unset(name)
+    def reopen(material, is_old):
         path = str(tmp_path / "old.blend")
+        marking = bpy.app.handlers.save_pre[:]
+        if is_old:
+            for name in NEW:
+                material.property_unset(name)
+            bpy.app.handlers.save_pre.clear()
         bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.app.handlers.save_pre[:] = marking
         bpy.ops.wm.open_mainfile(filepath=path)
         return bpy.context.scene.thenar.hand.thenar.default_material
 
@@ -27,7 +32,7 @@ def test_a_preset_that_an_older_version_saved_has_the_numbers_of_today(reopened)
     hand, _ = stage.scene()
     material = hand.thenar.default_material
     material.preset, material.thickness_mm = "PALM_LAYER", 11.0
-    found, palm = reopened(material), thenar.Material.palm_layer()
+    found, palm = reopened(material, is_old=True), thenar.Material.palm_layer()
     assert (found.preset, found.thickness_mm) == ("PALM_LAYER", 11.0)
     assert found.g0_kpa == pytest.approx(1000.0 * palm.g0_mpa)
     assert found.bone_half_width_mm == palm.bone_half_width_mm and found.stiffening == palm.stiffening
@@ -37,8 +42,30 @@ def test_own_values_that_an_older_version_saved_mean_what_they_meant(reopened):
     hand, _ = stage.scene()
     material = hand.thenar.default_material
     material.g0_kpa = 12.0
-    found = reopened(material)
-    assert (found.preset, found.g0_kpa) == ("CUSTOM", 12.0)
+    found = reopened(material, is_old=True)
+    assert (found.preset, found.g0_kpa, found.g_lim_kpa) == ("CUSTOM", 12.0, 29.0)
+    assert [getattr(found, name) for name in NEW] == [0.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(("name", "value"), [("g0_kpa", 12.0), ("stiffening", 2.0), ("bone_half_width_mm", 0.0)])
+def test_what_this_version_saved_comes_back_as_it_was(reopened, name, value):
+    hand, _ = stage.scene()
+    material = hand.thenar.default_material
+    setattr(material, name, value)
+    numbers = [getattr(material, prop) for prop, _ in material_settings.MATERIAL_NUMBERS.values()]
+    for _ in range(2):
+        material = reopened(material, is_old=False)
+    assert [getattr(material, prop) for prop, _ in material_settings.MATERIAL_NUMBERS.values()] == numbers
+
+
+@pytest.mark.skipif(not hasattr(bpy.app.handlers, "blend_import_post"), reason="no event for appended objects")
+def test_a_hand_appended_from_an_older_file_is_brought_up_to_date(reopened, tmp_path):
+    hand, _ = stage.scene()
+    hand.thenar.default_material.g0_kpa = 12.0
+    reopened(hand.thenar.default_material, is_old=True)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.wm.append(directory=str(tmp_path / "old.blend" / "Object"), filename="Pad")
+    found = bpy.data.objects["Pad"].thenar.default_material
     assert [getattr(found, name) for name in NEW] == [0.0, 0.0, 0.0]
 
 
@@ -49,6 +76,8 @@ def test_own_values_that_an_older_version_saved_mean_what_they_meant(reopened):
         ("middle_distal_pad", "FINGER_LAYER"),
         ("middle_middle_pad", "PHALANX_LAYER"),
         ("ring_proximal_pad", "PHALANX_LAYER"),
+        ("index middle", "PHALANX_LAYER"),
+        ("middle_pad", "FINGER_LAYER"),
         ("hypothenar", "PALM_LAYER"),
         ("palm_hollow", "PALM_LAYER"),
     ],

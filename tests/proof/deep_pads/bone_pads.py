@@ -2,7 +2,6 @@
 
 import numpy as np
 import thenar
-
 from proof import meshes, pressing
 
 SHEAR_MPA = 0.01

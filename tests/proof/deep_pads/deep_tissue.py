@@ -74,7 +74,7 @@ def best(candidates, misfit):
 
 
 def main():
-    """Prints the give of every pad, the radius it is felt from, and what the layer of today still lacks in stiffening."""
+    """Prints the give of every pad, the radius it is felt from, and what the layer still lacks in stiffening."""
     neo = {name: list(rows(*pad, 0.0)) for name, pad in PADS.items()}
     felt_over = np.arange(0.2, 0.8, 0.02)
 

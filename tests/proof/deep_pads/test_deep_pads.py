@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from proof.deep_pads import bone_pads as pads
 
 TABLE = json.loads(Path(__file__).parents[1].joinpath("by_finite_elements").joinpath("deep_pads.json").read_text())

@@ -7,7 +7,6 @@ reference solve; the layer, which has the same numbers, has to agree with it.
 import numpy as np
 import pytest
 import thenar
-
 from proof.deep_pads import bone_pads as pads
 
 PADS = {  # radius mm, semi-axes of skin and bone mm: (1/R = c / a^2 at the apex)

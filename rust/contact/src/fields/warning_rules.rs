@@ -5,7 +5,7 @@ use thenar_surface::{Mesh, Product, Vec3};
 use super::warnings::Warning;
 use crate::Model;
 use crate::detection::gaps::limits;
-use crate::press::effective_modulus::KERNEL_LIMIT;
+use crate::press::effective_modulus::{KERNEL_LIMIT, pressed_thickness};
 use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
 
@@ -51,8 +51,10 @@ pub fn warnings_of(
     let of_meshes = skin.warnings().iter().chain(product.warnings());
     let mut said: Vec<Warning> = of_meshes.cloned().map(Warning::Note).collect();
     said.extend(size(posed));
-    for (index, depth) in pressed.detection.max_penetration.iter().enumerate() {
-        said.extend(region(skin, index, *depth));
+    let thickness = pressed_thickness(skin, &pressed.detection);
+    let reached = pressed.detection.max_penetration.iter().zip(thickness);
+    for (index, (depth, thickness)) in reached.enumerate() {
+        said.extend(region(skin, index, (*depth, thickness)));
     }
     said.extend(bare(skin, pressed));
     if pressed.solved.force.iter().all(|f| *f <= 0.0) {
@@ -82,7 +84,7 @@ pub fn warnings_of(
     said
 }
 
-fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
+fn region(skin: &Skin, index: usize, (depth, thickness): (f64, f64)) -> Vec<Warning> {
     let material = &skin.tissue.materials[index];
     let (title, mut said) = (skin.region_title(index), Vec::new());
     let laws = &skin.tissue.laws;
@@ -95,7 +97,6 @@ fn region(skin: &Skin, index: usize, depth: f64) -> Vec<Warning> {
             limit: material.d_lim_mm,
         });
     }
-    let thickness = material.thickness_mm;
     if skin.model == Model::Layer && depth > thickness {
         said.push(Warning::BeyondTissue {
             region: index,

@@ -32,9 +32,8 @@ pub fn is_deep(material: &Material) -> bool {
     material.stiffening > 0.0 || material.bone_half_width_mm.is_finite()
 }
 
-/// Factor of a region's modulus, pressed to `depth` (mm) with this `volume` (mm3) in the product.
-pub fn factor(material: &Material, (depth, volume): (&f64, f64)) -> f64 {
-    let thickness = material.thickness_mm;
+/// Factor of the modulus of a region with this `thickness` (mm), pressed to `depth` (mm) with this `volume` (mm3) in the product.
+pub fn factor(material: &Material, thickness: f64, (depth, volume): (&f64, f64)) -> f64 {
     if *depth <= 0.0 || thickness.is_infinite() {
         return 1.0;
     }

@@ -38,10 +38,10 @@ pub fn site_response(skin: &Skin, shear_modulus: &[f64], detection: &Detection) 
         .max_penetration
         .iter()
         .zip(overlap_volumes(skin, detection));
-    let factors = materials
-        .iter()
-        .zip(reached)
-        .map(|(m, reached)| deep_tissue::factor(m, reached));
+    let thickness = pressed_thickness(skin, detection);
+    let factors = materials.iter().zip(thickness).zip(reached);
+    let factors =
+        factors.map(|((m, thickness), reached)| deep_tissue::factor(m, thickness, reached));
     let moduli: Vec<f64> = shear_modulus
         .iter()
         .zip(factors)
@@ -86,16 +86,38 @@ fn overlap_volumes(skin: &Skin, detection: &Detection) -> Vec<f64> {
 fn stiffen(skin: &Skin, detection: &Detection, response: &mut SiteResponse) {
     let exponents: Vec<f64> = skin.tissue.materials.iter().map(|m| m.stiffening).collect();
     let exponents = skin.sites.blended(&exponents);
+    let curvature = skin.tissue.curvature(&skin.sites);
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let depth = -detection.distances[vertex as usize];
         if depth > 0.0 && exponents[site] > 0.0 {
-            let region = skin.sites.home_region(site) as usize;
-            let strain = depth / skin.tissue.thickness(site, region);
-            let growth = deep_tissue::growth(exponents[site], strain);
+            let growth = deep_tissue::growth(exponents[site], depth * curvature[site]);
             response.weight[site] /= growth.sqrt();
             response.modulus[site] *= growth;
         }
     }
+}
+
+/// Thickness where each region is pressed deepest, mm.
+pub fn pressed_thickness(skin: &Skin, detection: &Detection) -> Vec<f64> {
+    let mut thickness: Vec<f64> = skin
+        .tissue
+        .materials
+        .iter()
+        .map(|m| m.thickness_mm)
+        .collect();
+    let Some(curvature) = &skin.tissue.geometry.curvature else {
+        return thickness;
+    };
+    let mut deepest = vec![0.0; thickness.len()];
+    for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+        let depth = -detection.distances[vertex as usize];
+        let region = skin.sites.region[site];
+        if region >= 0 && depth > deepest[region as usize] {
+            deepest[region as usize] = depth;
+            thickness[region as usize] = 1.0 / curvature[site];
+        }
+    }
+    thickness
 }
 
 /// Weights and moduli of all sites under these moduli by region; blended over creases in model layer.

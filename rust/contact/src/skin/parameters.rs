@@ -108,7 +108,7 @@ pub const PARAMETERS: [Parameter; 12] = [
         unit: "1",
         default: 0.0,
         low: 0.0,
-        high: 20.0,
+        high: 3.0,
         meaning: "growth of the modulus with the strain of a place; 0 for none, layer model",
         source: "b of W = G/(2b) (exp(b(I1-3)) - 1) (Fung; Demiray 1972)",
     },
@@ -129,7 +129,7 @@ pub const PARAMETERS: [Parameter; 12] = [
         default: f64::INFINITY,
         low: 0.05,
         high: f64::INFINITY,
-        meaning: "half the length of the bone under the tissue; inf for a long bone, layer model",
+        meaning: "half the length of a bone of finite width under the tissue; inf for a long bone, layer model",
         source: "as bone_half_width_mm",
     },
     Parameter {

@@ -125,6 +125,15 @@ impl Tissue {
         }
     }
 
+    /// One over the thickness at every site, blended over creases, 1/mm.
+    pub fn curvature(&self, sites: &Sites) -> Vec<f64> {
+        let of_region = || self.materials.iter().map(|m| 1.0 / m.thickness_mm);
+        let field = &self.geometry.curvature;
+        field
+            .clone()
+            .unwrap_or_else(|| sites.blended(&of_region().collect::<Vec<f64>>()))
+    }
+
     /// Largest thickness anywhere, mm.
     pub fn thickest(&self) -> f64 {
         let thickest = self
@@ -169,14 +178,7 @@ impl Tissue {
         if bone::is_field(effect) || self.geometry.curvature.is_some() {
             let curvature = match self.geometry.curvature.take() {
                 Some(curvature) => curvature,
-                None => {
-                    let of_region: Vec<f64> = self
-                        .materials
-                        .iter()
-                        .map(|m| 1.0 / m.thickness_mm)
-                        .collect();
-                    sites.blended(&of_region)
-                }
+                None => self.curvature(sites),
             };
             let curvature = bone::field(effect, (sites, source), &curvature);
             for (region, material) in self.materials.iter_mut().enumerate() {
