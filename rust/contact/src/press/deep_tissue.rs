@@ -6,7 +6,7 @@
 use crate::Material;
 
 /// Penetration over thickness from which tissue stiffens no more: farther, no solid says how.
-const LARGEST_STRAIN: f64 = 0.6;
+const LARGEST_STRAIN: f64 = 0.5;
 /// Bone half-width over thickness, and by how much a layer is too stiff over a short bone of that width.
 const ACROSS: [(f64, f64); 10] = [
     (0.4, 0.40),
