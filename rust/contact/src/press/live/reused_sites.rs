@@ -21,6 +21,9 @@ const MOST: f64 = 0.7;
 /// Largest displacement error of a reused site over the deepest penetration: below the certificate's 0.5 %, so that reused
 /// sites stay within it.
 const STRAY: f64 = 4.5e-3;
+/// Relative change of a site's weight since it was solved that leaves its solution: a fifth of that error. A region's weights
+/// all follow the overlap of its parts that move.
+const SAME_WEIGHT: f64 = 1e-3;
 /// Share of that error from which a site is solved because it is expected to exceed it.
 const EARLY: f64 = 0.9;
 
@@ -42,7 +45,8 @@ pub fn reused_sites(
     let is_changed = |(&site, met): (&u32, &Option<&ReusedSite>)| {
         let gap = &setting.detection.gaps[vertex(skin, site)];
         let weight = setting.weight[site as usize];
-        !met.is_some_and(|met| met.gap == *gap && met.weight == weight)
+        let is_near = |met: &ReusedSite| (met.weight / weight - 1.0).abs() <= SAME_WEIGHT;
+        !met.is_some_and(|met| met.gap == *gap && is_near(met))
     };
     let changed = zone.iter().zip(&met).filter(|&pair| is_changed(pair));
     let mut changed: Vec<u32> = changed.map(|(&site, _)| site).collect();
