@@ -78,12 +78,15 @@ def register():
         handlers = getattr(bpy.app.handlers, event, None)  # older versions have no blend_import_post
         if handlers is not None and handler not in handlers:
             handlers.append(handler)
+    # An older file may be open already; its data can be read once the extension is in place.
+    bpy.app.timers.register(_objects_came, first_interval=0.0)
     if hasattr(bpy.utils, "register_cli_command"):
         _state["command"] = bpy.utils.register_cli_command("thenar", command_line.main)
 
 
 def unregister():
-    """Take them out, and drop derived state."""
+    """Take them out, and drop derived state. Hands are marked: the next `register` takes what is not for older."""
+    _file_is_saved()
     if _state["command"] is not None:
         bpy.utils.unregister_cli_command(_state["command"])
         _state["command"] = None
@@ -91,8 +94,8 @@ def unregister():
         handlers = getattr(bpy.app.handlers, event, ())
         if handler in handlers:
             handlers.remove(handler)
-    if bpy.app.timers.is_registered(_check):
-        bpy.app.timers.unregister(_check)
+    for timer in filter(bpy.app.timers.is_registered, (_check, _objects_came)):
+        bpy.app.timers.unregister(timer)
     cache.clear()
     baked.forget()
     status.forget()

@@ -100,7 +100,7 @@ class THENAR_OT_region_remove(bpy.types.Operator):
 
 
 class THENAR_OT_region_preset(bpy.types.Operator):
-    """Set published values for all listed regions: by the name: palm, phalanx or fingertip"""
+    """Set published values for all listed regions, by their names: palm, phalanx or fingertip"""
 
     bl_idname = "thenar.region_preset"
     bl_label = "Published Values"

@@ -81,7 +81,7 @@ def reading(name, cylinder, loads):
     share = loads[is_off, 3].sum() / loads[:, 3].sum()
     if share > _OFF_SIDE:
         raise Refusal(
-            f"{share:.0%} of the force acts beside the side of the cylinder '{name}', where no mat lies; "
+            f"{share:.0%} of the force acts outside the side of the cylinder '{name}', where no mat lies; "
             "grasp it between its ends, or read the skin's area under Result"
         )
     columns = max(3, round(2.0 * np.pi * cylinder.radius_mm / PITCH_MM))

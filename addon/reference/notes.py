@@ -13,7 +13,7 @@ MOST_CUT_MM = 0.1
 """How deep the product may lie in the skin between its vertices without a note."""
 WIDEST_MM = 3.2
 """Spacing of the skin in contact from which a note is given: twice the edge to which the solve refines. On the
-index pad of `rust/reference/tests/pads.rs` the force is within 5 % to 3.2 mm, and 8 % (rms) off at 5 mm."""
+index pad the force is within 3 % (rms) to there, and 8 % off at 5 mm (`rust/reference/tests/pads.rs`)."""
 
 
 def of(tissue: Any, found: Any) -> Iterator[str]:

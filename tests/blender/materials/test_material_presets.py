@@ -4,7 +4,8 @@ import bpy
 import pytest
 import stage
 import thenar
-from thenar_blender import material_settings
+import thenar_blender
+from thenar_blender import handlers, material_settings
 
 NEW = ("stiffening", "bone_half_width_mm", "bone_half_length_mm")
 
@@ -56,6 +57,20 @@ def test_what_this_version_saved_comes_back_as_it_was(reopened, name, value):
     for _ in range(2):
         material = reopened(material, is_old=False)
     assert [getattr(material, prop) for prop, _ in material_settings.MATERIAL_NUMBERS.values()] == numbers
+
+
+def test_an_open_file_is_brought_up_to_date_when_the_extension_is_enabled():
+    """In a window a timer runs `_objects_came`; hands of this version are marked when the extension is disabled."""
+    hand, _ = stage.scene()
+    hand.thenar.default_material.g0_kpa = 12.0
+    old = stage.pad("Old")
+    thenar_blender.unregister()
+    thenar_blender.register()
+    old.thenar.default_material.g0_kpa = 12.0
+    assert bpy.app.timers.is_registered(handlers._objects_came)
+    handlers._objects_came()
+    assert hand.thenar.default_material.stiffening == thenar.Material.finger_layer().stiffening
+    assert old.thenar.default_material.stiffening == 0.0
 
 
 @pytest.mark.skipif(not hasattr(bpy.app.handlers, "blend_import_post"), reason="no event for appended objects")

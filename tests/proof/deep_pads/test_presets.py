@@ -41,8 +41,10 @@ def test_a_solid_of_the_preset_needs_the_published_force(kind):
     off = np.log(solid / hertz)
     assert np.exp(np.abs(off).max()) < WITHIN[kind]
     assert abs(off.min() + off.max()) < 0.08, "as much above as below"
-    # 4 mm are 0.56 of the finger's tissue: the layer stiffens to 0.5.
-    assert np.abs(layer / solid - 1.0).max() < 0.15
+    # 4 mm are 0.56 of the finger's tissue; the layer is held to half.
+    is_held = depths < 0.53 * (PADS[kind][1][2] - PADS[kind][2][2])
+    assert is_held.sum() >= 3
+    assert np.abs(layer / solid - 1.0)[is_held].max() < 0.08
 
 
 @pytest.mark.parametrize("preset", ["finger_layer", "phalanx_layer", "palm_layer"])
