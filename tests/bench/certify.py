@@ -1,4 +1,4 @@
-"""Time and numbers of *Certify*: `target/venv/bin/python tests/bench/certify.py [FILE.blend ...]`, the samples without."""
+"""Time and numbers of *Certify*: `target/venv/bin/python tests/bench/certify.py [FILE.blend ...]`; all samples without."""
 
 import sys
 import time
