@@ -1,4 +1,4 @@
-"""Time and numbers of *Certify*: `target/venv/bin/python tests/bench/certify.py [FILE.blend ...]`; all samples without."""
+"""Time and numbers of *Certify*: `target/venv/bin/python tests/bench/certify.py [FILE.blend ...]`; without, samples."""
 
 import sys
 import time
