@@ -19,7 +19,7 @@ def main(arguments):
         return leave.code or 0
     try:
         options.run(options)
-    except (Refusal, *native.error_types()) as error:
+    except (Refusal, OSError, *native.error_types()) as error:
         text = " ".join(str(error).split())
         print(f"thenar: {text}", file=sys.stderr, flush=True)
         return 2

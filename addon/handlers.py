@@ -78,8 +78,12 @@ def register():
         handlers = getattr(bpy.app.handlers, event, None)  # older versions have no blend_import_post
         if handlers is not None and handler not in handlers:
             handlers.append(handler)
-    # An older file may be open already; its data can be read once the extension is in place.
-    bpy.app.timers.register(_objects_came, first_interval=0.0)
+    if not bpy.app.background:
+        # An older file may be open already; its data can be read once the extension is in place. In background there
+        # is no loop to run a timer, and bpy 4.5 hangs at exit if one was registered.
+        bpy.app.timers.register(_objects_came, first_interval=0.0)
+    elif hasattr(bpy.data, "objects"):
+        _objects_came()
     if hasattr(bpy.utils, "register_cli_command"):
         _state["command"] = bpy.utils.register_cli_command("thenar", command_line.main)
 

@@ -13,7 +13,7 @@ import stage
 import thenar_blender
 
 
-def command(*arguments):
+def command(*arguments, **environment):
     package = Path(thenar_blender.__file__).parent.parent
     paths = os.pathsep.join(path for path in (str(package), os.environ.get("PYTHONPATH", "")) if path)
     return subprocess.run(
@@ -21,7 +21,7 @@ def command(*arguments):
         capture_output=True,
         text=True,
         timeout=120,
-        env={**os.environ, "PYTHONPATH": paths},
+        env={**os.environ, "PYTHONPATH": paths, **environment},
     )
 
 
@@ -75,3 +75,17 @@ def test_bad_input_is_one_sentence(grip, tmp_path):
 def test_demo_without_samples_says_so(tmp_path):
     done = command("demo", "--samples", tmp_path, "--out", tmp_path / "demo")
     assert done.returncode == 2 and "no sample of the 48 mm cylinder" in done.stderr
+
+
+def test_a_command_leaves_no_folder_of_blender_behind(grip, tmp_path):
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    done = command("solve", grip, "--hand", "Paw", "--json", tmp_path / "o.json", TMPDIR=str(kept))
+    assert done.returncode == 2 and "Paw" in done.stderr
+    assert list(kept.iterdir()) == []
+
+
+def test_a_folder_in_place_of_a_file_to_write_is_one_sentence(grip, tmp_path):
+    done = command("solve", grip, "--hand", "Pad", "--product", "Plate", "--json", tmp_path)
+    assert done.returncode == 2 and done.stderr.startswith("thenar: ") and str(tmp_path) in done.stderr
+    assert "Traceback" not in done.stderr

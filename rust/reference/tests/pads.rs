@@ -341,7 +341,8 @@ fn a_palm_presses_as_finite_elements_do() {
 fn layers_change_the_force_little() {
     for (two, three) in ratios("index", 2, MADE_MM)
         .iter()
-        .zip(ratios("index", 3, MADE_MM)) {
+        .zip(ratios("index", 3, MADE_MM))
+    {
         let change = two.force / three.force;
         println!(
             "{} at {:.2}: two layers {change:.3} of three",
@@ -361,7 +362,10 @@ fn layers_change_the_force_little() {
 fn the_note_on_coarse_skin_is_due() {
     for (spacing, is_fine) in [(3.2, true), (5.0, false)] {
         let rms = force_rms(&ratios("index", 3, spacing));
-        println!("vertices {spacing} mm apart: force {:.1} % rms", 100.0 * rms);
+        println!(
+            "vertices {spacing} mm apart: force {:.1} % rms",
+            100.0 * rms
+        );
         assert_eq!(rms < MET.force_rms, is_fine, "{spacing} mm: {rms}");
     }
 }
