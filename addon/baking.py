@@ -10,6 +10,7 @@ import numpy as np
 
 from . import following, native, workflow
 from .scene import baked, checks, copies, moving, own, units
+from .soft_grip import covering
 
 
 @dataclass
@@ -40,6 +41,7 @@ def begin(context, frame_start, frame_end):
     if frame_end < frame_start:
         raise checks.Refusal(f"the bake ends at frame {frame_end} before it starts at {frame_start}; swap them")
     hand, parts = workflow.check(context)
+    covering.check_rigid(parts, "a bake presses")
     if context.scene.thenar.use_force:
         moving.check_movable(context, parts)
     render = context.scene.render

@@ -9,6 +9,7 @@ SHAPE_KEY = "Thenar Contact"
 """Shape key on the hand that holds the contact's displacement."""
 
 PRESSURE_KPA = "pressure_kpa"
+GRIP_MM = "grip_displacement_mm"
 DEPTH_MM = "contact_depth_mm"
 REGION = "contact_region"
 FORCE_N = "contact_force_n"

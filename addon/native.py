@@ -6,6 +6,7 @@ from . import names, status
 
 if TYPE_CHECKING:
     from thenar import Contact as Contact
+    from thenar import Elastomer as Elastomer
     from thenar import Material as Material
     from thenar import Product as Product
     from thenar import Skin as Skin

@@ -40,6 +40,7 @@ def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, no
     result.load_balance = left["load_balance"]
     result.write_error_mm = written.error_mm
     _add_shown(result, written.shown, origin)
+    _add_grip(result, job, contact)
     _add_grade(result, contact)
     result.offset_mm = float(contact.offset_mm) if job.force_n is not None else 0.0
     result.direction = _finite(np.asarray(contact.direction).tolist())
@@ -51,6 +52,18 @@ def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, no
     for row, text in zip(_sized(result.warnings, len(texts)), texts, strict=True):
         row.name = text
     return result
+
+
+def _add_grip(result: PropertyGroup, job: Any, contact: Any) -> None:
+    """How deep a soft grip yields, mm and as a share of its thickness."""
+    result.grip_mm = result.grip_share = 0.0
+    if job.grip is None:
+        return
+    yielded = np.linalg.norm(np.asarray(contact.grip_displacement_mm), axis=1)
+    thickness = np.array([numbers[0] for numbers in job.grip.elastomers])
+    soft = job.grip.of_vertex >= 0
+    result.grip_mm = float(yielded[soft].max(initial=0.0))
+    result.grip_share = float((yielded[soft] / thickness[job.grip.of_vertex[soft]]).max(initial=0.0))
 
 
 def clear(result: PropertyGroup) -> None:
@@ -101,6 +114,8 @@ def as_dict(result):
         "comfort_source": result.comfort_source,
         "reference": _reference_dict(result),
         "offset_mm": result.offset_mm,
+        "grip_mm": result.grip_mm,
+        "grip_share_of_thickness": result.grip_share,
         "direction": list(result.direction),
         "regions": rows,
         "fingers": [_row_dict(row) for row in result.fingers],

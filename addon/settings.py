@@ -14,6 +14,7 @@ from bpy.props import (
 
 from . import bake_settings, comfort_settings, effect_settings, map_settings, names, status
 from .material_settings import ThenarMaterial
+from .soft_grip import settings as grip_settings
 
 
 def _look_changed(_self, context):
@@ -96,6 +97,8 @@ class ThenarResult(bpy.types.PropertyGroup):
     shown_corrected: IntProperty()
     shown_blame: StringProperty()
     offset_mm: FloatProperty()
+    grip_mm: FloatProperty()
+    grip_share: FloatProperty()
     direction: FloatVectorProperty(size=3)
     input_hash: StringProperty()
     state_hash: StringProperty()
@@ -146,6 +149,7 @@ class ThenarObject(bpy.types.PropertyGroup):
     slots: CollectionProperty(type=ThenarSlot)
     bake_path: StringProperty()
     bake: PointerProperty(type=bake_settings.ThenarBake)
+    grip: PointerProperty(type=grip_settings.ThenarGrip)
 
 
 class ThenarMesh(bpy.types.PropertyGroup):
@@ -248,6 +252,7 @@ CLASSES = (
     *map_settings.CLASSES,
     *comfort_settings.CLASSES,
     *bake_settings.CLASSES,
+    *grip_settings.CLASSES,
     ThenarMaterial,
     ThenarRegionResult,
     ThenarReference,

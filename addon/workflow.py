@@ -13,9 +13,11 @@ from bpy.types import Context, Object, PropertyGroup
 from . import cache, certificate, comfort, effect_settings, effects, maps, names, native, sentences, status
 from . import result as results
 from .material_settings import ANATOMY, MATERIAL_NUMBERS
-from .scene import checks, own, owned, read, refine, sizes, state, units, write
+from .scene import checks, own, owned, read, sizes, state, units, write
 from .scene import parts as parts_of
 from .scene.units import Floats
+from .soft_grip import covering
+from .soft_grip import settings as grip_settings
 from .steps import PAUSE, Cancel, Progress, Steps, Work, at_once
 
 Numbers: TypeAlias = tuple[tuple[str, float], ...]
@@ -45,6 +47,8 @@ class Job:
     """The native module's product, set by `compute`."""
     refines_product: bool = False
     """Whether `compute` refines a coarse product for its map."""
+    grip: covering.Grip | None = None
+    """What covers the product, or None where all of it is rigid; the product is then refined in any case."""
     taken: ExitStack | None = None
     """What puts Thenar's earlier output back."""
 
@@ -101,6 +105,7 @@ def read_job(context: Context, hand: Object, parts: Sequence[Object]) -> Job:
     with own.without_own_output(context, hand, parts):
         skin = read.read_hand(context, hand, group_names)
         product = read.read_product(context, parts, skin.scale, skin.origin_mm)
+        grip = covering.read(context, parts, product)
         used = effects.read(context, hand, group_names or (names.WHOLE_SKIN,))
     materials = material_numbers(hand)
     force = settings.force_n if settings.use_force else None
@@ -120,6 +125,7 @@ def read_job(context: Context, hand: Object, parts: Sequence[Object]) -> Job:
         model=model,
         force_n=force,
         direction=direction,
+        grip=grip,
         input_hash=cache.content_hash(
             skin.rest_mm,
             skin.posed_mm,
@@ -133,6 +139,7 @@ def read_job(context: Context, hand: Object, parts: Sequence[Object]) -> Job:
             model,
             force,
             direction,
+            *covering.hashed(grip),
             names.VERSION,
         ),
     )
@@ -158,9 +165,8 @@ def compute(job: Job, cancel: Cancel | None = None, progress: Progress | None = 
 
     `cancel` has `is_set()`; `progress(stage, fraction)`. Raises the native module's errors, with the objects' names.
     """
-    if job.refines_product:
-        hand, product = job.reading.hand, job.reading.product
-        job.reading = read.Reading(hand, refine.refined(product, hand))
+    if job.refines_product or job.grip is not None:
+        job.reading, job.grip = covering.refined(job.reading, job.grip)
     with telling(job):
         return _press(job, prepared(job, cancel, progress), cancel, progress)
 
@@ -208,6 +214,8 @@ def _press(job: Job, skin: "native.Skin", cancel: Cancel | None, progress: Progr
         slide_mm=None if job.slide_mm is None else np.array(job.slide_mm, dtype=np.float64),
         cancel=cancel,
         progress=progress,
+        grip=covering.elastomers(job.grip),
+        grip_of_vertex=None if job.grip is None else job.grip.of_vertex,
     )
     job.seconds["press"] = time.perf_counter() - started
     return contact
@@ -229,7 +237,8 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
     fields = fields_of(contact, job)
 
     def measure(surface: certificate.Surface, left_mm: Floats | None) -> Work:
-        return partial(certificate.measure, surface, left_mm, (job.product, fields.offset_mm))
+        pressed = contact.pressed_product or job.product
+        return partial(certificate.measure, surface, left_mm, (pressed, fields.offset_mm))
 
     written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
     if job.taken is not None:
@@ -268,6 +277,7 @@ def fields_of(contact: "native.Contact", job: Job) -> write.Fields:
         offset_mm=offset_mm(contact, job),
         shear=None if contact.friction is None else _shear(contact),
         thickness_mm=job.thickness_mm,
+        grip_displacement_mm=contact.grip_displacement_mm,
     )
 
 
@@ -307,7 +317,7 @@ def state_hash(context: Context) -> str:
         settings.use_force and (settings.force_n, settings.direction_mode, *settings.direction),
     )
     shapes = state.shapes(context, [hand, *parts])
-    choices += (*effects.shown(hand), *settings.slide_mm)
+    choices += (*effects.shown(hand), *settings.slide_mm, *(grip_settings.shown(part) for part in parts))
     return cache.content_hash(names.VERSION, materials, choices, units.mm_per_unit(context.scene), *shapes)
 
 

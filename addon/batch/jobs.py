@@ -9,8 +9,10 @@ from pathlib import Path
 
 from .. import names
 from ..scene.checks import Refusal
+from ..soft_grip import settings as grip_settings
 
 _TEXT, _NUMBER, _WHOLE, _FLAG = "a text in quotes", "a number above zero", "a whole number", "true or false"
+_GRIPS = ("rigid", *grip_settings.PRESETS)
 KEYS = {
     "name": _TEXT,
     "blend": _TEXT,
@@ -24,11 +26,16 @@ KEYS = {
     "hand_percentile": _NUMBER,
     "hand_sex": ("female", "male"),
     "stiffness": _NUMBER,
+    "grip": _GRIPS,
+    "grip_thickness_mm": _NUMBER,
+    "grip_youngs_mpa": _NUMBER,
+    "grip_shore_a": _NUMBER,
     "out": _TEXT,
     "save": _FLAG,
     "render": _FLAG,
 }
-"""What a case may say, and what is admissible. `stiffness` is a factor on every modulus of the skin."""
+"""What a case may say, and what is admissible. `stiffness` is a factor on every modulus of the skin; a grip covers
+every part of the product."""
 
 NOT_SWEPT = ("name", "out", "save", "render")
 _PATHS = ("blend",)
@@ -72,6 +79,11 @@ def check(case, name):
             raise Refusal(
                 f'case {name}: a hand of its own size must be laid on the product; add fit = "firm" or "light"'
             )
+    kinds = [key for key in ("grip", "grip_youngs_mpa", "grip_shore_a") if key in case]
+    if len(kinds) > 1:
+        raise Refusal(f"case {name} says both {kinds[0]} and {kinds[1]}, which are two grips; keep one")
+    if not 20 <= case.get("grip_shore_a", 20) <= 80:
+        raise Refusal(f"case {name}: grip_shore_a is {case['grip_shore_a']}, but must be 20 to 80")
     if case.get("hand_percentile", 50) >= 100:
         raise Refusal(f"case {name}: hand_percentile is {case['hand_percentile']}, but must lie below 100")
 

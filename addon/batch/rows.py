@@ -16,6 +16,7 @@ RESULTS = (
     "penetration_after_mm",
     "write_back_error_mm",
     "offset_mm",
+    "grip_mm",
 )
 SETTING = "set_"
 """Before the names of settings, so that a wanted force and the force found are told apart."""

@@ -14,6 +14,7 @@ from .. import headless, native, workflow
 from .. import result as results
 from ..hand import build, fitting, grasp, pads, posing
 from ..scene.checks import Refusal
+from ..soft_grip import settings as grip_settings
 from .jobs import check
 from .processors import Own
 
@@ -78,12 +79,27 @@ def solve(case, stem):
         _fit(context, case["fit"])
     if "stiffness" in case:
         _stiffen(context.scene.thenar.hand, float(case["stiffness"]))
+    _cover(context, case)
     workflow.solve(context)
     if case.get("save", True):
         headless.save_file(stem.with_suffix(".blend"))
     if case.get("render", False):
         _render(context, stem.with_suffix(".png"))
     return results.as_dict(context.scene.thenar.result)
+
+
+def _cover(context, case):
+    """Cover every part of the product with the grip that the case asks for."""
+    for part in workflow.product_parts(context.scene.thenar):
+        grip = part.thenar.grip
+        if "grip" in case:
+            grip.material = case["grip"].upper()
+        if "grip_shore_a" in case:
+            grip.material, grip.hardness = grip_settings.SHORE_A, case["grip_shore_a"]
+        if "grip_youngs_mpa" in case:
+            grip.material, grip.youngs_mpa = grip_settings.CUSTOM, case["grip_youngs_mpa"]
+        if "grip_thickness_mm" in case:
+            grip.thickness_mm = case["grip_thickness_mm"]
 
 
 def _change_hand(context, case):

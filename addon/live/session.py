@@ -10,6 +10,7 @@ import numpy as np
 from .. import cache, comfort, effects, maps, names, native, sentences, workflow
 from .. import result as results
 from ..scene import attributes, checks, colors, mesh, own, read, sizes, state, units, write
+from ..soft_grip import covering
 from . import nodes
 
 
@@ -44,6 +45,7 @@ def check(context):
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then switch Live on")
     if context.scene.thenar.use_force:
         raise checks.Refusal("Live follows the pose and keeps the product where it is; switch Force Target off")
+    covering.check_rigid(parts, "Live presses")
     if any(modifier.type == "MIRROR" and modifier.show_viewport for modifier in hand.modifiers):
         raise checks.Refusal(f"Live cannot follow the Mirror modifier of '{hand.name}'; apply it or press Solve")
     return hand, parts

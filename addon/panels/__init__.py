@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import effects, lists, main, materials, preferences, result
+from . import effects, grip, lists, main, materials, preferences, result
 
-_MODULES = (preferences, lists, main, materials, effects, result)
+_MODULES = (preferences, lists, main, materials, effects, grip, result)
 
 
 def register():

@@ -36,6 +36,8 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
         _pair(box, "Max. overlap", f"{result.depth_mm:.2f} mm")
         if result.offset_mm:
             _pair(box, "Product offset", f"{result.offset_mm:+.2f} mm")
+        if result.grip_mm:
+            _pair(box, "Grip yields", f"{result.grip_mm:.2f} mm ({result.grip_share:.0%})")
         if result.shear_n:
             _pair(box, "Shear force", f"{result.shear_n:.1f} N")
             _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")

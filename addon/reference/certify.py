@@ -12,6 +12,7 @@ from .. import names, native, sentences, workflow
 from ..hand import normals
 from ..scene import attributes, checks, own, units, write
 from ..scene.units import Bools, Floats, Ints
+from ..soft_grip import covering
 from ..steps import Cancel, Progress, Steps
 from . import bones, notes
 
@@ -95,6 +96,7 @@ def check(context: Context) -> None:
         raise checks.Refusal(
             f"the model '{result.model}' has no tissue that could be meshed; choose the model Layer and solve"
         )
+    covering.check_rigid(workflow.product_parts(context.scene.thenar), "Certify solves")
     if own.contact_key(hand) is None:
         raise checks.Refusal(
             f"'{hand.name}' has no shape key '{names.SHAPE_KEY}': Apply made the contact part of the mesh; "

@@ -24,18 +24,29 @@ def find_copy(part_name: str) -> Object | None:
 
 
 def write_copy(
-    context: Context, record: read.Part, reading: read.Reading, offset_mm: Floats, pressure_mpa: Floats
+    context: Context,
+    record: read.Part,
+    reading: read.Reading,
+    offset_mm: Floats,
+    carried: tuple[Floats, Floats | None],
 ) -> Object:
-    """Make anew the mesh object that shows the part's pressure; hidden until the pressure is shown."""
+    """Make anew the mesh object that shows the part's pressure; hidden until the pressure is shown.
+
+    `carried`: pressure (k,), MPa, and how far its soft grip yields (k, 3), mm, or None where it is rigid.
+    """
+    pressure_mpa, yielded_mm = carried
     skin, product, look = reading.hand, reading.product, context.scene.thenar
     remove_copy(record.name)
     last = record.first + record.count
-    world = (product.vertices_mm[record.first : last] + skin.origin_mm + offset_mm) / skin.scale
+    places = product.vertices_mm[record.first : last] + (0.0 if yielded_mm is None else yielded_mm)
+    world = (places + skin.origin_mm + offset_mm) / skin.scale
     inside = (product.triangles >= record.first).all(axis=1) & (product.triangles < last).all(axis=1)
     mesh = _mesh(copy_name(record.name), world, product.triangles[inside] - record.first)
     if not record.reason:
         _dress(mesh, bpy.data.objects[record.name])
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", units.kpa(pressure_mpa))
+    if yielded_mm is not None:
+        attributes.write(mesh, names.GRIP_MM, "FLOAT_VECTOR", yielded_mm)
     attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(units.kpa(pressure_mpa), look, colors.BARE))
     copy = bpy.data.objects.new(copy_name(record.name), mesh)
     copy.thenar.copy_of = record.name

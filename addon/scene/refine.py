@@ -11,10 +11,11 @@ import numpy as np
 from .read import HandReading, ProductReading, Refinement
 from .units import Bools, Floats, Ints
 
-COARSE = 4.0
-"""Product edges longer than this many edges of the hand smear the map; the library warns from there on."""
-FINE = 1.5
-"""Edges are halved down to this many edges of the hand."""
+FOR_MAPS = (4.0, 1.5)
+"""Product edges longer than so many edges of the hand smear the map, and the library warns from there on; they are
+halved down to so many."""
+FOR_GRIPS = (1.0, 1.0)
+"""The same for a soft grip, whose vertices move."""
 REACH_MM = 10.0
 """Surface up to so far from the skin is refined: skin overlaps a product by no more."""
 THINNED_MM = 8.0
@@ -25,8 +26,11 @@ MOST_TRIANGLES = 300_000
 _CHUNK = 4_000_000
 
 
-def refined(product: ProductReading, skin: HandReading) -> ProductReading:
-    """`product` (a `ProductReading`) refined near the skin of `skin` (a `HandReading`), part by part."""
+def refined(product: ProductReading, skin: HandReading, edges: tuple[float, float] = FOR_MAPS) -> ProductReading:
+    """`product` refined near `skin`, part by part.
+
+    `edges`: which are too long, and what they are halved to, in edges of the hand.
+    """
     spacing = _median_edge(skin)
     near = _thinned(skin.posed_mm[skin.regions >= 0])
     if not np.isfinite(spacing) or spacing <= 0.0 or not len(near) or len(product.triangles) > MOST_TRIANGLES:
@@ -37,7 +41,7 @@ def refined(product: ProductReading, skin: HandReading) -> ProductReading:
         inside = (product.triangles >= part.first).all(axis=1) & (product.triangles < last).all(axis=1)
         points = product.vertices_mm[part.first : last]
         faces = product.triangles[inside] - part.first
-        new_points, new_faces, parents = _cut(points, faces, near, spacing)
+        new_points, new_faces, parents = _cut(points, faces, near, (edges[0] * spacing, edges[1] * spacing))
         if parents:
             kept = Refinement(parents, len(points), _vertex_areas(points, faces), _vertex_areas(new_points, new_faces))
             part = replace(part, refinement=kept)
@@ -61,9 +65,11 @@ def gathered(pressure: Floats, refinement: Refinement) -> Floats:
     return np.divide(force, areas, out=np.zeros_like(force), where=areas > 0.0)
 
 
-def _cut(points: Floats, faces: Ints, near: Floats, spacing: float) -> tuple[Floats, Ints, tuple[Ints, ...]]:
+def _cut(
+    points: Floats, faces: Ints, near: Floats, edges_mm: tuple[float, float]
+) -> tuple[Floats, Ints, tuple[Ints, ...]]:
     """Points, faces and parents by level after halving what is too long."""
-    levels, longest = [], COARSE * spacing
+    levels, (longest, wanted) = [], edges_mm
     for _ in range(MOST_LEVELS):
         ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)  # (m, 3 edges, 2)
         is_long = np.linalg.norm(points[ends[..., 0]] - points[ends[..., 1]], axis=2) > longest
@@ -73,7 +79,7 @@ def _cut(points: Floats, faces: Ints, near: Floats, spacing: float) -> tuple[Flo
         is_near = _is_near(points[parents], near)
         if not is_near.any() or len(faces) + 2 * is_near.sum() > MOST_TRIANGLES:
             break
-        longest = FINE * spacing  # what is coarse anywhere is made fine wherever skin is near
+        longest = wanted  # what is coarse anywhere is made fine wherever skin is near
         parents, added = parents[is_near], len(points) + np.cumsum(is_near) - 1
         middle = np.full(faces.shape, -1)
         middle[is_long] = np.where(is_near, added, -1)[place.ravel()]

@@ -32,6 +32,8 @@ class Fields:
     """(3) how far the product moved to reach its force."""
     shear: tuple[Floats, Floats] | None = None
     """Shear traction (n), MPa, and slip margin (n), 0 where skin slips to 1, where the product was dragged."""
+    grip_displacement_mm: Floats | None = None
+    """(k, 3), where a soft grip covers the product."""
     thickness_mm: Floats | None = None
     """(n), soft tissue over bone; infinite where there is no bone, NaN away from the skin."""
 
@@ -151,9 +153,10 @@ def _keep_key(undo: ExitStack, hand: Object) -> None:
 
 def _write_part(context: Context, undo: ExitStack, record: read.Part, reading: read.Reading, fields: Fields) -> None:
     part, look = bpy.data.objects[record.name], context.scene.thenar
-    pressure = fields.product_pressure_mpa[record.first : record.first + record.count]
-    if record.reason or record.refinement is not None:
-        copies.write_copy(context, record, reading, fields.offset_mm, pressure)
+    mine = slice(record.first, record.first + record.count)
+    pressure, yielded = fields.product_pressure_mpa[mine], _yielded(fields, mine)
+    if record.reason or record.refinement is not None or yielded is not None:
+        copies.write_copy(context, record, reading, fields.offset_mm, (pressure, yielded))
         undo.callback(copies.remove_copy, record.name)
     else:
         copies.remove_copy(record.name)
@@ -167,6 +170,13 @@ def _write_part(context: Context, undo: ExitStack, record: read.Part, reading: r
     attributes.write(part.data, names.PRESSURE_KPA, "FLOAT", carried)
     attributes.write(part.data, names.COLOR, "FLOAT_COLOR", colors.linear(carried, look, colors.BARE))
     part.data.update()
+
+
+def _yielded(fields: Fields, mine: slice) -> Floats | None:
+    """Displacement of a part's vertices, or None where the part is rigid."""
+    if fields.grip_displacement_mm is None or not fields.grip_displacement_mm[mine].any():
+        return None
+    return fields.grip_displacement_mm[mine]
 
 
 def _notes(product: read.ProductReading) -> Iterator[str]:

@@ -105,6 +105,31 @@ class Material:
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
 
 @type_check_only
+class _GripPreset(TypedDict):
+    name: str
+    title: str
+    youngs_mpa: float
+    poisson_ratio: float
+    source: str
+
+@final
+class Elastomer:
+    """A soft layer bonded to the rigid core of a product: thickness in mm, Young's modulus in MPa, linear elastic."""
+
+    def __new__(cls, thickness_mm: float, youngs_mpa: float, poisson_ratio: float = 0.49) -> Self: ...
+    @staticmethod
+    def of_shore_a(hardness: float, thickness_mm: float, poisson_ratio: float = 0.49) -> Elastomer: ...
+    @staticmethod
+    def presets() -> list[_GripPreset]: ...
+    @property
+    def thickness_mm(self) -> float: ...
+    @property
+    def youngs_mpa(self) -> float: ...
+    @property
+    def poisson_ratio(self) -> float: ...
+    def __getnewargs__(self) -> tuple[float, float, float]: ...
+
+@type_check_only
 class _Gaps(TypedDict):
     gap_mm: _Floats
     closest_mm: _Floats
@@ -180,6 +205,8 @@ class Skin:
         warm_start: bool = False,
         live: bool = False,
         keep_unsolved: bool = False,
+        grip: Elastomer | Sequence[Elastomer] | None = None,
+        grip_of_vertex: ArrayLike | None = None,
     ) -> Contact: ...
     @overload
     def press(
@@ -198,6 +225,8 @@ class Skin:
         warm_start: bool = False,
         live: bool = False,
         keep_unsolved: bool = False,
+        grip: Elastomer | Sequence[Elastomer] | None = None,
+        grip_of_vertex: ArrayLike | None = None,
     ) -> Contact: ...
     @overload
     def run(
@@ -348,6 +377,10 @@ class Contact:
     def pressure_mpa(self) -> _Floats: ...
     @property
     def force_n(self) -> _Floats: ...
+    @property
+    def grip_displacement_mm(self) -> _Floats | None: ...
+    @property
+    def pressed_product(self) -> Product | None: ...
     @property
     def gap_mm(self) -> _Floats: ...
     @property

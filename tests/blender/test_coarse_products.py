@@ -66,11 +66,11 @@ def test_the_hand_does_not_feel_it():
     hand = bpy.context.scene.thenar.hand
     fine = result.force_n, result.peak_kpa, stage.attribute(hand, "pressure_kpa").copy()
     bpy.ops.thenar.clear()
-    before, refine.COARSE = refine.COARSE, np.inf
+    before, refine.FOR_MAPS = refine.FOR_MAPS, (np.inf, np.inf)
     try:
         result = stage.solve()
     finally:
-        refine.COARSE = before
+        refine.FOR_MAPS = before
     assert copy_of(part) is None and any("smeared" in text.name for text in result.warnings)
     assert (result.force_n, result.peak_kpa) == pytest.approx(fine[:2], rel=1e-6)
     assert np.allclose(stage.attribute(hand, "pressure_kpa"), fine[2], atol=1e-3)
@@ -112,7 +112,7 @@ def test_cut_triangles_keep_common_edges_and_the_surface():
     faces = np.array([each for a, b, c, d in quads for each in ((a, b, c), (a, c, d))])
     for _ in range(20):
         near = rng.uniform(0, (90, 60, 40), (5, 3))
-        new_points, new_faces, parents = refine._cut(points, faces, near, 2.5)
+        new_points, new_faces, parents = refine._cut(points, faces, near, (10.0, 3.75))
         edges = np.sort(np.concatenate([new_faces[:, pair] for pair in ([0, 1], [1, 2], [2, 0])]), axis=1)
         assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
         assert refine._vertex_areas(new_points, new_faces).sum() == pytest.approx(2 * (90 * 60 + 90 * 40 + 60 * 40))

@@ -114,6 +114,38 @@ pub enum ContactError {
         reached_n: f64,
         travel_mm: f64,
     },
+    /// A number of a soft grip is not admissible.
+    #[error("elastomer {index} of the grip: {name} is {found}, but must be {expected}")]
+    Elastomer {
+        index: usize,
+        name: &'static str,
+        found: f64,
+        expected: &'static str,
+    },
+    /// A grip names an elastomer that is not there.
+    #[error(
+        "the grip names elastomer {elastomer} at vertex {vertex} of the product, but there are {count}, numbered from 0; \
+         -1 is rigid"
+    )]
+    UnknownElastomer {
+        vertex: usize,
+        elastomer: i32,
+        count: usize,
+    },
+    /// One elastomer number per vertex of the product is needed.
+    #[error(
+        "the grip has {found} entries for {expected} vertices of the product; give one per vertex, -1 where it is rigid"
+    )]
+    GripCount { found: usize, expected: usize },
+    /// The paper's model has no soft grips.
+    #[error("a soft grip needs the model layer; the paper's model presses rigid products only")]
+    GripModel,
+    /// Skin and grip did not settle on one pressure.
+    #[error(
+        "the soft grip was not solved: after {presses} presses skin and grip still differ by {left_mm:.3} mm; round sharp \
+         edges of the product, press less deep, or give the grip a larger modulus"
+    )]
+    GripUnsolved { left_mm: f64, presses: usize },
     /// A dense problem's arrays do not fit together.
     #[error(
         "the matrix has {found} entries but the gap has {gaps}; it must have {gaps} times {gaps}"

@@ -18,6 +18,7 @@ mod solve;
 mod interface;
 mod history;
 mod press;
+mod soft_grip;
 mod fields;
 
 pub use api::{Drag, ForceTarget, Model, Press, SkinInput, Start, Unsolved};
@@ -31,6 +32,9 @@ pub use interface::{StickSlip, solve_stick_slip};
 pub use skin::materials::{Material, Swelling};
 pub use skin::parameters;
 pub use skin::prepare::Skin;
+pub use soft_grip::elastomer::{Elastomer, SoftGrip};
+pub use soft_grip::presets::{GRIP_PRESETS, GripPreset};
+pub use soft_grip::pressed_grip::GripContact;
 pub use solve::{Solution, solve_dense};
 pub use sphere_indentation as ball;
 pub use workspace::warm_start::WarmStart;

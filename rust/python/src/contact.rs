@@ -2,7 +2,9 @@
 
 use crate::arrays::{Argument, column, owned_rows, triple, zeros};
 use crate::contact_records as records;
+use crate::product::Product;
 use crate::record::Once;
+use crate::skin::PressedGrip;
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 use std::mem::take;
@@ -48,9 +50,20 @@ pub struct Contact {
     grade: Once<Grade>,
     reason: Once<Option<String>>,
     seconds: Once<Vec<(&'static str, f64)>>,
+    grip_displacement_mm: Once<Option<Vec<Vec3>>>,
+    pressed_product: Option<Arc<thenar_surface::Product>>,
 }
 
 impl Contact {
+    /// With what a soft grip did.
+    pub fn with_grip(mut self, grip: Option<PressedGrip>) -> Contact {
+        if let Some((displacement, product)) = grip {
+            self.grip_displacement_mm = Once::new(Some(displacement));
+            self.pressed_product = Some(product);
+        }
+        self
+    }
+
     /// Takes the result over; `region_names` is empty or has one name per region.
     pub fn new(result: thenar_contact::Contact, region_names: Arc<Vec<String>>) -> Contact {
         let (grade, reason) = (result.grade(), result.reason().map(Warning::to_string));
@@ -90,6 +103,8 @@ impl Contact {
             remarks: Once::new(result.warnings),
             seconds: Once::new(result.seconds),
             friction: Once::new(shear),
+            grip_displacement_mm: Once::new(None),
+            pressed_product: None,
             region_names,
         }
     }
@@ -129,6 +144,23 @@ impl Contact {
     fn displacement_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.displacement_mm
             .get(py, |values| owned_rows(py, values))
+    }
+
+    /// (k, 3), mm, of the product's vertices as given, where a soft grip covers it: into the core where it yields; None without.
+    #[getter]
+    fn grip_displacement_mm(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.grip_displacement_mm.get(py, |values| match values {
+            Some(values) => owned_rows(py, values),
+            None => Ok(py.None()),
+        })
+    }
+
+    /// The `Product` with its soft grip as it is pressed, where the product was given; None without a grip.
+    #[getter]
+    fn pressed_product(&self) -> Option<Product> {
+        self.pressed_product
+            .as_ref()
+            .map(|product| Product(Arc::clone(product)))
     }
 
     /// (n,), MPa.

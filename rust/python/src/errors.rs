@@ -138,13 +138,15 @@ fn exception(error: ContactError, message: String) -> PyErr {
         ContactError::Hand(_)
         | ContactError::Product(_)
         | ContactError::RegionCount { .. }
+        | ContactError::GripCount { .. }
         | ContactError::NoSkin
         | ContactError::TooCoarse { .. }
         | ContactError::PosedCount { .. }
         | ContactError::PosedNotFinite { .. } => MeshError::new_err(message),
-        ContactError::Material { .. } | ContactError::MissingMaterial { .. } => {
-            MaterialError::new_err(message)
-        }
+        ContactError::Elastomer { .. }
+        | ContactError::UnknownElastomer { .. }
+        | ContactError::Material { .. }
+        | ContactError::MissingMaterial { .. } => MaterialError::new_err(message),
         _ => SolveError::new_err(message),
     }
 }

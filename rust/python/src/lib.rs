@@ -40,6 +40,7 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<material::Material>()?;
     module.add_class::<product::Product>()?;
     module.add_class::<effects::Effect>()?;
+    module.add_class::<skin::elastomer::Elastomer>()?;
     module.add_class::<protocol::Course>()?;
     module.add_class::<skin::Skin>()?;
     module.add_class::<walk::Walk>()?;

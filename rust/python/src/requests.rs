@@ -6,7 +6,9 @@ use crate::material::Regions;
 use crate::product::{Product, Surface};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use thenar_contact::{ActiveEffect, Drag, ForceTarget, Keep, Model, Protocol, Start, Unsolved};
+use thenar_contact::{
+    ActiveEffect, Drag, ForceTarget, Keep, Model, Protocol, SoftGrip, Start, Unsolved,
+};
 use thenar_surface::Vec3;
 
 /// One press as it came from Python.
@@ -17,6 +19,7 @@ pub struct Request {
     pub drag: Option<Drag>,
     pub start: Start,
     pub unsolved: Unsolved,
+    pub grip: Option<SoftGrip>,
 }
 
 /// One protocol as it came from Python.
@@ -32,6 +35,16 @@ pub struct Followed {
 pub enum Target {
     Prepared(Arc<thenar_surface::Product>),
     Surface(Surface),
+}
+
+impl Target {
+    /// Vertices of the product.
+    pub fn vertices(&self) -> usize {
+        match self {
+            Target::Prepared(product) => product.mesh().positions().len(),
+            Target::Surface(surface) => surface.vertices.len(),
+        }
+    }
 }
 
 pub fn keep_named(name: &str) -> PyResult<Keep> {

@@ -25,6 +25,9 @@ impl Grade {
     }
 }
 
+/// Yield of a soft grip over its thickness beyond which a linear material answers for nothing.
+const MOST_GRIP_STRAIN: f64 = 0.5;
+
 /// One remark on a result; lengths in mm, forces in N, pressures in MPa. Its text is its `Display`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Warning {
@@ -87,6 +90,12 @@ pub enum Warning {
         moved: f64,
         overlap: f64,
     },
+    /// A soft grip is pressed beyond what its linear law answers for; yield over thickness.
+    GripStrain { strain: f64 },
+    /// Skin and soft grip settled roughly, mm.
+    GripRough { left: f64 },
+    /// Skin and soft grip did not settle on one pressure, mm.
+    GripUnsolved { left: f64 },
     /// The force leaps over what was asked for.
     ForceLeaps { asked: f64, reached: f64 },
 }
@@ -107,10 +116,14 @@ impl Warning {
             | Warning::Crease { .. }
             | Warning::OffBalance { .. }
             | Warning::AdhesionUnsettled
+            | Warning::GripRough { .. }
             | Warning::ForceLeaps { .. } => Grade::ReadThis,
-            Warning::ProductInside
+            Warning::GripStrain { strain } if *strain <= MOST_GRIP_STRAIN => Grade::ReadThis,
+            Warning::GripStrain { .. }
+            | Warning::ProductInside
             | Warning::NoContact
             | Warning::Unsolved { .. }
+            | Warning::GripUnsolved { .. }
             | Warning::UnsolvedRows { .. }
             | Warning::Penetration { .. }
             | Warning::Runaway { .. } => Grade::DoNotUse,
@@ -134,6 +147,9 @@ impl Warning {
             Warning::Crease { .. } => "peak_in_crease",
             Warning::OffBalance { .. } => "off_balance",
             Warning::AdhesionUnsettled => "adhesion_unsettled",
+            Warning::GripStrain { .. } => "grip_strain",
+            Warning::GripRough { .. } => "grip_rough",
+            Warning::GripUnsolved { .. } => "grip_unsolved",
             Warning::Unsolved { .. } => "unsolved",
             Warning::UnsolvedRows { .. } => "unsolved_rows",
             Warning::Penetration { .. } => "penetration",
@@ -286,6 +302,21 @@ impl fmt::Display for Warning {
                 f,
                 "vertex {vertex} moves {moved:.1} mm where skin overlaps the product by {overlap:.1} mm at most: the skin is \
                  folded there; open the hand a little"
+            ),
+            Warning::GripStrain { strain } => write!(
+                f,
+                "the soft grip is pressed in by {:.0} % of its thickness: its material is taken as linear, and most yield less and less \
+                 from 25 % on; take a thicker or harder grip, or read the pressure as a lower bound",
+                100.0 * strain
+            ),
+            Warning::GripRough { left } => write!(
+                f,
+                "skin and soft grip settled to {left:.3} mm only, as on a sharp edge: round the edge, or read the force alone"
+            ),
+            Warning::GripUnsolved { left } => write!(
+                f,
+                "the soft grip was not solved: skin and grip still differ by {left:.3} mm; round sharp edges of the product, \
+                 press less deep, or take a harder grip"
             ),
             Warning::ForceLeaps { asked, reached } => write!(
                 f,

@@ -1,5 +1,6 @@
 //! `thenar.Skin`: a hand prepared once and pressed in any posture, from any thread.
 
+pub mod elastomer;
 mod shared;
 
 use crate::arrays::{Argument, column};
@@ -13,9 +14,10 @@ use crate::requests::{
 };
 use crate::running::{Hooks, run};
 use crate::walk::Walk;
+use elastomer::grip_of;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-pub(crate) use shared::Inner;
+pub(crate) use shared::{Inner, PressedGrip};
 use std::sync::Arc;
 use thenar_contact::{ContactError, Model, SkinInput, Start, Unsolved};
 use thenar_surface::Mesh;
@@ -113,8 +115,10 @@ impl Skin {
     /// tolerances, else the result depends on the arguments alone, bit for bit; `live`: the same for what moves before the eye, skin away from what
     /// moved keeps its forces until it is off by 0.5 % of the deepest penetration, and no residual is above that;
     /// `keep_unsolved`: a contact that misses its tolerances is returned, graded "do not use", in place of a `SolveError` whose
-    /// `vertices` say where, the worst first. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
-    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false, live=false, keep_unsolved=false))]
+    /// `vertices` say where, the worst first; `grip`: an `Elastomer` that covers the product, or a list of them and in
+    /// `grip_of_vertex` (k,) the number of each vertex of the product, -1 where it is rigid: skin and grip yield to one pressure,
+    /// and the product's surface as it is pressed is in the result. Returns a `Contact`. Raises `MeshError`, `SolveError`, `Cancelled`.
+    #[pyo3(signature = (product_vertices_mm, product_triangles=None, posed_vertices_mm=None, force_n=None, direction=None, cancel=None, progress=None, *, slide_mm=None, twist_rad=None, drag_n=None, warm_start=false, live=false, keep_unsolved=false, grip=None, grip_of_vertex=None))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keywords of the public interface"
@@ -135,6 +139,8 @@ impl Skin {
         warm_start: bool,
         live: bool,
         keep_unsolved: bool,
+        grip: Option<&Bound<'_, PyAny>>,
+        grip_of_vertex: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Contact> {
         let hooks = Hooks::new(cancel, progress)?;
         let target = target_of(product_vertices_mm, product_triangles)?;
@@ -148,6 +154,7 @@ impl Skin {
             (false, true) => Start::Warm,
             (false, false) => Start::Fresh,
         };
+        let grip = grip_of(grip, grip_of_vertex, target.vertices())?;
         let request = Request {
             target,
             posed,
@@ -155,10 +162,11 @@ impl Skin {
             drag,
             start,
             unsolved: Unsolved::kept_if(keep_unsolved),
+            grip,
         };
         let inner = Arc::clone(&self.inner);
-        let contact = run(py, &hooks, move |control| inner.press(request, control))?;
-        Ok(Contact::new(contact, Arc::clone(&self.region_names)))
+        let (contact, grip) = run(py, &hooks, move |control| inner.press(request, control))?;
+        Ok(Contact::new(contact, Arc::clone(&self.region_names)).with_grip(grip))
     }
 
     /// Follows a protocol from rest; the tissue remembers from row to row what its effects let it.

@@ -6,9 +6,13 @@ use crate::requests::{Followed, Request, Target};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 use thenar_contact::{ContactError, Control, Press, Run, Skin, WarmStart, Workspace};
+use thenar_surface::Vec3;
 
 /// Workspaces kept while nothing presses: a large contact takes some hundred MB in each.
 const MOST_IDLE: usize = 2;
+
+/// Displacement of a soft grip by vertex of the product, mm, and the product as it is pressed.
+pub(crate) type PressedGrip = (Vec<Vec3>, Arc<thenar_surface::Product>);
 
 pub(crate) struct Inner {
     state: Mutex<State>,
@@ -56,7 +60,7 @@ impl Inner {
         &self,
         request: Request,
         control: &Control,
-    ) -> Result<thenar_contact::Contact, Failure> {
+    ) -> Result<(thenar_contact::Contact, Option<PressedGrip>), Failure> {
         let started = Instant::now();
         (control.progress)("product", 0.0);
         let product = self.product(request.target)?;
@@ -70,11 +74,19 @@ impl Inner {
             unsolved: request.unsolved,
         };
         let (skin, mut workspace) = self.begin();
-        let contact = workspace.on(&skin).press(&press, control);
+        let mut pressing = workspace.on(&skin);
+        let found = match &request.grip {
+            None => pressing
+                .press(&press, control)
+                .map(|contact| (contact, None)),
+            Some(grip) => pressing
+                .press_grip(&press, (&product, grip), control)
+                .map(|found| (found.contact, Some((found.displacement, found.product)))),
+        };
         self.end(workspace, State::keep_result);
-        let mut contact = contact?;
+        let (mut contact, grip) = found?;
         contact.seconds.insert(0, ("product", prepared_in));
-        Ok(contact)
+        Ok((contact, grip))
     }
 
     pub(super) fn follow(

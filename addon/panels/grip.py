@@ -1,0 +1,53 @@
+"""The panel of soft grips."""
+
+import bpy
+
+from .. import status
+from ..scene.parts import product_parts
+from ..soft_grip import settings as grip_settings
+from . import text
+from .main import Tab
+
+
+class THENAR_PT_grip(Tab, bpy.types.Panel):
+    """What the product is covered with."""
+
+    bl_label = "Soft Grip"
+    bl_parent_id = "THENAR_PT_main"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_order = 4
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem and bool(product_parts(context.scene.thenar))
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        parts = product_parts(context.scene.thenar)
+        for part in parts:
+            column = layout.column(align=True)
+            if len(parts) > 1:
+                column.label(text=part.name, icon="OBJECT_DATA")
+            _draw_grip(column, part, context)
+
+
+def _draw_grip(column, part, context):
+    grip = part.thenar.grip
+    column.prop(grip, "material")
+    if grip.material == grip_settings.RIGID:
+        return
+    column.prop(grip, "thickness_mm")
+    if grip.material == grip_settings.SHORE_A:
+        column.prop(grip, "hardness")
+    elif grip.material == grip_settings.CUSTOM:
+        column.prop(grip, "youngs_mpa")
+        column.prop(grip, "poisson_ratio")
+    if part.type == "MESH":
+        column.prop_search(grip, "group", part, "vertex_groups")
+    _thickness, youngs_mpa, poisson_ratio = grip_settings.numbers(part)
+    text.faint(column, context, f"E {youngs_mpa:.3g} MPa, Poisson's ratio {poisson_ratio:g}, linear")
+
+
+CLASSES = (THENAR_PT_grip,)

@@ -1,0 +1,1 @@
+"""Soft grips on products: their settings, and which vertices of the product they cover."""
