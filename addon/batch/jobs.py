@@ -37,6 +37,9 @@ KEYS = {
 """What a case may say, and what is admissible. `stiffness` is a factor on every modulus of the skin; a grip covers
 every part of the product."""
 
+_GRIP_RANGES = {"grip_shore_a": (20, 80), "grip_youngs_mpa": (0.001, 1e5), "grip_thickness_mm": (0.1, 1000)}
+"""What the properties of a grip hold."""
+
 NOT_SWEPT = ("name", "out", "save", "render")
 _PATHS = ("blend",)
 MOST_CASES = 1_000_000
@@ -79,13 +82,18 @@ def check(case, name):
             raise Refusal(
                 f'case {name}: a hand of its own size must be laid on the product; add fit = "firm" or "light"'
             )
+    _check_grip(case, name)
+    if case.get("hand_percentile", 50) >= 100:
+        raise Refusal(f"case {name}: hand_percentile is {case['hand_percentile']}, but must lie below 100")
+
+
+def _check_grip(case, name):
     kinds = [key for key in ("grip", "grip_youngs_mpa", "grip_shore_a") if key in case]
     if len(kinds) > 1:
         raise Refusal(f"case {name} says both {kinds[0]} and {kinds[1]}, which are two grips; keep one")
-    if not 20 <= case.get("grip_shore_a", 20) <= 80:
-        raise Refusal(f"case {name}: grip_shore_a is {case['grip_shore_a']}, but must be 20 to 80")
-    if case.get("hand_percentile", 50) >= 100:
-        raise Refusal(f"case {name}: hand_percentile is {case['hand_percentile']}, but must lie below 100")
+    for key, (low, high) in _GRIP_RANGES.items():
+        if not low <= case.get(key, low) <= high:
+            raise Refusal(f"case {name}: {key} is {case[key]}, but must be {low:g} to {high:g}")
 
 
 def case_hash(case, files):

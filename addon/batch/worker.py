@@ -89,7 +89,7 @@ def solve(case, stem):
 
 
 def _cover(context, case):
-    """Cover every part of the product with the grip that the case asks for."""
+    """Cover every part of the product with the grip that the case asks for; groups of the file stay."""
     for part in workflow.product_parts(context.scene.thenar):
         grip = part.thenar.grip
         if "grip" in case:
@@ -99,6 +99,10 @@ def _cover(context, case):
         if "grip_youngs_mpa" in case:
             grip.material, grip.youngs_mpa = grip_settings.CUSTOM, case["grip_youngs_mpa"]
         if "grip_thickness_mm" in case:
+            if grip.material == grip_settings.RIGID:
+                raise Refusal(
+                    f"grip_thickness_mm is given, but '{part.name}' is rigid; add grip, grip_shore_a or grip_youngs_mpa"
+                )
             grip.thickness_mm = case["grip_thickness_mm"]
 
 

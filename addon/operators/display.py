@@ -31,6 +31,10 @@ def refresh(context):
     if is_on and not shown_objects(context, maps.shown(look).attribute) and shown_objects(context):
         show(context, maps.PRESSURE)
         return
+    carriers = shown_objects(context, maps.shown(look).attribute)
+    if is_on and any(obj.thenar.copy_of and not obj.thenar.shows_pressure for obj, _ in carriers):
+        show(context, look.maps.shown)  # a solve made the copy anew
+        return
     shading.update_group(look)
     for obj, is_skin in shown_objects(context):
         if obj.data.is_editable and obj.mode != "EDIT":
@@ -55,7 +59,7 @@ def show(context, kind=maps.PRESSURE):
     for obj, is_skin in objects:
         shading.show(obj, look, is_skin)
         if obj.thenar.copy_of:
-            _swap(obj, True)
+            copies.swap(obj, True)
     refresh(context)
     for obj, _ in objects:
         index = obj.data.color_attributes.find(names.COLOR if kind == maps.PRESSURE else names.MAP_COLOR)
@@ -77,7 +81,7 @@ def hide_overlays(context):
         if obj.thenar.shows_pressure:
             shading.hide(obj)
             if obj.thenar.copy_of:
-                _swap(obj, False)
+                copies.swap(obj, False)
 
 
 def hide(context):
@@ -96,22 +100,6 @@ def fitting_range(context):
         return None
     steps = [factor * 10.0**power for power in range(-3, 10) for factor in (1.0, 1.5, 2.0, 3.0, 5.0, 7.5)]
     return next(step for step in steps if step >= peak)
-
-
-def _swap(copy, shown):
-    copy.hide_viewport = copy.hide_render = not shown
-    part = bpy.data.objects.get(copy.thenar.copy_of)
-    if part is None:
-        return
-    if shown:
-        copy.thenar.was_hidden = part.hide_get()
-        part.hide_set(True)
-        copy.thenar.hid_render = not part.hide_render
-        part.hide_render = True
-    else:
-        part.hide_set(copy.thenar.was_hidden)
-        if copy.thenar.hid_render:
-            part.hide_render = False
 
 
 def _solid_colors(context, kind):

@@ -61,12 +61,31 @@ def remove_copy(part_name: str) -> None:
     if copy is None:
         return
     shading.hide(copy)
+    if not copy.hide_viewport:
+        swap(copy, False)
     mesh = copy.data
     bpy.data.objects.remove(copy)
     bpy.data.meshes.remove(mesh)
     home = bpy.data.collections.get(names.RESULTS_COLLECTION)
     if home is not None and not home.objects:
         bpy.data.collections.remove(home)
+
+
+def swap(copy: Object, shown: bool) -> None:
+    """Show the copy in place of its part, or the part again as it was."""
+    copy.hide_viewport = copy.hide_render = not shown
+    part = bpy.data.objects.get(copy.thenar.copy_of)
+    if part is None:
+        return
+    if shown:
+        copy.thenar.was_hidden = part.hide_get()
+        part.hide_set(True)
+        copy.thenar.hid_render = not part.hide_render
+        part.hide_render = True
+    else:
+        part.hide_set(copy.thenar.was_hidden)
+        if copy.thenar.hid_render:
+            part.hide_render = False
 
 
 def collection(context: Context) -> Collection:

@@ -12,8 +12,6 @@ from ..scene.read import Part, ProductReading, Reading
 from ..scene.units import Bools, Ints
 from . import settings
 
-LEAST_WEIGHT = 0.5
-
 
 @dataclass(frozen=True)
 class Grip:
@@ -36,8 +34,9 @@ def read(context: Context, parts: Sequence[Object], product: ProductReading) -> 
                 "choose the model Layer on bone, or Rigid under Soft Grip"
             )
         mine = of_vertex[record.first : record.first + record.count]
-        mine[_covered(context, part, record)] = len(elastomers)
-        elastomers.append(found)
+        if found not in elastomers:
+            elastomers.append(found)
+        mine[_covered(context, part, record)] = elastomers.index(found)
     return Grip(tuple(elastomers), of_vertex) if elastomers else None
 
 
@@ -87,14 +86,14 @@ def _covered(context: Context, part: Object, record: Part) -> slice | Bools:
             f"'{part.name}' has no vertex group '{name}' that its soft grip names; choose another, or clear Group"
         )
     if record.count != len(part.data.vertices) or record.reason:
+        why = record.reason or "its modifiers change which vertices there are"
         raise checks.Refusal(
-            f"modifiers or instances of '{part.name}' change which vertices there are, so its group '{name}' cannot "
-            "say where the soft grip is; apply them, or clear Group"
+            f"the group '{name}' of '{part.name}' cannot say where its soft grip is: {why}; mend that, or clear Group"
         )
-    covered: Bools = regions.group_weights(context, part, [name])[0] >= LEAST_WEIGHT
+    covered: Bools = regions.group_weights(context, part, [name])[0] >= settings.LEAST_WEIGHT
     if not covered.any():
         raise checks.Refusal(
-            f"no vertex of '{part.name}' weighs {LEAST_WEIGHT:g} or more in '{name}', which its soft grip names; "
-            "paint the group, or clear Group"
+            f"no vertex of '{part.name}' weighs {settings.LEAST_WEIGHT:g} or more in '{name}', which its soft grip "
+            "names; paint the group, or clear Group"
         )
     return covered

@@ -6,10 +6,13 @@ from bpy.props import EnumProperty, FloatProperty, StringProperty
 from bpy.types import Object, PropertyGroup
 
 from .. import native
+from ..scene import regions
 
 Numbers: TypeAlias = tuple[float, float, float]
 """Thickness (mm), Young's modulus (MPa) and Poisson's ratio."""
 
+LEAST_WEIGHT = 0.5
+"""A vertex belongs to the grip's group from this weight on."""
 RIGID, SHORE_A, CUSTOM = "RIGID", "SHORE_A", "CUSTOM"
 _RUBBER_POISSON = 0.49
 
@@ -23,13 +26,20 @@ def _presets() -> dict[str, dict]:
 PRESETS = _presets()
 
 
-def _items() -> tuple[tuple[str, str, str], ...]:
-    known = ((name.upper(), row["title"], _told(row)) for name, row in PRESETS.items())
+_NUMBERS = {"cork": 10, "tpe": 11, "rubber": 12, "eva_foam": 13, "silicone": 14}
+"""What files hold of a preset; never changed."""
+
+
+def _items() -> tuple[tuple[str, str, str, str, int], ...]:
+    known = []
+    for name, number in _NUMBERS.items():
+        row = PRESETS.get(name)
+        known.append((name.upper(), row["title"] if row else name, _told(row) if row else "", "NONE", number))
     return (
-        (RIGID, "Rigid", "The product does not yield"),
+        (RIGID, "Rigid", "The product does not yield", "NONE", 0),
         *known,
-        (SHORE_A, "Shore A Hardness", "A rubber by its hardness; E by Gent (1958), 1.5 times more or less by compound"),
-        (CUSTOM, "Custom", "A linear elastic material by Young's modulus and Poisson's ratio"),
+        (SHORE_A, "Shore A Hardness", "A rubber by its hardness; E by Gent (1958), 1.5 times more or less", "NONE", 1),
+        (CUSTOM, "Custom", "A linear elastic material by Young's modulus and Poisson's ratio", "NONE", 2),
     )
 
 
@@ -87,8 +97,14 @@ def numbers(part: Object) -> Numbers | None:
 
 def shown(part: Object) -> tuple[object, ...]:
     """What a change of makes a result out of date."""
-    found = numbers(part)
-    return () if found is None else (*found, part.thenar.grip.group)
+    grip = part.thenar.grip
+    if grip.material == RIGID:
+        return ()
+    weights: object = None
+    if grip.group and part.type == "MESH" and grip.group in part.vertex_groups:
+        weights = regions.painted_weights(part, grip.group) >= LEAST_WEIGHT
+    values = (grip.thickness_mm, grip.hardness, grip.youngs_mpa, grip.poisson_ratio)
+    return (grip.material, *values, grip.group, weights)
 
 
 CLASSES = (ThenarGrip,)

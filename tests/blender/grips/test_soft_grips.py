@@ -87,7 +87,7 @@ def test_what_a_grip_cannot_do_is_refused_with_a_remedy(change):
         product.thenar.grip.group = "Pad"
         if change == "modifier":
             product.modifiers.new("S", "SUBSURF")
-    with pytest.raises(RuntimeError, match=wanted.get(change, "apply them, or clear Group")):
+    with pytest.raises(RuntimeError, match=wanted.get(change, "mend that, or clear Group")):
         bpy.ops.thenar.solve()
     assert not bpy.context.scene.thenar.result.is_valid and hand.data.shape_keys is None
 
@@ -153,6 +153,8 @@ def test_batch_sweeps_a_grip_s_thickness(tmp_path):
         ({"grip": "wood"}, "must be"),
         ({"grip": "tpe", "grip_shore_a": 50}, "keep one"),
         ({"grip_shore_a": 90}, "20 to 80"),
+        ({"grip_youngs_mpa": 1e-5}, "0.001 to 100000"),
+        ({"grip_thickness_mm": 0.01}, "0.1 to 1000"),
         ({"grip_thickness_mm": 0}, "a number above zero"),
     ],
 )
@@ -160,3 +162,84 @@ def test_a_case_with_an_impossible_grip_is_refused(case, wanted):
     with pytest.raises(Refusal, match=wanted):
         jobs.check({"blend": "a.blend", **case}, "one")
     assert json.dumps(case)
+
+
+def test_the_product_is_back_after_solving_again_with_the_map_on():
+    _hand, product = covered()
+    stage.solve()
+    bpy.ops.thenar.show_pressure(show=True)
+    assert product.hide_get() and not copy_of(product).hide_viewport
+    stage.solve()
+    assert product.hide_get() and not copy_of(product).hide_viewport and copy_of(product).thenar.shows_pressure
+    bpy.ops.thenar.show_pressure(show=False)
+    assert not product.hide_get() and not product.hide_render and copy_of(product).hide_viewport
+    bpy.ops.thenar.show_pressure(show=True)
+    bpy.ops.thenar.clear()
+    assert not product.hide_get() and not product.hide_render
+
+
+def test_repainting_the_grip_s_group_makes_the_result_out_of_date():
+    _hand, product = covered()
+    group = product.vertex_groups.new(name="Pad")
+    group.add(range(len(product.data.vertices)), 1.0, "REPLACE")
+    product.thenar.grip.group = "Pad"
+    stage.solve()
+    assert not workflow.is_out_of_date(bpy.context)
+    group.add(range(50), 0.1, "REPLACE")
+    assert workflow.is_out_of_date(bpy.context)
+
+
+def test_the_overlap_is_that_of_the_product_as_it_was():
+    _hand, product = stage.scene()
+    rigid = stage.solve().depth_mm
+    product.thenar.grip.material, product.thenar.grip.youngs_mpa = "CUSTOM", 0.1
+    assert stage.solve().depth_mm == pytest.approx(rigid, rel=1e-4)
+
+
+def test_two_halves_with_one_grip_are_one_block():
+    """The seam does not tear open: what lies within the solid is no surface, and shares its normal with none."""
+    hand, product = covered()
+    whole = stage.solve()
+    force, yielded = whole.force_n, whole.grip_mm
+    bpy.ops.thenar.clear()
+    home = bpy.data.collections.new("Halves")
+    bpy.context.scene.collection.children.link(home)
+    for side in (-1.0, 1.0):
+        bpy.ops.mesh.primitive_cube_add(size=30 * stage.MM, location=(side * 15 * stage.MM, 0, -21.8 * stage.MM))
+        half = bpy.context.object
+        half.thenar.grip.material, half.thenar.grip.youngs_mpa = "CUSTOM", 0.1
+        bpy.context.scene.collection.objects.unlink(half)
+        home.objects.link(half)
+    settings = bpy.context.scene.thenar
+    settings.product, settings.product_collection = None, home
+    product.hide_set(True)
+    halves = stage.solve()
+    assert halves.force_n == pytest.approx(force, rel=0.03) and halves.grip_mm == pytest.approx(yielded, rel=0.06)
+
+
+def test_a_sheet_yields_whichever_way_it_is_wound():
+    forces = []
+    for is_flipped in (False, True):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        hand = stage.pad()
+        bpy.ops.mesh.primitive_grid_add(
+            x_subdivisions=30, y_subdivisions=30, size=30 * stage.MM, location=(0, 0, -6.8 * stage.MM)
+        )
+        sheet = bpy.context.object
+        if is_flipped:
+            sheet.data.flip_normals()
+        settings = bpy.context.scene.thenar
+        settings.hand, settings.product = hand, sheet
+        sheet.thenar.grip.material, sheet.thenar.grip.youngs_mpa = "CUSTOM", 0.1
+        result = stage.solve()
+        assert result.grip_mm > 0.1
+        forces.append(result.force_n)
+    assert forces[0] == pytest.approx(forces[1], rel=1e-3)
+
+
+def test_a_grip_thicker_than_half_the_product_says_so():
+    _hand, product = covered(thickness_mm=20.0)
+    result = stage.solve()
+    assert any("no rigid core is left" in text.name for text in result.warnings)
+    product.thenar.grip.thickness_mm = 10.0
+    assert not any("no rigid core is left" in text.name for text in stage.solve().warnings)

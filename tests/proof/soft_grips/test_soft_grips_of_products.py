@@ -74,6 +74,20 @@ def test_two_half_spaces_meet_hertz(youngs_mpa):
     assert share == pytest.approx(modulus * (1.0 - 0.3**2) / youngs_mpa, rel=0.03), "depth is shared as the moduli"
 
 
+@pytest.mark.parametrize("poisson_ratio", [0.0, 0.3, 0.49])
+def test_grips_far_thinner_than_the_skin_s_spacing_come_near_the_rigid_product(poisson_ratio):
+    """A hand's vertices are 2.5 mm apart and more: a film under them is no half space."""
+    skin, product = meshes.disc_patch(30.0, 2.5), paraboloid(30.0, 1.5, 1.0)
+    prepared = thenar.Skin(*skin, materials=[pressing.material(thickness=7.0)])
+    rigid = prepared.press(*product).total_force_n[2]
+    forces = [
+        prepared.press(*product, grip=thenar.Elastomer(h, 0.2, poisson_ratio)).total_force_n[2] / rigid
+        for h in (2.0, 1.0, 0.5, 0.2, 0.05)
+    ]
+    print([round(float(force), 4) for force in forces])
+    assert np.all(np.diff(forces) > -2e-3) and forces[-1] == pytest.approx(1.0, abs=0.02)
+
+
 def test_a_grip_far_softer_than_the_skin_is_solved_or_refused():
     """A foam of E 0.02 MPa under hard rubber (G 4 MPa): refused with a remedy, or right."""
     skin, product = meshes.disc_patch(6.5, 0.3), paraboloid(6.5, 0.3, 0.08, 150.0)

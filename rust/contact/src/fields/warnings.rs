@@ -92,6 +92,8 @@ pub enum Warning {
     },
     /// A soft grip is pressed beyond what its linear law answers for; yield over thickness.
     GripStrain { strain: f64 },
+    /// A soft grip is thicker than half the product, at this vertex of the product.
+    GripWithoutCore { vertex: usize },
     /// Skin and soft grip settled roughly, mm.
     GripRough { left: f64 },
     /// Skin and soft grip did not settle on one pressure, mm.
@@ -117,6 +119,7 @@ impl Warning {
             | Warning::OffBalance { .. }
             | Warning::AdhesionUnsettled
             | Warning::GripRough { .. }
+            | Warning::GripWithoutCore { .. }
             | Warning::ForceLeaps { .. } => Grade::ReadThis,
             Warning::GripStrain { strain } if *strain <= MOST_GRIP_STRAIN => Grade::ReadThis,
             Warning::GripStrain { .. }
@@ -148,6 +151,7 @@ impl Warning {
             Warning::OffBalance { .. } => "off_balance",
             Warning::AdhesionUnsettled => "adhesion_unsettled",
             Warning::GripStrain { .. } => "grip_strain",
+            Warning::GripWithoutCore { .. } => "grip_without_core",
             Warning::GripRough { .. } => "grip_rough",
             Warning::GripUnsolved { .. } => "grip_unsolved",
             Warning::Unsolved { .. } => "unsolved",
@@ -308,6 +312,11 @@ impl fmt::Display for Warning {
                 "the soft grip is pressed in by {:.0} % of its thickness: its material is taken as linear, and most yield less and less \
                  from 25 % on; take a thicker or harder grip, or read the pressure as a lower bound",
                 100.0 * strain
+            ),
+            Warning::GripWithoutCore { vertex } => write!(
+                f,
+                "the soft grip is thicker than half the product at the product's vertex {vertex}, so that no rigid core is left there: it \
+                 yields more than computed; make it thinner"
             ),
             Warning::GripRough { left } => write!(
                 f,

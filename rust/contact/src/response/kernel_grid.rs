@@ -64,19 +64,25 @@ impl Grid {
 
     /// Nodes (1/mm) and weights of panels no longer than one oscillation of J0 at the farthest knot.
     pub fn wave_numbers(&self) -> Vec<(f64, f64)> {
-        let end = CUT_OFF_WAVE_NUMBER / self.thinnest;
-        let panels = ((end * self.reach / std::f64::consts::TAU).ceil() as usize).max(LEAST_PANELS);
-        let half = 0.5 * end / panels as f64;
-        let mut nodes = Vec::with_capacity(panels * 8);
-        for panel in 0..panels {
-            let middle = (2 * panel + 1) as f64 * half;
-            for (x, w) in RULE {
-                nodes.push((middle - half * x, half * w));
-                nodes.push((middle + half * x, half * w));
-            }
-        }
-        nodes
+        wave_numbers(self.thinnest, self.reach)
     }
+}
+
+/// Nodes (1/mm) and weights for what a rigid base under `thinnest` mm takes off the half space, of panels no longer than one
+/// oscillation of J0 at `reach` mm.
+pub fn wave_numbers(thinnest: f64, reach: f64) -> Vec<(f64, f64)> {
+    let end = CUT_OFF_WAVE_NUMBER / thinnest;
+    let panels = ((end * reach / std::f64::consts::TAU).ceil() as usize).max(LEAST_PANELS);
+    let half = 0.5 * end / panels as f64;
+    let mut nodes = Vec::with_capacity(panels * 8);
+    for panel in 0..panels {
+        let middle = (2 * panel + 1) as f64 * half;
+        for (x, w) in RULE {
+            nodes.push((middle - half * x, half * w));
+            nodes.push((middle + half * x, half * w));
+        }
+    }
+    nodes
 }
 
 /// Number of the table of the layers `a` and `b`, in any order.

@@ -3,9 +3,13 @@
 //! The force of a skin vertex stands for a pressure over the vertex's area. Taken at a point it would make the layer yield
 //! without bound there. The kernel of the layer, `1/r - Psi(r)`, is averaged over a disc of that area.
 
+use std::collections::HashMap;
+
+use libm::{j0, j1};
+use rayon::prelude::*;
+
 use crate::response::bonded_layer::Layer;
-use crate::response::kernel_grid::RANGE_IN_THICKNESSES;
-use crate::response::layer_kernel::KernelTables;
+use crate::response::kernel_grid::{RANGE_IN_THICKNESSES, wave_numbers};
 
 /// Ratio of neighboring radii for which tables are made; a disc takes the nearest.
 const RADIUS_RATIO: f64 = 1.05;
@@ -13,18 +17,15 @@ const RADIUS_RATIO: f64 = 1.05;
 const KNOTS_PER_LENGTH: f64 = 8.0;
 /// Distance beyond which a half space sees a disc as a point, in radii: off by 1e-4.
 const FAR_IN_RADII: f64 = 8.0;
-/// Rings and points of each by which Psi is averaged over a disc.
-const RINGS: usize = 4;
-const SPOKES: usize = 12;
 
-/// Kernels of one layer averaged over discs.
+/// Kernels of one layer averaged over discs: `2 J1(k a) / (k a)` of each wave is left.
 #[derive(Debug)]
 pub struct DiscKernels {
     layer: Layer,
-    tables: KernelTables,
-    /// Number of the least radius, and a table for each from there on that was asked for.
-    first: i32,
-    discs: Vec<Option<DiscTable>>,
+    /// No distance is longer, mm.
+    size: f64,
+    /// By number of the radius.
+    discs: HashMap<i32, DiscTable>,
 }
 
 #[derive(Debug)]
@@ -34,36 +35,28 @@ struct DiscTable {
 }
 
 impl DiscKernels {
-    /// Tables for discs of these radii, mm.
-    pub fn new(layer: Layer, radii: &[f64]) -> Self {
-        let numbers: Vec<i32> = radii.iter().map(|a| number_of(*a)).collect();
-        let first = numbers.iter().copied().min().unwrap_or(0);
-        let last = numbers.iter().copied().max().unwrap_or(0);
-        let most = radii.iter().copied().fold(0.0, f64::max);
-        let reach = match layer.thickness.is_finite() {
-            true => RANGE_IN_THICKNESSES * layer.thickness + 2.0 * most,
-            false => FAR_IN_RADII * most,
-        };
-        let tables = KernelTables::new(&[layer], reach);
-        let mut kernels = DiscKernels {
+    /// No table yet; `size` is a distance beyond which none is asked for, mm.
+    pub fn new(layer: Layer, size: f64) -> Self {
+        DiscKernels {
             layer,
-            tables,
-            first,
-            discs: (first..=last).map(|_| None).collect(),
-        };
-        for number in numbers {
-            let place = (number - first) as usize;
-            if kernels.discs[place].is_none() {
-                kernels.discs[place] = Some(kernels.table(RADIUS_RATIO.powi(number)));
-            }
+            size,
+            discs: HashMap::new(),
         }
-        kernels
     }
 
-    /// The kernel at distance `r` from the middle of a disc of radius `a` (mm), 1/mm. The radius was asked for before.
+    /// Makes the tables for discs of these radii (mm) that are missing.
+    pub fn make(&mut self, radii: impl Iterator<Item = f64>) {
+        for number in radii.map(number_of) {
+            if !self.discs.contains_key(&number) {
+                let table = self.table(RADIUS_RATIO.powi(number));
+                self.discs.insert(number, table);
+            }
+        }
+    }
+
+    /// The kernel at distance `r` from the middle of a disc of radius `a` (mm), 1/mm; 0 for a radius without a table.
     pub fn at(&self, r: f64, a: f64) -> f64 {
-        let place = (number_of(a) - self.first) as usize;
-        let Some(table) = self.discs.get(place).and_then(Option::as_ref) else {
+        let Some(table) = self.discs.get(&number_of(a)) else {
             return 0.0;
         };
         let x = r / table.step;
@@ -87,38 +80,36 @@ impl DiscKernels {
         let length = a.min(0.25 * self.layer.thickness);
         let step = length / KNOTS_PER_LENGTH;
         let end = match self.layer.thickness.is_finite() {
-            true => self.reach(a),
+            true => self.reach(a).min(self.size),
             false => FAR_IN_RADII * a,
         };
         let knots = (end / step).ceil() as usize + 2;
-        let values = (0..knots).map(|k| self.averaged(k as f64 * step, a));
+        let waves = self.waves(a, end);
+        let value = |knot: usize| {
+            let r = knot as f64 * step;
+            let taken: f64 = waves.iter().map(|(k, w)| w * j0(k * r)).sum();
+            half_space(r, a) - taken
+        };
         DiscTable {
             step,
-            values: values.collect(),
+            values: (0..knots).into_par_iter().map(value).collect(),
         }
     }
 
-    fn averaged(&self, r: f64, a: f64) -> f64 {
+    /// Wave numbers (1/mm), and what the rigid core takes of each from the half space.
+    fn waves(&self, a: f64, end: f64) -> Vec<(f64, f64)> {
         if self.layer.thickness.is_infinite() {
-            return half_space(r, a);
+            return Vec::new();
         }
-        // Rings of equal area, points turned from ring to ring.
-        let mut psi = 0.0;
-        for ring in 0..RINGS {
-            let rho = a * ((ring as f64 + 0.5) / RINGS as f64).sqrt();
-            for spoke in 0..SPOKES {
-                let angle = std::f64::consts::TAU * (spoke as f64 + 0.5 * (ring % 2) as f64)
-                    / SPOKES as f64;
-                let d = (r * r + rho * rho - 2.0 * r * rho * angle.cos())
-                    .max(0.0)
-                    .sqrt();
-                psi += match d < RANGE_IN_THICKNESSES * self.layer.thickness {
-                    true => self.tables.psi(0, 0, d),
-                    false => 1.0 / d,
-                };
-            }
-        }
-        half_space(r, a) - psi / (RINGS * SPOKES) as f64
+        let spread = |k: f64| match k * a {
+            x if x < 1e-6 => 1.0,
+            x => 2.0 * j1(x) / x,
+        };
+        // Waves of r and of a beat: no panel is longer than one oscillation of the faster.
+        let nodes = wave_numbers(self.layer.thickness, end + a).into_iter();
+        nodes
+            .map(|(k, w)| (k, w * (1.0 - self.layer.transfer(k)) * spread(k)))
+            .collect()
     }
 }
 
@@ -158,6 +149,7 @@ fn elliptic(m: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::response::layer_kernel::KernelTables;
 
     #[test]
     fn a_disc_is_two_over_its_radius_at_its_middle_and_a_point_far_away() {
@@ -173,7 +165,9 @@ mod tests {
             thickness: 2.0,
             poisson_ratio: 0.3,
         };
-        let (a, kernels) = (1.3, DiscKernels::new(layer, &[1.3]));
+        let a = 1.3;
+        let mut kernels = DiscKernels::new(layer, 100.0);
+        kernels.make([a].into_iter());
         let tables = KernelTables::new(&[layer], 40.0);
         for r in [2.0, 3.1, 5.0] {
             let (mut sum, mut count) = (0.0, 0);
@@ -190,5 +184,40 @@ mod tests {
             let (found, wanted) = (kernels.at(r, a), sum / f64::from(count));
             assert!((found - wanted).abs() < 0.01 / a, "{r}: {found} {wanted}");
         }
+    }
+
+    #[test]
+    fn a_layer_far_thinner_than_the_disc_yields_as_a_confined_column() {
+        // Under the middle of the disc: pi a^2 times the kernel is what a pressure of pi a^2 over the disc moves, 2 pi K(k)/k at k = 0.
+        for (a, thickness) in [(2.0, 0.2), (2.0, 0.05), (1.0, 0.1)] {
+            let layer = Layer {
+                thickness,
+                poisson_ratio: 0.3,
+            };
+            let mut kernels = DiscKernels::new(layer, 100.0);
+            kernels.make([a].into_iter());
+            let number = RADIUS_RATIO.powi(number_of(a));
+            let found = number * number * kernels.at(0.0, a) / 2.0;
+            let column = layer.transfer(1e-6 / thickness) / (1e-6 / thickness);
+            assert!(
+                (found / column - 1.0).abs() < 0.02,
+                "{a} {thickness}: {found} {column}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_incompressible_film_under_a_wide_disc_moves_at_its_rim_only() {
+        let layer = Layer {
+            thickness: 0.2,
+            poisson_ratio: 0.5,
+        };
+        let mut kernels = DiscKernels::new(layer, 100.0);
+        kernels.make([2.0].into_iter());
+        let middle = kernels.at(0.0, 2.0) * 2.0;
+        assert!(
+            middle.abs() < 1e-3,
+            "{middle} of the half space's 2 at the middle"
+        );
     }
 }

@@ -39,8 +39,12 @@ impl Elastomer {
                 expected,
             })
         };
-        if self.thickness_mm.is_nan() || self.thickness_mm < 0.0 {
-            return fault("thickness_mm", self.thickness_mm, "0 (rigid) or more");
+        if self.thickness_mm != 0.0 && (self.thickness_mm < 0.05 || self.thickness_mm.is_nan()) {
+            return fault(
+                "thickness_mm",
+                self.thickness_mm,
+                "0 (rigid), or 0.05 or more",
+            );
         }
         if !(1e-3..=1e5).contains(&self.youngs_mpa) {
             return fault("youngs_mpa", self.youngs_mpa, "0.001 to 100000");

@@ -18,6 +18,8 @@ use crate::{ContactError, Control, Model};
 const TOLERANCE: f64 = 1e-3;
 /// ... and this beside it, mm.
 const LEAST_TOLERANCE_MM: f64 = 1e-5;
+/// Difference of a rough result that needs no word, mm.
+const UNSEEN_MM: f64 = 0.005;
 /// Largest difference of a rough result, mm: skin on a sharp edge of a soft grip rests on one face or the other, and that place
 /// settles no better.
 const ROUGH_MM: f64 = 0.1;
@@ -37,6 +39,8 @@ const LEAST_SLOWNESS: f64 = 1.0 / 64.0;
 const FIRST_SHARE: f64 = 0.5;
 /// No grip is pressed thinner than this share of itself.
 const LEAST_THICKNESS: f64 = 0.05;
+/// Deepest places at which the product is asked whether a core is left.
+const PROBED: usize = 12;
 /// Yield over thickness beyond which a linear elastomer answers for less and less.
 const FAIR_STRAIN: f64 = 0.25;
 
@@ -44,7 +48,7 @@ const FAIR_STRAIN: f64 = 0.25;
 struct Task<'a> {
     press: &'a Press<'a>,
     /// The grip on its product, and the product as given.
-    covered: &'a Covered<'a>,
+    covered: Covered<'a>,
     product: &'a Arc<Product>,
     /// Posed positions of the skin, mm.
     skin: Vec<Vec3>,
@@ -95,13 +99,13 @@ impl Pressing<'_> {
         if self.skin.model == Model::Paper {
             return Err(ContactError::GripModel);
         }
-        let task = Task {
+        let mut task = Task {
             press,
-            covered: &covered,
+            covered,
             product,
             skin: as_given(self.skin, press.posed)?,
         };
-        let (mut state, presses) = self.settle(&task, control)?;
+        let (mut state, presses) = self.settle(&mut task, control)?;
         let is_settled = state.is_settled();
         let is_solved = is_settled || state.is_rough();
         if !is_solved && press.unsolved == Unsolved::Refuse {
@@ -119,6 +123,8 @@ impl Pressing<'_> {
             };
             state.contact = self.press(&last, control)?;
         }
+        state.contact.gap = self.gap_as_given(&task, &state, control)?;
+        let covered = &task.covered;
         let GripState {
             mut contact,
             depth,
@@ -126,7 +132,7 @@ impl Pressing<'_> {
             product,
             ..
         } = state;
-        if !is_settled {
+        if !is_settled && left > UNSEEN_MM {
             contact.warnings.push(match is_solved {
                 true => Warning::GripRough { left },
                 false => Warning::GripUnsolved { left },
@@ -135,6 +141,7 @@ impl Pressing<'_> {
         contact
             .warnings
             .extend(strained(&depth, &covered.thickness()));
+        contact.warnings.extend(without_core(covered, &depth));
         Ok(GripContact {
             contact,
             displacement: covered.displacement(&depth),
@@ -147,7 +154,7 @@ impl Pressing<'_> {
     /// Presses until skin and grip agree. Returns the state in which they did best, and how many presses it took.
     fn settle(
         &mut self,
-        task: &Task<'_>,
+        task: &mut Task<'_>,
         control: &Control,
     ) -> Result<(GripState, usize), ContactError> {
         let thickness = task.covered.thickness();
@@ -166,9 +173,7 @@ impl Pressing<'_> {
             if best.is_settled() || (stalled >= MOST_STALLED && best.is_rough()) {
                 return Ok((best, presses));
             }
-            for (depth, thickness) in next.iter_mut().zip(&thickness) {
-                *depth = depth.min((1.0 - LEAST_THICKNESS) * thickness);
-            }
+            bound(&mut next, &thickness);
             let state = self.press_yielded(task, (next, Start::Warm), control)?;
             if state.left > MOST_GROWTH * best.left {
                 // It runs away: from the best that was found, with what was learnt of the way there forgotten.
@@ -185,10 +190,34 @@ impl Pressing<'_> {
         Ok((best, MOST_PRESSES))
     }
 
+    /// Signed distances to the product as given, where it carries the contact, mm: overlap is that of skin and product before either yields.
+    fn gap_as_given(
+        &mut self,
+        task: &Task<'_>,
+        state: &GripState,
+        control: &Control,
+    ) -> Result<Vec<f64>, ContactError> {
+        let shift = state.contact.direction * state.contact.offset;
+        let there: Vec<Vec3> = task.skin.iter().map(|p| p - shift).collect();
+        let given = Press {
+            product: task.product,
+            posed: Some(&there),
+            force: None,
+            drag: None,
+            start: Start::Fresh,
+            unsolved: Unsolved::Keep,
+        };
+        let quiet = Control {
+            progress: &|_, _| {},
+            ..*control
+        };
+        Ok(self.press(&given, &quiet)?.gap)
+    }
+
     /// Presses the product whose grip yields by `depth`, and finds by how much it would under that pressure.
     fn press_yielded(
         &mut self,
-        task: &Task<'_>,
+        task: &mut Task<'_>,
         (depth, start): (Vec<f64>, Start),
         control: &Control,
     ) -> Result<GripState, ContactError> {
@@ -209,9 +238,10 @@ impl Pressing<'_> {
         };
         let contact = self.press(&inner, &quiet)?;
         let shift = contact.direction * contact.offset;
-        let answer = task
+        let mut answer = task
             .covered
             .yielding(&contact, &task.skin, (&product, shift));
+        bound(&mut answer, &task.covered.thickness());
         let residual: Vec<f64> = answer.iter().zip(&depth).map(|(a, d)| a - d).collect();
         Ok(GripState {
             left: deepest(&residual),
@@ -220,6 +250,14 @@ impl Pressing<'_> {
             residual,
             product,
         })
+    }
+}
+
+/// Keeps a grip from being pressed thinner, or from bulging farther, than it is thick.
+fn bound(depth: &mut [f64], thickness: &[f64]) {
+    for (depth, thickness) in depth.iter_mut().zip(thickness) {
+        let most = (1.0 - LEAST_THICKNESS) * thickness;
+        *depth = depth.clamp(-most, most);
     }
 }
 
@@ -284,7 +322,21 @@ fn overlap(contact: &Contact) -> f64 {
 
 /// What there is to say of a grip that is pressed far.
 fn strained(depth: &[f64], thickness: &[f64]) -> Option<Warning> {
-    let strain = depth.iter().zip(thickness).map(|(d, h)| d / h);
+    let strain = depth.iter().zip(thickness).map(|(d, h)| d.abs() / h);
     let strain = strain.fold(0.0, f64::max);
     (strain > FAIR_STRAIN).then_some(Warning::GripStrain { strain })
+}
+
+/// Whether the grip is thicker than half the product where it yields most.
+fn without_core(covered: &Covered<'_>, depth: &[f64]) -> Option<Warning> {
+    let mut deepest: Vec<usize> = (0..depth.len()).filter(|&k| depth[k] > 0.0).collect();
+    deepest.sort_by(|&a, &b| depth[b].total_cmp(&depth[a]).then(a.cmp(&b)));
+    let place = deepest
+        .into_iter()
+        .take(PROBED)
+        .map(|k| covered.soft()[k])
+        .find(|&vertex| covered.is_too_thick(vertex))?;
+    Some(Warning::GripWithoutCore {
+        vertex: place as usize,
+    })
 }

@@ -1,9 +1,10 @@
 //! A product prepared for signed-distance queries, and the queries.
 
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::mesh::closest_point::{Feature, closest_point};
-use crate::mesh::normals::vertex_areas;
+use crate::mesh::normals::{add_angle_weighted, vertex_areas};
 use crate::mesh::triangles::{Mesh, MeshError, Standing, Vec3, least_height};
 use crate::solid::gap::{Gap, Side};
 use crate::solid::interior::{Interior, Place};
@@ -117,6 +118,32 @@ impl Product {
     /// What was wrong with the mesh and what was done about it, one sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// Unit outward normal at each vertex of [`Product::mesh`], of the boundary of the union of all parts: vertices of the same place share
+    /// one, and those that lie within the solid have none (zero).
+    pub fn boundary_normals(&self) -> Vec<Vec3> {
+        let key = |v: u32| self.mesh.positions()[v as usize].map(|c| (c + 0.0).to_bits());
+        let mut at: HashMap<[u64; 3], Vec3> = HashMap::new();
+        let mut sums = vec![Vec3::zeros(); self.mesh.positions().len()];
+        for t in (0..self.mesh.triangles().len()).filter(|&t| self.is_bare(t)) {
+            let corners = self.mesh.triangles()[t];
+            add_angle_weighted(&mut sums, corners, self.mesh.corners(t));
+        }
+        for (v, sum) in (0..).zip(&sums) {
+            *at.entry(key(v).into()).or_insert_with(Vec3::zeros) += sum;
+        }
+        let own = |v: u32| at[&<[u64; 3]>::from(key(v))].try_normalize(1e-12);
+        let is_bare = |v: u32| sums[v as usize] != Vec3::zeros();
+        (0..sums.len() as u32)
+            .map(|v| own(v).filter(|_| is_bare(v)).unwrap_or_default())
+            .collect()
+    }
+
+    /// Whether a triangle of [`Product::mesh`], or a piece of it, is part of the boundary of the union of all parts.
+    fn is_bare(&self, triangle: usize) -> bool {
+        let slot = self.tree.slots.get(triangle).copied();
+        slot.is_some_and(|slot| (slot as usize) < self.tree.faces.len())
     }
 
     /// Whether a triangle of [`Product::mesh`] is of a sheet without thickness, which has two sides and no inside.
