@@ -132,11 +132,10 @@ impl Pressing<'_> {
             product,
             ..
         } = state;
-        if !is_settled && left > UNSEEN_MM {
-            contact.warnings.push(match is_solved {
-                true => Warning::GripRough { left },
-                false => Warning::GripUnsolved { left },
-            });
+        if !is_solved {
+            contact.warnings.push(Warning::GripUnsolved { left });
+        } else if !is_settled && left > UNSEEN_MM {
+            contact.warnings.push(Warning::GripRough { left });
         }
         contact
             .warnings
