@@ -19,7 +19,10 @@ def main(arguments):
         return leave.code or 0
     try:
         options.run(options)
-    except (Refusal, OSError, *native.error_types()) as error:
+    except OSError as error:
+        print(f"thenar: '{error.filename2 or error.filename}': {error.strerror}", file=sys.stderr, flush=True)
+        return 2
+    except (Refusal, *native.error_types()) as error:
         text = " ".join(str(error).split())
         print(f"thenar: {text}", file=sys.stderr, flush=True)
         return 2

@@ -33,7 +33,7 @@ def refresh(context):
         return
     carriers = shown_objects(context, maps.shown(look).attribute)
     if is_on and any(obj.thenar.copy_of and not obj.thenar.shows_pressure for obj, _ in carriers):
-        show(context, look.maps.shown)  # a solve made the copy anew
+        show(context, look.maps.shown)  # a solve has made a new copy
         return
     shading.update_group(look)
     for obj, is_skin in shown_objects(context):

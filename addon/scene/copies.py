@@ -30,7 +30,7 @@ def write_copy(
     offset_mm: Floats,
     carried: tuple[Floats, Floats | None],
 ) -> Object:
-    """Make anew the mesh object that shows the part's pressure; hidden until the pressure is shown.
+    """Make a new mesh object that shows the part's pressure; hidden until the pressure is shown.
 
     `carried`: pressure (k,), MPa, and how far its soft grip yields (k, 3), mm, or None where it is rigid.
     """

@@ -58,10 +58,10 @@ def test_a_grip_on_a_group_yields_there_only():
     group = product.vertex_groups.new(name="Pad")
     group.add(np.flatnonzero(place[:, 0] > 5.0).tolist(), 1.0, "REPLACE")
     product.thenar.grip.group = "Pad"
-    beside = stage.solve()
-    assert beside.force_n > 1.1 * everywhere and beside.grip_mm < 0.1
+    apart = stage.solve()
+    assert apart.force_n > 1.1 * everywhere and apart.grip_mm < 0.1
     product.thenar.grip.material = "RIGID"
-    assert beside.force_n <= stage.solve().force_n * (1.0 + 1e-3)
+    assert apart.force_n <= stage.solve().force_n * (1.0 + 1e-3)
 
 
 def test_presets_and_hardness_give_the_library_s_numbers():

@@ -99,7 +99,7 @@ pub fn summarize(
 }
 
 /// Values by vertex of the mesh as given, from those by welded vertex.
-fn by_given_vertex<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
+pub(crate) fn by_given_vertex<T: Copy>(skin: &Skin, values: Vec<T>) -> Vec<T> {
     if skin.merged.merged() == 0 {
         return values;
     }

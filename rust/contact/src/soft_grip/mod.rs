@@ -2,7 +2,7 @@
 //!
 //! A grip of thickness h yields under pressure as a bonded elastic layer does (Johnson, Contact Mechanics 5.8), along the
 //! normal of its surface. The press finds the pressure at which skin and grip, each moved by it, touch: the product's mesh
-//! is moved by what the grip yields and pressed anew until both agree.
+//! is moved by what the grip yields and pressed again until both agree.
 
 pub mod disc_kernel;
 pub mod elastomer;

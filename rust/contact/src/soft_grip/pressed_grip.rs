@@ -8,7 +8,9 @@ use super::elastomer::SoftGrip;
 use super::fixed_point::Anderson;
 use super::yielding::Covered;
 use crate::api::{Press, Start, Unsolved};
+use crate::detection::gaps::detect;
 use crate::fields::result::Contact;
+use crate::fields::summary::by_given_vertex;
 use crate::fields::warnings::Warning;
 use crate::skin::prepare::Skin;
 use crate::workspace::Pressing;
@@ -16,7 +18,7 @@ use crate::{ContactError, Control, Model};
 
 /// Share of the deepest yield by which skin's and grip's answers may differ.
 const TOLERANCE: f64 = 1e-3;
-/// ... and this beside it, mm.
+/// ... and this in addition, mm.
 const LEAST_TOLERANCE_MM: f64 = 1e-5;
 /// Difference of a rough result that needs no word, mm.
 const UNSEEN_MM: f64 = 0.005;
@@ -63,10 +65,6 @@ pub struct GripContact {
     pub displacement: Vec<Vec3>,
     /// The product as it is pressed, where it was given (without the way that it went to carry its force).
     pub product: Arc<Product>,
-    /// Presses that it took.
-    pub presses: usize,
-    /// Largest difference of what skin and grip answer, mm.
-    pub left_mm: f64,
 }
 
 impl Pressing<'_> {
@@ -92,8 +90,6 @@ impl Pressing<'_> {
                 contact: self.press(press, control)?,
                 displacement: covered.displacement(&[]),
                 product: Arc::clone(product),
-                presses: 1,
-                left_mm: 0.0,
             });
         }
         if self.skin.model == Model::Paper {
@@ -123,7 +119,7 @@ impl Pressing<'_> {
             };
             state.contact = self.press(&last, control)?;
         }
-        state.contact.gap = self.gap_as_given(&task, &state, control)?;
+        state.contact.gap = self.gap_as_given(&task, &state.contact)?;
         let covered = &task.covered;
         let GripState {
             mut contact,
@@ -145,8 +141,6 @@ impl Pressing<'_> {
             contact,
             displacement: covered.displacement(&depth),
             product,
-            presses,
-            left_mm: left,
         })
     }
 
@@ -193,24 +187,12 @@ impl Pressing<'_> {
     fn gap_as_given(
         &mut self,
         task: &Task<'_>,
-        state: &GripState,
-        control: &Control,
+        contact: &Contact,
     ) -> Result<Vec<f64>, ContactError> {
-        let shift = state.contact.direction * state.contact.offset;
-        let there: Vec<Vec3> = task.skin.iter().map(|p| p - shift).collect();
-        let given = Press {
-            product: task.product,
-            posed: Some(&there),
-            force: None,
-            drag: None,
-            start: Start::Fresh,
-            unsolved: Unsolved::Keep,
-        };
-        let quiet = Control {
-            progress: &|_, _| {},
-            ..*control
-        };
-        Ok(self.press(&given, &quiet)?.gap)
+        let posed = self.skin.posed(task.press.posed)?;
+        let shift = contact.direction * contact.offset;
+        let detection = detect(self, &posed, task.product, shift)?;
+        Ok(by_given_vertex(self.skin, detection.distances))
     }
 
     /// Presses the product whose grip yields by `depth`, and finds by how much it would under that pressure.
