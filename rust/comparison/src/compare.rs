@@ -1,7 +1,7 @@
 //! Conducts a comparison: fit the parameters, locate what is left, then set recordings and simulation side by side.
 
 use nalgebra::Vector3;
-use thenar_contact::Control;
+use thenar_contact::{Control, Material};
 use thenar_recordings::Study;
 use thenar_recordings::study::{Data, StudyRecording};
 use thenar_surface::Mesh;
@@ -9,7 +9,7 @@ use thenar_surface::Mesh;
 use crate::comparison::compare_fit::compare_fit;
 use crate::comparison::result::{Compared, Comparison};
 use crate::comparison::trends::SIGNIFICANT;
-use crate::location::locate::{Search, locate};
+use crate::location::locate::{Search, locate, model_error};
 use crate::location::mismatch::Location;
 use crate::prints::study_prints::{Studied, add_prints};
 use thenar_inference::errors::InferenceError;
@@ -108,10 +108,22 @@ fn located(
     let search = Search {
         skin: Some(&mesh),
         seed: options.seed,
+        model_error: Some(model_error(mapped_strain(study, fit))),
         ..Search::default()
     };
     let is_told = fit.lack_of_fit_p.is_some();
     is_told.then(|| locate(fit, &search, control)).transpose()
+}
+
+/// Largest depth of a map over the thinnest tissue; 0 without maps.
+fn mapped_strain(study: &Study, fit: &Fit) -> f64 {
+    let maps = fit.measured.iter().filter(|m| m.mat.is_some());
+    let depths = maps.flat_map(|m| &m.moments).map(|moment| moment.depth_mm);
+    let deepest = depths.filter(|d| d.is_finite()).fold(0.0, f64::max);
+    let given = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
+    // What is not given is a fingertip's.
+    let thinnest = given.reduce(f64::min);
+    deepest / thinnest.unwrap_or(Material::default().thickness_mm)
 }
 
 /// How much is left once the model's own form may be off, as far as it is known to be.

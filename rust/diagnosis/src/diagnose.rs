@@ -8,6 +8,8 @@ use std::sync::{Mutex, PoisonError};
 use thenar_contact::Control;
 use thenar_recordings::Study;
 
+use crate::channels::mat_ceiling::{Ceiling, add_ceiling, with_ceiling};
+use crate::channels::slides::add_friction;
 use crate::findings::{Diagnosis, Suggestion, Verdict};
 use crate::gates::decision::Decision;
 use crate::gates::pair_gates::is_pair;
@@ -19,7 +21,7 @@ use thenar_inference::forward::surrogate::force_recording::ForceRecording;
 use thenar_inference::forward::surrogate::prepared_study::{PreparedStudy, prepare};
 use thenar_inference::parameters::surrogate_priors::form_note;
 use thenar_inference::selection::cross_validation::Gain;
-use thenar_inference::selection::scored::Rungs;
+use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// What a diagnosis is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +46,9 @@ pub fn diagnose(
     control: &Control<'_>,
 ) -> Result<Diagnosis, InferenceError> {
     let parts = Parts::new(control);
+    let clipped = with_ceiling(study);
+    let study = clipped.as_ref().map_or(study, |(stated, _)| stated);
+    let ceiling = clipped.as_ref().map(|(_, ceiling)| *ceiling);
     let asked = Options {
         seed: options.seed,
         ..Options::default()
@@ -67,9 +72,21 @@ pub fn diagnose(
             };
             let rungs = parts.run((0.4, 0.95), climb)?;
             let ladder = (&ready, &rungs);
-            explained(study, (comparison, &mut fitting), ladder, (options, &quiet))?
+            let studied = (study, ceiling);
+            explained(
+                studied,
+                (comparison, &mut fitting),
+                ladder,
+                (options, &quiet),
+            )?
         }
-        None => crate::place::without_curves(study, comparison),
+        None => {
+            let mut found = crate::place::without_curves(study, comparison);
+            ceiling
+                .into_iter()
+                .for_each(|seen| add_ceiling(&mut found, seen));
+            found
+        }
     };
     step(control, ("diagnosing", 1.0))?;
     Ok(found)
@@ -111,7 +128,7 @@ impl<'a> Parts<'a> {
 
 /// What the rungs decide, and what should be recorded next.
 fn explained(
-    study: &Study,
+    (study, ceiling): (&Study, Option<Ceiling>),
     (comparison, fitting): (Comparison, &mut Fitting),
     (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
@@ -122,7 +139,11 @@ fn explained(
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
     let ladder = (ready, rungs, decision);
-    Ok(told(study, (comparison, fitting), (ladder, next, gain)))
+    Ok(told(
+        (study, ceiling),
+        (comparison, fitting),
+        (ladder, next, gain),
+    ))
 }
 
 /// What the recordings could not show.
@@ -147,7 +168,7 @@ type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Decision<'a>);
 
 /// All that is said, from what was found.
 fn told(
-    study: &Study,
+    (study, ceiling): (&Study, Option<Ceiling>),
     (comparison, fitting): (Comparison, &Fitting),
     ((ready, rungs, decision), next, gain): (Climbed<'_>, Vec<Suggestion>, Option<Gain>),
 ) -> Diagnosis {
@@ -180,6 +201,11 @@ fn told(
     if found.verdict == Verdict::InsufficientData {
         found.names_90 = Vec::new();
     }
+    if let Some(names) = decision.named.map(Scored::names)
+        && !found.names_90.contains(&names)
+    {
+        found.names_90.insert(0, names);
+    }
     let mut reason = decision.reason.clone();
     let unmodeled_repeat_noise =
         thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise(
@@ -198,6 +224,10 @@ fn told(
         found.unlisted = Some(described);
     }
     add_notes(study, &mut found, ready);
+    ceiling
+        .into_iter()
+        .for_each(|seen| add_ceiling(&mut found, seen));
+    add_friction(study, &mut found);
     found.sentence = crate::sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),

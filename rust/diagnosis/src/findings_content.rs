@@ -24,8 +24,11 @@ pub fn findings(
         return Vec::new();
     };
     let names = named.names();
-    let own = probabilities.iter().find(|(other, _)| *other == names);
-    let confidence = own.map_or(0.0, |(_, p)| p.min(0.99));
+    // Of all models that hold these names, with others beside them or without.
+    let holding = probabilities
+        .iter()
+        .filter(|(other, _)| names.iter().all(|name| other.contains(name)));
+    let confidence = holding.map(|(_, p)| p).sum::<f64>().min(0.99);
     let of = |number: usize| {
         let mechanism = &named.mechanisms[number];
         let entry = mechanism.effect.entry();

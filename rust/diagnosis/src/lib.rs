@@ -5,6 +5,7 @@
 mod wording;
 mod findings;
 mod effect_numbers;
+mod channels;
 mod gates;
 mod findings_content;
 mod unlisted_finding;

@@ -1,10 +1,11 @@
 //! Localized findings of maps: a place that stays with the skin (inclusion) or with the sensor.
 
 use thenar_recordings::Study;
+use thenar_recordings::study::Data;
 
 use crate::findings::{Diagnosis, Finding, Verdict, When, Where};
 use thenar_comparison::Comparison;
-use thenar_comparison::{Carrier, Mismatch};
+use thenar_comparison::{Carrier, Mismatch, Shown};
 use thenar_inference::observe::measured::Phase;
 
 /// Adds the place that a comparison of maps located, where nothing stronger is said.
@@ -13,6 +14,13 @@ pub fn add_place(study: &Study, found: &mut Diagnosis) {
         return;
     };
     let is_silent = matches!(found.verdict, Verdict::NothingMissing | Verdict::Parameters);
+    if found.verdict == Verdict::MissingPhysics && is_spot(study, &mismatch) {
+        found.findings.push(inclusion(study, &mismatch));
+        found
+            .names_90
+            .iter_mut()
+            .for_each(|names| names.push("inclusion"));
+    }
     if !is_silent {
         found.notes.push(mismatch.sentence);
         return;
@@ -38,6 +46,27 @@ pub fn add_place(study: &Study, found: &mut Diagnosis) {
         }
     }
     found.notes.push(mismatch.sentence);
+}
+
+/// Part of the largest reading by which a place beside other missing physics must differ: stiff and soft spots change the
+/// pressure over them by 20 to 95 % of it (`tests/trial/studies.py`), what else is missing by less.
+const SPOT: f64 = 0.2;
+
+/// Whether a place that stays with the skin stands out as far as a stiff or soft spot does.
+fn is_spot(study: &Study, mismatch: &Mismatch) -> bool {
+    let maps = study.recordings.iter().filter_map(|r| match &r.data {
+        Data::PressureMap { map, .. } => Some(&map.values),
+        _ => None,
+    });
+    let largest = maps
+        .flatten()
+        .filter(|v| v.is_finite())
+        .fold(0.0, |most, v| f64::max(most, *v));
+    let stays = mismatch
+        .place
+        .as_ref()
+        .is_some_and(|p| p.carrier == Carrier::Skin);
+    stays && mismatch.shown == Shown::Pressure && mismatch.size.abs() > SPOT * largest
 }
 
 /// The strongest mismatch with a place.

@@ -146,6 +146,7 @@ fn measured(still: &Still<'_>, samples: Vec<Sample>) -> Measured {
             rate_mm_s: f64::NAN,
             phase: Phase::Hold,
             cycle: 0,
+            readings: 1,
         }],
         samples,
         mat: Some(still.mat.clone()),

@@ -45,6 +45,7 @@ pub fn ramp_and_hold(count: usize) -> Vec<Moment> {
             rate_mm_s,
             phase,
             cycle: 0,
+            readings: 1,
         }
     };
     (0..count).map(moment).collect()

@@ -279,7 +279,7 @@ fn differing(names: &[&'static str], others: &[&'static str]) -> Vec<(&'static s
         .collect()
 }
 
-fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
+pub fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
     let is_tissue = scored.mechanisms.iter().any(|m| !m.is_instrument());
     Decision {
         verdict: if is_tissue {

@@ -19,6 +19,32 @@ pub(crate) const LEAST_SAMPLES: usize = 8;
 /// Recordings of one protocol with one tool at one place, by number; two or more.
 pub type Group = Vec<usize>;
 
+/// How the size of a noise differs from sample to sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoiseShape {
+    /// Standard deviation of the part in proportion to the load, at full load, over that of the rest.
+    pub ratio: f64,
+    /// Whether readings are independent, so that a mean of n of them has the n-th part of their variance.
+    pub is_averaged: bool,
+}
+
+impl NoiseShape {
+    /// Of the same size everywhere.
+    pub const EVEN: NoiseShape = NoiseShape {
+        ratio: 0.0,
+        is_averaged: false,
+    };
+
+    /// Standard deviation at a load (part of the largest) of a mean of `readings`, over that of one reading without load.
+    pub fn at(self, load: f64, readings: f64) -> f64 {
+        let one = 1f64.hypot(self.ratio * load);
+        match self.is_averaged {
+            true => one / readings.max(1.0).sqrt(),
+            false => one,
+        }
+    }
+}
+
 /// Deviations within one group.
 pub struct Deviations {
     pub(crate) group: Group,
@@ -26,6 +52,12 @@ pub struct Deviations {
     pub(crate) time: Vec<f64>,
     /// Largest mean value.
     pub(crate) most: f64,
+    /// Size of the mean value over that, by sample.
+    pub(crate) load: Vec<f64>,
+    /// Readings of which each sample is the mean.
+    pub(crate) readings: Vec<f64>,
+    /// Standard deviation of the noise at each sample over that of one reading without load; 1 unless weighted.
+    pub(crate) profile: Vec<f64>,
     /// Deviation by repeat and sample, with what differs as a whole taken out.
     pub(crate) rest: Vec<Vec<f64>>,
     /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and what each sample adds to them.
@@ -34,6 +66,29 @@ pub struct Deviations {
 }
 
 impl Deviations {
+    /// In units of the noise's own size at each sample.
+    pub(crate) fn weighted(&self, shape: NoiseShape) -> Deviations {
+        let each = self.load.iter().zip(&self.readings);
+        let profile: Vec<f64> = each.map(|(load, n)| shape.at(*load, *n)).collect();
+        let over = |series: &Vec<f64>| series.iter().zip(&profile).map(|(r, p)| r / p).collect();
+        Deviations {
+            group: self.group.clone(),
+            time: self.time.clone(),
+            most: self.most,
+            load: self.load.clone(),
+            readings: self.readings.clone(),
+            rest: self.rest.iter().map(over).collect(),
+            whole: self.whole.clone(),
+            along: self
+                .along
+                .iter()
+                .zip(&profile)
+                .map(|(a, p)| a / *p)
+                .collect(),
+            profile,
+        }
+    }
+
     /// Deviations made independent, over the standard deviation of the noise, by repeat.
     pub(crate) fn whitened(&self, (sigma, memory_s): (f64, f64)) -> Vec<Vec<f64>> {
         let m = self.rest.len() as f64;
@@ -57,7 +112,9 @@ impl Deviations {
     /// Variance of what differs as a whole, for noise of variance 1 with that memory.
     pub(crate) fn unit_variance(&self, memory_s: f64) -> Vector2<f64> {
         let mut sum = Vector2::zeros();
-        for (k, a) in self.along.iter().enumerate() {
+        let square = |(a, p): (&Vector2<f64>, &f64)| a * (p * p);
+        let along: Vec<Vector2<f64>> = self.along.iter().zip(&self.profile).map(square).collect();
+        for (k, a) in along.iter().enumerate() {
             sum += a.component_mul(a);
             // Noise remembers little of what lies many memories back.
             for j in (0..k).rev() {
@@ -65,7 +122,7 @@ impl Deviations {
                 if shared < 1e-3 {
                     break;
                 }
-                sum += a.component_mul(&self.along[j]) * (2.0 * shared);
+                sum += a.component_mul(&along[j]) * (2.0 * shared);
             }
         }
         sum

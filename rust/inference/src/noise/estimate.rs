@@ -1,11 +1,12 @@
 //! The noise model of a study: standard deviation of every sample, from repeats where there are any.
 
 use crate::noise::channel::{CHANNELS, Channel};
-use crate::noise::mat_smoothing::smoothed;
+use crate::noise::deviations::NoiseShape;
+use crate::noise::maps::mat_smoothing::smoothed;
 use crate::noise::periodic_component::Rhythm;
 use crate::noise::repeat_scatter::Repeats;
 use crate::noise::scatter::Scatter;
-use crate::observe::measured::{Measured, Quantity};
+use crate::observe::measured::{Measured, Quantity, Sample};
 use crate::observe::robust_scale::noise_of;
 
 /// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
@@ -99,10 +100,19 @@ fn sigma(
             // In mm: a scanner's noise does not grow with how far the skin was moved.
             let single = measured.scan.as_ref().map_or(0.0, |scan| scan.scatter_mm);
             let repeats = scatter[channel as usize].as_ref();
-            return (repeats.map_or(single, |s| s.share_of(recording)), 0.0);
+            return (
+                repeats.map_or(single, |s| s.share_of(recording)),
+                0.0,
+                NoiseShape::EVEN,
+            );
         }
-        let (share, proportional) = match &scatter[channel as usize] {
-            Some(scatter) => (scatter.share_of(recording), scatter.proportional),
+        let found = scatter[channel as usize].as_ref();
+        let shape = found.map_or(NoiseShape::EVEN, |scatter| scatter.shape);
+        let (share, proportional) = match found {
+            Some(scatter) => {
+                let share = scatter.share_of(recording);
+                (share, f64::max(scatter.proportional, share * shape.ratio))
+            }
             None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),
             None => (noise_of(&values) / most.max(f64::MIN_POSITIVE), 0.0),
         };
@@ -110,13 +120,15 @@ fn sigma(
             Channel::Force if scatter[0].is_none() => noise_n.unwrap_or(0.0),
             _ => 0.0,
         };
-        ((share.max(FLOOR) * most).max(floor), proportional)
+        ((share.max(FLOOR) * most).max(floor), proportional, shape)
     });
-    let one = |quantity: Quantity, value: f64| {
-        let (constant, proportional) = of_channel[Channel::of(quantity) as usize];
-        constant.hypot(proportional * value).max(f64::MIN_POSITIVE)
+    let one = |sample: &Sample, value: f64| {
+        let (constant, proportional, shape) = of_channel[Channel::of(sample.quantity) as usize];
+        let readings = f64::from(measured.moments[sample.moment as usize].readings);
+        let mean = shape.at(0.0, readings);
+        (constant.hypot(proportional * value) * mean).max(f64::MIN_POSITIVE)
     };
     let judged = smoothed(measured);
     let samples = measured.samples.iter().zip(&judged);
-    samples.map(|(s, by)| one(s.quantity, *by)).collect()
+    samples.map(|(s, by)| one(s, *by)).collect()
 }

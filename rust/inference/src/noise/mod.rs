@@ -3,14 +3,13 @@
 pub(crate) mod channel;
 pub(crate) mod scatter;
 pub(crate) mod deviations;
+pub(crate) mod noise_shape;
 pub(crate) mod repeat_alignment;
 pub(crate) mod repeat_deviations;
 pub(crate) mod restricted_likelihood;
 pub mod periodic_component;
-pub(crate) mod mat_noise;
-pub(crate) mod scan_noise;
+pub(crate) mod maps;
 pub(crate) mod repeat_scatter;
-pub(crate) mod mat_smoothing;
 pub(crate) mod estimate;
 pub(crate) mod whitening;
 #[cfg(test)]

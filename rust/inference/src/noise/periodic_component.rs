@@ -41,7 +41,8 @@ impl Rhythm {
     }
 }
 
-/// The clearest rhythm in the deviations of all groups, of noise that forgets itself in `memory_s`; None where nothing differs.
+/// The clearest rhythm in the deviations of all groups, of noise that forgets itself in `memory_s`; None where nothing differs. One that is
+/// clearest at an end of the band is none: its chance is 1.
 pub fn rhythm(all: &[Deviations], memory_s: f64) -> Option<Rhythm> {
     let groups: Vec<Freed> = all.iter().filter_map(|d| Freed::of(d, memory_s)).collect();
     let longest = groups
@@ -60,8 +61,19 @@ pub fn rhythm(all: &[Deviations], memory_s: f64) -> Option<Rhythm> {
             chance: (steps as f64 * exceeded(nats, pairs as usize)).min(1.0),
         }
     });
-    let best = tried.reduce(|a, b| if b.nats > a.nats { b } else { a });
-    best.filter(|_| !groups.is_empty())
+    let tried: Vec<Rhythm> = tried.collect();
+    let clearest = |a: Rhythm, b: &Rhythm| if b.nats > a.nats { *b } else { a };
+    // Clearest at an end of the band, something slower or faster than a rhythm differs between repeats.
+    let ends = tried[0].nats.max(tried[steps].nats);
+    let inner = tried[1..steps].iter().fold(tried[0], clearest);
+    let best = match inner.nats > ends {
+        true => inner,
+        false => Rhythm {
+            chance: 1.0,
+            ..tried[0]
+        },
+    };
+    (!groups.is_empty()).then_some(best)
 }
 
 /// How often half of a chi-square of `2 pairs` degrees exceeds a number: in closed form, as their count is even.
@@ -199,6 +211,29 @@ mod tests {
             );
             assert!((found.per_minute() - 60.0 * found.hz).abs() < 1e-9);
         }
+    }
+
+    /// What wanders over many seconds is clearest at the slow end of the band, and is no rhythm.
+    #[test]
+    fn slow_wander_is_no_rhythm() {
+        let mut random = Random::new(12);
+        let often = (0..20).filter(|_| {
+            let all: Vec<Deviations> = study(0.0, &mut random)
+                .into_iter()
+                .map(|mut of| {
+                    let slow = deviations(6.0, &mut random);
+                    for k in 0..of.time.len() {
+                        for r in 0..2 {
+                            of.rest[r][k] += 4.0 * of.along[k].x * slow.rest[r][k];
+                        }
+                    }
+                    of
+                })
+                .collect();
+            rhythm(&all, 0.15).unwrap().is_clear()
+        });
+        let often = often.count();
+        assert!(often <= 6, "{often}");
     }
 
     /// The same part of the squares is twice as clear where there are twice as many degrees of freedom.

@@ -19,6 +19,8 @@ pub struct Aligned {
     pub simulated: Vec<f64>,
     /// Derivative of the simulated value by depth, per mm.
     pub slope: Vec<f64>,
+    /// Readings of which each is the mean.
+    pub readings: Vec<f64>,
 }
 
 /// A recording with what the model says of it.
@@ -98,6 +100,7 @@ impl Series {
                 depth: Vec::new(),
                 simulated: Vec::new(),
                 slope: Vec::new(),
+                readings: Vec::new(),
             },
         };
         for (k, sample) in told.measured.samples.iter().enumerate() {
@@ -108,6 +111,7 @@ impl Series {
                 series.aligned.depth.push(moment.depth_mm);
                 series.aligned.simulated.push(told.simulated[k]);
                 series.aligned.slope.push(told.slopes[k]);
+                series.aligned.readings.push(f64::from(moment.readings));
             }
         }
         series
@@ -123,6 +127,7 @@ impl Series {
             depth: joined(&self.aligned.depth),
             simulated: joined(&self.aligned.simulated),
             slope: joined(&self.aligned.slope),
+            readings: joined(&self.aligned.readings),
         }
     }
 }

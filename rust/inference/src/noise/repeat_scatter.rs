@@ -4,10 +4,10 @@ use nalgebra::Vector2;
 
 use crate::noise::channel::Channel;
 use crate::noise::deviations::{Deviations, Group, OUTLIER, robust_deviation};
+use crate::noise::noise_shape;
 use crate::noise::periodic_component::rhythm;
 use crate::noise::repeat_alignment::{RepeatSeries, aligned};
 use crate::noise::repeat_deviations::AlignedGroup;
-use crate::noise::restricted_likelihood;
 use crate::noise::scatter::Scatter;
 use crate::observe::measured::Measured;
 
@@ -58,8 +58,12 @@ impl Repeats {
         (simulated, slopes): (&[Vec<f64>], &[Vec<f64>]),
     ) -> Option<Scatter> {
         match self.channel {
-            Channel::Pressure => return crate::noise::mat_noise::scatter(&self.groups, measured),
-            Channel::Scan => return crate::noise::scan_noise::scatter(&self.groups, measured),
+            Channel::Pressure => {
+                return crate::noise::maps::mat_noise::scatter(&self.groups, measured);
+            }
+            Channel::Scan => {
+                return crate::noise::maps::scan_noise::scatter(&self.groups, measured);
+            }
             _ => {}
         }
         let beside = |&k: &usize| RepeatSeries {
@@ -76,13 +80,13 @@ impl Repeats {
             })
             .collect();
         let each = aligned_all.iter();
-        let all: Vec<Deviations> = each
+        let mut all: Vec<Deviations> = each
             .filter_map(|(group, together)| together.deviations(group))
             .collect();
         if all.is_empty() {
             return None;
         }
-        let told = restricted_likelihood::estimate(&all);
+        let told = noise_shape::estimate(&mut all);
         let memory_s = told.memory_s;
         let of_most =
             |(d, (sigma, degrees)): (&Deviations, &(f64, f64))| (sigma / d.most, *degrees);
@@ -100,6 +104,7 @@ impl Repeats {
             shares: each.collect(),
             pooled,
             proportional: 0.0,
+            shape: told.shape,
             degrees,
             memory_s,
             gain: between.x,
@@ -112,10 +117,7 @@ impl Repeats {
 }
 
 /// Standard deviation of the whitened deviations of all groups, and those over it.
-fn pooled_steps(
-    all: &[Deviations],
-    told: &restricted_likelihood::NoiseEstimate,
-) -> (f64, Vec<f64>) {
+fn pooled_steps(all: &[Deviations], told: &noise_shape::NoiseEstimate) -> (f64, Vec<f64>) {
     let of_group = all.iter().zip(&told.sizes);
     let groups: Vec<Vec<Vec<f64>>> = of_group
         .map(|(d, (sigma, _))| d.whitened((*sigma, told.memory_s)))

@@ -19,30 +19,18 @@ const HALVINGS: usize = 4;
 /// How much likelier a memory must be than none, nats, to be believed.
 const BELIEVED: f64 = 2.0;
 
-/// What the repeats of all groups show.
-pub struct NoiseEstimate {
-    /// s; 0: none.
-    pub memory_s: f64,
-    /// By group: standard deviation, and its degrees of freedom.
-    pub sizes: Vec<(f64, f64)>,
-}
-
-/// The likeliest memory, and each group's size under it; outliers are left out.
-pub fn estimate(all: &[Deviations]) -> NoiseEstimate {
+/// The likeliest memory of deviations as they are weighted, s, and by group the samples that are no outliers.
+pub(crate) fn memory_and_inliers(all: &[Deviations]) -> (f64, Vec<Vec<usize>>) {
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, None)).collect();
     let rough = likeliest(all, &kept);
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, Some(rough))).collect();
-    let memory_s = likeliest(all, &kept);
-    let pairs = all.iter().zip(&kept);
-    NoiseEstimate {
-        memory_s,
-        sizes: pairs
-            .map(|(d, kept)| {
-                let (sum, degrees, _) = left(d, kept, memory_s);
-                ((sum / degrees).sqrt(), degrees)
-            })
-            .collect(),
-    }
+    (likeliest(all, &kept), kept)
+}
+
+/// Restricted likelihood of all groups, nats.
+pub(crate) fn likelihood(all: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> f64 {
+    let each = all.iter().zip(kept);
+    each.map(|(d, kept)| left(d, kept, memory_s).2).sum()
 }
 
 /// Samples that are no outliers: not far off, and, once a memory is known, not far from what their neighbors say of them.
@@ -81,15 +69,12 @@ pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
 }
 
 /// The memory of largest restricted likelihood, s; none where it is hardly likelier than none.
-fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
+pub(crate) fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
     let steps = all
         .iter()
         .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
     let step = median(&mut steps.collect::<Vec<f64>>());
-    let likelihood = |memory_s: f64| -> f64 {
-        let each = all.iter().zip(kept);
-        each.map(|(d, kept)| left(d, kept, memory_s).2).sum()
-    };
+    let likelihood = |memory_s: f64| likelihood(all, kept, memory_s);
     let at = |place: f64| step * LEAST * libm::pow(MOST / LEAST, place / TRIED as f64);
     let tried = (0..=TRIED).map(|k| (likelihood(at(k as f64)), k as f64));
     let mut best = tried.fold(
@@ -113,7 +98,7 @@ fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
 
 /// Sum of the squares that gain and touch leave of the whitened deviations, their degrees of freedom, and the restricted likelihood with
 /// the size that these have, nats.
-fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
+pub(crate) fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
     let repeats = of.rest.len() as f64 - 1.0;
     let degrees = (repeats * (kept.len() as f64 - 2.0)).max(1.0);
     let (mut before, mut log) = (None::<usize>, 0.0);
@@ -194,6 +179,9 @@ pub(crate) mod tests {
             group: vec![0, 1],
             time,
             most: 1.0,
+            load: columns.column(0).iter().copied().collect(),
+            profile: vec![1.0; n],
+            readings: vec![1.0; n],
             rest: vec![rest.as_slice().to_vec(), (-rest).as_slice().to_vec()],
             whole: vec![Vector2::zeros(); 2],
             along: columns
@@ -201,42 +189,6 @@ pub(crate) mod tests {
                 .map(|r| Vector2::new(r[0], r[1]))
                 .collect(),
         }
-    }
-
-    /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
-    /// it does to a slow signal, which goes as the variance times the memory.
-    #[test]
-    fn correlation_time_and_sigma_are_unbiased() {
-        for memory_s in [0.15, 0.6] {
-            let mut random = Random::new(5);
-            let studies = 60.0;
-            let mut logs = [0.0; 2];
-            for _ in 0..60 {
-                let all: Vec<Deviations> =
-                    (0..5).map(|_| deviations(memory_s, &mut random)).collect();
-                let found = estimate(&all);
-                let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
-                let ratio = found.memory_s / memory_s;
-                logs[0] += libm::log(ratio) / studies;
-                logs[1] += libm::log(ratio * variance) / studies;
-            }
-            assert!(
-                logs[0].abs() < 0.1 && logs[1].abs() < 0.1,
-                "{memory_s}: {logs:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn white_noise_has_zero_correlation_time() {
-        let mut random = Random::new(2);
-        let with = (0..100).filter(|_| {
-            let all: Vec<Deviations> = (0..5).map(|_| deviations(0.0, &mut random)).collect();
-            estimate(&all).memory_s > 0.0
-        });
-        // Twice two nats is beyond the 95 % point of a chi-square of one number, and a memory can only be longer than none.
-        let often = with.count();
-        assert!(often <= 7, "{often} of 100");
     }
 
     /// Without memory the size is that of plain least squares.

@@ -1,5 +1,6 @@
 //! What repeats of one channel show: noise within a recording, and variance of gain and first touch between recordings.
 
+use crate::noise::deviations::NoiseShape;
 use crate::noise::periodic_component::Rhythm;
 
 /// What the repeats of a channel show.
@@ -11,6 +12,8 @@ pub struct Scatter {
     pub(crate) pooled: f64,
     /// Part of the standard deviation that grows with the value (mats).
     pub proportional: f64,
+    /// How the noise of forces and areas differs from sample to sample.
+    pub shape: NoiseShape,
     /// Degrees of freedom.
     pub degrees: f64,
     /// Time over which noise forgets itself, s.
@@ -34,6 +37,7 @@ impl Scatter {
             shares: members.iter().map(|k| (*k, parts.0)).collect(),
             pooled: parts.0,
             proportional: parts.1,
+            shape: NoiseShape::EVEN,
             degrees,
             memory_s: 0.0,
             gain,

@@ -53,6 +53,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
             rate_mm_s: 0.4,
             phase: Phase::Load,
             cycle: 0,
+            readings: 1,
         });
         samples.push(Sample {
             moment: k as u32,

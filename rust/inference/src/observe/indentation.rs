@@ -1,8 +1,11 @@
 //! An indentation as moments and samples.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use thenar_recordings::Curve;
 
+use crate::observe::depth_jitter::without_jitter;
 use crate::observe::downsampling::{bins, means};
 use crate::observe::first_touch::onset;
 use crate::observe::measured::{Censoring, Moment, Phase, Quantity, Sample};
@@ -19,12 +22,45 @@ pub struct Observation {
     pub is_touch_known: bool,
     /// What cannot be known, a sentence each.
     pub unknown: Vec<String>,
+    /// How it was thinned.
+    pub division: Division,
+}
+
+/// Phases of a recording and the bins whose means are compared. Repeats share those of the first: bins that follow each one's own noise
+/// would lie at other moments in each.
+#[derive(Debug, Clone)]
+pub struct Division {
+    /// Of all readings, s.
+    time_s: Vec<f64>,
+    stretches: Vec<Stretch>,
+    bins: Vec<Range<usize>>,
+}
+
+impl Division {
+    /// Whether readings at these times (s) are to be divided alike: too many to keep each, as many as here, and each at the same moment
+    /// but for half a step.
+    fn fits(&self, time_s: &[f64]) -> bool {
+        let is_thinned = self.bins.len() < self.time_s.len();
+        let (n, m) = (time_s.len(), self.time_s.len());
+        let lag = |t: &[f64]| t.first().copied().unwrap_or(0.0);
+        let offset = lag(time_s) - lag(&self.time_s);
+        let is_same = |k: usize| {
+            let (before, after) = (k.saturating_sub(1), (k + 1).min(m - 1));
+            let step = 0.5 * (self.time_s[after] - self.time_s[before]);
+            (time_s[k] - offset - self.time_s[k]).abs() < 0.5 * step
+        };
+        is_thinned && n == m && (0..n).all(is_same)
+    }
 }
 
 /// Turns a curve into at most about `budget` moments with force, and area and tangential force where they are given.
 ///
-/// `across` is the direction in which a slide counts.
-pub fn observe(curve: &Curve, across: Vector3<f64>, budget: usize) -> Observation {
+/// `across` is the direction in which a slide counts, `alike` how a repeat of the same protocol was divided.
+pub fn observe(
+    curve: &Curve,
+    (across, alike): (Vector3<f64>, Option<&Division>),
+    budget: usize,
+) -> Observation {
     let mut unknown = curve.unknown.clone();
     let channel = |name: &str| curve.channel(name).unwrap_or(&[]);
     let (time, force, slide) = (channel("time_s"), channel("force_n"), channel("slide_mm"));
@@ -50,8 +86,25 @@ pub fn observe(curve: &Curve, across: Vector3<f64>, budget: usize) -> Observatio
         force_n: &force,
         slide_mm: slide,
     };
-    let stretches = stretches(courses);
-    let bins = bins(courses, &stretches, budget);
+    let alike = alike.filter(|division| division.fits(time));
+    let stretches = alike.map_or_else(|| stretches(courses), |division| division.stretches.clone());
+    let steady = without_jitter(courses, &stretches);
+    if let Some(found) = &steady {
+        unknown.push(format!(
+            "its depth jitters by {:.0} um about a smooth motion, of which the force follows {:.0} %: the rest is taken for noise of \
+             the reading",
+            1000.0 * found.jitter_mm,
+            100.0 * found.reliability
+        ));
+    }
+    let courses = Courses {
+        depth_mm: steady.as_ref().map_or(&depth, |found| &found.depth_mm),
+        ..courses
+    };
+    let bins = alike.map_or_else(
+        || bins(courses, &stretches, budget),
+        |division| division.bins.clone(),
+    );
     if bins.len() < time.len() {
         unknown.push(format!(
             "its {} samples are compared as {} means, none across a change of phase",
@@ -60,7 +113,7 @@ pub fn observe(curve: &Curve, across: Vector3<f64>, budget: usize) -> Observatio
         ));
     }
     let list = |values: &[f64]| (!values.is_empty()).then(|| means(values, &bins));
-    let (times, depths) = (means(time, &bins), means(&depth, &bins));
+    let (times, depths) = (means(time, &bins), means(courses.depth_mm, &bins));
     let slides = list(slide);
     let of_bin = |k: usize| {
         let first = bins[k].start;
@@ -79,6 +132,7 @@ pub fn observe(curve: &Curve, across: Vector3<f64>, budget: usize) -> Observatio
                 rate_mm_s: rates[k],
                 phase: stretch.phase,
                 cycle: stretch.cycle,
+                readings: bins[k].len() as u32,
             }
         })
         .collect();
@@ -109,6 +163,11 @@ pub fn observe(curve: &Curve, across: Vector3<f64>, budget: usize) -> Observatio
         samples,
         is_touch_known,
         unknown,
+        division: Division {
+            time_s: time.to_vec(),
+            stretches,
+            bins,
+        },
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Moment {
     pub phase: Phase,
     /// Loadings before this one in the recording.
     pub cycle: u32,
+    /// Readings of which its samples are the means.
+    pub readings: u32,
 }
 
 /// Sensels of a placed mat, in skin coordinates at first touch.

@@ -305,6 +305,7 @@ impl Course {
                 rate_mm_s: rate,
                 phase: self.stated[first].unwrap_or(found.map_or(Phase::Hold, |s| s.phase)),
                 cycle: found.map_or(0, |s| s.cycle),
+                readings: 1,
             }
         };
         (0..bins.len()).map(moment).collect()

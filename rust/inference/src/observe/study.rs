@@ -1,10 +1,13 @@
 //! Conducts the observation of a study: every recording to moments and samples.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 use thenar_recordings::study::{Data, Indenter, PlacedSensel, Site, StudyRecording};
 use thenar_recordings::{Curve, PressureMap, Study};
 
 use crate::forward::setup::indenter::tool as tool_at;
+use crate::observe::indentation::Division;
 use crate::observe::limits::{MOST_FRAMES, MOST_MOMENTS};
 use crate::observe::measured::Measured;
 
@@ -26,20 +29,28 @@ pub fn observe(study: &Study) -> Observed {
         measured: Vec::new(),
         is_touch_known: Vec::new(),
     };
+    let mut divisions = Divisions::new();
     for recording in &study.recordings {
-        let (measured, is_touch_known) = observe_one(study, recording);
+        let (measured, is_touch_known) = observe_one(study, recording, &mut divisions);
         observed.measured.push(measured);
         observed.is_touch_known.push(is_touch_known);
     }
     observed
 }
 
+/// How the first recording of each protocol, tool and site was divided.
+type Divisions = BTreeMap<[String; 3], Division>;
+
 /// One recording, and whether its depth of first touch is known.
-fn observe_one(study: &Study, recording: &StudyRecording) -> (Measured, bool) {
+fn observe_one(
+    study: &Study,
+    recording: &StudyRecording,
+    divisions: &mut Divisions,
+) -> (Measured, bool) {
     let said = Said::of(study, recording);
     let mut measured = unread(recording);
     let is_touch_known = match &recording.data {
-        Data::Indentation(curve) => said.curve(curve, &mut measured),
+        Data::Indentation(curve) => said.curve(curve, &mut measured, divisions),
         Data::PressureMap {
             map,
             sensels,
@@ -110,9 +121,11 @@ impl<'a> Said<'a> {
         self.study.indenters.iter().find(|i| i.name == self.tool)
     }
 
-    fn curve(&self, curve: &Curve, measured: &mut Measured) -> bool {
-        let seen =
-            crate::observe::indentation::observe(curve, across(self.direction), MOST_MOMENTS);
+    fn curve(&self, curve: &Curve, measured: &mut Measured, divisions: &mut Divisions) -> bool {
+        let key = [&measured.protocol, &measured.indenter, &measured.site].map(String::clone);
+        let how = (across(self.direction), divisions.get(&key));
+        let seen = crate::observe::indentation::observe(curve, how, MOST_MOMENTS);
+        divisions.entry(key).or_insert(seen.division);
         measured.moments = seen.moments;
         measured.samples = seen.samples;
         measured.unknown = seen.unknown;

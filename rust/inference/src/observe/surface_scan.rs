@@ -138,7 +138,7 @@ fn moments(seen: &Seen<'_>) -> Result<Vec<Moment>, String> {
         );
     };
     let mut moments = motion.map_or_else(Vec::new, |curve| {
-        let mut moments = indentation::observe(curve, seen.across, MOST_MOMENTS).moments;
+        let mut moments = indentation::observe(curve, (seen.across, None), MOST_MOMENTS).moments;
         moments.retain(|moment| moment.time_s < time_s);
         moments
     });
@@ -154,6 +154,7 @@ fn moments(seen: &Seen<'_>) -> Result<Vec<Moment>, String> {
             Phase::Apart
         },
         cycle: moments.last().map_or(0, |m| m.cycle),
+        readings: 1,
     });
     Ok(moments)
 }

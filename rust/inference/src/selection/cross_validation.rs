@@ -1,6 +1,7 @@
 //! Cross-validation: every protocol is predicted from the others, with and without a finding.
 
 use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::surrogate::mechanism::Mechanism;
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::surrogate::surrogate_data::Surrogate;
@@ -28,7 +29,7 @@ struct Errors {
     count: f64,
 }
 
-/// Holds every protocol out in turn; None where there is but one.
+/// Holds every protocol out in turn, or where there is but one every recording; None where there is but one recording.
 ///
 /// What belongs to a held-out recording alone (its gain and first touch, within what repeats differ by; the model's form where its
 /// tool was not seen) is told from it, with and without the finding alike; nothing else is.
@@ -38,20 +39,10 @@ pub fn gain(
     found: &Scored,
     seed: u64,
 ) -> Option<Gain> {
-    let mut protocols: Vec<(&str, usize)> = Vec::new();
-    for course in &ready.courses {
-        let key = (course.protocol.as_str(), course.place);
-        if !protocols.contains(&key) {
-            protocols.push(key);
-        }
-    }
-    if protocols.len() < 2 {
-        return None;
-    }
+    let folds = folds(&ready.courses)?;
     let (mut all, mut held) = (Vec::new(), Vec::new());
-    for (number, (protocol, place)) in protocols.iter().enumerate() {
-        let is_out =
-            |c: usize| ready.courses[c].protocol == *protocol && ready.courses[c].place == *place;
+    for number in 0..=folds.iter().copied().max()? {
+        let is_out = |c: usize| folds[c] == number;
         let before = predicted(ready, measured, (&[], &found.refit.at), &is_out);
         let after = predicted(
             ready,
@@ -98,6 +89,25 @@ pub fn gain(
         found.placebo = Some(negative_control(&held, MOST, seed) / reducible);
     }
     Some(found)
+}
+
+/// By recording, the number of the fold with which it is held out: its protocol's, or where there is but one its own.
+fn folds(courses: &[ForceRecording]) -> Option<Vec<usize>> {
+    let mut protocols: Vec<(&str, usize)> = Vec::new();
+    let mut folds = Vec::new();
+    for course in courses {
+        let key = (course.protocol.as_str(), course.place);
+        let known = protocols.iter().position(|other| *other == key);
+        folds.push(known.unwrap_or_else(|| {
+            protocols.push(key);
+            protocols.len() - 1
+        }));
+    }
+    match (protocols.len(), courses.len()) {
+        (_, 0 | 1) => None,
+        (1, n) => Some((0..n).collect()),
+        _ => Some(folds),
+    }
 }
 
 /// Mean square of repeats about each other, over the noise, as noise would give it: 1, or less if the noise was judged too large.
@@ -228,6 +238,7 @@ fn told(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
         removed: best[3],
         interval: interval(&mut removed),
         placebo: None,
+        members: Vec::new(),
     }
 }
 
@@ -258,4 +269,6 @@ pub struct Gain {
     /// Share that the same change removes on the wrong recordings at the wrong moments, in 99 of 100 draws at most; None where nothing
     /// could be removed.
     pub placebo: Option<f64>,
+    /// Of two effects together: share that each removes of what the other alone leaves.
+    pub members: Vec<(&'static str, f64)>,
 }

@@ -79,6 +79,7 @@ impl Design {
                 Phase::Hold
             },
             cycle: 0,
+            readings: 1,
         };
         depths.enumerate().map(moment).collect()
     }

@@ -7,11 +7,12 @@ use thenar_contact::{ActiveEffect, Control, Demand, Keep, Material};
 
 use crate::errors::InferenceError;
 use crate::forward::mesh::at_skin::AtSkin;
-use crate::forward::mesh::mat_reading::misplaced;
+use crate::forward::mesh::mat_reading::{misplaced, slid};
 use crate::forward::mesh::nuisance::Nuisance;
 use crate::forward::mesh::press_key::Key;
 use crate::forward::mesh::press_table::{Basis, PressTable, RUNGS, press_table};
 use crate::forward::mesh::replay::Replay;
+use crate::observe::measured::Moment;
 
 /// Ladders kept for each tool and place.
 const MOST_KEPT: usize = 12;
@@ -37,14 +38,16 @@ impl Replay {
         let placement = misplaced(nuisance.placement, &self.instrument);
         let frames = match &mut self.readers[recording] {
             Some(reader) => {
-                let (readings, sensels) =
-                    (reader.readings(&basis, placement), reader.sensels().len());
-                let frame = |depth: &f64| {
+                let sensels = reader.sensels().len();
+                let moments = &self.observed.measured[recording].moments;
+                let mut frame = |(depth, moment): (&f64, &Moment)| {
+                    let at = slid(placement, reader.sensels(), &moment.slide_mm);
+                    let readings = reader.readings(&basis, at);
                     (0..sensels)
                         .map(|s| readings.at(s, &weights, *depth))
                         .collect()
                 };
-                depths.iter().map(frame).collect()
+                depths.iter().zip(moments).map(&mut frame).collect()
             }
             None => Vec::new(),
         };

@@ -10,7 +10,7 @@ use thenar_surface::Vec3;
 
 use crate::errors::InferenceError;
 use crate::forward::mesh::at_skin::AtSkin;
-use crate::forward::mesh::mat_reading::misplaced;
+use crate::forward::mesh::mat_reading::{misplaced, slid};
 use crate::forward::mesh::nuisance::{At, Nuisance};
 use crate::forward::mesh::press_key::Key;
 use crate::forward::mesh::replay::{Followed, Replay};
@@ -179,8 +179,11 @@ impl Replay {
         let x = across(place.direction);
         let frames = match &self.readers[recording] {
             Some(reader) => {
-                let read = |step: &Step| reader.sensels().read_at(&step.loads, &task.placement);
-                steps.iter().map(read).collect()
+                let read = |(step, moment): (&Step, &Moment)| {
+                    let at = slid(task.placement, reader.sensels(), &moment.slide_mm);
+                    reader.sensels().read_at(&step.loads, &at)
+                };
+                steps.iter().zip(&measured.moments).map(read).collect()
             }
             None => Vec::new(),
         };

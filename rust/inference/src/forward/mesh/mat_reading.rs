@@ -10,9 +10,10 @@ use crate::errors::InferenceError;
 use crate::forward::mesh::press_table::Basis;
 use crate::interpolation::Table;
 use crate::observe::measured::Mat;
+use thenar_surface::Vec3;
 
 /// Readings kept for each recording.
-const MOST_KEPT: usize = 10;
+const MOST_KEPT: usize = 60;
 
 /// A mat that reads presses.
 pub struct Reader {
@@ -107,6 +108,25 @@ impl Reader {
         self.kept.push((basis.clone(), placement, readings.clone()));
         readings
     }
+}
+
+/// A mat's placement once its tool has slid over the skin, mm along it: the mat goes with the tool.
+///
+/// The skin under a plane stays where it is, and its pressures wander over the mat. Of a tool that is curved along the way only the mat's
+/// share of the slide is followed, not that it presses elsewhere.
+pub fn slid(mut placement: Placement, sensels: &Sensels, slide: &Vec3) -> Placement {
+    if *slide == Vec3::zeros() {
+        return placement;
+    }
+    let far = |at: &[f64; 2]| at[0].hypot(at[1]);
+    let flat = sensels.flat().iter().map(far).enumerate();
+    let middle = flat
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |(k, _)| k);
+    for (axis, shift) in sensels.axes()[middle].iter().zip(&mut placement.shift_mm) {
+        *shift += axis.dot(slide);
+    }
+    placement
 }
 
 /// A placement with what effects of misregistration add to it.

@@ -146,6 +146,7 @@ fn measured(readings: &[Reading]) -> Measured {
         rate_mm_s: 1.0,
         phase: one.2,
         cycle: 0,
+        readings: 1,
     };
     let sample = |(k, one): (usize, &Reading)| Sample {
         moment: k as u32,

@@ -59,6 +59,7 @@ mod tests {
             rate_mm_s: 0.0,
             phase: Phase::Hold,
             cycle: 0,
+            readings: 1,
         };
         let measured = Measured {
             name: String::new(),

@@ -1,0 +1,200 @@
+//! How the size of noise differs from sample to sample: in proportion to the load, and with the readings of which a sample is the mean.
+
+use crate::noise::deviations::{Deviations, NoiseShape};
+use crate::noise::restricted_likelihood::{
+    left, likeliest, likelihood, memory_and_inliers, within,
+};
+use crate::observe::robust_scale::median;
+
+/// Noise in proportion to the load over noise without load, at full load, that is tried.
+const RATIOS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 16.0];
+/// How much likelier a shape must be than even noise, nats: as a memory must, and the logarithm of how many are tried.
+const CLEAR: f64 = 5.0;
+/// Part of the largest load below which noise is that without load, and fewest samples from which its memory is told.
+const LIGHT: (f64, usize) = (0.15, 24);
+/// Memory of noise in proportion, over that of what is there without load, from which it is no noise of an instrument: the skin itself is
+/// unsteady.
+const STEADY: f64 = 1.5;
+
+/// What the repeats of all groups show.
+pub struct NoiseEstimate {
+    /// How it differs from sample to sample.
+    pub shape: NoiseShape,
+    /// s; 0: none.
+    pub memory_s: f64,
+    /// By group: standard deviation, and its degrees of freedom.
+    pub sizes: Vec<(f64, f64)>,
+}
+
+/// The likeliest part in proportion to the load, the likeliest memory, and each group's size under it; outliers are left out. The
+/// deviations are weighted accordingly.
+pub fn estimate(all: &mut Vec<Deviations>) -> NoiseEstimate {
+    let shape = likeliest_shape(all);
+    if shape != NoiseShape::EVEN {
+        *all = all.iter().map(|d| d.weighted(shape)).collect();
+    }
+    let (memory_s, kept) = memory_and_inliers(all);
+    let pairs = all.iter().zip(&kept);
+    NoiseEstimate {
+        shape,
+        memory_s,
+        sizes: pairs
+            .map(|(d, kept)| {
+                let (sum, degrees, _) = left(d, kept, memory_s);
+                ((sum / degrees).sqrt(), degrees)
+            })
+            .collect(),
+    }
+}
+
+/// The shape under which the deviations are likeliest; even where no other is clearly likelier.
+pub(crate) fn likeliest_shape(all: &[Deviations]) -> NoiseShape {
+    let (mut best, mut shape) = (CLEAR, NoiseShape::EVEN);
+    let has_means = all
+        .iter()
+        .flat_map(|d| &d.readings)
+        .any(|n| *n != all[0].readings[0]);
+    let averaged = [false, true].into_iter().filter(|a| !a || has_means);
+    let shapes =
+        averaged.flat_map(|is_averaged| RATIOS.map(|ratio| NoiseShape { ratio, is_averaged }));
+    for tried in shapes.filter(|shape| *shape != NoiseShape::EVEN) {
+        let weighted: Vec<Deviations> = all.iter().map(|d| d.weighted(tried)).collect();
+        let (memory_s, kept) = memory_and_inliers(&weighted);
+        let even = likeliest(all, &kept);
+        let size = |(d, kept): (&Deviations, &Vec<usize>)| {
+            let logs = kept.iter().map(|k| libm::log(d.profile[*k]));
+            logs.sum::<f64>() * (d.rest.len() as f64 - 1.0)
+        };
+        let sizes: f64 = weighted.iter().zip(&kept).map(size).sum();
+        let gained = likelihood(&weighted, &kept, memory_s) - sizes - likelihood(all, &kept, even);
+        let is_steady = tried.ratio == 0.0 || memory_s <= STEADY * light_memory(all);
+        if gained > best && is_steady {
+            (best, shape) = (gained, tried);
+        }
+    }
+    shape
+}
+
+/// Memory of what deviates without load, s, at least the time between samples; where there is too little of it, of all.
+fn light_memory(all: &[Deviations]) -> f64 {
+    let light = |d: &Deviations, memory_s: Option<f64>| -> Vec<usize> {
+        let kept = within(d, memory_s).into_iter();
+        kept.filter(|&k| d.load[k] < LIGHT.0).collect()
+    };
+    let kept: Vec<Vec<usize>> = all.iter().map(|d| light(d, None)).collect();
+    let steps = all
+        .iter()
+        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
+    let step = median(&mut steps.collect::<Vec<f64>>());
+    match kept.iter().map(Vec::len).sum::<usize>() >= LIGHT.1 {
+        true => likeliest(all, &kept).max(step),
+        false => step,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::restricted_likelihood::tests::deviations;
+    use crate::random::Random;
+
+    /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
+    /// it does to a slow signal, which goes as the variance times the memory.
+    #[test]
+    fn correlation_time_and_sigma_are_unbiased() {
+        for memory_s in [0.15, 0.6] {
+            let mut random = Random::new(5);
+            let studies = 60.0;
+            let mut logs = [0.0; 2];
+            for _ in 0..60 {
+                let mut all: Vec<Deviations> =
+                    (0..5).map(|_| deviations(memory_s, &mut random)).collect();
+                let found = estimate(&mut all);
+                let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
+                let ratio = found.memory_s / memory_s;
+                logs[0] += libm::log(ratio) / studies;
+                logs[1] += libm::log(ratio * variance) / studies;
+            }
+            assert!(
+                logs[0].abs() < 0.1 && logs[1].abs() < 0.1,
+                "{memory_s}: {logs:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn white_noise_has_zero_correlation_time() {
+        let mut random = Random::new(2);
+        let with = (0..100).filter(|_| {
+            let mut all: Vec<Deviations> = (0..5).map(|_| deviations(0.0, &mut random)).collect();
+            estimate(&mut all).memory_s > 0.0
+        });
+        // Twice two nats is beyond the 95 % point of a chi-square of one number, and a memory can only be longer than none.
+        let often = with.count();
+        assert!(often <= 7, "{often} of 100");
+    }
+
+    /// White noise of 1 without load and of 4 at full load is told, and even noise is not taken for it; a skin that is unsteady for
+    /// seconds is no noise of an instrument.
+    #[test]
+    fn proportional_noise_is_detected_and_even_noise_is_not() {
+        let mut random = Random::new(8);
+        let study = |grown: f64, slow: f64, random: &mut Random| -> Vec<Deviations> {
+            let one = |_| {
+                let (mut of, wander) = (deviations(0.0, random), deviations(3.0, random));
+                for r in 0..2 {
+                    for k in 0..of.time.len() {
+                        of.rest[r][k] *= 1f64.hypot(grown * of.load[k]);
+                        of.rest[r][k] += slow * of.load[k] * wander.rest[r][k];
+                    }
+                }
+                of
+            };
+            (0..5).map(one).collect()
+        };
+        let mut logs = Vec::new();
+        for _ in 0..20 {
+            logs.push(libm::log(
+                estimate(&mut study(4.0, 0.0, &mut random)).shape.ratio / 4.0,
+            ));
+        }
+        let mean = logs.iter().sum::<f64>() / 20.0;
+        assert!(
+            mean.abs() < 0.2 && logs.iter().all(|l| l.abs() < 0.8),
+            "{mean} {logs:?}"
+        );
+        let mut often = |grown: f64, slow: f64| -> usize {
+            (0..20)
+                .filter(|_| estimate(&mut study(grown, slow, &mut random)).shape.ratio > 0.0)
+                .count()
+        };
+        assert!(often(0.0, 0.0) <= 2);
+        assert!(often(0.0, 6.0) <= 4);
+    }
+
+    /// Means of 1 and of 9 independent readings; with memory, means of either are alike.
+    #[test]
+    fn means_of_more_readings_are_surer_where_noise_is_white() {
+        let mut random = Random::new(9);
+        let mut often = |memory_s: f64, is_white: bool| {
+            let study = |random: &mut Random| -> Vec<Deviations> {
+                let one = |_| {
+                    let mut of = deviations(memory_s, random);
+                    for k in 22..48 {
+                        of.readings[k] = 9.0;
+                        if is_white {
+                            of.rest.iter_mut().for_each(|r| r[k] /= 3.0);
+                        }
+                    }
+                    of
+                };
+                (0..5).map(one).collect()
+            };
+            (0..20)
+                .filter(|_| estimate(&mut study(&mut random)).shape.is_averaged)
+                .count()
+        };
+        assert_eq!(often(0.0, true), 20);
+        assert!(often(0.6, false) <= 1);
+    }
+}

@@ -1,0 +1,158 @@
+//! Jitter of a depth's readings: a stage moves smoothly, and where the force does not follow what its encoder reads beside that, it is noise.
+//!
+//! A model that is pressed to a depth as it was read predicts a force that jitters with it. Any hypothesis that flattens the force, such as
+//! a ceiling, then fits better than the truth. So a depth is taken as its smooth course and as much of the rest as the force follows: the
+//! reliability of the readings (Fuller 1987, Measurement Error Models, section 1.1).
+
+use crate::observe::measured::Phase;
+use crate::observe::protocol_phases::{Courses, Stretch};
+use crate::observe::robust_scale::median_deviation;
+use crate::observe::smoothing::smoothed;
+
+/// What a jitter does to the force, over the noise of the force, below which depths are left as they were read.
+const LEAST: f64 = 0.25;
+/// Readings farther than this many standard deviations from the smooth course are movement, and stay; forces count for no more.
+const MOVES: f64 = 5.0;
+/// Readings that follow the force by assumption, in samples whose jitter does as much as the noise of the force: where nothing can be told
+/// the depth is believed.
+const BELIEVED: f64 = 2.0;
+
+/// Depths without their jitter.
+pub(crate) struct Depths {
+    /// mm.
+    pub depth_mm: Vec<f64>,
+    /// Standard deviation of the readings about a smooth course, mm.
+    pub jitter_mm: f64,
+    /// Part of it that the force follows, 0 to 1.
+    pub reliability: f64,
+}
+
+/// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
+pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Option<Depths> {
+    let n = courses.depth_mm.len();
+    let (mut depth, mut force) = (courses.depth_mm.to_vec(), courses.force_n.to_vec());
+    for stretch in stretches {
+        let own = stretch.start..stretch.end;
+        let time = &courses.time_s[own.clone()];
+        depth[own.clone()].copy_from_slice(&smoothed(time, &courses.depth_mm[own.clone()]));
+        force[own.clone()].copy_from_slice(&smoothed(time, &courses.force_n[own]));
+    }
+    let off = |read: &[f64], smooth: &[f64]| -> Vec<f64> {
+        read.iter().zip(smooth).map(|(r, s)| r - s).collect()
+    };
+    let (moved, pushed) = (off(courses.depth_mm, &depth), off(courses.force_n, &force));
+    let deviation =
+        |of: &[f64]| median_deviation(&mut of.iter().map(|x| x.abs()).collect::<Vec<f64>>());
+    let (jitter_mm, noise_n) = (deviation(&moved), deviation(&pushed));
+    let slope = slopes((courses.time_s, &depth, &force), stretches);
+    let is_jitter = |k: usize| moved[k].abs() <= MOVES * jitter_mm;
+    let (mut over, mut under) = (0.0, 0.0);
+    for k in (0..n).filter(|&k| is_jitter(k)) {
+        let expected = slope[k] * moved[k];
+        over += expected * pushed[k].clamp(-MOVES * noise_n, MOVES * noise_n);
+        under += expected * expected;
+    }
+    let pressed = slope.iter().filter(|s| **s != 0.0).count();
+    let matters =
+        jitter_mm > 0.0 && pressed > 0 && (under / pressed as f64).sqrt() > LEAST * noise_n;
+    if !matters {
+        return None;
+    }
+    let prior = BELIEVED * noise_n * noise_n;
+    let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
+    for k in 0..n {
+        depth[k] += match is_jitter(k) {
+            true => reliability * moved[k],
+            false => moved[k],
+        };
+    }
+    (reliability < 1.0).then_some(Depths {
+        depth_mm: depth,
+        jitter_mm,
+        reliability,
+    })
+}
+
+/// Stiffness by sample, N/mm: of a leg its own; of a stretch that stands or slides that at the end of the leg before; none apart.
+fn slopes((time, depth, force): (&[f64], &[f64], &[f64]), stretches: &[Stretch]) -> Vec<f64> {
+    let mut slope = vec![0.0; time.len()];
+    let mut last = 0.0;
+    for stretch in stretches {
+        let own = stretch.start..stretch.end;
+        let way = depth[stretch.end - 1] - depth[stretch.start];
+        match stretch.phase {
+            Phase::Load | Phase::Unload if own.len() > 4 && way != 0.0 => {
+                // Over a fifth of the leg, so that what is left of the noise does not count.
+                let reach = (own.len() / 10).max(1);
+                for k in own {
+                    let a = k.saturating_sub(reach).max(stretch.start);
+                    let b = (k + reach).min(stretch.end - 1);
+                    let moved = depth[b] - depth[a];
+                    let is_leg = moved * way > 0.0;
+                    slope[k] = if is_leg {
+                        ((force[b] - force[a]) / moved).max(0.0)
+                    } else {
+                        0.0
+                    };
+                }
+                if stretch.phase == Phase::Load {
+                    last = slope[stretch.end - 1];
+                }
+            }
+            Phase::Hold | Phase::Slide => slope[own].fill(last),
+            _ => {}
+        }
+    }
+    slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observe::protocol_phases::stretches;
+    use crate::random::Random;
+
+    /// A ball pressed at 0.5 mm/s, held and lifted; the stage shakes by `shakes` and its encoder by `reads`, mm.
+    fn found(shakes: f64, reads: f64, seed: u64) -> (Option<Depths>, Vec<f64>) {
+        let mut random = Random::new(seed);
+        let time: Vec<f64> = (0..300).map(|k| f64::from(k) * 0.03).collect();
+        let path = |t: f64| (0.5 * t).min(1.0).min(0.5 * (9.0 - t)) - 0.01;
+        let meant: Vec<f64> = time.iter().map(|t| path(*t)).collect();
+        let truth: Vec<f64> = meant.iter().map(|d| d + shakes * random.normal()).collect();
+        let read: Vec<f64> = truth.iter().map(|d| d + reads * random.normal()).collect();
+        let force: Vec<f64> = truth
+            .iter()
+            .map(|d| 0.5 * d.max(0.0).powf(1.5) + 0.002 * random.normal())
+            .collect();
+        let courses = Courses {
+            time_s: &time,
+            depth_mm: &read,
+            force_n: &force,
+            slide_mm: &[],
+        };
+        (without_jitter(courses, &stretches(courses)), truth)
+    }
+
+    #[test]
+    fn encoder_jitter_goes_and_a_stage_that_shakes_stays() {
+        for seed in 1..6 {
+            let (read, truth) = found(0.0, 0.01, seed);
+            let read = read.expect("it jitters");
+            assert!(read.reliability < 0.25, "{}", read.reliability);
+            assert!((read.jitter_mm / 0.01 - 1.0).abs() < 0.25);
+            let pairs = read.depth_mm.iter().zip(&truth);
+            let squares: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
+            assert!((squares / 300.0).sqrt() < 0.005);
+            let (shaken, _) = found(0.01, 0.0, seed);
+            assert!(shaken.is_none_or(|s| s.reliability > 0.8));
+            let (both, _) = found(0.01, 0.01, seed);
+            let both = both.expect("half of it is noise").reliability;
+            assert!((both - 0.5).abs() < 0.25, "{both}");
+        }
+    }
+
+    #[test]
+    fn small_jitter_leaves_the_readings() {
+        assert!(found(0.0, 2e-4, 1).0.is_none());
+    }
+}

@@ -1,0 +1,239 @@
+"""A world of closed forms: spheres on a half-space, with the noise and the habits of laboratories.
+
+    draw(seed, truth, noise) -> Case; Case.write(folder)
+
+Nothing here is computed by finite elements or by Thenar, and there is no error of form: what a diagnosis finds beside
+the truth is its own fault. Noise and habits of recording are drawn apart, by families that no other world shares.
+
+Truths: `nothing` (a rigid sphere in an incompressible half-space: Sneddon 1965, International Journal of Engineering
+Science 3:47, of which Hertz is the limit at small depth) and `relaxation` (the same with a modulus that fades in two
+terms; Lee and Radok 1960, Journal of Applied Mechanics 27:438, valid while the contact does not shrink, so that these
+recordings end with their hold).
+
+Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
+
+- `white`: 5 mN.
+- `autocorrelated`: 5 mN that forgets itself in 0.3 s.
+- `in_proportion`: 1 % of the reading and 2 mN.
+- `depth_jitter`: the depth's reading jitters by 2 to 20 um; 3 mN.
+- `encoder`: the depth is read in steps of 5 to 20 um; 3 mN.
+- `clock`: time stamps jitter by 4 ms, a tenth of the time between samples at most; 3 % of the samples are lost; 3 mN.
+- `wander`: the zero of the force wanders by 8 mN in 10 s; 3 mN.
+- `gain_scatter`: repeats differ by 4 % in force and 20 um in first touch; 5 mN.
+- `stray`: 5 mN and one sample a recording that is off by a fifth of the peak.
+- `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
+
+Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
+"""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+NOISES = (
+    "white",
+    "autocorrelated",
+    "in_proportion",
+    "depth_jitter",
+    "encoder",
+    "clock",
+    "wander",
+    "gain_scatter",
+    "stray",
+    "mixture",
+)
+TRUTHS = ("nothing", "relaxation")
+MODULUS_MPA = (0.006, 0.02)
+RADIUS_MM = (4.0, 9.0)
+DEEPEST_MM = (0.8, 1.6)
+PATCH_MM = 16.0
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One file: protocol, tool, and columns time (s), read depth (mm), read force (N)."""
+
+    protocol: str
+    tool: str
+    table: np.ndarray
+
+
+@dataclass(frozen=True)
+class Case:
+    """A study: radii of its tools (mm) and what was recorded."""
+
+    radii: dict
+    recordings: list
+    deepest_mm: float
+
+    def write(self, folder):
+        """Writes `study.toml`, `skin.ply` and the recordings."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "skin.ply").write_text(_patch(self.deepest_mm))
+        text = '[study]\ntitle = "Spheres on a half-space"\n[skin]\nmesh = "skin.ply"\n[skin.materials.default]\n'
+        text += 'g0_mpa = 0.009\ng_lim_mpa = 0.012\nd_lim_mm = 4.0\nthickness_mm = "inf"\n'
+        for name, radius in self.radii.items():
+            text += f'[indenters.{name}]\nshape = "sphere"\nradius_mm = {radius:.4f}\n'
+        text += "[sites.middle]\npoint_mm = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\n"
+        for number, one in enumerate(self.recordings):
+            buffer = io.StringIO()
+            np.savetxt(buffer, one.table, "%.5f,%.5f,%.6f")
+            (folder / f"r{number:02d}.csv").write_text("time_s,depth_mm,force_n\n" + buffer.getvalue())
+            text += f'[[recordings]]\nname = "{one.protocol}, {one.tool}, number {number}"\nkind = "indentation"\n'
+            text += f'file = "r{number:02d}.csv"\nindenter = "{one.tool}"\nsite = "middle"\n'
+            text += f'protocol = "{one.protocol} {one.tool}"\norder = {number}\nrest_s = 120.0\n'
+        (folder / "study.toml").write_text(text)
+
+
+def draw(seed, truth, noise):
+    """A case; the same arguments give the same case. ValueError for an unknown truth or noise."""
+    if truth not in TRUTHS or noise not in NOISES:
+        raise ValueError(f"no world of {truth} with {noise}")
+    random = np.random.default_rng([seed, *truth.encode(), 0, *noise.encode()])
+    modulus = np.exp(random.uniform(*np.log(MODULUS_MPA)))
+    deepest = random.uniform(*DEEPEST_MM)
+    first = random.uniform(*RADIUS_MM)
+    radii = {"ball": first} | ({"large_ball": 2.2 * first} if random.random() < 0.5 else {})
+    speeds = [0.5, 4.0] if truth == "relaxation" or random.random() < 0.6 else [1.0]
+    has_hold = truth == "relaxation" or random.random() < 0.6
+    repeats, samples = random.integers(2, 5), random.choice([25, 100])
+    fading = None
+    if truth == "relaxation":
+        fading = [
+            (random.uniform(0.12, 0.25), random.uniform(0.2, 0.6)),
+            (random.uniform(0.1, 0.2), random.uniform(2.0, 5.0)),
+        ]
+    reader = _Reader(noise, random)
+    recordings = []
+    for tool, radius in radii.items():
+        for speed in speeds:
+            time, depth = _motion(deepest, speed, has_hold, samples, unloads=fading is None)
+            for _ in range(repeats):
+                at, true = reader.clocked(time, depth)
+                force = modulus * _faded(at, true, radius, fading)
+                recordings.append(Recording(f"{speed:g} mm/s", tool, reader.read(at, true, force)))
+    return Case(radii, recordings, deepest)
+
+
+def _motion(deepest, speed, has_hold, samples, unloads):
+    """Times (s) and true depths (mm): a little above the skin, down, a hold, up, apart."""
+    lift = 0.15
+    knots = [(0.0, -lift), ((deepest + lift) / speed, deepest)]
+    if has_hold:
+        knots.append((knots[-1][0] + 4.0, deepest))
+    if unloads:
+        knots.append((knots[-1][0] + (deepest + lift) / speed, -lift))
+        knots.append((knots[-1][0] + 1.0, -lift))
+    knots = np.array(knots)
+    counts = [samples] + [max(samples // 2, 16)] * (len(knots) - 2)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1, 0], knots[1:, 0], counts, strict=True)]
+    time = np.append(np.concatenate(pieces), knots[-1, 0])
+    return time, np.interp(time, knots[:, 0], knots[:, 1])
+
+
+def pressed(depth, radius):
+    """Force over shear modulus (mm2) of a rigid sphere, radius in mm, at depths (mm); 0 above the skin.
+
+    Sneddon: d = a/2 ln((R + a)/(R - a)) and F = 2 G ((a^2 + R^2) ln((R + a)/(R - a)) - 2 a R), a the contact's radius.
+    """
+    a = np.linspace(0.0, 0.95 * radius, 4000)
+    log = np.log((radius + a) / (radius - a))
+    force = 2.0 * ((a**2 + radius**2) * log - 2.0 * a * radius)
+    # Over a power of the depth both are smooth.
+    found = np.interp(np.maximum(depth, 0.0) ** 0.5, (0.5 * a * log) ** 0.5, np.cbrt(force))
+    return np.where(np.asarray(depth) > 0.0, found, 0.0) ** 3
+
+
+def _faded(time, depth, radius, fading):
+    """`pressed` with a modulus that fades: sum over steps of what each adds times what is left of it."""
+    if fading is None:
+        return pressed(depth, radius)
+    fine = np.linspace(time[0], time[-1], 8000)
+    rises = np.diff(pressed(np.interp(fine, time, depth), radius), prepend=0.0)
+    faded = np.zeros_like(fine)
+    for share, period in [(1.0 - sum(s for s, _ in fading), np.inf), *fading]:
+        keep, now, course = np.exp(-(fine[1] - fine[0]) / period), 0.0, np.empty_like(fine)
+        for k, rise in enumerate(rises):
+            now = now * keep + rise
+            course[k] = now
+        faded += share * course
+    return np.interp(time, fine, faded)
+
+
+class _Reader:
+    """Instruments of one family: what they make of times, depths and forces."""
+
+    def __init__(self, family, random):
+        self.family, self.random = family, random
+        self.jitter = {"depth_jitter": random.uniform(0.002, 0.02), "mixture": 0.01}.get(family, 0.0)
+        self.step = random.uniform(0.005, 0.02) if family == "encoder" else 0.0
+        self.share = {"in_proportion": 0.01, "mixture": 0.01}.get(family, 0.0)
+        self.gain = {"gain_scatter": 0.04, "mixture": 0.03}.get(family, 0.005)
+        self.touch = 0.02 if family == "gain_scatter" else 0.004
+        self.even = {
+            "white": 0.005,
+            "autocorrelated": 0.005,
+            "gain_scatter": 0.005,
+            "stray": 0.005,
+            "in_proportion": 0.002,
+        }
+        self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
+
+    def clocked(self, time, depth):
+        """The moments at which samples were taken, and the true depths then."""
+        if self.family != "clock":
+            return time, depth
+        kept = self.random.random(len(time)) > 0.03
+        kept[[0, -1]] = True
+        return time[kept], depth[kept]
+
+    def read(self, time, depth, force):
+        """Columns as they are written."""
+        random, n = self.random, len(time)
+        noise = random.standard_normal(n)
+        if self.memory:
+            for k in range(1, n):
+                keep = np.exp(-(time[k] - time[k - 1]) / self.memory)
+                noise[k] = keep * noise[k - 1] + np.sqrt(1.0 - keep**2) * noise[k]
+        read = force * (1.0 + self.gain * random.standard_normal()) + self.even.get(self.family, 0.003) * noise
+        read += self.share * force * random.standard_normal(n)
+        if self.family == "wander":
+            steps = np.sqrt(np.diff(time, prepend=time[0]) / 10.0)
+            read += 0.008 * np.cumsum(steps * random.standard_normal(n))
+        if self.family == "stray":
+            read[random.integers(n // 4, n)] += random.choice([-0.2, 0.2]) * force.max()
+        stated = depth + self.touch * random.standard_normal() + self.jitter * random.standard_normal(n)
+        if self.step:
+            stated = self.step * np.round(stated / self.step)
+        if self.family == "clock":
+            least = 0.1 * np.diff(time).min()
+            time = np.sort(time + min(0.004, least) * random.standard_normal(n)) + 0.1 * least * np.arange(n)
+        return np.column_stack([time - time[0], stated, read])
+
+
+def _patch(deepest):
+    """A flat patch as a PLY file, finer in its middle; +z is out."""
+    random = np.random.default_rng(11)
+    points, r, step = [np.zeros((1, 2))], 0.0, 0.35 * max(deepest, 0.8)
+    while r < PATCH_MM:
+        grown = step * (1.0 + 0.12 * max(0.0, r - 4.0))
+        r += grown
+        count = max(6, round(2.0 * np.pi * r / (1.1 * grown)))
+        angle = 2.0 * np.pi * (np.arange(count) + random.random()) / count
+        points.append(
+            r * np.stack([np.cos(angle), np.sin(angle)], axis=1) + 0.1 * grown * random.standard_normal((count, 2))
+        )
+    points = np.concatenate(points)
+    faces = Delaunay(points).simplices
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    turned = (b - a)[:, 0] * (c - a)[:, 1] < (b - a)[:, 1] * (c - a)[:, 0]
+    faces[turned] = faces[turned][:, ::-1]
+    lines = ["ply", "format ascii 1.0", f"element vertex {len(points)}"]
+    lines += [f"property double {axis}" for axis in "xyz"]
+    lines += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
+    lines += [f"{x:.5f} {y:.5f} 0.0" for x, y in points] + [f"3 {i} {j} {k}" for i, j, k in faces]
+    return "\n".join(lines) + "\n"
