@@ -8,8 +8,8 @@ import thenar
 from trial.worlds import closed_forms
 
 
-def _slides(folder, friction, tilt):
-    """Adds two slides to and fro, as a load cell of 3 mN reads them that is tilted by `tilt`."""
+def _slides(folder, friction, tilt, count=2):
+    """Adds slides to and fro, as a load cell of 3 mN reads them that is tilted by `tilt`."""
     case = closed_forms.draw(3, "nothing", "white")
     case.write(folder)
     radius = case.radii["ball"]
@@ -20,7 +20,7 @@ def _slides(folder, friction, tilt):
     normal = 0.01 * closed_forms.pressed(depth, radius)
     sign = np.sign(np.gradient(way))
     text = (folder / "study.toml").read_text()
-    for number in range(2):
+    for number in range(count):
         along = friction * sign * normal + tilt * normal + 0.02
         noise = 0.003 * random.standard_normal((2, len(time)))
         rows = zip(time, depth, normal + noise[0], way, along + noise[1], strict=True)
@@ -51,3 +51,9 @@ def test_tilted_tool_is_no_friction(tmp_path):
     said = _said(tmp_path)
     assert said["findings"] == [] and said["verdict"] in ("nothing_missing", "parameters")
     assert any("no friction beyond that" in note for note in said["notes"])
+
+
+def test_friction_of_a_single_slide_is_suspected_only(tmp_path):
+    _slides(tmp_path, friction=0.3, tilt=0.0, count=1)
+    said = _said(tmp_path)
+    assert said["findings"] == [] and any("friction is suspected" in note for note in said["notes"])

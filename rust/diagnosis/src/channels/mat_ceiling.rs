@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use thenar_recordings::study::Data;
+use thenar_recordings::study::{Data, StudyRecording};
 use thenar_recordings::{PressureUnit, Study};
 
 use crate::findings::{Diagnosis, Finding, Number, Verdict};
@@ -11,6 +11,10 @@ use crate::findings::{Diagnosis, Finding, Number, Verdict};
 const BAND: f64 = 0.15;
 /// Fewest readings at a ceiling, and how often chance may put as many on the largest value.
 const CLEAR: (usize, f64) = (5, 1e-6);
+/// Fewest sensels that read it: one that stands still reads one value for long.
+const SENSELS: usize = 3;
+/// Readings at a ceiling over those at any other value near it: frames that repeat each other share all their values.
+const CROWDED: usize = 3;
 /// Part of a reading by which two are the same.
 const SAME: f64 = 1e-9;
 
@@ -43,12 +47,31 @@ pub fn with_ceiling(study: &Study) -> Option<(Study, Ceiling)> {
         }
     }
     let found = ceiling(&values)?;
-    if stated.is_some_and(|limit| limit <= found.at * (1.0 + SAME)) {
+    if sensels_at(study, found.at) < SENSELS
+        || stated.is_some_and(|limit| limit <= found.at * (1.0 + SAME))
+    {
         return None;
     }
     let mut told = study.clone();
     told.instrument.get_or_insert_default().saturation_kpa = Some(found.at * (1.0 - SAME));
     Some((told, found))
+}
+
+/// How many sensels read a value (kPa), of the recording that has most.
+fn sensels_at(study: &Study, value: f64) -> usize {
+    let count = |recording: &StudyRecording| match &recording.data {
+        Data::PressureMap { map, .. } => {
+            let mut at: Vec<usize> = (0..map.values.len())
+                .filter(|&k| map.values[k].to_bits() == value.to_bits())
+                .map(|k| k % map.sensels.len().max(1))
+                .collect();
+            at.sort_unstable();
+            at.dedup();
+            at.len()
+        }
+        _ => 0,
+    };
+    study.recordings.iter().map(count).max().unwrap_or(0)
 }
 
 /// The ceiling of readings (all > 0); None where the largest value is not shared by more of them than chance would have it.
@@ -67,7 +90,12 @@ pub fn ceiling(values: &[f64]) -> Option<Ceiling> {
     let all: usize = counts.values().sum();
     let expected = all as f64 * (step / (BAND * most)).min(1.0);
     let chance = exceeded(cells, expected);
-    (cells >= CLEAR.0 && chance < CLEAR.1).then_some(Ceiling {
+    let others = counts.iter().filter(|(bits, _)| **bits != most.to_bits());
+    let is_crowded = others
+        .map(|(_, n)| n * CROWDED)
+        .max()
+        .is_none_or(|n| cells > n);
+    (cells >= CLEAR.0 && chance < CLEAR.1 && is_crowded).then_some(Ceiling {
         at: most,
         cells,
         chance,
@@ -153,5 +181,8 @@ mod tests {
         // A mat of few steps has many readings on each.
         assert_eq!(ceiling(&readings(2.0, 30.0)), None);
         assert_eq!(ceiling(&[]), None);
+        // A still frame that is written forty times.
+        let still = [20.0, 19.3, 18.7, 12.0, 3.0].repeat(40);
+        assert_eq!(ceiling(&still), None);
     }
 }

@@ -27,8 +27,8 @@ const PREDICTS: f64 = 0.5;
 pub struct Slides {
     /// Ratio of the force along the skin to the normal force, with its sign along the way, and its standard error.
     pub ratio: (f64, f64),
-    /// Ratio before the slide: a tilt.
-    pub tilt: f64,
+    /// Whether a tilt of the tool can be told from it: it was pressed before it slid, or slid both ways.
+    pub is_tilt_known: bool,
     /// Part of the square of the force along the skin that the ratio of the other slides removes from each; None of one slide.
     pub removed: Option<f64>,
     /// Recordings.
@@ -39,12 +39,13 @@ pub struct Slides {
 }
 
 impl Slides {
-    /// Whether a frictionless model misses it.
+    /// Whether a model without friction misses it, and the other slides predict each.
     pub fn is_friction(&self) -> bool {
         let (ratio, error) = self.ratio;
         ratio.abs() > CLEAR.1
             && ratio.abs() > CLEAR.0 * error
-            && self.removed.is_none_or(|removed| removed > PREDICTS)
+            && self.is_tilt_known
+            && self.removed.is_some_and(|removed| removed > PREDICTS)
     }
 }
 
@@ -53,7 +54,7 @@ struct Steady {
     name: String,
     /// Ratio and its standard error; before the slide.
     ratio: (f64, f64),
-    tilt: f64,
+    is_tilt_known: bool,
     /// Normal force, and force along the way with zero and tilt taken off, N.
     pairs: Vec<(f64, f64)>,
     time_s: [f64; 2],
@@ -95,7 +96,7 @@ pub fn slides(study: &Study) -> Option<Slides> {
     };
     Some(Slides {
         ratio: (mean, (own.max(between) / n).sqrt()),
-        tilt: all.iter().map(|s| s.tilt).sum::<f64>() / n,
+        is_tilt_known: all.iter().all(|s| s.is_tilt_known),
         removed,
         time_s: span(&|s| s.time_s),
         depth_mm: span(&|s| s.depth_mm),
@@ -139,7 +140,8 @@ fn steady(name: &str, curve: &Curve) -> Option<Steady> {
     );
     let zero = zero.unwrap_or(0.0);
     let before = (0..first).filter(|&k| is_pressed(k));
-    let tilt = middle(before.map(|k| (across[k] - zero) / force[k])).unwrap_or(0.0);
+    let known = middle(before.map(|k| (across[k] - zero) / force[k]));
+    let tilt = known.unwrap_or(0.0);
     // Each leg one way, of which the second part is steady.
     let (mut used, mut start) = (Vec::new(), first);
     for k in first..=n {
@@ -174,7 +176,10 @@ fn steady(name: &str, curve: &Curve) -> Option<Steady> {
             ratio,
             1.2533 * median_deviation(&mut off) / (used.len() as f64).sqrt(),
         ),
-        tilt,
+        is_tilt_known: known.is_some()
+            || [1.0, -1.0]
+                .iter()
+                .all(|one| used.iter().any(|&k| way(k) == *one)),
         pairs: used.iter().map(|&k| (force[k], along(k))).collect(),
         time_s: ends(time),
         depth_mm: ends(depth),
@@ -193,6 +198,13 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
         return;
     };
     let (ratio, error) = (seen.ratio.0.abs(), seen.ratio.1);
+    if ratio > CLEAR.1 && ratio > CLEAR.0 * error && !seen.is_friction() {
+        found.notes.push(format!(
+            "slides: the force along the skin is {ratio:.3} of the normal force; friction is suspected, and not named: record a second slide \
+             that begins after a hold, or goes both ways"
+        ));
+        return;
+    }
     if !seen.is_friction() {
         found.notes.push(format!(
             "slides: the force along the skin is {ratio:.3} (standard error {error:.3}) of the normal force; no friction beyond that"
