@@ -176,8 +176,9 @@ def _depends_note(unlisted):
 
 
 def _phases(found):
-    """The share of the evidence for what was named that stands in each phase."""
-    named = sorted(finding["effect"] for finding in found.get("findings", ()))
+    """The share of the evidence for what was named from force over depth that stands in each phase."""
+    of_force = (each for each in found.get("findings", ()) if each.get("channel", "force") == "force")
+    named = sorted(finding["effect"] for finding in of_force)
     tried = (each for each in found.get("rivals") or () if sorted(each.get("effects") or ()) == named and named)
     ledger = (next(tried, None) or {}).get("ledger") or {}
     gained = {phase: ledger.get(phase) or 0.0 for phase in wording.PHASES}

@@ -32,3 +32,22 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
     assert [bar.text for bar in beating.depends] == ["1.18 Hz, 71/min"]
     assert "repeats" in beating.depends_note and "correction" in written.depends_note
     assert letter.write(letters.FINDINGS["missing_physics"]).depends == ()
+
+
+def test_evidence_by_phase_is_that_of_force_over_depth_alone():
+    """A mat's ceiling is named as a force's saturation is, and friction stands next to what the curves show."""
+    named = {"kind": "tissue", "confidence": 0.9, "parameters": {}}
+    law = named | {"effect": "stiffening_law", "channel": "force"}
+    friction = named | {"effect": "friction", "channel": "tangential_force"}
+    ceiling = named | {"effect": "saturation", "channel": "map"}
+    rivals = [
+        {"effects": ["stiffening_law"], "evidence": 9.0, "ledger": {"load": 3.0, "hold": 1.0}},
+        {"effects": ["saturation"], "evidence": 2.0, "ledger": {"load": 1.0, "hold": 1.0}},
+    ]
+
+    def phases(*findings):
+        changed = {"findings": list(findings), "rivals": rivals}
+        return [bar.text for bar in letter.write(letters.FINDINGS["missing_physics"] | changed).phases]
+
+    assert phases(law) == phases(law, friction) == ["75 %", "25 %"]
+    assert phases(ceiling) == []

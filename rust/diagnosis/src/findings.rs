@@ -102,6 +102,8 @@ pub struct Finding {
     pub effect: &'static str,
     /// "tissue" or "instrument".
     pub kind: &'static str,
+    /// What it was found in: "force" over depth, "tangential_force" or "map".
+    pub channel: &'static str,
     /// 0 to 1.
     pub confidence: f64,
     /// Its numbers.

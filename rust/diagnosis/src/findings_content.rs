@@ -24,7 +24,7 @@ pub fn findings(
         return Vec::new();
     };
     let names = named.names();
-    // Of all models that hold these names, with others beside them or without.
+    // Of all models that hold these names, alone or with others.
     let holding = probabilities
         .iter()
         .filter(|(other, _)| names.iter().all(|name| other.contains(name)));
@@ -36,6 +36,7 @@ pub fn findings(
         Finding {
             effect: entry.name,
             kind: entry.kind(),
+            channel: "force",
             confidence,
             numbers,
             place: (!mechanism.is_instrument()).then(|| Where {

@@ -70,6 +70,7 @@ fn finding(found: &Finding) -> Value {
     let mut value = json!({
         "effect": found.effect,
         "kind": found.kind,
+        "channel": found.channel,
         "confidence": rounded(found.confidence),
         "parameters": numbers,
         "depends_on": found.depends_on,

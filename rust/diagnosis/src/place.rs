@@ -48,7 +48,7 @@ pub fn add_place(study: &Study, found: &mut Diagnosis) {
     found.notes.push(mismatch.sentence);
 }
 
-/// Part of the largest reading by which a place beside other missing physics must differ: stiff and soft spots change the
+/// Part of the largest reading by which a place must differ where other physics is missing too: stiff and soft spots change the
 /// pressure over them by 20 to 95 % of it (`tests/trial/studies.py`), what else is missing by less.
 const SPOT: f64 = 0.2;
 
@@ -89,6 +89,7 @@ fn inclusion(study: &Study, mismatch: &Mismatch) -> Finding {
     Finding {
         effect: "inclusion",
         kind: "tissue",
+        channel: "map",
         confidence: (1.0 - mismatch.p).clamp(0.5, 0.99),
         numbers: Vec::new(),
         place: Some(Where {

@@ -270,6 +270,7 @@ fn page_of_a_diagnosis_shows_which_signs_hold() {
     let finding = Finding {
         effect: "relaxation",
         kind: "tissue",
+        channel: "force",
         confidence: 0.9,
         numbers: Vec::new(),
         place: None,

@@ -33,8 +33,8 @@ def answer(case):
             Binary(Path(program)).diagnose(Path(place) / "study", Path(place) / "out")
         except Fault as fault:
             return "fault", [str(fault)]
-        told = json.loads((Path(place) / "out" / "findings.json").read_text())
-    return told["verdict"], [finding["effect"] for finding in told["findings"]]
+        said = json.loads((Path(place) / "out" / "findings.json").read_text())
+    return said["verdict"], [finding["effect"] for finding in said["findings"]]
 
 
 def is_wrong(truth, verdict, names):
@@ -64,10 +64,10 @@ def main():
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(answer, cases))
     for noise in asked.noises:
-        own = [(case, told) for case, told in zip(cases, found, strict=True) if case[2] == noise]
-        bad = [(case[0], told) for case, told in own if is_wrong(asked.truth, *told)]
+        own = [(case, said) for case, said in zip(cases, found, strict=True) if case[2] == noise]
+        bad = [(case[0], said) for case, said in own if is_wrong(asked.truth, *said)]
         wrong += len(bad)
-        verdicts = collections.Counter(told[0] for _, told in own)
+        verdicts = collections.Counter(said[0] for _, said in own)
         said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
         print(f"{noise:15s} wrong {len(bad):3d} of {len(own)}; {said}", flush=True)
         for seed, (_, names) in bad:

@@ -2,7 +2,7 @@
 
     draw(seed, truth, noise) -> Case; Case.write(folder)
 
-Nothing here is computed by finite elements or by Thenar, and there is no error of form: what a diagnosis finds beside
+Nothing here is computed by finite elements or by Thenar, and there is no error of form: what a diagnosis finds besides
 the truth is its own fault. Noise and habits of recording are drawn apart, by families that no other world shares.
 
 Truths: `nothing` (a rigid sphere in an incompressible half-space: Sneddon 1965, International Journal of Engineering

@@ -41,9 +41,12 @@ def test_friction_is_named_with_its_coefficient(tmp_path):
     said = _said(tmp_path)
     (finding,) = said["findings"]
     assert (said["verdict"], finding["effect"], finding["when"]["phase"]) == ("missing_physics", "friction", "slide")
-    told = finding["parameters"]["coefficient"]
-    assert told["value"] == pytest.approx(0.3, abs=0.01) and told["low"] <= told["value"] <= told["high"]
-    assert {"name": "friction", "amplitude": 1.0, "coefficient": told["value"]} in said["model"]["effects"]
+    coefficient = finding["parameters"]["coefficient"]
+    assert (
+        coefficient["value"] == pytest.approx(0.3, abs=0.01)
+        and coefficient["low"] <= coefficient["value"] <= coefficient["high"]
+    )
+    assert {"name": "friction", "amplitude": 1.0, "coefficient": coefficient["value"]} in said["model"]["effects"]
 
 
 def test_tilted_tool_is_no_friction(tmp_path):

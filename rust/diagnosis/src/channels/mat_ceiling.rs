@@ -52,9 +52,12 @@ pub fn with_ceiling(study: &Study) -> Option<(Study, Ceiling)> {
     {
         return None;
     }
-    let mut told = study.clone();
-    told.instrument.get_or_insert_default().saturation_kpa = Some(found.at * (1.0 - SAME));
-    Some((told, found))
+    let mut stated_study = study.clone();
+    stated_study
+        .instrument
+        .get_or_insert_default()
+        .saturation_kpa = Some(found.at * (1.0 - SAME));
+    Some((stated_study, found))
 }
 
 /// How many sensels read a value (kPa), of the recording that has most.
@@ -121,7 +124,7 @@ fn exceeded(count: usize, mean: f64) -> f64 {
         .max(if below < 0.999 { 1.0 - below } else { 0.0 })
 }
 
-/// Adds a ceiling that was found to what is told: the instrument's fault, beside what else is missing or alone.
+/// Adds a ceiling to the diagnosis: the instrument's fault, alone or with what else is missing.
 pub fn add_ceiling(found: &mut Diagnosis, seen: Ceiling) {
     found.notes.push(format!(
         "{} cells of the mat read {:.4} kPa, its largest value, exactly: it clips there, though no saturation is stated; these readings \
@@ -144,6 +147,7 @@ pub fn add_ceiling(found: &mut Diagnosis, seen: Ceiling) {
     found.findings.push(Finding {
         effect: "saturation",
         kind: "instrument",
+        channel: "map",
         confidence: 0.99,
         numbers: vec![Number {
             name: "ceiling_kpa",
@@ -154,7 +158,13 @@ pub fn add_ceiling(found: &mut Diagnosis, seen: Ceiling) {
         place: None,
         when: None,
         depends_on: vec!["pressure"],
-        consequences: Vec::new(),
+        consequences: vec![(
+            format!(
+                "{} readings of the mat are {:.4} kPa exactly, its largest value",
+                seen.cells, seen.at
+            ),
+            true,
+        )],
     });
 }
 

@@ -1,4 +1,4 @@
-//! Findings of channels beside the force over depth: force across the skin, and cells of a mat.
+//! Findings of channels other than force over depth: force across the skin, and cells of a mat.
 
 pub(crate) mod mat_ceiling;
 pub(crate) mod slides;

@@ -27,7 +27,7 @@ const PREDICTS: f64 = 0.5;
 pub struct Slides {
     /// Ratio of the force along the skin to the normal force, with its sign along the way, and its standard error.
     pub ratio: (f64, f64),
-    /// Whether a tilt of the tool can be told from it: it was pressed before it slid, or slid both ways.
+    /// Whether a tilt of the tool can be distinguished from it: it was pressed before it slid, or slid both ways.
     pub is_tilt_known: bool,
     /// Part of the square of the force along the skin that the ratio of the other slides removes from each; None of one slide.
     pub removed: Option<f64>,
@@ -192,7 +192,7 @@ fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
     (list.len() >= LEAST).then(|| median(&mut list))
 }
 
-/// Adds what slides show: friction, beside what else is missing or alone.
+/// Adds friction to the diagnosis, alone or with what else is missing.
 pub fn add_friction(study: &Study, found: &mut Diagnosis) {
     let Some(seen) = slides(study) else {
         return;
@@ -211,12 +211,12 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
         ));
         return;
     }
-    let told = format!(
+    let sentence = format!(
         "while it slides the tool is held back by {ratio:.3} ({:.3} to {:.3}) of the normal force, which the model without friction does not have",
         ratio - 1.645 * error,
         ratio + 1.645 * error
     );
-    found.notes.push(told);
+    found.notes.push(sentence);
     let is_open = matches!(
         found.verdict,
         Verdict::NothingMissing | Verdict::Parameters | Verdict::MissingPhysics
@@ -240,6 +240,7 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
     found.findings.push(Finding {
         effect: "friction",
         kind: "tissue",
+        channel: "tangential_force",
         confidence: 0.99,
         numbers: vec![Number {
             name: "coefficient",

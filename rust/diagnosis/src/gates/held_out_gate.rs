@@ -13,7 +13,7 @@ use thenar_inference::selection::scored::{Rungs, Scored};
 /// removed -1 to 28 %, right ones 54 to 95 %; on the calibration right ones as small as half the noise remove 34 %, a wrong one 25 %.
 const LEAST: f64 = 0.3;
 /// Share that each of two must remove of what the other alone leaves.
-const LEAST_BESIDE: f64 = 0.1;
+const LEAST_OF_REST: f64 = 0.1;
 /// Share from which one of two is named when the other does not predict, though repeats agree on more than it explains.
 const ALONE: f64 = 0.5;
 
@@ -35,6 +35,9 @@ pub fn decide<'a>(
     let mut alone = Vec::new();
     if let [first, second] = &named.mechanisms[..] {
         for (one, other) in [(first, second), (second, first)] {
+            if one.effect == Effect::Gain {
+                continue;
+            }
             let is_other = |s: &&Scored| s.mechanisms[0].effect == other.effect;
             let Some(single) = rungs.singles.iter().find(is_other) else {
                 continue;
@@ -42,15 +45,15 @@ pub fn decide<'a>(
             let Some(own) = of(single) else {
                 continue;
             };
-            let beside = beside(all.removed, own.removed);
-            all.members.push((one.effect.name(), beside));
-            alone.push((single, own, beside));
+            let share = share_of_rest(all.removed, own.removed);
+            all.members.push((one.effect.name(), share));
+            alone.push((single, own, share));
         }
     }
     alone.sort_by(|a, b| a.2.total_cmp(&b.2));
     // The one that adds least goes first, and what is left stands for itself.
-    if let Some((single, own, beside)) = alone.into_iter().next()
-        && beside < LEAST_BESIDE
+    if let Some((single, own, share)) = alone.into_iter().next()
+        && share < LEAST_OF_REST
     {
         let is_kept = !is_refuted(single, &own) && own.removed >= ALONE;
         return match is_kept {
@@ -65,11 +68,11 @@ pub fn decide<'a>(
 }
 
 /// Share that a pair removes of what one of its members alone leaves, where both shares are of the same error.
-fn beside(both: f64, one: f64) -> f64 {
+fn share_of_rest(both: f64, one: f64) -> f64 {
     (both - one) / (1.0 - one).max(1e-3)
 }
 
-/// One of two is named, since the other does not predict beside it.
+/// One of two is named, since the other does not predict what it leaves.
 fn without_the_other<'a>(single: &'a Scored, pair: &Scored) -> Decision<'a> {
     let other = pair
         .mechanisms
@@ -79,7 +82,7 @@ fn without_the_other<'a>(single: &'a Scored, pair: &Scored) -> Decision<'a> {
     decision::named(
         single,
         &format!(
-            "{other} beside it would fit better, but predicts recordings that it was not fitted to no better"
+            "with {other} it would fit better, but not predict recordings that were held out better"
         ),
     )
 }
@@ -103,7 +106,7 @@ fn unnamed<'a>(ready: &PreparedStudy, rungs: &'a Rungs, named: &Scored) -> Decis
 }
 
 /// True of what does not predict recordings that were held out. A gain that changes within the session cannot be held to that: every
-/// recording's own gain is told from itself.
+/// recording's own gain is fitted to itself.
 fn is_refuted(named: &Scored, gain: &Gain) -> bool {
     let is_gain = named.mechanisms.iter().all(|m| m.effect == Effect::Gain);
     !is_gain && !predicts(gain.removed, gain.placebo)
@@ -134,8 +137,8 @@ mod tests {
     /// Of a tenth that the other leaves half is much; of a half that it leaves a hundredth is nothing.
     #[test]
     fn a_second_effect_must_predict_what_the_first_leaves() {
-        assert!(beside(0.95, 0.9) > LEAST_BESIDE);
-        assert!(beside(0.51, 0.5) < LEAST_BESIDE);
-        assert!(beside(0.7, 0.8) < 0.0);
+        assert!(share_of_rest(0.95, 0.9) > LEAST_OF_REST);
+        assert!(share_of_rest(0.51, 0.5) < LEAST_OF_REST);
+        assert!(share_of_rest(0.7, 0.8) < 0.0);
     }
 }

@@ -10,7 +10,7 @@ use crate::observe::robust_scale::median;
 const RATIOS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 16.0];
 /// How much likelier a shape must be than even noise, nats: as a memory must, and the logarithm of how many are tried.
 const CLEAR: f64 = 5.0;
-/// Part of the largest load below which noise is that without load, and fewest samples from which its memory is told.
+/// Part of the largest load below which noise is that without load, and fewest samples from which its memory is estimated.
 const LIGHT: (f64, usize) = (0.15, 24);
 /// Memory of noise in proportion, over that of what is there without load, from which it is no noise of an instrument: the skin itself is
 /// unsteady.
@@ -134,7 +134,7 @@ mod tests {
         assert!(often <= 7, "{often} of 100");
     }
 
-    /// White noise of 1 without load and of 4 at full load is told, and even noise is not taken for it; a skin that is unsteady for
+    /// White noise of 1 without load and of 4 at full load is found, and even noise is not taken for it; a skin that is unsteady for
     /// seconds is no noise of an instrument.
     #[test]
     fn proportional_noise_is_detected_and_even_noise_is_not() {

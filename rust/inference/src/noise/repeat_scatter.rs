@@ -86,25 +86,25 @@ impl Repeats {
         if all.is_empty() {
             return None;
         }
-        let told = noise_shape::estimate(&mut all);
-        let memory_s = told.memory_s;
+        let noise = noise_shape::estimate(&mut all);
+        let memory_s = noise.memory_s;
         let of_most =
             |(d, (sigma, degrees)): (&Deviations, &(f64, f64))| (sigma / d.most, *degrees);
-        let shares: Vec<(f64, f64)> = all.iter().zip(&told.sizes).map(of_most).collect();
+        let shares: Vec<(f64, f64)> = all.iter().zip(&noise.sizes).map(of_most).collect();
         let degrees: f64 = shares.iter().map(|s| s.1).sum();
         let pooled = (shares.iter().map(|(s, n)| s * s * n).sum::<f64>() / degrees).sqrt();
         let shrunk = |(own, n): &(f64, f64)| {
             ((own * own * n + pooled * pooled * POOLED_DEGREES) / (n + POOLED_DEGREES)).sqrt()
         };
         let between = between(&all, &shares, memory_s);
-        let (step, drawn_from) = pooled_steps(&all, &told);
+        let (step, drawn_from) = pooled_steps(&all, &noise);
         let of_group = all.iter().zip(&shares);
         let each = of_group.flat_map(|(d, s)| d.group.iter().map(move |k| (*k, shrunk(s))));
         Some(Scatter {
             shares: each.collect(),
             pooled,
             proportional: 0.0,
-            shape: told.shape,
+            shape: noise.shape,
             degrees,
             memory_s,
             gain: between.x,
@@ -117,10 +117,10 @@ impl Repeats {
 }
 
 /// Standard deviation of the whitened deviations of all groups, and those over it.
-fn pooled_steps(all: &[Deviations], told: &noise_shape::NoiseEstimate) -> (f64, Vec<f64>) {
-    let of_group = all.iter().zip(&told.sizes);
+fn pooled_steps(all: &[Deviations], noise: &noise_shape::NoiseEstimate) -> (f64, Vec<f64>) {
+    let of_group = all.iter().zip(&noise.sizes);
     let groups: Vec<Vec<Vec<f64>>> = of_group
-        .map(|(d, (sigma, _))| d.whitened((*sigma, told.memory_s)))
+        .map(|(d, (sigma, _))| d.whitened((*sigma, noise.memory_s)))
         .collect();
     let size = robust_deviation(&groups.concat().concat());
     if size.is_nan() || size == 0.0 {

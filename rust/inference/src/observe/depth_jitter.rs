@@ -1,4 +1,4 @@
-//! Jitter of a depth's readings: a stage moves smoothly, and where the force does not follow what its encoder reads beside that, it is noise.
+//! Jitter of a depth's readings: a stage moves smoothly, and where the force does not follow what its encoder reads in addition, that is noise.
 //!
 //! A model that is pressed to a depth as it was read predicts a force that jitters with it. Any hypothesis that flattens the force, such as
 //! a ceiling, then fits better than the truth. So a depth is taken as its smooth course and as much of the rest as the force follows: the
@@ -13,7 +13,7 @@ use crate::observe::smoothing::smoothed;
 const LEAST: f64 = 0.25;
 /// Readings farther than this many standard deviations from the smooth course are movement, and stay; forces count for no more.
 const MOVES: f64 = 5.0;
-/// Readings that follow the force by assumption, in samples whose jitter does as much as the noise of the force: where nothing can be told
+/// Readings that follow the force by assumption, in samples whose jitter does as much as the noise of the force: where nothing can be said
 /// the depth is believed.
 const BELIEVED: f64 = 2.0;
 

@@ -34,7 +34,7 @@ pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Vec<f64> {
     best.1
 }
 
-/// The square of second differences, in units of the mean step, as a matrix of two bands beside its diagonal.
+/// The square of second differences, in units of the mean step, as a matrix with two bands above its diagonal.
 struct Penalty {
     bands: [Vec<f64>; 3],
 }
@@ -73,11 +73,11 @@ impl Penalty {
                 pivot -= two[k - 2].powi(2) * d[k - 2];
             }
             d[k] = pivot;
-            let mut beside = strength * self.bands[1][k];
+            let mut off_diagonal = strength * self.bands[1][k];
             if k > 0 {
-                beside -= one[k - 1] * two[k - 1] * d[k - 1];
+                off_diagonal -= one[k - 1] * two[k - 1] * d[k - 1];
             }
-            (one[k], two[k]) = (beside / pivot, strength * self.bands[2][k] / pivot);
+            (one[k], two[k]) = (off_diagonal / pivot, strength * self.bands[2][k] / pivot);
         }
         let mut x = values.to_vec();
         for k in 0..n {
@@ -88,7 +88,7 @@ impl Penalty {
                 x[k] -= two[k - 2] * x[k - 2];
             }
         }
-        // Diagonal of the inverse from below (Hutchinson and de Hoog 1985, Numerische Mathematik 47:99); `near` stands beside it in
+        // Diagonal of the inverse from below (Hutchinson and de Hoog 1985, Numerische Mathematik 47:99); `near` is the entry next to it in
         // the row below.
         let (mut trace, mut diagonal, mut near) = (0.0, vec![0.0; n], 0.0);
         for k in (0..n).rev() {
@@ -103,10 +103,10 @@ impl Penalty {
             if k + 2 < n {
                 x[k] -= two[k] * x[k + 2];
             }
-            let beside = -one[k] * next - two[k] * near;
+            let off_diagonal = -one[k] * next - two[k] * near;
             let far = -one[k] * near - two[k] * second;
-            diagonal[k] = 1.0 / d[k] - one[k] * beside - two[k] * far;
-            near = beside;
+            diagonal[k] = 1.0 / d[k] - one[k] * off_diagonal - two[k] * far;
+            near = off_diagonal;
             trace += diagonal[k];
         }
         (x, trace)

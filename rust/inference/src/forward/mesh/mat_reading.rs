@@ -142,3 +142,43 @@ pub fn misplaced(mut placement: Placement, effects: &[ActiveEffect]) -> Placemen
     }
     placement
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Five by five sensels of 2 mm in the plane z = 0, and a load on the middle of the skin.
+    #[test]
+    fn load_wanders_over_a_mat_against_its_slide() {
+        let places = (0..25).map(|k| (f64::from(k % 5) - 2.0, f64::from(k / 5) - 2.0));
+        let centers: Vec<Vec3> = places
+            .map(|(x, y)| Vec3::new(2.0 * x, 2.0 * y, 0.0))
+            .collect();
+        let layout = MatLayout {
+            normals: vec![Vec3::z(); 25],
+            areas: vec![4.0; 25],
+            along: None,
+            centers,
+        };
+        let sensels = Sensels::new(layout).unwrap();
+        let load = PointLoad {
+            position: Vec3::zeros(),
+            force_n: 1.0,
+            area_mm2: 1.0,
+        };
+        for slide in [
+            Vec3::new(2.0, 0.0, 0.0),
+            Vec3::new(0.0, -4.0, 0.0),
+            Vec3::zeros(),
+        ] {
+            let placement = slid(Placement::default(), &sensels, &slide);
+            let read = sensels.read_at(&[load], &placement);
+            let loaded = (0..25).filter(|k| read[*k] > 0.0).collect::<Vec<usize>>();
+            assert_eq!(loaded.len(), 1);
+            assert!(
+                (sensels.centers()[loaded[0]] + slide).norm() < 1e-9,
+                "{slide:?} {loaded:?}"
+            );
+        }
+    }
+}

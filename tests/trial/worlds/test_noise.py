@@ -1,0 +1,53 @@
+"""Noise of laboratories is no effect and no fault: nulls in closed form, and repeats that are thinned alike."""
+
+import json
+
+import numpy as np
+import pytest
+import thenar
+from trial.worlds import closed_forms
+
+# Something was accused in each before depth noise, noise in proportion and shared bins were modeled.
+NULLS = [("depth_jitter", 101), ("depth_jitter", 105), ("in_proportion", 104), ("mixture", 108), ("mixture", 110)]
+
+
+@pytest.mark.parametrize(("noise", "seed"), NULLS)
+def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
+    closed_forms.draw(seed, "nothing", noise).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+
+
+def test_relaxation_is_named_through_jitter(tmp_path):
+    closed_forms.draw(1, "relaxation", "depth_jitter").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == ["relaxation"]
+
+
+def _compared(case, folder):
+    case.write(folder)
+    return json.loads(thenar.compare(thenar.Study.load(folder)).to_json())["recordings"]
+
+
+def test_repeats_that_are_thinned_are_read_at_the_same_moments(tmp_path):
+    """Bins that follow the noise of each repeat lie at other moments in each, which looked like a rhythm."""
+    case = next(
+        case
+        for seed in range(1, 20)
+        if len((case := closed_forms.draw(seed, "nothing", "white")).recordings[0].table) > 200
+    )
+    by_protocol = {}
+    for one, recording in zip(case.recordings, _compared(case, tmp_path), strict=True):
+        (series,) = recording["series"]
+        by_protocol.setdefault((one.protocol, one.tool), []).append(series["time_s"])
+    for times in by_protocol.values():
+        assert len(times) > 1 and len(times[0]) < 150
+        for other in times[1:]:
+            np.testing.assert_array_equal(times[0], other)
+
+
+def test_jitter_of_the_depth_is_shown_to_the_user(tmp_path):
+    case = closed_forms.draw(101, "nothing", "mixture")  # 10 um
+    said = " ".join(text for recording in _compared(case, tmp_path) for text in recording["unknown"])
+    sizes = [int(part.split(" um")[0]) for part in said.split("its depth jitters by ")[1:]]
+    assert sizes and 8 <= np.median(sizes) <= 12
