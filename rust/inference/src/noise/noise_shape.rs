@@ -1,6 +1,6 @@
 //! How the size of noise differs from sample to sample: in proportion to the load, and with the readings of which a sample is the mean.
 
-use crate::noise::deviations::{Deviations, NoiseShape};
+use crate::noise::deviations::{Deviations, NoiseShape, autocorrelation, innovation};
 use crate::noise::restricted_likelihood::{
     left, likeliest, likelihood, memory_and_inliers, within,
 };
@@ -12,6 +12,9 @@ const RATIOS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 16.0];
 const CLEAR: f64 = 5.0;
 /// Part of the largest load below which noise is that without load, and fewest samples from which its memory is estimated.
 const LIGHT: (f64, usize) = (0.15, 24);
+/// Part of the largest load from which samples are under load, and standard errors by which neighbors there may be alike.
+const LOADED: f64 = 0.3;
+const SLOW: f64 = 3.0;
 /// Memory of noise in proportion, over that of what is there without load, from which it is no noise of an instrument: the skin itself is
 /// unsteady.
 const STEADY: f64 = 1.5;
@@ -67,12 +70,37 @@ pub(crate) fn likeliest_shape(all: &[Deviations]) -> NoiseShape {
         };
         let sizes: f64 = weighted.iter().zip(&kept).map(size).sum();
         let gained = likelihood(&weighted, &kept, memory_s) - sizes - likelihood(all, &kept, even);
-        let is_steady = tried.ratio == 0.0 || memory_s <= STEADY * light_memory(all);
+        let is_steady = tried.ratio == 0.0
+            || (memory_s <= STEADY * light_memory(all) && !is_slow(&weighted, &kept, memory_s));
         if gained > best && is_steady {
             (best, shape) = (gained, tried);
         }
     }
     shape
+}
+
+/// Whether deviations under load go on from sample to sample beyond their memory: something slow is among them, which is no noise in
+/// proportion.
+fn is_slow(weighted: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> bool {
+    let (mut product, mut square, mut count) = (0.0, 0.0, 0.0);
+    for (of, kept) in weighted.iter().zip(kept) {
+        let loaded: Vec<usize> = kept
+            .iter()
+            .copied()
+            .filter(|&k| of.load[k] > LOADED)
+            .collect();
+        for series in &of.rest {
+            let fresh = |w: &[usize]| {
+                let carried = autocorrelation(of.time[w[1]] - of.time[w[0]], memory_s);
+                innovation(series[w[1]], series[w[0]], carried)
+            };
+            let fresh: Vec<f64> = loaded.windows(2).map(fresh).collect();
+            product += fresh.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
+            square += fresh.iter().map(|e| e * e).sum::<f64>();
+            count += fresh.len() as f64;
+        }
+    }
+    product > SLOW * square / f64::max(count, 1.0).sqrt()
 }
 
 /// Memory of what deviates without load, s, at least the time between samples; where there is too little of it, of all.
@@ -169,7 +197,10 @@ mod tests {
                 .count()
         };
         assert!(often(0.0, 0.0) <= 2);
-        assert!(often(0.0, 6.0) <= 4);
+        for slow in [2.0, 6.0, 20.0] {
+            let often = often(0.0, slow);
+            assert!(often <= 4, "{slow}: {often}");
+        }
     }
 
     /// Means of 1 and of 9 independent readings; with memory, means of either are alike.
