@@ -71,7 +71,7 @@ def _demo(options):
 
 def _samples(options):
     try:
-        maker = importlib.import_module(".hand.samples", __package__)
+        maker = importlib.import_module(".grasp.samples", __package__)
     except ModuleNotFoundError:
         raise Refusal("this build cannot make samples") from None
     maker.make_samples(Path(options.out))

@@ -12,7 +12,8 @@ import bpy
 
 from .. import headless, native, workflow
 from .. import result as results
-from ..hand import build, fitting, grasp, pads, posing
+from ..grasp import fitter, fitting
+from ..hand import build, pads, posing
 from ..scene.checks import Refusal
 from ..soft_grip import settings as grip_settings
 from .jobs import check
@@ -132,9 +133,13 @@ def _pose(context, name):
 
 def _fit(context, strength):
     settings = context.scene.thenar
-    wish = grasp.Wish({"light": pads.LIGHT_MM, "firm": pads.FIRM_MM}[strength])
+    wish = fitter.Wish({"light": pads.LIGHT_MM, "firm": pads.FIRM_MM}[strength])
     fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish)
-    fitting.finish(context, fit, fitting.compute(fit), "HAND")
+    if fitting.can_search(fit):
+        found = fitting.search_all(fit, (fitting.TOTALS_N[strength.upper()], 0))[0].grasp
+    else:
+        found = fitting.compute(fit)
+    fitting.finish(context, fit, found, "HAND")
 
 
 def _stiffen(hand, factor):

@@ -24,12 +24,6 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row.operator("thenar.make_hand", icon="VIEW_PAN")
         row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
         layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
-        column = layout.column(align=True)
-        column.operator("thenar.fit_grasp", text="Fit Grasp", icon="CON_ARMATURE").place = "LAY"
-        row = column.row(align=True)
-        for text, strength in (("Light (current pose)", "LIGHT"), ("Firm (current pose)", "FIRM")):
-            button = row.operator("thenar.fit_grasp", text=text)
-            button.place, button.strength = "KEEP", strength
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):

@@ -45,11 +45,18 @@ class Rig:
     def subset(self, rows):
         """The same rig with only the vertices `rows`."""
         normals = None if self.normals is None else self.normals[rows]
-        return replace(self, vertices=self.vertices[rows], weights=self.weights[rows], normals=normals)
+        return self._with(vertices=self.vertices[rows], weights=self.weights[rows], normals=normals)
 
     def moved(self, world_from_world):
         """The same rig carried through the world by a (4, 4) transform."""
-        return replace(self, world_from_rig=world_from_world @ self.world_from_rig)
+        return self._with(world_from_rig=world_from_world @ self.world_from_rig)
+
+    def _with(self, **changed):
+        """The same bones with other vertices or another place; what was computed of the bones is kept."""
+        out = replace(self, **changed)
+        for name in ("from_parent", "bone_from_rig"):
+            out.__dict__[name] = getattr(self, name)
+        return out
 
 
 def rotation(axis, angle):

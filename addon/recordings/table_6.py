@@ -3,7 +3,8 @@
 import numpy as np
 
 from .. import headless, names, workflow
-from ..hand import fitting, grasp, pads
+from ..grasp import fitter, fitting
+from ..hand import pads
 from ..scene import attributes
 from ..scene.checks import Refusal
 from . import virtual_mat
@@ -76,7 +77,7 @@ def read_frames(context, path):
         headless.open_file(path)
         settings = context.scene.thenar
         if name != "mean":
-            wish = grasp.Wish(pads.FIRM_MM, is_placed=True)
+            wish = fitter.Wish(pads.FIRM_MM, is_placed=True)
             fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish, force_n)
             fitting.finish(context, fit, fitting.compute(fit), "HAND")
         workflow.solve(context)

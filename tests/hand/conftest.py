@@ -35,11 +35,12 @@ def hand(blender, made):
 
 @pytest.fixture(scope="session")
 def arrays(made):
-    """The median hand without Blender: `grasp.Hand`."""
-    from thenar_blender.hand import capsules, grasp, model, pads
+    """The median hand without Blender: `fitter.Hand`."""
+    from thenar_blender.grasp import fitter
+    from thenar_blender.hand import capsules, model, pads
 
     rig = model.rig_of(made)
     joints = model.joints_of(made, rig)
-    return grasp.Hand(
+    return fitter.Hand(
         rig, joints, pads.pads_of(rig, joints, model.skin_of(made)), capsules.build(rig, joints, model.tails_of(made))
     )

@@ -2,7 +2,8 @@
 
 import bpy
 import numpy as np
-from thenar_blender.hand import fitting, grasp, pads, products, studio
+from thenar_blender.grasp import fitter, fitting
+from thenar_blender.hand import pads, products, studio
 
 
 def evaluated_mm(obj):
@@ -30,4 +31,4 @@ def with_cylinder(context, hand, diameter=60.0, **wish):
     product = studio.add_mesh(context, "Product", products.cylinder(diameter), material)
     context.scene.thenar.product = product
     context.view_layer.update()
-    return product, fitting.prepare(context, hand, [product], grasp.Wish(pads.LIGHT_MM, **wish))
+    return product, fitting.prepare(context, hand, [product], fitter.Wish(pads.LIGHT_MM, **wish))

@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import thenar_blender
-from thenar_blender.hand import samples
+from thenar_blender.grasp import samples
 
 
 def digest(*parts):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.hand import capsules, grasp, least_squares, pads, products, roles, skinning, walls
+from thenar_blender.grasp import fitter, least_squares, task, walls
+from thenar_blender.hand import capsules, pads, products, roles, skinning
 
 
 def product_of(shape):
@@ -20,7 +21,7 @@ def box(width, depth, height):
 
 def fit(arrays, shape, targets, **wish):
     product, vertices = product_of(shape)
-    return grasp.fit(arrays, product, vertices, grasp.Wish(targets, **wish)), product
+    return fitter.fit(arrays, product, vertices, fitter.Wish(targets, **wish)), product
 
 
 UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}
@@ -67,26 +68,26 @@ def test_depth_is_the_mean_of_the_four_deepest():
 
 def test_out_of_reach_is_refused(arrays):
     product, vertices = product_of(products.cylinder(48))
-    with pytest.raises(grasp.GraspError, match="reach"):
+    with pytest.raises(fitter.GraspError, match="reach"):
         far = vertices + [900.0, 0.0, 0.0]
         product = thenar.Product(far, triangles_of(products.cylinder(48)[1]))
-        grasp.fit(arrays, product, far, grasp.Wish(pads.LIGHT_MM, is_placed=True))
+        fitter.fit(arrays, product, far, fitter.Wish(pads.LIGHT_MM, is_placed=True))
 
 
 def test_jacobian_of_the_fit(arrays):
     product, vertices = product_of(products.cylinder(60))
-    wish = grasp.Wish(pads.FIRM_MM, **UPRIGHT)
-    wanted = grasp._wanted(arrays.pads, wish)
+    wish = fitter.Wish(pads.FIRM_MM, **UPRIGHT)
+    wanted = fitter.wanted_depths(arrays.pads, wish)
     gauge = walls.Gauge(product, is_thin=False)
-    start = grasp._start(arrays, gauge, wanted, (grasp._placings(arrays, vertices, wish)[0], None))
-    task = grasp._Task(arrays, gauge, wanted, start, wish)
+    start = fitter.start_of(arrays, gauge, wanted, (fitter._placings(arrays, vertices, wish)[0], None))
+    asked = task.Task(arrays, gauge, task.Goal(wanted), start, wish)
     rng = np.random.default_rng(0)
-    x = task.start + 0.03 * rng.normal(size=len(task.start))
+    x = asked.start + 0.03 * rng.normal(size=len(asked.start))
     x[-6:] *= 20.0
-    task.residuals(x)
-    slope = task.jacobian(x)
+    asked.residuals(x)
+    slope = asked.jacobian(x)
     step = 1e-5 * np.eye(len(x))
-    quotient = np.stack([(task.residuals(x + e) - task.residuals(x - e)) / 2e-5 for e in step], axis=1)
+    quotient = np.stack([(asked.residuals(x + e) - asked.residuals(x - e)) / 2e-5 for e in step], axis=1)
     off = np.abs(slope - quotient) > 0.02 * np.abs(quotient).max()
     assert off.any(axis=1).sum() <= 2, "a few pads may change which vertices are deepest within the step"
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.hand import capsules, closing, grasp, pads, poses, products, roles, skinning, walls
+from thenar_blender.grasp import closing, fitter, walls
+from thenar_blender.hand import capsules, pads, poses, products, roles, skinning
 
 UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}
 ALONG = np.linspace(-100.0, 100.0, 101)
@@ -48,7 +49,7 @@ def misses(arrays, found, height):
 )
 def test_cup_is_held_by_its_outside(arrays, shape, radius, targets):
     vertices, faces = shape
-    found = grasp.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, grasp.Wish(targets, **UPRIGHT))
+    found = fitter.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, fitter.Wish(targets, **UPRIGHT))
     off = misses(arrays, found, np.linalg.norm(posed(arrays, found)[:, :2], axis=1) - radius)
     assert np.median(np.abs(off)) < 0.5
     assert np.abs(off).max() < 2.0
@@ -89,8 +90,8 @@ def card(thickness, pinch):
 @pytest.mark.parametrize("thickness", [4.0, 2.0, 0.8])
 def test_card_is_pinched_from_both_sides(arrays, pinch, thickness, depth):
     vertices, faces = card(thickness, pinch)
-    wish = grasp.Wish({"distal": depth}, ("thumb", "index"), is_placed=True, angles=pinch.angles)
-    found = grasp.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, wish)
+    wish = fitter.Wish({"distal": depth}, ("thumb", "index"), is_placed=True, angles=pinch.angles)
+    found = fitter.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, wish)
     height = (posed(arrays, found) - pinch.middle) @ pinch.across
     by_name = {pad.name: pad for pad in arrays.pads}
     index = pads.pad_depth(height[by_name["index_distal_pad"].rows] - 0.5 * thickness)
@@ -135,6 +136,6 @@ def test_finger_in_a_wall_is_freed(arrays, pinch):
 
 def test_finger_that_cannot_reach_its_side_is_told(arrays):
     vertices, faces = products.plate(60.0, 120.0, 0.8, 2.0)
-    wish = grasp.Wish({"distal": 2.6}, ("thumb", "index"))
-    found = grasp.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, wish)
+    wish = fitter.Wish({"distal": 2.6}, ("thumb", "index"))
+    found = fitter.fit(arrays, thenar.Product(vertices, triangles_of(faces)), vertices, wish)
     assert found.warnings

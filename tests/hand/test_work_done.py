@@ -5,7 +5,8 @@ import time
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.hand import build, fitting, grasp, pads, products, studio
+from thenar_blender.grasp import fitter, fitting
+from thenar_blender.hand import build, pads, products, studio
 from thenar_blender.recordings import table_6
 from thenar_blender.scene import units
 
@@ -30,7 +31,7 @@ def test_hand_made():
 def test_grasp_fitted(arrays, diameter, targets):
     vertices, faces = products.cylinder(diameter)
     product = thenar.Product(vertices, triangles_of(faces))
-    found, clock, work = timed(grasp.fit, arrays, product, vertices, grasp.Wish(targets, **UPRIGHT))
+    found, clock, work = timed(fitter.fit, arrays, product, vertices, fitter.Wish(targets, **UPRIGHT))
     misses = sorted(abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items())
     print(
         f"{diameter} mm cylinder, palm {targets['palm']} mm deep: {clock:.2f} s, {work:.2f} s of processor; "
@@ -51,7 +52,7 @@ def test_grasp_fitted_to_a_force(blender, made, diameter):
     context.scene.thenar.hand, context.scene.thenar.product = hand, product
     assert units.mm_per_unit(context.scene) == 1000.0
     wanted = table_6.PAPER[diameter]["force_n"][0]
-    job = fitting.prepare(context, hand, [product], grasp.Wish(pads.FIRM_MM, **UPRIGHT), wanted)
+    job = fitting.prepare(context, hand, [product], fitter.Wish(pads.FIRM_MM, **UPRIGHT), wanted)
     found, clock, work = timed(fitting.compute, job)
     print(f"{diameter} mm cylinder, {wanted:.0f} N: {clock:.2f} s, {work:.2f} s of processor; {found.force_n:.1f} N")
     assert found.force_n == pytest.approx(wanted, rel=0.02)

@@ -3,13 +3,15 @@
 Knows nothing of Blender. World mm, radians.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from . import capsules as capsules_of_hand
-from . import pads as pads_of_hand
-from .poses import POSES
-from .roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
-from .skinning import pose_matrices, skin, skin_normals, to_world
+from ..hand import capsules as capsules_of_hand
+from ..hand import pads as pads_of_hand
+from ..hand.poses import POSES
+from ..hand.roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
+from ..hand.skinning import pose_matrices, skin, skin_normals, to_world
 
 STEP_DEG = 4.0
 """A closing joint turns in steps of this many degrees; the fit that follows does the rest."""
@@ -47,34 +49,54 @@ def product_axis(vertices):
     return center, axes[:, 2]
 
 
+@dataclass(frozen=True)
+class Placing:
+    """How a product shall lie in the palm: its `axis` through `center` (3), turned `oblique` radians against the line
+    of the knuckles, `offset_mm` from them along the fingers. `toward` (3): where the palm faces; None: as it stands,
+    and the axis may be turned end for end."""
+
+    center: np.ndarray
+    axis: np.ndarray
+    oblique: float
+    offset_mm: float
+    toward: np.ndarray | None = None
+
+
 def lay_into_palm(rig, joints, pads, gauge, placing):
     """World transform (4, 4) that carries the hand to the product so that the product lies in the open palm.
 
-    `placing`: (center, axis, oblique radians, offset mm along the fingers). The product's axis lies across the palm,
-    turned obliquely, as a handle lies from the index finger's base to the heel of the hand.
+    The product's axis lies across the palm, turned obliquely, as a handle lies from the index finger's base to the
+    heel of the hand.
     """
-    center, axis, oblique, offset_mm = placing
     knuckles, radial, distal, facing = hand_frame(rig, joints)
-    across = np.cos(oblique) * radial + np.sin(oblique) * distal
-    if axis @ across < 0.0:
-        axis = -axis
+    across = np.cos(placing.oblique) * radial + np.sin(placing.oblique) * distal
     hand = np.stack([across, np.cross(facing, across), facing], axis=1)
-    helper = center - (knuckles + facing * CLEAR_MM)
+    axis, toward = placing.axis, placing.toward
+    if toward is None:
+        axis, toward = _as_it_stands(placing, (knuckles, facing), across)
+    goal = np.stack([axis, np.cross(toward, axis), toward], axis=1)
+    turn = goal @ hand.T
+    place = np.eye(4)
+    place[:3, :3] = turn
+    away = turn @ (knuckles + distal * placing.offset_mm) + turn @ facing * CLEAR_MM
+    place[:3, 3] = placing.center - away
+    rows = np.concatenate([pad.rows for pad in pads if pad.kind == "palm"] or [pad.rows for pad in pads])
+    part, posed = rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"]))
+    normals = skin_normals(part, posed) if gauge.is_thin else None
+    return approach((skin(part, posed), normals), gauge, place, turn @ facing)
+
+
+def _as_it_stands(placing, palm, across):
+    """The axis, its end toward the thumb's side as it is now, and the direction across it that the palm faces now."""
+    knuckles, facing = palm
+    axis = -placing.axis if placing.axis @ across < 0.0 else placing.axis
+    helper = placing.center - (knuckles + facing * CLEAR_MM)
     helper = helper - axis * (helper @ axis)
     if np.linalg.norm(helper) < 1.0:
         helper = np.cross(axis, [0.3, 0.5, 0.8])
     toward = facing - axis * (facing @ axis)
     toward = toward if np.linalg.norm(toward) > 0.3 else helper
-    toward = toward / np.linalg.norm(toward)
-    goal = np.stack([axis, np.cross(toward, axis), toward], axis=1)
-    turn = goal @ hand.T
-    place = np.eye(4)
-    place[:3, :3] = turn
-    place[:3, 3] = center - turn @ (knuckles + distal * offset_mm) - turn @ facing * CLEAR_MM
-    rows = np.concatenate([pad.rows for pad in pads if pad.kind == "palm"] or [pad.rows for pad in pads])
-    part, posed = rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"]))
-    normals = skin_normals(part, posed) if gauge.is_thin else None
-    return approach((skin(part, posed), normals), gauge, place, turn @ facing)
+    return axis, toward / np.linalg.norm(toward)
 
 
 def approach(palm, gauge, place, direction, depth_mm=2.0):
@@ -135,6 +157,9 @@ def _cleared(rig, joints, finger, around, angles):
     return angles
 
 
+STOP_DEG = 85.0
+"""No joint closes further than this."""
+
 NEAR_MM = 6.0
 """A digit that has a pad this near the product is not closed further before the fit."""
 
@@ -142,20 +167,21 @@ NEAR_MM = 6.0
 def close_fingers(rig, joints, pads, gauge, start):
     """Angles (b, 3): from `start`, each digit bends joint by joint until a pad beyond the joint touches.
 
-    A digit that is near the product already stays as it is: a flat hand on a plate shall not make a fist.
+    A digit that is near the product already stays as it is: a flat hand on a plate shall not make a fist. `start`:
+    angles, and perhaps degrees by role at which a joint stops.
     """
-    angles = start.copy()
+    angles, stops = start[0].copy(), dict(*start[1:])
     for digit in (*FINGERS, "thumb"):
         chain = ["metacarpal", "proximal", "distal"] if digit == "thumb" else ["proximal", "middle", "distal"]
         roles = [f"{digit}_{segment}" for segment in chain if f"{digit}_{segment}" in joints.bones]
         own = [pad for pad in pads if pad.role in roles and pad.kind != "palm"]
         if own:
-            angles = _close_digit(rig, joints, (roles, own), gauge, angles)
+            angles = _close_digit(rig, joints, (roles, own, stops), gauge, angles)
     return angles
 
 
 def _close_digit(rig, joints, digit, gauge, angles):
-    roles, own = digit
+    roles, own, stops = digit
     rows = np.concatenate([pad.rows for pad in own])
     level = np.concatenate([np.full(len(pad.rows), roles.index(pad.role)) for pad in own])
     part = rig.subset(rows)
@@ -169,7 +195,7 @@ def _close_digit(rig, joints, digit, gauge, angles):
         free = max(free, int(touched.max()) + 1 if len(touched) else 0)
         moved = False
         for role in roles[free:]:
-            moved |= _bend(joints, role, angles)
+            moved |= _bend(joints, role, angles, stops.get(role, STOP_DEG))
         if not moved:
             break
     return angles
@@ -180,12 +206,12 @@ def _gaps(part, gauge, angles):
     return gauge.gaps(skin(part, posed), skin_normals(part, posed) if gauge.is_thin else None)
 
 
-def _bend(joints, role, angles):
+def _bend(joints, role, angles, stop_deg):
     """Bends `role` by a step in place, slower where the joint bends less; whether it had room."""
     bone, column = joints.bones[role], COLUMNS["flexion"]
     low, high = angle_bounds(joints, role, "flexion")
     share = 0.6 if role.endswith("distal") else 1.0
-    stop = min(high, float(from_anatomical(joints, role, "flexion", 85.0)))
+    stop = min(high, float(from_anatomical(joints, role, "flexion", stop_deg)))
     if role == "thumb_metacarpal":
         stop, share = min(high, np.radians(25.0)), 0.6
     before = angles[bone, column]

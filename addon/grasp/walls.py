@@ -30,10 +30,12 @@ BONE_MM = 1.2
 
 @dataclass(frozen=True)
 class Gauge:
-    """A product's distances as the fit reads them; `is_thin`: with the skin's normals."""
+    """A product's distances as the fit reads them; `is_thin`: with the skin's normals. A `field.Field` answers for
+    skin that is far away, if there is one."""
 
     product: object
     is_thin: bool
+    field: object = None
 
     def gaps(self, points, normals=None):
         """Signed gaps (n,) of world points, mm, at most `FAR_MM`; `normals` (n, 3) of the skin if it is thin."""
@@ -41,6 +43,14 @@ class Gauge:
 
     def read(self, points, normals=None):
         """Signed gaps (n,), mm, and their gradients (n, 3): the outward direction at the nearest point."""
+        if self.field is None:
+            return self._exact(points, normals)
+        gap, slope, is_far = self.field.read(points)
+        near = np.flatnonzero(~is_far)
+        gap[near], slope[near] = self._exact(points[near], None if normals is None else normals[near])
+        return np.minimum(gap, FAR_MM), slope
+
+    def _exact(self, points, normals):
         limits = {"cut_off_mm": FAR_MM}
         if self.is_thin and normals is not None:
             limits |= {"skin_normals": normals, "max_depth_mm": DEEPEST_MM}

@@ -12,8 +12,8 @@ import numpy as np
 class Problem:
     """`residuals(x)` -> (m,), `jacobian(x)` -> (m, n) at the last x given to `residuals`; bounds (n,) each.
 
-    `robust(values)` (m,) bool marks the residuals whose loss is soft-L1 (linear beyond about one) instead of squared;
-    it may look at their sign.
+    `robust(values)` (m,) bool marks the residuals whose loss is soft-L1 (linear beyond about `scale`) instead of
+    squared; it may look at their sign.
     """
 
     residuals: object
@@ -21,6 +21,7 @@ class Problem:
     lower: np.ndarray
     upper: np.ndarray
     robust: object
+    scale: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -33,10 +34,10 @@ class Solution:
     has_converged: bool
 
 
-def cost_of(values, robust):
-    """Half the squared residuals, soft-L1 where `robust`."""
-    squares = values * values
-    return 0.5 * float(np.where(robust, 2.0 * (np.sqrt(1.0 + squares) - 1.0), squares).sum())
+def cost_of(values, robust, scale=1.0):
+    """Half the squared residuals, soft-L1 beyond `scale` where `robust`."""
+    squares = (values / scale) ** 2
+    return 0.5 * scale**2 * float(np.where(robust, 2.0 * (np.sqrt(1.0 + squares) - 1.0), squares).sum())
 
 
 def minimize(problem, start, evaluations=60, tolerance=1e-4, cancelled=None):
@@ -46,9 +47,9 @@ def minimize(problem, start, evaluations=60, tolerance=1e-4, cancelled=None):
     """
     x = np.clip(start, problem.lower, problem.upper)
     values = problem.residuals(x)
-    cost, damping, used = cost_of(values, problem.robust(values)), 1e-2, 1
+    cost, damping, used = cost_of(values, problem.robust(values), problem.scale), 1e-2, 1
     while used < evaluations and not (cancelled and cancelled()):
-        weights = np.where(problem.robust(values), 1.0 / np.sqrt(1.0 + values * values), 1.0)
+        weights = np.where(problem.robust(values), 1.0 / np.sqrt(1.0 + (values / problem.scale) ** 2), 1.0)
         slope = problem.jacobian(x)
         gradient = slope.T @ (weights * values)
         free = ~((x <= problem.lower) & (gradient > 0.0)) & ~((x >= problem.upper) & (gradient < 0.0))
@@ -60,7 +61,7 @@ def minimize(problem, start, evaluations=60, tolerance=1e-4, cancelled=None):
             step[free] = np.linalg.solve(hessian + damping * np.diag(scale), -gradient[free])
             trial = np.clip(x + step, problem.lower, problem.upper)
             trial_values = problem.residuals(trial)
-            trial_cost = cost_of(trial_values, problem.robust(trial_values))
+            trial_cost = cost_of(trial_values, problem.robust(trial_values), problem.scale)
             used += 1
             if trial_cost < cost:
                 gained, damping = cost - trial_cost, max(damping / 5.0, 1e-8)

@@ -7,9 +7,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ..hand import build, pads, posing, products, reading, studio
+from ..hand.skinning import skin
 from ..scene.units import mm_per_unit
-from . import build, fitting, grasp, pads, posing, products, reading, studio
-from .skinning import skin
+from . import fitter, fitting
 
 FILE_SUFFIX = ".blend"
 RANGE_KPA = 150.0
@@ -76,7 +77,7 @@ def _power(targets_mm, height_mm=0.0, force_n=None):
     def meet(context, hand, rig, product):
         rig.matrix_world = Matrix.Rotation(-np.pi / 2, 4, "Y")
         context.view_layer.update()
-        wish = grasp.Wish(targets_mm, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, height_mm))
+        wish = fitter.Wish(targets_mm, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, height_mm))
         job = fitting.prepare(context, hand, [product], wish, force_n)
         fitting.finish(context, job, fitting.compute(job), "HAND")
 
@@ -92,7 +93,7 @@ def _press(pose, digits, targets_mm, tilt_deg):
         context.view_layer.update()
         place = _let_down(fitting.read_hand(context, hand), rig, digits, targets_mm)
         reading.move_object(rig, place, mm_per_unit(context.scene))
-        job = fitting.prepare(context, hand, [product], grasp.Wish(targets_mm, digits, is_placed=True))
+        job = fitting.prepare(context, hand, [product], fitter.Wish(targets_mm, digits, is_placed=True))
         fitting.finish(context, job, fitting.compute(job), "HAND")
 
     return meet

@@ -1,7 +1,7 @@
 """Angles that go together in a hand: DIP follows PIP, and neighbouring fingers bend alike. Knows nothing of Blender."""
 
-from .roles import FINGERS
-from .skinning import FLEXION
+from ..hand.roles import FINGERS
+from ..hand.skinning import FLEXION
 
 DIP_PER_PIP = 0.6
 """The DIP joint bends this much of the PIP joint, an anatomical rule of thumb."""

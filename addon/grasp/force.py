@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from .. import workflow
-from . import grasp
-from .skinning import pose_matrices, skin
+from ..hand.skinning import pose_matrices, skin
+from . import fitter
 
 TOLERANCE = 0.02
 """A force within this share of the target counts as reached."""
@@ -18,16 +18,21 @@ SCALES = (0.2, 2.0)
 """Pad depths are scaled between these at most; beyond, the target is not a matter of depth."""
 
 
-def force_of(fit, found, cancel=None):
-    """Total compressive force of a grasp, N: the sum over the skin, as a mat reads it; `cancel` ends the press."""
+def contact_of(fit, found, cancel=None):
+    """The pressed contact of a grasp without a force target; `cancel` ends the press. Raises `Refusal`."""
     rig = fit.hand.rig.moved(found.place)
     read = fit.press.reading
     posed = skin(rig, pose_matrices(rig, found.angles)) - read.hand.origin_mm
     press = replace(fit.press, force_n=None, reading=replace(read, hand=replace(read.hand, posed_mm=posed)))
-    return float(np.asarray(workflow.compute(press, cancel).force_n).sum())
+    return workflow.compute(press, cancel)
 
 
-def reach(fit, first, watch=grasp.ALONE):
+def force_of(fit, found, cancel=None):
+    """Total compressive force of a grasp, N: the sum over the skin, as a mat reads it; `cancel` ends the press."""
+    return float(np.asarray(contact_of(fit, found, cancel).force_n).sum())
+
+
+def reach(fit, first, watch=fitter.ALONE):
     """The grasp whose total force is `fit.force_n`.
 
     The pads' target depths are scaled and the grasp fitted again until one carries too little and one too much. On the
@@ -44,7 +49,7 @@ def reach(fit, first, watch=grasp.ALONE):
         step = (fit.force_n / max(force, 1e-3 * fit.force_n)) ** (1.0 / 1.5)
         scale = float(np.clip(scale * np.clip(step, 1.0 / LARGEST_STEP, LARGEST_STEP), *SCALES))
         targets = {kind: scale * value for kind, value in fit.wish.targets_mm.items()}
-        found = grasp.refit(fit.hand, found, replace(fit.wish, targets_mm=targets), watch)
+        found = fitter.refit(fit.hand, found, replace(fit.wish, targets_mm=targets), watch)
         tried.append((force_of(fit, found, watch.cancel), found))
     if _is_bracketed(tried, fit.force_n):
         low = max((entry for entry in tried if entry[0] < fit.force_n), key=lambda entry: entry[0])[1]

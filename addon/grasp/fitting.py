@@ -1,0 +1,194 @@
+"""The order of a grasp fit in a scene: read hand and product, fit, write angles and places back."""
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .. import native, workflow
+from ..hand import capsules, normals, pads, reading, roles
+from ..scene import checks, mesh, read, regions, sizes, units
+from . import fitter, force, search, settings, settling, walls
+from .stage import stage_of
+from .task import Goal, Task
+
+_PALM = re.compile("palm|thenar")
+TOTALS_N = {"LIGHT": 60.0, "FIRM": 200.0}
+"""Sum of forces over the skin by strength, N. Maximal grips sum to 337, 260 and 122 N on 48, 60 and 100 mm as a mat
+reads them (Xie Table 6): firm is about two thirds of one on a common handle, light a third of that."""
+
+SETTLE_ROUNDS = 10
+"""Rounds of pressing and fitting again, at most."""
+
+MOVES = ("HAND", "PRODUCT", "FINGERS")
+"""What a fit may carry through the world; with FINGERS hand and product both stay."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fit that was read from the scene; no Blender object is in it, so any thread may run it.
+
+    `press` is the contact job that a force target repeats; None without one. `frame_mm` (4, 4): the
+    product's own axes and origin in the world, mm for its local units.
+    """
+
+    hand: fitter.Hand
+    product: object
+    product_mm: tuple
+    wish: fitter.Wish
+    force_n: float | None
+    press: object
+    names: tuple
+    frame_mm: np.ndarray | None = None
+
+
+def prepare(context, hand_object, parts, wish, force_n=None):
+    """Read a hand on its armature and a product of several `parts`.
+
+    Raises `checks.Refusal` (also `RigError`, `RoleError`) with a sentence for the user.
+    """
+    problem = native.problem() if native.module is None else ""
+    if problem:
+        raise checks.Refusal(problem)
+    checks.check_hand(context, hand_object)
+    checks.check_product(context, parts, hand_object)
+    sizes.check_product_size(context, hand_object, parts)
+    hand = read_hand(context, hand_object)
+    scale = units.mm_per_unit(context.scene)
+    product = read.read_product(context, parts, scale, np.zeros(3))
+    gap = native.module.Product(product.vertices_mm, product.triangles)
+    press = workflow.read_job(context, hand_object, parts) if force_n or is_searched(wish) else None
+    armature = reading.armature_of(hand_object)
+    if wish.is_placed:
+        wish = replace(wish, angles=reading.read_angles(armature, hand.rig, hand.joints))
+    found = (hand_object.name, armature.name, tuple(part.name for part in parts))
+    frame = np.array(parts[0].matrix_world, dtype=np.float64)
+    frame[:3] *= scale
+    return Fit(hand, gap, (product.vertices_mm, product.triangles), wish, force_n, press, found, frame)
+
+
+def read_hand(context, hand_object):
+    """The `fitter.Hand` of a mesh on an armature: bones by role, pads from the regions listed under Materials."""
+    rig, role_names = reading.read_free_rig(context, hand_object)
+    armature = reading.armature_of(hand_object)
+    joints = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
+    rig = replace(rig, normals=normals.outward_normals(rig.vertices, mesh.triangles(hand_object.data)))
+    skin = read_skin(context, hand_object, rig, joints)
+    bodies = capsules.build(rig, joints, reading.tails(rig, armature))
+    return fitter.Hand(rig, joints, pads.pads_of(rig, joints, skin), bodies)
+
+
+def read_skin(context, hand_object, rig, joints):
+    """Regions of the hand: its listed vertex groups, else the palm side of every bone."""
+    listed = [material for material in hand_object.thenar.materials if material.name in hand_object.vertex_groups]
+    if not listed:
+        facing = normals.vertex_normals(rig.vertices, mesh.triangles(hand_object.data))
+        mirrored = np.linalg.det(rig.world_from_rig[:3, :3]) < 0.0
+        return pads.skin_from_bones(rig, joints, -facing if mirrored else facing)
+    names = tuple(material.name for material in listed)
+    kinds = tuple("palm" if _PALM.search(name.lower()) else "finger" for name in names)
+    thickness = tuple(material.thickness_mm or pads.DEEP_MM for material in listed)
+    return pads.Skin(regions.vertex_regions(context, hand_object, names), names, kinds, thickness)
+
+
+def compute(fit, cancel=None, progress=None):
+    """The grasp of a `Fit`. `cancel` has `is_set()`; `progress(stage, fraction)`. Raises `fitter.GraspError`."""
+    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
+    found = fitter.fit(fit.hand, fit.product, fit.product_mm[0], fit.wish, watch)
+    if fit.force_n is None:
+        return found
+    return force.reach(fit, found, watch)
+
+
+def is_searched(wish):
+    """Whether a wish leaves to the search where the product is held."""
+    return not wish.is_placed and wish.axis is None
+
+
+def can_search(fit):
+    """Whether the hand that is pressed is the one that is posed: a subdivided one has other vertices."""
+    return fit.press is not None and len(fit.press.reading.hand.posed_mm) == len(fit.hand.rig.vertices)
+
+
+def search_all(fit, asked, cancel=None, progress=None):
+    """The `search.Found` grasps of a `Fit`, best first. Raises `fitter.GraspError`.
+
+    `asked`: the sum of forces, N (a share of it where not all pads take part), or None; and at which end of the bar the
+    thumb shall be (1 or -1; 0: either).
+    """
+    total_n, end = asked
+    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
+    taking = np.isfinite(fitter.wanted_depths(fit.hand.pads, fit.wish)).mean()
+    aim = settling.Aim(np.zeros(3), np.zeros(3), None if total_n is None else float(total_n * taking))
+    return search.search(fit, watch, aim, end)
+
+
+def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
+    """The hand settled from where it is: `(grasp, state, friction)`, the first in the scene's frame.
+
+    `weight_n` acts down the world's z at the middle of the product; `total_n` is the sum of forces to carry, None for
+    what the hand carries as it is. Raises `fitter.GraspError` where nothing touches.
+    """
+    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
+    stage = stage_of(fit)
+    goal = Goal(np.full(len(fit.hand.pads), 1.0))
+    task = Task(fit.hand, walls.Gauge(fit.product, stage.gauge.is_thin), goal, (np.eye(4), fit.wish.angles), fit.wish)
+    first = stage.taken(fitter.grasp_of(task, task.start, 0, 0.0))
+    depths = np.array([first.depths_mm[pad.name] for pad in fit.hand.pads])
+    depths = np.where(depths > 0.0, depths, np.nan)
+    weight = stage.world[:3, :3].T @ np.array([0.0, 0.0, -weight_n])
+    aim = settling.Aim(np.zeros(3), weight, total_n, depths_mm=depths)
+    if total_n is None:
+        aim = replace(aim, total_n=max(settling.pressed(stage, first, aim, cancel).total_n, 2.0 * weight_n))
+    state = settling.settle(stage, first, aim, SETTLE_ROUNDS, watch)
+    return stage.carried(state.grasp), state, settling.friction_of(stage, state, aim)
+
+
+def keep(context, fit, found):
+    """Keep the grasps found in the scene, best first."""
+    hand, _, parts = fit.names
+    rows = [
+        (settings.packed(*one.pose), one.state.total_n, float(np.linalg.norm(one.state.net_n)), one.friction, one.score)
+        for one in found
+    ]
+    settings.keep(context.scene, (hand, "\n".join(parts)), rows)
+
+
+def use(context, index):
+    """Write one of the grasps kept into the scene; the product may have been moved since. Raises `checks.Refusal`."""
+    stored, chosen = context.scene.thenar_grasps, context.scene.thenar
+    parts = workflow.product_parts(chosen)
+    if not 0 <= index < len(stored.found):
+        raise checks.Refusal(f"there are {len(stored.found)} grasps; there is no grasp {index + 1}")
+    named = "\n".join(part.name for part in parts)
+    if chosen.hand is None or (chosen.hand.name, named) != (stored.hand, stored.product):
+        raise checks.Refusal("the grasps were found for another hand or product; press Grasp again")
+    fit = prepare(context, chosen.hand, parts, fitter.Wish(pads.FIRM_MM, is_placed=True))
+    angles, place = settings.unpacked(stored.found[index].pose)
+    if angles.shape != fit.wish.angles.shape:
+        raise checks.Refusal("the hand's bones changed since the grasps were found; press Grasp again")
+    stage = stage_of(fit)
+    grasp = stage.carried(fitter.Grasp(angles, place, {}, {}, 0.0, 0, 0.0, (), stage.gauge))
+    finish(context, fit, grasp, "HAND")
+    stored.shown = index
+    return True
+
+
+def finish(context, fit, found, moves):
+    """Write a grasp into the scene: bones, and the place of hand or product. Raises `checks.Refusal`."""
+    hand_name, armature_name, part_names = fit.names
+    objects = context.scene.objects
+    missing = [name for name in (hand_name, armature_name, *part_names) if name not in objects]
+    if missing:
+        raise checks.Refusal(f"{missing[0]!r} was removed while the grasp was fitted; fit again")
+    armature = objects[armature_name]
+    scale = units.mm_per_unit(context.scene)
+    reading.write_angles(armature, fit.hand.rig, fit.hand.joints, found.angles)
+    if moves == "HAND":
+        reading.move_object(armature, found.place, scale)
+        if objects[hand_name].parent != armature and reading.top_of(objects[hand_name]) != reading.top_of(armature):
+            reading.move_object(objects[hand_name], found.place, scale)
+    elif moves == "PRODUCT":
+        for top in {reading.top_of(objects[name]) for name in part_names}:
+            reading.move_object(top, np.linalg.inv(found.place), scale)
+    context.view_layer.update()

@@ -1,0 +1,52 @@
+"""How much friction a held product needs: the least coefficient with which the skin's tangential forces carry what the
+normal forces leave over. Knows nothing of Blender.
+"""
+
+import numpy as np
+
+STEPS = 60
+"""Passes of Lawson's method; the coefficient found is always sufficient, and falls toward the least."""
+
+LEAST_WEIGHT = 1e-4
+"""No point's weight falls below this share of the mean: the system would be singular."""
+
+LEAST_SHARE = 1e-4
+"""Vertices that carry less of the sum are left out."""
+
+
+def needed(points, push, net, moment):
+    """The coefficient of friction that suffices to balance a net force and moment, or infinity if none does.
+
+    `points` (k, 3) mm from the place that the moment is about, `push` (k, 3) normal forces on the product there, N;
+    `net` (3) N and `moment` (3) N mm, of these and of all else that acts. Coulomb's cone at every point, any direction
+    of the tangential force; the least greatest ratio by Lawson's method (Lawson 1961; Rice and Usow 1968).
+    """
+    size = np.linalg.norm(push, axis=1)
+    used = size > LEAST_SHARE * size.sum()
+    points, push, size = points[used], push[used], size[used]
+    if len(size) == 0:
+        return np.inf
+    normal = push / size[:, None]
+    arm = max(float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean()), 1.0)
+    wrench = -np.concatenate([net, moment / arm])
+    if np.linalg.norm(wrench) < 1e-9 * size.sum():
+        return 0.0
+    tangent = np.eye(3) - normal[:, :, None] * normal[:, None, :]
+    spin = np.zeros((len(size), 3, 3))
+    x, y, z = (points / arm).T
+    spin[:, 0, 1], spin[:, 0, 2], spin[:, 1, 2] = -z, y, -x
+    spin[:, 1, 0], spin[:, 2, 0], spin[:, 2, 1] = z, -y, x
+    maps = np.concatenate([tangent, spin @ tangent], axis=1)
+    weights, best = np.full(len(size), 1.0 / len(size)), np.inf
+    for _ in range(STEPS):
+        ease = size / np.maximum(weights, LEAST_WEIGHT / len(size))
+        total = np.einsum("k,kij,klj->il", ease, maps, maps)
+        share, *_ = np.linalg.lstsq(total, wrench, rcond=1e-9)
+        if np.linalg.norm(total @ share - wrench) > 1e-6 * np.linalg.norm(wrench):
+            break
+        drag = ease[:, None] * np.einsum("kij,i->kj", maps, share)
+        ratio = np.linalg.norm(drag, axis=1) / size
+        best = min(best, float(ratio.max()))
+        weights = weights * ratio
+        weights = weights / weights.sum()
+    return best

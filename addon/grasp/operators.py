@@ -1,0 +1,218 @@
+"""Operators of the grasp: find one, settle it, take another one, add a sample."""
+
+from functools import partial
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+
+from .. import workflow
+from ..hand import pads
+from ..hand.operators import can_make, can_pose
+from ..operators import computing, polling, running
+from ..scene.checks import Refusal
+from . import fitter, fitting, samples, words
+
+STRENGTHS = (
+    ("LIGHT", "Light", "60 N in sum over the skin, as in a loose hold"),
+    ("FIRM", "Firm", "200 N in sum over the skin, a power grasp below the strongest one"),
+    ("CUSTOM", "Custom Depths", "Depths entered below; the forces follow from them"),
+)
+MOVES = (
+    ("HAND", "Hand", "The hand goes to the product"),
+    ("PRODUCT", "Product", "The product comes to the hand"),
+    ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
+)
+PLACES = (
+    ("LAY", "Search", "Ways to hold the product are tried; where hand and product stand does not count"),
+    ("KEEP", "Current Pose", "The fit starts from the current pose and place of hand and product"),
+)
+ENDS = (
+    ("AUTO", "Automatic", "Whichever end of the handle scores better", 0),
+    ("FIRST", "One End", "The thumb at one end of the handle", 1),
+    ("SECOND", "Other End", "The thumb at the other end of the handle", 2),
+)
+END_OF = {"AUTO": 0, "FIRST": 1, "SECOND": -1}
+DIGITS = (
+    ("thumb", "Thumb", "", 1),
+    ("index", "Index", "", 2),
+    ("middle", "Middle", "", 4),
+    ("ring", "Ring", "", 8),
+    ("little", "Little", "", 16),
+    ("palm", "Palm", "", 32),
+)
+
+
+def _depth(kind):
+    return FloatProperty(
+        name=f"{kind.capitalize()} (mm)",
+        description=f"Depth of the {kind} pads in the product, mm; 0 leaves them out of the fit",
+        min=0.0,
+        soft_max=8.0,
+        default=pads.FIRM_MM[kind],
+    )
+
+
+class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
+    """Find how the hand holds the product: several ways are tried, the forces balanced, and the best one is taken"""
+
+    bl_idname = "thenar.fit_grasp"
+    bl_label = "Fit Grasp"
+    bl_options = {"REGISTER", "UNDO"}
+    noun = "Fit"
+
+    strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM")
+    distal_mm: _depth("distal")
+    middle_mm: _depth("middle")
+    proximal_mm: _depth("proximal")
+    palm_mm: _depth("palm")
+    place: EnumProperty(name="Start", items=PLACES, default="LAY")
+    moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
+    digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
+    force_n: FloatProperty(
+        name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
+    )
+    end: EnumProperty(name="Thumb At", description="Which end of the handle the thumb is at", items=ENDS)
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_product(context)) and can_pose(cls, context)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        for name in ("strength", "place", "moves"):
+            layout.prop(self, name)
+        if self.place == "LAY":
+            layout.prop(self, "end")
+        if self.strength == "CUSTOM":
+            for name in ("distal_mm", "middle_mm", "proximal_mm", "palm_mm"):
+                layout.prop(self, name)
+        layout.column(align=True).prop(self, "digits")
+        layout.prop(self, "force_n")
+
+    def steps(self, context):
+        settings = context.scene.thenar
+        parts = workflow.product_parts(settings)
+        wish = self._wish()
+        fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
+        if fitting.is_searched(wish) and fitting.can_search(fit):
+            total = self.force_n or fitting.TOTALS_N.get(self.strength)
+            found = yield partial(fitting.search_all, fit, (total, END_OF[self.end]))
+            fitting.finish(context, fit, found[0].grasp, self.moves)
+            fitting.keep(context, fit, found)
+            return found
+        found = yield partial(fitting.compute, fit)
+        fitting.finish(context, fit, found, self.moves)
+        return found
+
+    def _wish(self):
+        depths = {"LIGHT": pads.LIGHT_MM, "FIRM": pads.FIRM_MM}.get(self.strength)
+        if depths is None:
+            depths = {kind: getattr(self, f"{kind}_mm") for kind in pads.FIRM_MM}
+        depths = {kind: depth for kind, depth in depths.items() if depth > 0.0}
+        if not depths or not self.digits:
+            raise Refusal("no pad takes part in the fit; give one a depth, and tick a digit or the palm")
+        free_mm = 0.0 if self.moves == "FINGERS" else 40.0
+        placed = self.place == "KEEP" or self.moves == "FINGERS"
+        digits = None if len(self.digits) == len(DIGITS) else tuple(sorted(self.digits))
+        return fitter.Wish(depths, digits, placed, free_mm)
+
+    def _report(self, context, found):
+        if isinstance(found, list):
+            return self._report_best(context, found)
+        for text in found.warnings:
+            self.report({"WARNING"}, running.sentence(text))
+        misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
+        force = f", {found.force_n:.0f} N" if found.force_n is not None else ""
+        self.report(
+            {"INFO"},
+            f"{len(misses)} pads within {max(misses):.1f} mm of their depth "
+            f"(mean {sum(misses) / len(misses):.1f} mm){force}, {found.seconds:.1f} s",
+        )
+        return {"FINISHED"}
+
+    def _report_best(self, context, found):
+        best = found[0]
+        for text in best.grasp.warnings:
+            self.report({"WARNING"}, running.sentence(text))
+        level, text = words.held(best.state, best.friction, context.scene.thenar_grasps.friction)
+        ways = "1 way" if len(found) == 1 else f"the best of {len(found)} ways"
+        self.report({level}, f"{text}; {ways} to hold it, {best.grasp.seconds:.1f} s")
+        return {"FINISHED"}
+
+
+class THENAR_OT_settle_grasp(computing.Computing, bpy.types.Operator):
+    """Bend and move the hand from where it is until the forces on the product balance, with its weight and at the grip
+    asked for"""
+
+    bl_idname = "thenar.settle_grasp"
+    bl_label = "Settle"
+    bl_options = {"REGISTER", "UNDO"}
+    noun = "Settling"
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_product(context)) and can_pose(cls, context)
+
+    def steps(self, context):
+        settings, asked = context.scene.thenar, context.scene.thenar_grasps
+        wish = fitter.Wish(pads.FIRM_MM, is_placed=True)
+        fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish, 1.0)
+        found = yield partial(fitting.settle_here, fit, asked.weight_n, asked.total_n or None)
+        fitting.finish(context, fit, found[0], "HAND")
+        asked.shown = -1
+        return found
+
+    def _report(self, context, found):
+        _, state, friction = found
+        level, text = words.held(state, friction, context.scene.thenar_grasps.friction)
+        self.report({level}, text)
+        return {"FINISHED"}
+
+
+class THENAR_OT_use_grasp(bpy.types.Operator):
+    """Take another one of the grasps that were found for this product"""
+
+    bl_idname = "thenar.use_grasp"
+    bl_label = "Use Grasp"
+    bl_options = {"REGISTER", "UNDO"}
+
+    index: IntProperty(name="Grasp", description="Which of the grasps found, the best one first", min=0)
+
+    @classmethod
+    def poll(cls, context):
+        found = getattr(context.scene, "thenar_grasps", None)
+        problem = "" if found is not None and found.found else "no grasp was found yet; press Grasp first"
+        return polling.allows(cls, polling.no_product(context), problem) and can_pose(cls, context)
+
+    def execute(self, context):
+        done = running.attempt(self, fitting.use, context, self.index)
+        if done is None:
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Grasp {self.index + 1} of {len(context.scene.thenar_grasps.found)}; solve to press it")
+        return {"FINISHED"}
+
+
+class THENAR_OT_add_sample(bpy.types.Operator):
+    """Add a complete scene to try: hand, product, camera, light and materials, ready to solve"""
+
+    bl_idname = "thenar.add_sample"
+    bl_label = "Add Sample"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: EnumProperty(
+        name="Sample",
+        items=[(kind, sample.label, "") for kind, sample in samples.SAMPLES.items()],
+        default="cylinder_48",
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return can_make(cls, context)
+
+    def execute(self, context):
+        made = running.attempt(self, samples.add_sample_scene, context, self.kind)
+        return {"FINISHED"} if made else {"CANCELLED"}
+
+
+CLASSES = (THENAR_OT_fit_grasp, THENAR_OT_settle_grasp, THENAR_OT_use_grasp, THENAR_OT_add_sample)

@@ -1,0 +1,48 @@
+"""Layout of the grasp's part of the sidebar tab."""
+
+import bpy
+
+from .. import status
+from ..panels.main import Tab
+
+
+class THENAR_PT_grasp(Tab, bpy.types.Panel):
+    """How the hand holds the product."""
+
+    bl_label = "Grasp"
+    bl_parent_id = "THENAR_PT_hand"
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem
+
+    def draw(self, context):
+        layout, stored = self.layout, context.scene.thenar_grasps
+        row = layout.row(align=True)
+        row.scale_y = 1.2
+        row.operator("thenar.fit_grasp", text="Grasp", icon="CON_ARMATURE").place = "LAY"
+        row = layout.row(align=True)
+        for text, strength in (("Light (current pose)", "LIGHT"), ("Firm (current pose)", "FIRM")):
+            button = row.operator("thenar.fit_grasp", text=text)
+            button.place, button.strength = "KEEP", strength
+        if stored.found:
+            _draw_found(layout, stored)
+        box = layout.column()
+        box.use_property_split = True
+        box.use_property_decorate = False
+        for name in ("weight_n", "total_n", "friction"):
+            box.prop(stored, name)
+        box.operator("thenar.settle_grasp", icon="CON_FLOOR")
+
+
+def _draw_found(layout, stored):
+    """A row for each grasp found: which is shown, what it carries, and whether it holds."""
+    column = layout.column(align=True)
+    for index, row in enumerate(stored.found):
+        icon = "CHECKMARK" if row.friction <= stored.friction else "ERROR"
+        slip = "slips" if row.friction > stored.friction else f"friction {row.friction:.2f}"
+        text = f"{index + 1}: {row.total_n:.0f} N, {row.net_n:.0f} N left over, {slip}"
+        column.operator("thenar.use_grasp", text=text, icon=icon, depress=stored.shown == index).index = index
+
+
+CLASSES = (THENAR_PT_grasp,)

@@ -1,0 +1,86 @@
+"""What a scene keeps of its grasps: those found for the product, and what the hand shall hold."""
+
+import json
+
+import bpy
+import numpy as np
+from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+FRICTION = 0.38
+"""Static friction of palmar skin on aluminium; 0.50 on textured vinyl, 0.27 on paper (Buchholz 1988)."""
+
+WEIGHT_MOST_N = 500.0
+
+
+class ThenarGrasp(bpy.types.PropertyGroup):
+    """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; the rest says what it
+    carries when it is pressed."""
+
+    pose: StringProperty()
+    total_n: FloatProperty()
+    net_n: FloatProperty()
+    friction: FloatProperty()
+    score: FloatProperty()
+
+
+class ThenarGrasps(bpy.types.PropertyGroup):
+    """`scene.thenar_grasps`: the grasps found, best first, and the settings of *Settle*."""
+
+    found: CollectionProperty(type=ThenarGrasp)
+    shown: IntProperty(default=-1)
+    product: StringProperty()
+    hand: StringProperty()
+    weight_n: FloatProperty(
+        name="Weight (N)",
+        description="Weight of the product, N, which acts downward at its middle; 0 balances the forces alone",
+        min=0.0,
+        max=WEIGHT_MOST_N,
+    )
+    total_n: FloatProperty(
+        name="Grip (N)",
+        description="Sum of forces that the skin shall carry, N; 0 keeps what the current pose carries",
+        min=0.0,
+        soft_max=400.0,
+    )
+    friction: FloatProperty(
+        name="Friction",
+        description="Coefficient of friction between skin and product that holds what the normal forces leave over",
+        min=0.0,
+        max=2.0,
+        default=FRICTION,
+    )
+
+
+def keep(scene, names, rows):
+    """Write the grasps found, `rows` of (pose, total N, net N, friction, score), best first; the first is shown."""
+    stored = scene.thenar_grasps
+    stored.hand, stored.product = names
+    stored.found.clear()
+    for pose, total, net, friction, score in rows:
+        row = stored.found.add()
+        row.pose, row.total_n, row.net_n, row.friction, row.score = pose, total, net, min(friction, 99.0), score
+    stored.shown = 0 if rows else -1
+
+
+def packed(angles, place):
+    """Angles (b, 3), radians, and a place (4, 4), mm, as one text."""
+    return json.dumps({"angles": np.round(angles, 9).tolist(), "place": np.round(place, 6).tolist()})
+
+
+def unpacked(text):
+    """The same back."""
+    stored = json.loads(text)
+    return np.array(stored["angles"]), np.array(stored["place"])
+
+
+CLASSES = (ThenarGrasp, ThenarGrasps)
+
+
+def register_properties():
+    """Hang the grasps on scenes."""
+    bpy.types.Scene.thenar_grasps = PointerProperty(type=ThenarGrasps)
+
+
+def unregister_properties():
+    """Take them off again."""
+    del bpy.types.Scene.thenar_grasps

@@ -1,0 +1,25 @@
+"""What is said of a grasp: whether the product would stay in the hand. Knows nothing of Blender."""
+
+import math
+
+from . import settling
+
+ALMOST = 0.005
+"""Friction below this is none: a product is held by the normal forces alone."""
+
+
+def held(state, needed, available):
+    """Report level and sentence for a `settling.State` that needs a coefficient of friction, with one available."""
+    net = math.sqrt(sum(part * part for part in state.net_n))
+    text = f"{state.total_n:.0f} N of grip, {net:.1f} N left over"
+    if state.imbalance <= settling.BALANCED and needed <= available:
+        return "INFO", f"In balance: {text}" + ("" if needed < ALMOST else f", held by a friction of {needed:.2f}")
+    if needed <= available:
+        return "INFO", f"Held by friction: {text}, a coefficient of {needed:.2f} holds it"
+    if math.isinf(needed):
+        return "WARNING", f"No balance: {text}, which no friction holds; move the hand to the middle of the product"
+    return (
+        "WARNING",
+        f"No balance: {text}; it needs a friction of {needed:.2f} where {available:.2f} is there: the product would "
+        "slip out. Ask for more grip, or hold it nearer to its middle",
+    )
