@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..scene.units import Bools, Floats, Ints
-from .skin_edge import REACH_MM, touching
+from .skin_edge import REACH_MM, renumbered, touching
 
 _BAND_MM = 0.7 * REACH_MM
 """Skin up to so far from the edge carries it over; the pressure on a product reaches less far beyond the contact."""
@@ -29,8 +29,8 @@ def signed_distance(
     carries = touching(triangles, np.abs(edge) < _BAND_MM)
     if not carries.any() or not loaded.any():
         return out
-    rows, patch = np.unique(triangles[carries], return_inverse=True)
-    patch = patch.reshape(-1, 3).astype(np.int32)
+    rows, patch = renumbered(triangles[carries], len(skin_points))
+    patch = patch.astype(np.int32)
     asked = loaded.copy()
     asked[faces[touching(faces, loaded)].ravel()] = True
     asked &= _are_near(points, skin_points[rows])

@@ -29,7 +29,7 @@ its free neighbors place the edge; beyond the second, they alone do. Tests pass 
 
 @dataclass(frozen=True)
 class _Patch:
-    """The skin near a contact: `points` (n, 3), `faces` (m, 3), both directions of all edges `ends` (k, 2)."""
+    """The skin near a contact: `points` (n, 3), `faces` (m, 3), and the `ends` (6 m, 2) of all their edges, both ways."""
 
     points: Floats
     faces: Ints
@@ -51,8 +51,7 @@ def signed_distance(points: Floats, triangles: Ints, pressure: Floats, gaps: Gap
         return out
     band = _with_neighbors(triangles, near)
     faces = triangles[~touching(triangles, ~band)]
-    rows, faces = np.unique(faces, return_inverse=True)
-    faces = faces.reshape(-1, 3)
+    rows, faces = renumbered(faces, len(points))
     here, pressed = points[rows], inside[rows]
     gap = np.full(len(rows), np.nan)
     if gaps is not None:
@@ -125,6 +124,14 @@ def _to_zero(patch: _Patch, values: Floats) -> Floats:
     return nearest
 
 
+def renumbered(faces: Ints, count: int) -> tuple[Ints, Ints]:
+    """The vertices of `count` that the faces use, in order, and the faces in terms of those."""
+    used = np.zeros(count, bool)
+    used[faces.ravel()] = True
+    place = np.cumsum(used) - 1
+    return np.flatnonzero(used), place[faces]
+
+
 def touching(triangles: Ints, chosen: Bools) -> Bools:
     """Which triangles (m,) have a corner among the `chosen` vertices; by columns, since `any` over rows is slow."""
     a, b, c = (chosen[triangles[:, corner]] for corner in range(3))
@@ -138,10 +145,8 @@ def _with_neighbors(triangles: Ints, chosen: Bools) -> Bools:
 
 
 def _patch(points: Floats, faces: Ints) -> _Patch:
-    pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    keys = np.unique(np.sort(pairs, axis=1) @ np.array([len(points), 1]))
-    low, high = np.divmod(keys, len(points))
-    ends = np.stack([np.concatenate([low, high]), np.concatenate([high, low])], axis=1)
+    a, b, c = faces.T
+    ends = np.stack([np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])], axis=1)
     lengths = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     total = np.bincount(ends[:, 0], lengths, minlength=len(points))
     spacing = total / np.maximum(np.bincount(ends[:, 0], minlength=len(points)), 1)
@@ -149,7 +154,7 @@ def _patch(points: Floats, faces: Ints) -> _Patch:
 
 
 def _counted(patch: _Patch, chosen: Bools) -> Ints:
-    """How many neighbors of each vertex are among the `chosen`."""
+    """How many edges of faces lead from each vertex to one of the `chosen`."""
     counts: Ints = np.bincount(patch.ends[chosen[patch.ends[:, 1]], 0], minlength=len(patch.points))
     return counts
 

@@ -9,10 +9,13 @@ import numpy as np
 
 from .. import cache, comfort, effects, maps, names, native, sentences, workflow
 from .. import result as results
-from ..contact_fields import written
+from ..contact_fields import skin_edge, written
 from ..scene import attributes, checks, colors, mesh, own, read, sizes, state, units, write
 from ..soft_grip import covering
 from . import nodes
+
+_PRODUCT_EVERY = 4
+"""While the scene moves, the edge on the product is computed once in so many solves: it takes twice as long as one."""
 
 
 @dataclass
@@ -30,7 +33,9 @@ class Session:
     """Shares with the cached skin what is prepared. Effects and warm starts are its own: solves do not change them."""
     painted: dict = field(default_factory=dict)
     is_edged: bool = False
-    """Whether the last contact was written with its edge, which takes as long as the press: only while a map shows."""
+    """Whether the last contact was written with its edge, which takes longer than the press: only while a map shows."""
+    product_edge: object = None
+    """Distances of the product's vertices to the edge as last computed, and how many solves ago, or None."""
     is_warm: bool = False
     """Whether solves begin at the last one and are as exact as the eye: faster, but skin beside the contact then keeps
     some of its way there."""
@@ -120,6 +125,7 @@ def _take_product(context, session, parts):
     session.job = replace(session.job, reading=read.Reading(skin, product), product=prepared)
     # Should the press fail, the next look tries again.
     session.surface, session.seen = state.shapes(context, parts), None
+    session.product_edge = None
     session.painted.clear()
 
 
@@ -139,7 +145,7 @@ def _write(context, session, contact, matrix):
     fields = written.fields_of(contact, job)
     session.is_edged = hand.thenar.shows_pressure
     if session.is_edged:
-        fields = written.edged(fields, contact, job)
+        fields = _edged(session, fields, contact)
     _shape(hand, fields, (matrix, job.reading.hand.scale))
     scale = maps.scale(maps.MAPS[maps.PRESSURE], settings)
     _paint(session, hand, (_shown_kpa(fields.pressure_mpa), _single(fields.edge_mm)), (settings, scale, colors.SKIN))
@@ -158,6 +164,18 @@ def _write(context, session, contact, matrix):
 def _shown_kpa(pressure_mpa):
     """kPa in the precision of a mesh: what it would not tell apart need not be painted anew."""
     return units.kpa(pressure_mpa).astype(np.float32)
+
+
+def _edged(session, fields, contact):
+    """The fields with their edge; while the scene moves, the product's is that of a few solves before."""
+    before, job = session.product_edge, session.job
+    if not session.is_warm or before is None or before[1] + 1 >= _PRODUCT_EVERY:
+        fields = written.edged(fields, contact, job)
+        session.product_edge = fields.product_edge_mm, 0
+        return fields
+    session.product_edge = before[0], before[1] + 1
+    edge = np.where(fields.product_pressure_mpa > 0.0, before[0], np.minimum(before[0], -skin_edge.REACH_MM))
+    return replace(written.skin_edged(fields, contact, job), product_edge_mm=edge)
 
 
 def _single(edge_mm):
