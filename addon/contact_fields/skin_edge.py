@@ -29,7 +29,7 @@ its free neighbors place the edge; beyond the second, they alone do. Tests pass 
 
 @dataclass(frozen=True)
 class _Patch:
-    """The skin near a contact: `points` (n, 3), `faces` (m, 3), and the `ends` (6 m, 2) of all their edges, both ways."""
+    """The skin near a contact: `points` (n, 3), `faces` (m, 3), and the `ends` (6 m, 2) of their edges, both ways."""
 
     points: Floats
     faces: Ints

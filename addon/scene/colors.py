@@ -10,9 +10,9 @@ from bpy.types import Mesh, Object, PropertyGroup
 
 from .. import colormap, maps, names
 from ..contact_fields import skin_edge
-from . import attributes, units
+from . import attributes, shading, units
 from . import mesh as mesh_of
-from .units import Floats
+from .units import Floats, Ints
 
 Color: TypeAlias = tuple[float, float, float]
 
@@ -31,14 +31,18 @@ _STEPS = 31 * 512
 
 
 class Ground(NamedTuple):
-    """What colours are laid on: the bare surface's own (sRGB), and the spacing of its vertices, mm."""
+    """What colours are laid on: the bare surface's own, scene-linear (3) or (n, 3), and its vertices' spacing, mm."""
 
-    color: Color
+    color: Floats
     spacing_mm: float
+
+    def at(self, rows: Ints) -> "Ground":
+        """The same of some vertices."""
+        return self if self.color.ndim == 1 else Ground(self.color[rows], self.spacing_mm)
 
 
 def ground(obj: Object, color: Color) -> Ground:
-    """The `Ground` of a mesh object whose bare surface has that colour."""
+    """The `Ground` of a mesh object: its materials' viewport colours, as Solid view shows them; else `color` (sRGB)."""
     mesh = obj.data
     ends = np.empty(2 * len(mesh.edges), np.int32)
     mesh.edges.foreach_get("vertices", ends)
@@ -47,7 +51,22 @@ def ground(obj: Object, color: Color) -> Ground:
     lengths = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     size = abs(np.linalg.det(units.world_from_local(obj)[:3, :3])) ** (1.0 / 3.0)
     spacing = float(np.median(lengths)) if len(lengths) else 0.0
-    return Ground(color, spacing * size * units.mm_per_unit(bpy.context.scene))
+    return Ground(_bare(obj, color), spacing * size * units.mm_per_unit(bpy.context.scene))
+
+
+def _bare(obj: Object, color: Color) -> Floats:
+    plain = colormap.to_linear(color)
+    tints = [plain if own is None else np.array(own.diffuse_color[:3]) for own in shading.own_materials(obj)] or [plain]
+    if len(tints) == 1:
+        return np.asarray(tints[0])
+    faces, corners = obj.data.polygons, np.empty(len(obj.data.loops), np.int32)
+    chosen, sizes = np.empty(len(faces), np.int32), np.empty(len(faces), np.int32)
+    faces.foreach_get("material_index", chosen)
+    faces.foreach_get("loop_total", sizes)
+    obj.data.loops.foreach_get("vertex_index", corners)
+    by_vertex = np.zeros(len(obj.data.vertices), np.int32)
+    by_vertex[corners] = np.repeat(np.clip(chosen, 0, len(tints) - 1), sizes)
+    return np.asarray(tints)[by_vertex]
 
 
 def linear(fields: tuple[Floats, Floats | None], look: PropertyGroup, under: Ground) -> Floats:
@@ -131,8 +150,8 @@ def _cover(covering: Floats, scale: maps.Scale, under: Ground) -> Floats:
 def _laid(tinted: Floats, cover: Floats, under: Ground) -> Floats:
     """`tinted`, which is written to, over the bare surface as far as it covers."""
     rows = np.flatnonzero(cover < 1.0)
-    bare = np.append(colormap.to_linear(under.color), 1.0).astype(np.float32)
-    tinted[rows] = bare + (tinted[rows] - bare) * cover[rows, None].astype(np.float32)
+    bare = under.at(rows).color.astype(np.float32)
+    tinted[rows, :3] = bare + (tinted[rows, :3] - bare) * cover[rows, None].astype(np.float32)
     return tinted
 
 

@@ -49,6 +49,14 @@ def hide(obj: Object) -> None:
     state.slots.clear()
 
 
+def own_materials(obj: Object) -> list[Material | None]:
+    """The user's material of every slot, also while a map is laid over them."""
+    if not obj.thenar.shows_pressure:
+        return [slot.material for slot in obj.material_slots]
+    pairs = zip(obj.thenar.slots, obj.data.materials, strict=False)
+    return [kept.material if kept.link == "OBJECT" else material for kept, material in pairs]
+
+
 def update_group(look: PropertyGroup) -> None:
     """Set map, range and colours of the overlay that all overlaid materials share."""
     tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)

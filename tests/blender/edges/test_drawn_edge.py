@@ -149,6 +149,32 @@ def test_colors_of_vertices_end_on_the_same_circle():
         assert rms <= 0.45
 
 
+@pytest.mark.parametrize("link", ["DATA", "OBJECT"])
+def test_colors_of_vertices_keep_the_materials_own_off_the_contact(link):
+    hand, product = ball_on_half_space()
+    tints = [(0.1, 0.2, 0.6, 1.0), (0.7, 0.1, 0.1, 1.0)]
+    for tint in tints:
+        material = bpy.data.materials.new("Tint")
+        material.diffuse_color = tint
+        product.data.materials.append(material)
+    product.data.materials.pop(index=0)
+    upper = [face.center.z > 0.02 for face in product.data.polygons]
+    product.data.polygons.foreach_set("material_index", upper)
+    for slot, material in zip(product.material_slots, list(product.data.materials), strict=True):
+        slot.link = link
+        slot.material = material
+    stage.solve()
+    height = np.array([vertex.co.z for vertex in product.data.vertices])
+    far = stage.attribute(product, names.EDGE_MM) < -4.9
+    for shown in (True, False):
+        bpy.ops.thenar.show_pressure(show=shown)
+        color = stage.attribute(product, "Thenar Pressure")
+        for rows, tint in ((far & (height > 0.04), tints[1]), (far & (height < 0.01), tints[0])):
+            assert rows.any() and np.abs(color[rows] - tint).max() < 1e-6
+        inside = stage.attribute(product, names.EDGE_MM) > 3.0
+        assert inside.any() and np.abs(color[inside] - tints[0]).max(axis=1).min() > 0.2
+
+
 def edges(*objects):
     return [stage.attribute(obj, names.EDGE_MM).copy() for obj in objects]
 
