@@ -20,10 +20,10 @@ SKIN: Color = (0.90, 0.74, 0.65)
 """sRGB of bare skin."""
 BARE: Color = (0.84, 0.84, 0.82)
 """sRGB of a bare product."""
-_SOFT = 0.75
-_SOFTEST_MM = 2.0
+_SOFT = 1.2
+_SOFTEST_MM = 2.5
 """Half of the width over which colours of vertices end a map, in spacings, and at most: from half a spacing on the
-middle of the transition follows the edge between vertices, and no sawtooth is seen."""
+middle of the transition follows the edge between vertices, and from one on no sawtooth is seen."""
 _SAMPLED = 20_000
 """Edges of a mesh, about, that stand for all in its spacing."""
 _STEPS = 31 * 512

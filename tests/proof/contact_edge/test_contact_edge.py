@@ -92,7 +92,7 @@ def test_the_field_is_as_steep_as_a_distance_on_both_sides_of_the_edge():
         slope = np.linalg.solve(both, np.stack([fb - fa, fc - fa], axis=1)[crosses][..., None])[..., 0]
         steep.append(np.linalg.norm(slope, axis=1))
     low, middle, high = np.percentile(np.concatenate(steep), [2, 50, 98])
-    assert low > 0.6 and 0.9 < middle < 1.1 and high < 1.4
+    assert low > 0.9 and 0.96 < middle < 1.05 and high < 1.2
 
 
 TOOLS = {
