@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from . import following, native, workflow
+from .contact_fields import written
 from .scene import baked, checks, copies, moving, own, units
 from .soft_grip import covering
 
@@ -62,18 +63,20 @@ def keep_frame(bake, job, contact):
     skin, product = job.reading.hand, job.reading.product
     world = skin.posed_mm + np.asarray(contact.displacement_mm) + skin.origin_mm
     pressure = units.kpa(contact.product_pressure_mpa).astype(np.float32)
-    fields = workflow.fields_of(contact, job)
+    fields = written.edged(written.fields_of(contact, job), contact, job)
+    edges = fields.product_edge_mm.astype(np.float32)
     carriers = [part for part in product.parts if not part.reason]
     bake.done.append(
         {
             "local": units.to_local(world, skin.matrix, skin.scale),
             "fields": baked.hand_fields(fields),
             "parts": {part.name: pressure[part.first : part.first + part.base_count] for part in carriers},
+            "part_edges": {part.name: edges[part.first : part.first + part.base_count] for part in carriers},
             "force_n": float(np.asarray(contact.force_n).sum()),
             "area_mm2": contact.contact_area_mm2,
             "peak_kpa": float(units.kpa(contact.peak_pressure_mpa)),
             "shear_n": float(np.linalg.norm(contact.friction.total_force_n)) if contact.friction else 0.0,
-            "offset": workflow.offset_mm(contact, job) / skin.scale,
+            "offset": fields.offset_mm / skin.scale,
         }
     )
 

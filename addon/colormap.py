@@ -1,5 +1,7 @@
 """The colour maps: 32 stops of each, as a shader's ramp holds them.
 
+Ember begins light, so that a map ends softly on skin: in OKLab (Ottosson 2020) its lightness falls evenly from 0.965 to
+0.26, from cream over orange and red to plum, in steps that are alike within 7 %.
 Cividis: Nunez, Anderton & Renslow 2018. Viridis, Plasma: van der Walt & Smith 2015 (CC0). Warm to cool: Moreland 2009,
 his blue-white-red turned round. Between stops the ramps are at most 5.5 of 255 off the 256-step maps.
 """
@@ -12,6 +14,10 @@ from numpy.typing import ArrayLike
 from .scene.units import Floats
 
 _STOPS = {
+    "EMBER": (
+        "f9f4daf6ecc8f3e4b6f0dba4efd292efc881efbe70f0b25ff1a74ff19a3ff08e33ef822aec7624e96a21e65d20e24f23"
+        "dc432ad33b33c9333ac02b3fb62343ac1c46a1164a95134f8911527c1055700f56640f54580f514c0f4d410f48370e42"
+    ),
     "CIVIDIS": (
         "00224e00285b002e6a0533711c396f293f6e33446d3c4a6c45506c4d556c555b6d5c616e6467706b6d72727274787877"
         "807f78888578908b78979177a09875a89e73b0a571b9ab6dc2b369cbb965d3c05fdcc859e6d051efd748f8df3cfee838"
@@ -68,7 +74,7 @@ def to_linear(color: ArrayLike) -> Floats:
 
 
 def cover(share: ArrayLike) -> Floats:
-    """How far a map covers the surface (0 to 1) at `share` of its edge: a soft border where contact begins."""
+    """How far a map covers the surface (0 to 1) at `share` of its edge, softly."""
     edge = within(np.asarray(share, dtype=np.float64))
     return edge * edge * (3.0 - 2.0 * edge)
 
@@ -78,5 +84,5 @@ def within(share: Floats) -> Floats:
     return np.minimum(np.fmax(share, 0.0), 1.0)
 
 
-EDGE = 0.06
-"""Fraction of the range over which a map fades in."""
+FADE = 0.06
+"""Fraction of the range over which pressure fades in where the edge of the contact is not known."""

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import cache, effect_settings, effects, names, workflow
+from . import cache, effect_settings, effects, names, native, workflow
+from .contact_fields import written
 from .scene import checks, rigid
 
 _SHAPE_MM = 0.01
@@ -25,6 +26,8 @@ class Course:
 
     seconds_per_frame: float
     first: object = None
+    product: object = None
+    """The native module's product, where it was in the first frame."""
     walk: object = None
     last: tuple | None = None
     """Force on the skin by vertex (n, 3), N, and its place (n, 3), mm, both as the product sees them."""
@@ -40,11 +43,13 @@ def take(course, job, hooks):
     """
     first = course.first or job
     whole = _motion(first, job)
-    posed = job.reading.hand.posed_mm + (job.reading.hand.origin_mm - first.reading.hand.origin_mm)
+    shift = job.reading.hand.origin_mm - first.reading.hand.origin_mm
+    posed = job.reading.hand.posed_mm + shift
     cancel, progress = hooks
     with workflow.telling(job):
         if course.walk is None:
-            course.walk, course.first = _start(job, hooks), job
+            course.product, course.first = native.module.Product(*_surface(job)), job
+            course.walk = _start(job, course.product, hooks)
         contact = course.walk.advance(
             len(course.work_mj) * course.seconds_per_frame,
             posed,
@@ -53,14 +58,31 @@ def take(course, job, hooks):
             cancel=cancel,
             progress=progress,
         )
+    job.product = _Moved(course.product, whole, shift)
     _book(course, contact, (posed, whole, job))
     return contact
 
 
-def _start(job, hooks):
-    product, direction = job.reading.product, job.direction
-    direction = None if direction is None else np.array(direction, dtype=np.float64)
-    return workflow.prepared(job, *hooks).start(product.vertices_mm, product.triangles, direction=direction)
+@dataclass(frozen=True)
+class _Moved:
+    """A product that moved by `whole` (4, 4) since it was prepared; points are about a center `shift` (3), mm, away."""
+
+    product: object
+    whole: object
+    shift: object
+
+    def gap_mm(self, points_mm, **more):
+        """Gaps of points, as `thenar.Product` gives them."""
+        return self.product.gap_mm(rigid.seen(points_mm + self.shift, self.whole), **more)
+
+
+def _surface(job):
+    return job.reading.product.vertices_mm, job.reading.product.triangles
+
+
+def _start(job, product, hooks):
+    direction = None if job.direction is None else np.array(job.direction, dtype=np.float64)
+    return workflow.prepared(job, *hooks).start(product, direction=direction)
 
 
 def cycles(force_n, work_mj):
@@ -112,7 +134,7 @@ def _fixed(job):
 def _book(course, contact, place):
     """Add the frame's energies: work of the product on the skin by the mean of the forces at both ends of the step."""
     posed, whole, job = place
-    forces, places = _as_seen(contact, (posed, whole, workflow.offset_mm(contact, job)))
+    forces, places = _as_seen(contact, (posed, whole, written.offset_mm(contact, job)))
     work = course.work_mj[-1] if course.work_mj else 0.0
     if course.last is not None:
         before, there = course.last

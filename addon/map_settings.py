@@ -1,7 +1,7 @@
 """Blender properties of the maps: which one is shown, and the ranges that are kept between solves."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from . import maps, status
 
@@ -28,6 +28,12 @@ class ThenarMaps(bpy.types.PropertyGroup):
     """`scene.thenar.maps`: the map on the skin, and the tops of the ranges of all maps but the pressure's."""
 
     shown: EnumProperty(name="Map", description="Quantity that the colors on the skin show", items=KINDS)
+    contour: BoolProperty(
+        name="Contour",
+        description="Draw a thin line where contact ends, in Material Preview, renders and bakes",
+        default=True,
+        update=_look_changed,
+    )
     shear_kpa: _range("Range (kPa)", "Shear, kPa,", 50)
     depth_mm: _range("Range (mm)", "Depth, mm,", 5)
     reference_difference_kpa: _range("Range (kPa)", "Reference minus fast pressure, kPa,", 50)

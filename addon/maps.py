@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from . import colormap, names
+from . import names
 from .scene.units import Floats
 
 PRESSURE = "PRESSURE"
@@ -12,6 +12,28 @@ REFERENCE = "REFERENCE"
 THICKNESS = "THICKNESS"
 _BARELY = 0.01
 """Value from which a map covers all skin that carries one, in its unit."""
+_SHARP_MM = 0.05
+"""Half of the width over which a map ends at the edge of the contact in a shader, which sees it inside triangles."""
+LINE_MM = 0.35
+"""Width of the line along the edge of the contact."""
+
+
+@dataclass(frozen=True)
+class _Cover:
+    """What decides where a map covers the surface: the attribute (empty: the map's own), from and to which value."""
+
+    attribute: str
+    edge: tuple[float, float] = (-_SHARP_MM, _SHARP_MM)
+    is_distance: bool = True
+
+
+_COVERS = {
+    "contact": _Cover(names.EDGE_MM),
+    "overlap": _Cover(names.OVERLAP_MM),
+    "reference": _Cover(names.REFERENCE_EDGE_MM),
+    "skin": _Cover("", (0.0, _BARELY), is_distance=False),
+    "mat": _Cover(names.ON_MAT, (0.0, 1.0), is_distance=False),
+}
 
 
 Value = TypeVar("Value", float, Floats)
@@ -33,19 +55,23 @@ class Map:
     limit: str = ""
     """Setting that holds the top of its range; empty: 0 to `fixed`."""
     fixed: float = 1.0
-    covers: str = "itself"
-    """What decides where the map covers the surface: "itself" (fades in from zero), "contact", "skin" or "mat"."""
+    covers: str = "contact"
+    """What decides where the map covers the surface: a key of `_COVERS`."""
     is_signed: bool = False
     """Whether the colours run from minus to plus the top of the range."""
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How values become colours: the range from `low`, the palette, and the edge at which covering is full."""
+    """How values become colours: the range from `low`, the palette, and from and to where covering rises in a shader.
+
+    `is_distance`: whether what covers is a distance to the map's edge, mm.
+    """
 
     high: float
     palette: str
-    edge: float
+    edge: tuple[float, float]
+    is_distance: bool = True
     low: float = 0.0
 
     def share(self, value: Value) -> Value:
@@ -74,7 +100,6 @@ MAPS = {
             _NO_SHEAR,
             palette="PLASMA",
             limit="shear_kpa",
-            covers="contact",
         ),
         Map(
             "SLIP",
@@ -84,7 +109,6 @@ MAPS = {
             "Unused share of the friction limit: 0 where skin slips over the product, 1 where it carries no shear",
             _NO_SHEAR,
             palette="WARMCOOL",
-            covers="contact",
         ),
         Map(
             "DEPTH",
@@ -94,6 +118,7 @@ MAPS = {
             "Overlap of product and skin before the skin deforms",
             _NO_CONTACT,
             limit="depth_mm",
+            covers="overlap",
         ),
         Map(
             THICKNESS,
@@ -115,7 +140,6 @@ MAPS = {
             "pressure is not assessed; choose a threshold under Comfort, and solve",
             palette="COOLWARM",
             fixed=2.0,
-            covers="contact",
         ),
         Map(
             REFERENCE,
@@ -125,6 +149,7 @@ MAPS = {
             "Pressure of the reference solve, in which the tissue is a solid between skin and bone",
             _NO_REFERENCE,
             limit="range_kpa",
+            covers="reference",
         ),
         Map(
             "REFERENCE_DIFFERENCE",
@@ -135,7 +160,6 @@ MAPS = {
             _NO_REFERENCE,
             palette="COOLWARM",
             limit="reference_difference_kpa",
-            covers="contact",
             is_signed=True,
         ),
         Map(
@@ -181,19 +205,18 @@ def scale(view: Map, look: Any) -> Scale:
     """The map's `Scale` under the present settings."""
     place = setting(view, look)
     high = max(view.fixed if place is None else getattr(*place), 1e-6)
-    edges = {
-        "itself": colormap.EDGE * high,
-        "contact": colormap.EDGE * max(look.range_kpa, 1e-6),
-        "skin": _BARELY,
-        "mat": 1.0,
-    }
-    low = -high if view.is_signed else 0.0
-    return Scale(high, view.palette or look.palette, edges[view.covers], low)
+    low, cover = -high if view.is_signed else 0.0, _COVERS[view.covers]
+    return Scale(high, view.palette or look.palette, cover.edge, cover.is_distance, low)
 
 
 def covering(view: Map) -> str:
     """The attribute that decides where the map covers the surface."""
-    return {"contact": names.PRESSURE_KPA, "mat": names.ON_MAT}.get(view.covers, view.attribute)
+    return _COVERS[view.covers].attribute or view.attribute
+
+
+def has_line(view: Map, look: Any) -> bool:
+    """Whether a line is drawn where the map ends."""
+    return bool(_COVERS[view.covers].is_distance and look.maps.contour)
 
 
 def peak(view: Map, result: Any) -> float:

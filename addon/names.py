@@ -14,6 +14,10 @@ DEPTH_MM = "contact_depth_mm"
 REGION = "contact_region"
 FORCE_N = "contact_force_n"
 DISPLACEMENT_MM = "contact_displacement_mm"
+EDGE_MM = "contact_edge_mm"
+"""Signed distance to the edge of the contact, > 0 inside; the map ends where it is 0, between vertices."""
+OVERLAP_MM = "contact_overlap_mm"
+"""Overlap of product and skin before the skin deforms, < 0 where they are apart."""
 SHEAR_KPA = "shear_kpa"
 SLIP_MARGIN = "slip_margin"
 THICKNESS_MM = "tissue_thickness_mm"
@@ -25,6 +29,8 @@ PRINT_RESIDUAL = "print_residual"
 """1 where a compared handprint is inked alone, -1 where the simulation alone touches, 0 where both or neither do."""
 REFERENCE_KPA = "reference_kpa"
 """Pressure of the reference solve."""
+REFERENCE_EDGE_MM = "reference_edge_mm"
+"""As `EDGE_MM`, of the reference solve."""
 REFERENCE_DIFFERENCE_KPA = "reference_difference_kpa"
 """Pressure of the reference solve minus that of the fast result."""
 ON_MAT = "on_mat"
@@ -49,13 +55,16 @@ HAND_ATTRIBUTES = (
     PRINT_RESIDUAL,
     REFERENCE_KPA,
     REFERENCE_DIFFERENCE_KPA,
+    REFERENCE_EDGE_MM,
+    EDGE_MM,
+    OVERLAP_MM,
     ON_MAT,
     COLOR,
     MAP_COLOR,
 )
 RESIDUAL_ATTRIBUTES = (RESIDUAL_KPA, PRINT_RESIDUAL, ON_MAT)
-REFERENCE_ATTRIBUTES = (REFERENCE_KPA, REFERENCE_DIFFERENCE_KPA)
-PRODUCT_ATTRIBUTES = (PRESSURE_KPA, *RESIDUAL_ATTRIBUTES, COLOR, MAP_COLOR)
+REFERENCE_ATTRIBUTES = (REFERENCE_KPA, REFERENCE_DIFFERENCE_KPA, REFERENCE_EDGE_MM)
+PRODUCT_ATTRIBUTES = (PRESSURE_KPA, EDGE_MM, *RESIDUAL_ATTRIBUTES, COLOR, MAP_COLOR)
 
 OVERLAY_GROUP = "Thenar Pressure Overlay"
 MATERIAL_SUFFIX = " · pressure"

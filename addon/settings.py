@@ -224,9 +224,11 @@ class ThenarScene(bpy.types.PropertyGroup):
         name="Colors",
         description="Color map of the pressure",
         items=(
-            ("VIRIDIS", "Viridis", "Perceptually uniform"),
-            ("CIVIDIS", "Cividis", "Perceptually uniform, also with a color-vision deficiency"),
+            ("EMBER", "Ember", "Light where pressure is low; perceptually uniform", 2),
+            ("VIRIDIS", "Viridis", "Dark where pressure is low; perceptually uniform", 0),
+            ("CIVIDIS", "Cividis", "As Viridis, also with a color-vision deficiency", 1),
         ),
+        default="EMBER",
         update=_look_changed,
     )
     show_legend: BoolProperty(

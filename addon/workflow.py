@@ -12,6 +12,7 @@ from bpy.types import Context, Object, PropertyGroup
 
 from . import cache, certificate, comfort, effect_settings, effects, maps, names, native, sentences, status
 from . import result as results
+from .contact_fields import written
 from .material_settings import ANATOMY, MATERIAL_NUMBERS
 from .scene import checks, own, owned, read, sizes, state, units, write
 from .scene import parts as parts_of
@@ -226,6 +227,7 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
 
     Raises `Refusal` if the scene changed meanwhile; on any failure the scene is as before.
     """
+    fields = yield partial(written.edged, written.fields_of(contact, job), contact, job)
     settings = context.scene.thenar
     hand, parts = settings.hand, product_parts(settings)
     if hand is None or hand.name != job.hand_name or tuple(part.name for part in parts) != job.part_names:
@@ -234,18 +236,17 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
         raise checks.Refusal(f"'{hand.name}', its product or a setting was changed while solving; solve again")
     yield PAUSE
     started = time.perf_counter()
-    fields = fields_of(contact, job)
 
     def measure(surface: certificate.Surface, left_mm: Floats | None) -> Work:
         pressed = contact.pressed_product or job.product
         return partial(certificate.measure, surface, left_mm, (pressed, fields.offset_mm))
 
-    written = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
+    report = yield from write.write_contact(context, hand, parts, (job.reading, fields), measure)
     if job.taken is not None:
         job.taken.pop_all()
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
-    result = results.fill(settings.result, job, contact, written, notes)
+    result = results.fill(settings.result, job, contact, report, notes)
     result.state_hash = state_hash(context)
     comfort.judge(context)
     status.set_stale(context.scene.name, False)
@@ -265,22 +266,6 @@ def solve(context: Context) -> PropertyGroup:
     return at_once(steps(context))
 
 
-def fields_of(contact: "native.Contact", job: Job) -> write.Fields:
-    """The native contact's arrays as the writer wants them."""
-    return write.Fields(
-        displacement_mm=np.asarray(contact.displacement_mm),
-        pressure_mpa=np.asarray(contact.pressure_mpa),
-        force_n=np.asarray(contact.force_n),
-        depth_mm=np.fmax(-np.asarray(contact.gap_mm), 0.0),
-        regions=job.reading.hand.regions,
-        product_pressure_mpa=np.asarray(contact.product_pressure_mpa),
-        offset_mm=offset_mm(contact, job),
-        shear=None if contact.friction is None else _shear(contact),
-        thickness_mm=job.thickness_mm,
-        grip_displacement_mm=contact.grip_displacement_mm,
-    )
-
-
 def _left_out(job: Job) -> Iterator[str]:
     """What a press of one moment does not know."""
     waiting = [effect_settings.title(used.name).lower() for used in job.effects if _waits(used)]
@@ -290,18 +275,6 @@ def _left_out(job: Job) -> Iterator[str]:
 
 def _waits(used: effects.UsedEffect) -> bool:
     return used.amplitude > 0.0 and effect_settings.acts_over_time(used.name)
-
-
-def _shear(contact: "native.Contact") -> tuple[Floats, Floats]:
-    margin = np.asarray(contact.slip_margin)
-    return np.asarray(contact.tangential_traction_mpa), np.where(np.isnan(margin), 1.0, margin)
-
-
-def offset_mm(contact: "native.Contact", job: Job) -> Floats:
-    """How far the product moved to carry its force (3), world axes, mm; zero without a force target."""
-    if job.force_n is None:
-        return np.zeros(3)
-    return float(contact.offset_mm) * np.asarray(contact.direction, dtype=np.float64)
 
 
 def state_hash(context: Context) -> str:

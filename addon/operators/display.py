@@ -38,7 +38,7 @@ def refresh(context):
     shading.update_group(look)
     for obj, is_skin in shown_objects(context):
         if obj.data.is_editable and obj.mode != "EDIT":
-            colors.recolor(obj.data, look, colors.SKIN if is_skin else colors.BARE)
+            colors.recolor(obj, look, colors.SKIN if is_skin else colors.BARE)
     compositor.update_legend(context.scene)
     running.redraw(context)
 

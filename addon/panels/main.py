@@ -203,6 +203,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             line.prop(*place)
             line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
         layout.prop(settings, "palette")
+        layout.prop(settings.maps, "contour")
         layout.prop(settings, "show_legend")
         kept = bool(settings.preset_before)
         button = layout.operator(

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from .. import names, native, reports, status, workflow
+from ..contact_fields import written
 from ..scene import attributes, matching, own, read, units
 from ..scene.checks import Refusal
 from . import filling, laying, loading, settings
@@ -108,7 +109,7 @@ def _compare(job, contact, told, cancel=None, progress=None):
     comparison = native.module.compare_map(
         loading.values_of(found)[frame],
         mat,
-        hand.posed_mm + np.asarray(contact.displacement_mm) - workflow.offset_mm(contact, job),
+        hand.posed_mm + np.asarray(contact.displacement_mm) - written.offset_mm(contact, job),
         hand.triangles,
         contact.force_n,
         name=f"{name}, frame {frame + 1}",
@@ -134,7 +135,7 @@ def _compare_print(job, contact, told, cancel=None, progress=None):
     comparison = native.module.compare_print(
         print_,
         mat,
-        hand.posed_mm + np.asarray(contact.displacement_mm) - workflow.offset_mm(contact, job),
+        hand.posed_mm + np.asarray(contact.displacement_mm) - written.offset_mm(contact, job),
         hand.triangles,
         contact.force_n,
         ink_kpa=lie.print.ink_kpa,

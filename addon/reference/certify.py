@@ -9,6 +9,7 @@ import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
 from .. import names, native, sentences, workflow
+from ..contact_fields import skin_edge
 from ..hand import normals
 from ..scene import attributes, checks, own, units, write
 from ..scene.units import Bools, Floats, Ints
@@ -135,7 +136,8 @@ def finish(context: Context, tissue: Tissue, found: Any) -> PropertyGroup:
     shared = np.bincount(tissue.merged, minlength=len(tissue.posed_mm))[tissue.merged]
     pressure = units.kpa(np.asarray(found.pressure_mpa)[tissue.merged])
     regions = tissue.job.reading.hand.regions
-    write.write_reference(hand, pressure)
+    edge = skin_edge.signed_distance(tissue.posed_mm, tissue.triangles, np.asarray(found.pressure_mpa))
+    write.write_reference(hand, pressure, edge[tissue.merged])
     for index, row in enumerate(result.regions):
         row.reference_n = float((force / shared)[regions == index].sum())
     reference = result.reference

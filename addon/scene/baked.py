@@ -8,7 +8,7 @@ from typing import Any, BinaryIO, TypeAlias
 
 import bpy
 import numpy as np
-from bpy.types import Mesh, Object, PropertyGroup, Scene
+from bpy.types import Object, PropertyGroup, Scene
 
 from .. import names
 from . import attributes, colors, correction, moving, own, units, write
@@ -29,6 +29,8 @@ _UNTOUCHED = {names.SLIP_MARGIN: 1.0}
 """What a field says where nothing touches, if that is not 0."""
 _OF_ONE_PRESS = (
     names.DEPTH_MM,
+    names.OVERLAP_MM,
+    names.EDGE_MM,
     names.FORCE_N,
     names.DISPLACEMENT_MM,
     names.SHEAR_KPA,
@@ -58,8 +60,9 @@ def folder_of(hand: Object) -> Path:
 def publish(hand: Object, stem: Path, first_frame: int, frames: Sequence[Frame]) -> None:
     """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
 
-    `frames`: dicts with `local` (n, 3) positions in object space, `fields` {attribute: (n)} of the hand, `parts` {name:
-    kPa (k)}, the numbers of `_NUMBERS`, and `offset` (3), how far the product moves, world, Blender units.
+    `frames`: dicts with `local` (n, 3) positions in object space, `fields` {attribute: (n)} of the hand, `parts` and
+    `part_edges` {name: kPa, mm (k)}, the numbers of `_NUMBERS`, and `offset` (3), how far the product moves, world,
+    Blender units.
     """
     pc2, npz = stem.with_name(stem.name + ".pc2"), stem.with_name(stem.name + ".npz")
     _replace(pc2, lambda file: _write_pc2(file, first_frame, frames))
@@ -81,6 +84,9 @@ def publish(hand: Object, stem: Path, first_frame: int, frames: Sequence[Frame])
 def hand_fields(fields: write.Fields) -> dict[str, Floats]:
     """What a frame plays on the hand, float32 (n,) by attribute, from `write.Fields`."""
     values = {names.PRESSURE_KPA: units.kpa(fields.pressure_mpa), names.DEPTH_MM: fields.depth_mm}
+    values[names.OVERLAP_MM] = fields.overlap_mm
+    if fields.edge_mm is not None:
+        values[names.EDGE_MM] = fields.edge_mm
     if fields.shear is not None:
         values |= {names.SHEAR_KPA: units.kpa(fields.shear[0]), names.SLIP_MARGIN: fields.shear[1]}
     return {name: np.asarray(value, np.float32) for name, value in values.items()}
@@ -99,12 +105,14 @@ def play(scene: Scene, find_parts: Callable[[PropertyGroup], Sequence[Object]]) 
         return
     row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["force_n"]) - 1))
     fields = {name.removeprefix("hand/"): table[row] for name, table in tables.items() if name.startswith("hand/")}
-    _show(hand.data, fields or {names.PRESSURE_KPA: tables["hand"][row]}, scene.thenar, colors.SKIN)
+    _show(hand, fields or {names.PRESSURE_KPA: tables["hand"][row]}, scene.thenar, colors.SKIN)
     parts = find_parts(scene.thenar)
     for part in parts:
         values = tables.get(f"part/{part.name}")
         if values is not None and part.type == "MESH" and part.mode != "EDIT":
-            _show(part.data, {names.PRESSURE_KPA: values[row]}, scene.thenar, colors.BARE)
+            edges = tables.get(f"edge/{part.name}")
+            shown = {names.PRESSURE_KPA: values[row]} | ({} if edges is None else {names.EDGE_MM: edges[row]})
+            _show(part, shown, scene.thenar, colors.BARE)
     offsets = tables["offset"]
     for part in own.roots(parts) if np.any(offsets) else ():
         moving.shift(part, offsets[row])
@@ -129,12 +137,14 @@ def forget() -> None:
     _loaded.clear()
 
 
-def _show(mesh: Mesh, fields: dict[str, Floats], look: PropertyGroup, bare: colors.Color) -> None:
+def _show(obj: Object, fields: dict[str, Floats], look: PropertyGroup, bare: colors.Color) -> None:
+    mesh = obj.data
     if any(len(values) != len(mesh.vertices) for values in fields.values()):
         return
+    attributes.remove(mesh, [name for name in (names.EDGE_MM, names.OVERLAP_MM) if name not in fields])
     for name, values in fields.items():
         attributes.write(mesh, name, "FLOAT", values)
-    colors.recolor(mesh, look, bare)
+    colors.recolor(obj, look, bare)
 
 
 def _load(hand: Object) -> dict[str, Floats] | None:
@@ -155,6 +165,7 @@ def _tables(first_frame: int, frames: Sequence[Frame]) -> dict[str, Any]:
         tables[f"hand/{name}"] = np.stack([frame["fields"].get(name, plain) for frame in frames])
     for name in frames[0]["parts"]:
         tables[f"part/{name}"] = np.stack([frame["parts"][name] for frame in frames])
+        tables[f"edge/{name}"] = np.stack([frame["part_edges"][name] for frame in frames])
     for name in (*_NUMBERS, "offset"):
         tables[name] = np.array([frame[name] for frame in frames])
     return tables

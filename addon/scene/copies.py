@@ -28,13 +28,14 @@ def write_copy(
     record: read.Part,
     reading: read.Reading,
     offset_mm: Floats,
-    carried: tuple[Floats, Floats | None],
+    carried: tuple[Floats, Floats | None, Floats | None],
 ) -> Object:
     """Make a new mesh object that shows the part's pressure; hidden until the pressure is shown.
 
-    `carried`: pressure (k,), MPa, and how far its soft grip yields (k, 3), mm, or None where it is rigid.
+    `carried`: pressure (k,), MPa, distance to the edge of the contact (k,), mm, and how far its soft grip yields
+    (k, 3), mm; each of the last two may be None.
     """
-    pressure_mpa, yielded_mm = carried
+    pressure_mpa, edge_mm, yielded_mm = carried
     skin, product, look = reading.hand, reading.product, context.scene.thenar
     remove_copy(record.name)
     last = record.first + record.count
@@ -45,10 +46,13 @@ def write_copy(
     if not record.reason:
         _dress(mesh, bpy.data.objects[record.name])
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", units.kpa(pressure_mpa))
+    if edge_mm is not None:
+        attributes.write(mesh, names.EDGE_MM, "FLOAT", edge_mm)
     if yielded_mm is not None:
         attributes.write(mesh, names.GRIP_MM, "FLOAT_VECTOR", yielded_mm)
-    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(units.kpa(pressure_mpa), look, colors.BARE))
     copy = bpy.data.objects.new(copy_name(record.name), mesh)
+    tinted = colors.linear((units.kpa(pressure_mpa), edge_mm), look, colors.ground(copy, colors.BARE))
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", tinted)
     copy.thenar.copy_of = record.name
     copy.hide_viewport = copy.hide_render = True
     collection(context).objects.link(copy)

@@ -1,12 +1,14 @@
 """Materials that show a map over the user's own, and the way back to them."""
 
 import bpy
-from bpy.types import ColorRamp, Material, NodeTree, Object, PropertyGroup
+from bpy.types import ColorRamp, Material, Node, NodeTree, Object, PropertyGroup
 
 from .. import colormap, maps, names
 
 _SKIN = (0.80, 0.52, 0.40, 1.0)
 _BARE = (0.62, 0.62, 0.60, 1.0)
+_INK = (0.10, 0.05, 0.05, 1.0)
+"""Of the line along the edge of the contact, scene-linear."""
 
 
 def show(obj: Object, look: PropertyGroup, is_skin: bool) -> None:
@@ -47,12 +49,20 @@ def hide(obj: Object) -> None:
     state.slots.clear()
 
 
+def own_materials(obj: Object) -> list[Material | None]:
+    """The user's material of every slot, also while a map is laid over them."""
+    if not obj.thenar.shows_pressure:
+        return [slot.material for slot in obj.material_slots]
+    pairs = zip(obj.thenar.slots, obj.data.materials, strict=False)
+    return [kept.material if kept.link == "OBJECT" else material for kept, material in pairs]
+
+
 def update_group(look: PropertyGroup) -> None:
     """Set map, range and colours of the overlay that all overlaid materials share."""
     tree = bpy.data.node_groups.get(names.OVERLAY_GROUP)
     if tree is None:
         return
-    if "Cover" not in tree.nodes:  # a file of an earlier version
+    if "Line" not in tree.nodes:  # a file of an earlier version
         _fill_group(tree)
     view = maps.shown(look)
     scale = maps.scale(view, look)
@@ -60,7 +70,9 @@ def update_group(look: PropertyGroup) -> None:
     tree.nodes["Cover"].attribute_name = maps.covering(view)
     tree.nodes["Range"].inputs["From Min"].default_value = scale.low
     tree.nodes["Range"].inputs["From Max"].default_value = scale.high
-    tree.nodes["Edge"].inputs["From Max"].default_value = scale.edge
+    for name, value in zip(("From Min", "From Max"), scale.edge, strict=True):
+        tree.nodes["Edge"].inputs[name].default_value = value
+    tree.nodes["Line Shown"].inputs[1].default_value = float(maps.has_line(view, look))
     _fill_ramp(tree.nodes["Ramp"].color_ramp, scale.palette)
 
 
@@ -119,6 +131,7 @@ def _new_group() -> NodeTree:
 
 
 def _fill_group(tree: NodeTree) -> None:
+    """The map where it covers the surface, a line along its edge, the user's own shader elsewhere."""
     nodes, links = tree.nodes, tree.links
     nodes.clear()
     entry, leave = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
@@ -131,8 +144,6 @@ def _fill_group(tree: NodeTree) -> None:
     ramp = nodes.new("ShaderNodeValToRGB")
     ramp.name = "Ramp"
     light, mix = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
-    for place, node in enumerate((entry, value, cover, fraction, edge, ramp, light, mix, leave)):
-        node.location = (place * 220 - 900, 0)
     links.new(value.outputs["Fac"], fraction.inputs["Value"])
     links.new(cover.outputs["Fac"], edge.inputs["Value"])
     links.new(fraction.outputs["Result"], ramp.inputs["Fac"])
@@ -140,7 +151,30 @@ def _fill_group(tree: NodeTree) -> None:
     links.new(edge.outputs["Result"], mix.inputs[0])
     links.new(entry.outputs["Surface"], mix.inputs[1])
     links.new(light.outputs["Emission"], mix.inputs[2])
-    links.new(mix.outputs["Shader"], leave.inputs["Surface"])
+    lined = _lined(tree, cover, mix)
+    links.new(lined.outputs["Shader"], leave.inputs["Surface"])
+    for place, node in enumerate(nodes):
+        node.location = (place % 7 * 220 - 900, -300 * (place // 7))
+
+
+def _lined(tree: NodeTree, cover: Node, mapped: Node) -> Node:
+    """`mapped` under a line where the attribute of `cover` is 0."""
+    nodes, links = tree.nodes, tree.links
+    distance, line, strength = nodes.new("ShaderNodeMath"), nodes.new("ShaderNodeMapRange"), nodes.new("ShaderNodeMath")
+    distance.operation, strength.operation = "ABSOLUTE", "MULTIPLY"
+    line.name, strength.name = "Line", "Line Shown"
+    half, soft = 0.5 * maps.LINE_MM, 0.25 * maps.LINE_MM
+    for name, value in (("From Min", half - soft), ("From Max", half + soft), ("To Min", 1.0), ("To Max", 0.0)):
+        line.inputs[name].default_value = value
+    ink, mix = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
+    ink.inputs["Color"].default_value = _INK
+    links.new(cover.outputs["Fac"], distance.inputs[0])
+    links.new(distance.outputs[0], line.inputs["Value"])
+    links.new(line.outputs["Result"], strength.inputs[0])
+    links.new(strength.outputs[0], mix.inputs[0])
+    links.new(mapped.outputs["Shader"], mix.inputs[1])
+    links.new(ink.outputs["Emission"], mix.inputs[2])
+    return mix
 
 
 def _fill_ramp(ramp: ColorRamp, palette: str) -> None:

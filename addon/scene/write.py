@@ -26,10 +26,15 @@ class Fields:
     pressure_mpa: Floats
     force_n: Floats
     depth_mm: Floats
+    overlap_mm: Floats
+    """Signed: negative where product and skin are apart."""
     regions: Ints
     product_pressure_mpa: Floats
     offset_mm: Floats
     """(3) how far the product moved to reach its force."""
+    edge_mm: Floats | None = None
+    product_edge_mm: Floats | None = None
+    """Signed distances to the edge of the contact, positive inside; None where nobody looks at a map."""
     shear: tuple[Floats, Floats] | None = None
     """Shear traction (n), MPa, and slip margin (n), 0 where skin slips to 1, where the product was dragged."""
     grip_displacement_mm: Floats | None = None
@@ -101,7 +106,9 @@ def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
     mesh, pressure = hand.data, units.kpa(fields.pressure_mpa)
     attributes.remove(mesh, (*names.RESIDUAL_ATTRIBUTES, *names.REFERENCE_ATTRIBUTES))  # of the contact before
     attributes.write(mesh, names.PRESSURE_KPA, "FLOAT", pressure)
+    write_edge(mesh, fields.edge_mm)
     attributes.write(mesh, names.DEPTH_MM, "FLOAT", fields.depth_mm)
+    attributes.write(mesh, names.OVERLAP_MM, "FLOAT", fields.overlap_mm)
     attributes.write(mesh, names.REGION, "INT", fields.regions)
     attributes.write(mesh, names.FORCE_N, "FLOAT", fields.force_n)
     attributes.write(mesh, names.DISPLACEMENT_MM, "FLOAT_VECTOR", fields.displacement_mm)
@@ -112,18 +119,28 @@ def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
         attributes.write(mesh, names.SLIP_MARGIN, "FLOAT", fields.shear[1])
     if fields.thickness_mm is not None:
         write_thickness(mesh, fields.thickness_mm)
-    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(pressure, look, colors.SKIN))
+    under = colors.ground(hand, colors.SKIN)
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear((pressure, fields.edge_mm), look, under))
     mesh.update()
 
 
-def write_reference(hand: Object, pressure_kpa: Floats) -> None:
-    """Pressure of the reference solve (n), and how much more it is than the fast result's. All or nothing."""
+def write_edge(mesh: Mesh, edge_mm: Floats | None) -> None:
+    """Signed distances to the edge of the contact (n,), mm; None takes those of an earlier contact away."""
+    if edge_mm is None:
+        attributes.remove(mesh, [names.EDGE_MM])
+    else:
+        attributes.write(mesh, names.EDGE_MM, "FLOAT", edge_mm)
+
+
+def write_reference(hand: Object, pressure_kpa: Floats, edge_mm: Floats) -> None:
+    """Pressure of the reference solve (n), how much more it is than the fast result's, and its edge. All or nothing."""
     fast = attributes.read(hand.data, names.PRESSURE_KPA)
     restore = attributes.snapshot(hand.data, names.REFERENCE_ATTRIBUTES)
     try:
         attributes.write(hand.data, names.REFERENCE_KPA, "FLOAT", pressure_kpa)
         more = pressure_kpa - (0.0 if fast is None else fast)
         attributes.write(hand.data, names.REFERENCE_DIFFERENCE_KPA, "FLOAT", more)
+        attributes.write(hand.data, names.REFERENCE_EDGE_MM, "FLOAT", edge_mm)
     except BaseException:
         restore()
         raise
@@ -155,8 +172,9 @@ def _write_part(context: Context, undo: ExitStack, record: read.Part, reading: r
     part, look = bpy.data.objects[record.name], context.scene.thenar
     mine = slice(record.first, record.first + record.count)
     pressure, yielded = fields.product_pressure_mpa[mine], _yielded(fields, mine)
+    edge = None if fields.product_edge_mm is None else fields.product_edge_mm[mine]
     if record.reason or record.refinement is not None or yielded is not None:
-        copies.write_copy(context, record, reading, fields.offset_mm, (pressure, yielded))
+        copies.write_copy(context, record, reading, fields.offset_mm, (pressure, edge, yielded))
         undo.callback(copies.remove_copy, record.name)
     else:
         copies.remove_copy(record.name)
@@ -166,9 +184,12 @@ def _write_part(context: Context, undo: ExitStack, record: read.Part, reading: r
         pressure = refine.gathered(pressure, record.refinement)
     undo.callback(attributes.snapshot(part.data, names.PRODUCT_ATTRIBUTES))
     attributes.remove(part.data, names.RESIDUAL_ATTRIBUTES)
-    carried = units.kpa(pressure[: len(part.data.vertices)])
+    count = len(part.data.vertices)
+    carried, edge = units.kpa(pressure[:count]), None if edge is None else edge[:count]
     attributes.write(part.data, names.PRESSURE_KPA, "FLOAT", carried)
-    attributes.write(part.data, names.COLOR, "FLOAT_COLOR", colors.linear(carried, look, colors.BARE))
+    write_edge(part.data, edge)
+    under = colors.ground(part, colors.BARE)
+    attributes.write(part.data, names.COLOR, "FLOAT_COLOR", colors.linear((carried, edge), look, under))
     part.data.update()
 
 

@@ -14,7 +14,6 @@ from . import pixel_font
 TICKS = 5
 PLATE = (0.09, 0.09, 0.10, 0.78)
 """Colour behind the legend, sRGB with alpha."""
-_BARE = (0.80, 0.62, 0.52)
 _FINER = 3
 """How much larger letters are drawn than shown: Blender's own edges are hard at the sizes of a legend."""
 
@@ -68,12 +67,9 @@ def number(value):
 
 
 def column_on_plate(look, steps):
-    """The bar's colours (steps, 3), sRGB, from zero upwards; they fade in from the bare surface as on the skin."""
-    view, scale = maps.shown(look), maps.scale(maps.shown(look), look)
-    fraction = (np.arange(steps) + 0.5) / steps
-    fades = view.covers == "itself"
-    cover = (colormap.cover(fraction * scale.high / scale.edge) if fades else np.ones(steps))[:, None]
-    return colormap.srgb(scale.palette, fraction) * cover + np.array(_BARE) * (1.0 - cover)
+    """The bar's colours (steps, 3), sRGB, from the lowest value upwards."""
+    scale = maps.scale(maps.shown(look), look)
+    return colormap.srgb(scale.palette, (np.arange(steps) + 0.5) / steps)
 
 
 def pixels(look, result, width, height):

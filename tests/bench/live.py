@@ -1,6 +1,7 @@
 """Live on the 48 mm sample: our share of a frame beside Blender's own evaluation, over one drag of a finger.
 
-Run where Blender and the add-on can be imported: `python tests/bench/live.py [FRAMES]`. CPU time, medians, on one core:
+Run where Blender and the add-on can be imported: `python tests/bench/live.py [FRAMES [KIND]]`; with the KIND of a map
+(PRESSURE) it is shown meanwhile. CPU time, medians, on one core:
 on a second one a worker of Blender's waits for work in a loop, and what it takes would be counted with ours.
 """
 
@@ -20,8 +21,8 @@ SWING_RAD = 0.1
 """How far the middle finger's base joint swings about its grasp: 6 degrees, lifted off and pressed in."""
 
 
-def main(frames):
-    """Drag with Live off and on; print medians and their ratio. Returns 0."""
+def main(frames, kind=""):
+    """Drag with Live off and on, the map `kind` shown; print medians and their ratio. Returns 0."""
     import thenar_blender
     from thenar_blender.live import session, watch
 
@@ -33,6 +34,8 @@ def main(frames):
     angles = SWING_RAD * np.sin(2.0 * np.pi * (np.arange(frames) + 1) / 50.0 + 0.01)
     plain = [spent(pose, settings.hand, angle)[1] for angle in angles]
     settings.live = True
+    if kind:
+        bpy.ops.thenar.show_map(kind=kind)
     del pressing[:]
     with_node, ours, forces = [], [], []
     for angle in angles:
@@ -42,16 +45,16 @@ def main(frames):
         ours.append(seconds)
         forces.append(settings.result.force_n)
     again = [spent(show, settings.hand)[1] for _ in angles]
-    report(plain, ours, (with_node, again, pressing), forces)
+    report(plain, ours, (with_node, again, pressing), (forces, kind))
     thenar_blender.unregister()
     return 0
 
 
-def report(plain, ours, parts, forces):
+def report(plain, ours, parts, course):
     """Print what was measured, and keep it."""
     import results
 
-    with_node, again, pressing = parts
+    (with_node, again, pressing), (forces, kind) = parts, course
     own, share = 1e3 * statistics.median(plain), 1e3 * statistics.median(ours)
     print(f"{len(plain)} frames, {min(forces):.0f} to {max(forces):.0f} N, ms of CPU a frame, medians")
     print(f"  Blender's evaluation of the pose, Live off   {own:8.2f}")
@@ -64,7 +67,10 @@ def report(plain, ours, parts, forces):
     measured = f"{share:.2f} ms, of it the press {press:.2f} ms"
     figures = (
         results.Figure(
-            "Live, a frame of the 48 mm sample, one core", f"{WANTED_MS:g} ms", measured, share <= WANTED_MS
+            "Live, a frame of the 48 mm sample, one core" + (f", {kind.lower()} shown" if kind else ""),
+            f"{WANTED_MS:g} ms",
+            measured,
+            share <= WANTED_MS,
         ),
         results.Figure("the same over Blender's own evaluation of the pose", "1x", f"{share / own:.1f}x", share <= own),
     )
@@ -117,4 +123,4 @@ if __name__ == "__main__":
             os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
         os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **ONE_THREAD})
     sys.path.insert(0, str(Path(__file__).parents[1]))
-    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 100))
+    sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 100, *sys.argv[2:3]))

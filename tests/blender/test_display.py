@@ -58,7 +58,7 @@ def test_live_colors_anew_only_where_something_presses_or_pressed(monkeypatch):
     bpy.context.scene.thenar.live = True
     colored, by_scale = [], scene_colors.by_scale
     monkeypatch.setattr(
-        scene_colors, "by_scale", lambda pressure, *look: colored.append(len(pressure)) or by_scale(pressure, *look)
+        scene_colors, "by_scale", lambda fields, *look: colored.append(len(fields[0])) or by_scale(fields, *look)
     )
 
     def lifted(move):
@@ -120,6 +120,8 @@ def test_rendered_pressure_has_the_legends_color(tmp_path):
     hand.hide_render = True
     values = np.full(len(product.data.vertices), 90.0, np.float32)
     product.data.attributes["pressure_kpa"].data.foreach_set("value", values)
+    product.data.attributes["contact_edge_mm"].data.foreach_set("value", np.full_like(values, 1.0))
+    bpy.context.scene.thenar.palette = "VIRIDIS"
     bpy.context.scene.thenar.range_kpa = 150
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale, camera.location = "ORTHO", 0.02, (0, 0, 0.5)
@@ -154,6 +156,14 @@ def test_lightness_of_the_maps_rises_evenly(name):
     assert (np.diff(np.cbrt(light)) > 0).all()
 
 
+def test_ember_begins_lighter_than_skin_and_its_lightness_falls():
+    from thenar_blender import colormap
+
+    light = colormap.to_linear(colormap.srgb("EMBER", np.linspace(0, 1, 200))) @ [0.2126, 0.7152, 0.0722]
+    skin = colormap.to_linear(np.array([0.90, 0.74, 0.65])) @ [0.2126, 0.7152, 0.0722]
+    assert (np.diff(np.cbrt(light)) < 0).all() and light[0] > skin
+
+
 def test_values_that_are_no_numbers_or_out_of_range_take_the_ends_of_a_map():
     from thenar_blender import colormap
 
@@ -163,20 +173,20 @@ def test_values_that_are_no_numbers_or_out_of_range_take_the_ends_of_a_map():
     assert np.array_equal(colormap.cover(strange), [0.0, 0.0, 0.0, 1.0, 1.0])
 
 
-@pytest.mark.parametrize("palette", ["CIVIDIS", "VIRIDIS"])
+@pytest.mark.parametrize("palette", ["CIVIDIS", "VIRIDIS", "EMBER"])
 def test_colors_of_pressure_from_the_table_are_those_that_the_map_computes(palette):
     from thenar_blender import maps
     from thenar_blender.scene import colors as scene_colors
 
-    stage.scene()
-    look = bpy.context.scene.thenar
+    hand, _ = stage.scene()
+    look, under = bpy.context.scene.thenar, scene_colors.ground(hand, scene_colors.SKIN)
     look.palette = palette
     for look.range_kpa in (4.0, 150.0, 900.0):
         scale = maps.scale(maps.MAPS[maps.PRESSURE], look)
-        kpa = np.random.default_rng(1).uniform(-0.1, 1.2, 20_000) * look.range_kpa
+        kpa, edge = np.random.default_rng(1).uniform(-0.1, 1.2, (2, 20_000)) * [[look.range_kpa], [3.0]]
         kpa[:3] = np.nan, 0.0, look.range_kpa
-        computed = scene_colors.mapped((kpa, kpa), scale, scene_colors.SKIN)
-        np.testing.assert_allclose(scene_colors.linear(kpa, look, scene_colors.SKIN), computed, rtol=0, atol=1e-6)
+        computed = scene_colors.mapped((kpa, edge), scale, under)
+        np.testing.assert_allclose(scene_colors.linear((kpa, edge), look, under), computed, rtol=0, atol=1e-6)
 
 
 def test_an_attribute_settles_only_where_it_holds_something_else():

@@ -38,7 +38,7 @@ def test_colors_that_follow_are_those_of_the_pressure_as_a_whole(scene):
         hand.rotation_euler.y -= 0.02
         assert follow()
         for obj, bare in ((hand, colors.SKIN), (product, colors.BARE)):
-            whole = colors.linear(stage.attribute(obj, names.PRESSURE_KPA), settings, bare)
+            whole = colors.linear((stage.attribute(obj, names.PRESSURE_KPA), None), settings, colors.ground(obj, bare))
             assert np.abs(stage.attribute(obj, names.COLOR) - whole).max() < 1e-5
     assert force() > 0.0
 

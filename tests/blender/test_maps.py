@@ -31,10 +31,10 @@ def show(kind):
 @pytest.mark.parametrize(
     ("kind", "attribute", "cover"),
     [
-        ("PRESSURE", "pressure_kpa", "pressure_kpa"),
-        ("SHEAR", "shear_kpa", "pressure_kpa"),
-        ("SLIP", "slip_margin", "pressure_kpa"),
-        ("DEPTH", "contact_depth_mm", "contact_depth_mm"),
+        ("PRESSURE", "pressure_kpa", "contact_edge_mm"),
+        ("SHEAR", "shear_kpa", "contact_edge_mm"),
+        ("SLIP", "slip_margin", "contact_edge_mm"),
+        ("DEPTH", "contact_depth_mm", "contact_overlap_mm"),
         ("THICKNESS", "tissue_thickness_mm", "tissue_thickness_mm"),
     ],
 )
@@ -54,9 +54,9 @@ def test_shear_has_its_own_range_and_colors():
     hand, _ = dragged()
     settings = show("SHEAR")
     shear = stage.attribute(hand, "shear_kpa")
-    settings.maps.shear_kpa = high = float(shear.max()) * 1.25
+    most = int(np.where(stage.attribute(hand, "contact_edge_mm") > 1.5, shear, 0.0).argmax())
+    settings.maps.shear_kpa = high = float(shear[most]) * 1.25
     colors = stage.attribute(hand, "Thenar Map")
-    most = int(shear.argmax())
     wanted = colormap.to_linear(colormap.srgb("PLASMA", np.array([0.8])))[0]
     assert colors[most, :3] == pytest.approx(wanted, abs=2e-3)
     assert nodes()["Range"].inputs["From Max"].default_value == pytest.approx(high)
@@ -77,12 +77,16 @@ def test_slip_is_red_where_skin_slips_and_bare_off_the_contact():
     pressed = pressure > 0.2 * pressure.max()
     assert margin[pressed].min() < 1e-3 and margin[pressed].max() > 0.05, "part of it slips, part of it sticks"
     colors = stage.attribute(hand, "Thenar Map")[:, :3]
+    edge = stage.attribute(hand, "contact_edge_mm")
     slipping = pressed & (margin < 1e-3)
-    assert colors[slipping] == pytest.approx(
-        np.tile(colormap.to_linear(np.array([0xB4, 4, 0x26]) / 255), (slipping.sum(), 1)), abs=1e-4
-    )
     bare = colormap.to_linear(np.array(scene_colors.SKIN))
-    assert colors[pressure == 0] == pytest.approx(np.tile(bare, ((pressure == 0).sum(), 1)), abs=1e-5)
+    red = colormap.to_linear(np.array([0xB4, 4, 0x26]) / 255) - bare
+    covered = (colors[slipping] - bare) @ red / (red @ red)  # within 1.2 spacings of the edge colors of vertices fade
+    assert covered.min() > 0.5 and covered.max() < 1.0 + 1e-4
+    assert colors[slipping] == pytest.approx(bare + covered[:, None] * red, abs=1e-4)
+    off = edge < -1.5  # 1.3 spacings
+    assert not (off & (pressure > 0)).any() and off.sum() > 500
+    assert colors[off] == pytest.approx(np.tile(bare, (off.sum(), 1)), abs=1e-5)
     with pytest.raises(RuntimeError, match="range of slip margin is fixed"):
         bpy.ops.thenar.reset_range()
 
@@ -143,5 +147,5 @@ def test_an_overlay_of_an_earlier_version_is_made_anew():
     show("PRESSURE")
     nodes().clear()
     show("SHEAR")
-    assert nodes()["Value"].attribute_name == "shear_kpa" and nodes()["Cover"].attribute_name == "pressure_kpa"
+    assert nodes()["Value"].attribute_name == "shear_kpa" and nodes()["Cover"].attribute_name == "contact_edge_mm"
     assert nodes()["Edge"].inputs["Value"].is_linked and nodes()["Ramp"].inputs["Fac"].is_linked

@@ -1,0 +1,1 @@
+"""What is written of a contact: arrays by vertex, and where on skin and product the contact ends."""
