@@ -6,6 +6,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 
 from .. import status, workflow
+from ..hand_shape import framing
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
 from . import build, fitting, grasp, pads, posing, samples
@@ -79,6 +80,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
                 shape[name] = getattr(self, name)
         hand, _ = build.add_hand(context, build.make(**shape))
         context.scene.thenar.hand = hand
+        framing.frame(context, hand)
         return hand
 
 
