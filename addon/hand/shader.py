@@ -87,6 +87,8 @@ BACK, PALM = "Thenar Melanin Back", "Thenar Melanin Palm"
 AGE = "Thenar Age"
 NAILS, POLISH, POLISH_SHARE = "Thenar Nails", "Thenar Polish", "Thenar Polish Share"
 """Names of the nodes that hold a skin's look; `hand_shape/skin_look.py` sets them, and so may a user."""
+WRIST_MM = (-14.0, 10.0)
+"""Along the hand from its wrist crease: where the palm's lighter skin begins, mm."""
 NAIL_EDGE = 0.035
 """Width of a nail's drawn edge, half widths: about 0.2 mm."""
 
@@ -183,7 +185,8 @@ def _color(tree, tone, noise, creases):
     base = tree.mix(tree.math("MULTIPLY", creases, 0.5), base, (0.36, 0.125, 0.09, 1.0))
     base = tree.mix(_spots(tree, palmar, age), base, (0.26, 0.115, 0.065, 1.0))
     back, palm = tree.named(BACK, "ShaderNodeRGB"), tree.named(PALM, "ShaderNodeRGB")
-    return tree.mix(1.0, base, tree.mix(palmar, back, palm), "MULTIPLY")
+    light = tree.math("MULTIPLY", palmar, tree.step(tree.attribute(look.REST)[1], *WRIST_MM))
+    return tree.mix(1.0, base, tree.mix(light, back, palm), "MULTIPLY")
 
 
 def _spots(tree, palmar, age):

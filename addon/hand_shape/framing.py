@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-ROOM = 2.6
+ROOM = 2.5
 """Distance of the view over half the hand's longest side: all of it is seen at the lens of a new view."""
 
 

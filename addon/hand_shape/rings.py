@@ -6,7 +6,7 @@ import numpy as np
 RING = "Thenar Bone Ring"
 CORNERS = 40
 CLEARANCE = 1.12
-"""Radius of a ring over the largest distance of the skin around it from the bone."""
+"""Radius of a ring over the largest distance of the skin around it from its middle."""
 WITHIN = 0.2
 """Skin within this share of the bone's length from its middle counts."""
 
@@ -23,22 +23,27 @@ def put_on(rig, arrays, unit):
         if not _is_handle(name) or not (pose_bone.custom_shape is None or _is_ring(pose_bone.custom_shape)):
             continue
         length = rig.data.bones[name].length
+        (x, z), radius = _circle_mm(arrays, index, length / unit)
         pose_bone.custom_shape = _ring()
         pose_bone.use_custom_shape_bone_size = False
-        pose_bone.custom_shape_scale_xyz = [_radius_mm(arrays, index, length / unit) * unit] * 3
-        pose_bone.custom_shape_translation = (0.0, 0.5 * length, 0.0)
+        pose_bone.custom_shape_scale_xyz = [radius * unit] * 3
+        pose_bone.custom_shape_translation = (x * unit, 0.5 * length, z * unit)
 
 
 def _is_handle(name):
     return name == "carpus" or name.endswith(("_proximal", "_middle", "_distal")) or name == "thumb_metacarpal"
 
 
-def _radius_mm(arrays, index, length_mm):
+def _circle_mm(arrays, index, length_mm):
+    """Middle across the bone (x, z) and radius of a circle around the skin at the bone's middle."""
     local = (arrays.vertices - arrays.rest[index, :3, 3]) @ arrays.rest[index, :3, :3]
-    own = arrays.weights[:, index] > 0.5
+    below = np.flatnonzero(arrays.parents == index)
+    joined = [index, *below, arrays.parents[index]] if len(below) > 1 else [index]  # all skin around the wrist
+    own = arrays.weights[:, joined].sum(axis=1) > 0.5
     around = own & (np.abs(local[:, 1] - 0.5 * length_mm) < WITHIN * length_mm)
-    around = around if around.any() else own
-    return CLEARANCE * float(np.hypot(local[around, 0], local[around, 2]).max())
+    section = local[around if around.any() else own][:, [0, 2]]
+    middle = 0.5 * (section.min(axis=0) + section.max(axis=0))
+    return middle, CLEARANCE * float(np.linalg.norm(section - middle, axis=1).max())
 
 
 def _is_ring(shape):

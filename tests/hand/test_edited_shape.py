@@ -140,17 +140,19 @@ def test_editing_works_while_the_bones_are_posed(hand, rig):
     bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def test_bones_are_not_drawn_through_the_skin_and_have_rings_outside_of_it(hand, rig):
+@pytest.mark.parametrize("edit", [{}, {"percentile": 3.0}, {"side": "left"}])
+def test_bones_are_not_drawn_through_the_skin_and_have_rings_outside_of_it(hand, rig, edit):
+    for name, value in edit.items():
+        setattr(hand.thenar_hand, name, value)
     assert not rig.show_in_front
     for name in ("index_proximal", "little_distal", "thumb_distal", "carpus"):
-        bone = rig.pose.bones[name]
-        ring = max(vertex.co.length for vertex in bone.custom_shape.data.vertices) * bone.custom_shape_scale_xyz.x
-        head, tail = rig.data.bones[name].head_local, rig.data.bones[name].tail_local
-        middle, way = 500.0 * np.add(head, tail), np.array((tail - head).normalized())
-        off = edited_hands.rest_mm(hand)[edited_hands.weights_of(hand, name) > 0.5] - middle
-        near = np.abs(off @ way) < 3.0
-        away = np.linalg.norm(off[near] - np.outer(off[near] @ way, way), axis=1)
-        assert away.max() < 1000.0 * ring < 2.0 * away.max(), name
+        bone, rest = rig.pose.bones[name], np.array(rig.data.bones[name].matrix_local)
+        radius = 1000.0 * bone.custom_shape_scale_xyz.x * max(v.co.length for v in bone.custom_shape.data.vertices)
+        middle = 1000.0 * (rest[:3, 3] + rest[:3, :3] @ np.array(bone.custom_shape_translation))
+        skin = edited_hands.weights_of(hand, name) > 0.5 if name != "carpus" else slice(None)
+        off = (edited_hands.rest_mm(hand)[skin] - middle) @ rest[:3, :3]
+        away = np.hypot(*off[np.abs(off[:, 1]) < 2.5][:, [0, 2]].T)
+        assert away.max() < radius < 1.5 * away.max(), name
 
 
 def test_an_older_hand_without_a_record_has_no_shape_to_edit(blender):

@@ -1,6 +1,6 @@
 """Seconds of an edit of a made hand's shape: the whole edit, and what the library's making takes of it.
 
-Run: target/venv/bin/python tests/bench/edit_hand.py
+Run: target/venv/bin/python tests/bench/hand/edit_hand.py
 """
 
 import statistics
