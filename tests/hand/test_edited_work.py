@@ -50,6 +50,14 @@ def test_groups_attributes_and_shape_keys_go_along_to_the_same_place(hand, rig, 
         assert (marked & near).sum() > 0.8 * max(marked.sum(), near.sum())
 
 
+def test_on_the_other_side_a_value_lies_at_the_mirrored_place(hand):
+    """A value that is the place across the hand."""
+    across = edited_hands.rest_mm(hand)[:, 0].astype(np.float32)
+    hand.data.attributes.new("across", "FLOAT", "POINT").data.foreach_set("value", across)
+    hand.thenar_hand.side = "left"
+    assert np.abs(edited_hands.values_of(hand, "across") + edited_hands.rest_mm(hand)[:, 0]).max() < 0.01
+
+
 def test_back_and_forth_in_many_steps_loses_nothing(hand, rig):
     mark_tip(hand, rig, "ring_distal")
     hand.vertex_groups["index_distal"].add([0, 1, 2], 0.33, "REPLACE")
@@ -134,19 +142,34 @@ def test_bones_and_constraints_of_the_user_stay(hand, rig):
     assert (jewel.head_local - rig.data.bones["ring_proximal"].tail_local).length < 5e-4
 
 
-def test_a_contact_is_cleared_with_its_result(hand, rig):
+@pytest.fixture
+def pressed(hand, rig):
+    """The hand let down 1.5 mm deep on a cube, and the scene's settings."""
     rig.rotation_euler.x = np.pi
-    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(0.0, 0.09, -0.29))
-    bpy.context.scene.thenar.product = bpy.context.object
+    bpy.ops.mesh.primitive_cube_add(size=0.5, location=(0.0, 0.0, 0.0))
+    cube, settings = bpy.context.object, bpy.context.scene.thenar
+    cube.location.z = 0.001 * (edited_hands.shown_mm(hand)[:, 2].min() + 1.5) - 0.25
+    settings.product = cube
     bpy.context.view_layer.update()
-    low = edited_hands.shown_mm(hand)[:, 2].min()
-    bpy.context.object.location.z += (low + 1.5 - 1000.0 * (bpy.context.object.location.z + 0.25)) / 1000.0
+    return settings
+
+
+def test_a_contact_is_cleared_with_its_result(hand, pressed):
     bpy.ops.thenar.solve()
-    result = bpy.context.scene.thenar.result
-    assert result.is_valid and "pressure_kpa" in hand.data.attributes
+    assert pressed.result.is_valid and "pressure_kpa" in hand.data.attributes
+    hand.thenar_hand.tone = 3.0
+    assert pressed.result.is_valid
     hand.thenar_hand.percentile = 60.0
-    assert not result.is_valid and "pressure_kpa" not in hand.data.attributes
+    assert not pressed.result.is_valid and "pressure_kpa" not in hand.data.attributes
     assert hand.data.shape_keys is None or "Thenar Contact" not in hand.data.shape_keys.key_blocks
+
+
+def test_live_comes_first(hand, pressed):
+    pressed.live = True
+    hand.thenar_hand.percentile = 60.0
+    problem, percentile = hand.thenar_hand.problem, hand.thenar_hand.percentile
+    pressed.live = False
+    assert "Live" in problem and percentile == 50.0
 
 
 def subdivide(hand, rig):
