@@ -12,7 +12,8 @@ import bpy
 
 from .. import headless, native, workflow
 from .. import result as results
-from ..grasp import fitter, fitting
+from ..grasp import fitting
+from ..grasp_fit import fitter
 from ..hand import build, pads, posing
 from ..scene.checks import Refusal
 from ..soft_grip import settings as grip_settings

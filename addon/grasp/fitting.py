@@ -6,11 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native, workflow
+from ..grasp_fit import fitter, walls
+from ..grasp_fit.task import Goal, Task
 from ..hand import capsules, normals, pads, reading, roles
 from ..scene import checks, mesh, read, regions, sizes, units
-from . import fitter, force, search, settings, settling, walls
+from . import force, search, settings, settling
 from .stage import stage_of
-from .task import Goal, Task
 
 _PALM = re.compile("palm|thenar")
 TOTALS_N = {"LIGHT": 60.0, "FIRM": 200.0}
@@ -146,12 +147,17 @@ def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
 
 def keep(context, fit, found):
     """Keep the grasps found in the scene, best first."""
-    hand, _, parts = fit.names
     rows = [
         (settings.packed(*one.pose), one.state.total_n, float(np.linalg.norm(one.state.net_n)), one.friction, one.score)
         for one in found
     ]
-    settings.keep(context.scene, (hand, "\n".join(parts)), rows)
+    settings.keep(context.scene, _named(fit), rows)
+
+
+def _named(fit):
+    """What a grasp is kept for: the hand with its count of vertices, which goes with its size, and the product."""
+    hand, _, parts = fit.names
+    return f"{hand} of {len(fit.hand.rig.vertices)} vertices", "\n".join(parts)
 
 
 def use(context, index):
@@ -160,10 +166,9 @@ def use(context, index):
     parts = workflow.product_parts(chosen)
     if not 0 <= index < len(stored.found):
         raise checks.Refusal(f"there are {len(stored.found)} grasps; there is no grasp {index + 1}")
-    named = "\n".join(part.name for part in parts)
-    if chosen.hand is None or (chosen.hand.name, named) != (stored.hand, stored.product):
-        raise checks.Refusal("the grasps were found for another hand or product; press Grasp again")
     fit = prepare(context, chosen.hand, parts, fitter.Wish(pads.FIRM_MM, is_placed=True))
+    if _named(fit) != (stored.hand, stored.product):
+        raise checks.Refusal("the grasps were found for another hand or product; press Grasp again")
     angles, place = settings.unpacked(stored.found[index].pose)
     if angles.shape != fit.wish.angles.shape:
         raise checks.Refusal("the hand's bones changed since the grasps were found; press Grasp again")

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from .. import workflow
+from ..grasp_fit import fitter
 from ..hand.skinning import pose_matrices, skin
-from . import fitter
 
 TOLERANCE = 0.02
 """A force within this share of the target counts as reached."""

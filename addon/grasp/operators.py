@@ -6,11 +6,12 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from .. import workflow
+from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_make, can_pose
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
-from . import fitter, fitting, samples, words
+from . import fitting, samples, words
 
 STRENGTHS = (
     ("LIGHT", "Light", "60 N in sum over the skin, as in a loose hold"),

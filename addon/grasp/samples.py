@@ -7,10 +7,11 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ..grasp_fit import fitter
 from ..hand import build, pads, posing, products, reading, studio
 from ..hand.skinning import skin
 from ..scene.units import mm_per_unit
-from . import fitter, fitting
+from . import fitting
 
 FILE_SUFFIX = ".blend"
 RANGE_KPA = 150.0

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
+from ..grasp_fit import closing, fitter
+from ..grasp_fit.least_squares import minimize
+from ..grasp_fit.task import Task
 from ..scene.checks import Refusal
-from . import closing, fitter, places, settling
-from .least_squares import minimize
+from . import places, settling
 from .stage import stage_of
-from .task import Task
 
 ROLLS = 4
 """Directions around a bar from which the palm is tried."""

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
+from ..grasp_fit import fitter
+from ..grasp_fit import load as loads
+from ..grasp_fit.task import Goal
 from ..hand.skinning import pose_matrices, skin, skin_normals
 from ..scene.checks import Refusal
-from . import fitter, friction
-from . import load as loads
-from .task import Goal
+from . import friction
 
 MOST_MPA = 0.4
 """No pad shall press harder: averages stay below 0.25 MPa with hand tools (Hall 1997), and pain begins below 0.2."""

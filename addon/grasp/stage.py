@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native, workflow
+from ..grasp_fit import closing, field, fitter, walls
 from ..hand.skinning import pose_matrices, skin
-from . import closing, field, fitter, places, walls
+from . import places
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 
 from .. import native
+from ..hand_shape import built, rings, skin_look, weights
 from ..material_settings import preset_of
 from ..scene.checks import Refusal
 from ..scene.units import mm_per_unit
@@ -23,20 +24,23 @@ class BuildError(Refusal):
 
 
 def make(**shape):
-    """Arrays of a hand from the native module; keywords as `thenar.hand`.
+    """Arrays of a hand from the native module, and the `shape` asked for; keywords as `thenar.hand`.
 
     Raises `BuildError` with the module's own sentence if the module is missing or refuses the sizes.
     """
     if native.module is None:
         raise BuildError(native.problem())
     try:
-        return native.module.hand(**shape)
+        return {**native.module.hand(**shape), "shape": shape}
     except (*native.error_types(), ValueError) as error:
         raise BuildError(str(error)) from error
 
 
 def add_hand(context, made):
-    """Link mesh and armature of the `made` hand to the scene; returns `(hand, rig)` at the world's origin."""
+    """Link mesh and armature of the `made` hand to the scene; returns `(hand, rig)` at the world's origin.
+
+    A hand that says of which `shape` it is can be edited later.
+    """
     unit = 1.0 / mm_per_unit(context.scene)
     rig = _add_armature(context, made, unit)
     hand = _add_mesh(context, made, unit)
@@ -47,8 +51,17 @@ def add_hand(context, made):
     _set_materials(hand, made, group_names(made))
     arrays = model.rig_of(made)
     set_map(rig, roles.guess(arrays.names, arrays.parents, arrays.weights.any(axis=0)), "X")
+    if "shape" in made:
+        keep(hand, made, mm_per_unit(context.scene))
     context.view_layer.update()
     return hand, rig
+
+
+def keep(hand, made, millimetres):
+    """Note on the hand how it is made, so that it can be edited; `millimetres` per Blender unit."""
+    groups = group_names(made)
+    digests = weights.digests(weights.of_made(made, groups), weights.kinds_of(made, groups))
+    hand.thenar_hand.keep(built.describe(made, millimetres, digests))
 
 
 def group_names(made):
@@ -76,6 +89,7 @@ def _add_mesh(context, made, unit):
     _add_groups(hand, made)
     look.mark_skin(mesh, made)
     mesh.materials.append(shader.skin_material(mm_per_unit(context.scene)))
+    skin_look.apply(hand)
     return hand
 
 
@@ -100,8 +114,7 @@ def _add_armature(context, made, unit):
     data = bpy.data.armatures.new(RIG_NAME)
     rig = bpy.data.objects.new(RIG_NAME, data)
     context.scene.collection.objects.link(rig)
-    data.display_type = "STICK"
-    rig.show_in_front = True
+    data.display_type = "WIRE"
     with context.temp_override(active_object=rig, object=rig, selected_objects=[rig]):
         context.view_layer.objects.active = rig
         bpy.ops.object.mode_set(mode="EDIT")
@@ -116,17 +129,22 @@ def _add_armature(context, made, unit):
         pose_bone.rotation_mode = ROTATION_ORDER
         pose_bone.lock_location = (True, True, True)
         pose_bone.lock_scale = (True, True, True)
+    rings.put_on(rig, arrays, unit)
     return rig
 
 
 def _add_bone(data, bone, unit):
-    frame = model.bone_frame(bone)
     edit = data.edit_bones.new(bone["name"])
-    edit.head = [value * unit for value in bone["head_mm"]]
-    edit.tail = [value * unit for value in bone["tail_mm"]]
-    edit.align_roll([float(value) for value in frame[:3, 2]])
+    lay_bone(edit, bone, unit)
     if bone["parent"]:
         edit.parent = data.edit_bones[bone["parent"]]
+
+
+def lay_bone(edit, bone, unit):
+    """Put an edit bone where the made hand's bone rests; `unit`: Blender units per mm."""
+    edit.head = [value * unit for value in bone["head_mm"]]
+    edit.tail = [value * unit for value in bone["tail_mm"]]
+    edit.align_roll([float(value) for value in model.bone_frame(bone)[:3, 2]])
 
 
 def _limit(pose_bone, joints, role):

@@ -20,6 +20,15 @@ LINES = "skin_lines_mm"
 LINES_FADE = "skin_lines_fade"
 """How visible each of the three lines is at the vertex, 0 to 1."""
 
+NAIL = "skin_nail"
+"""Place on the digit's nail: across and along from its middle, in half widths and half lengths, and height towards the
+palm; linear over the skin, so the shader draws the outline finer than a triangle. `NO_NAIL` elsewhere."""
+NO_NAIL = 9.0
+NAIL_LENGTH = 1.12
+"""Length of a nail over its width (rust/hand, nail)."""
+NAIL_CORNER = 0.45
+"""Radius of its corners over its half width (the same)."""
+
 REFERENCE_MM = (190.0, 85.0)
 PALM_LINES = (
     ((36, 79), (27, 76), (14, 60), (8, 42), (6, 22), (9, 6)),
@@ -27,12 +36,14 @@ PALM_LINES = (
     ((-47, 61), (-34, 64), (-16, 70), (2, 79), (10, 86)),
 )
 """Thenar, proximal and distal crease in the palm plane of a hand of 190 by 85 mm."""
+FAR_MM = 20.0
+"""This far from the lines of the palm, skin knows nothing of them."""
 BASE_CREASE_MM = {"index": 18.0, "middle": 19.0, "ring": 18.0, "little": 14.5, "thumb": 1.0}
 PIP_CREASE_MM, DIP_CREASE_MM = -2.5, -7.5
 
 
 def mark_skin(mesh, made):
-    """Write the attributes that the skin material reads to `mesh`."""
+    """Write the attributes that the skin material reads to `mesh`; those of an earlier shape are overwritten."""
     rig = model.rig_of(made)
     joints = model.joints_of(made, rig)
     neighbors = _edges(made)
@@ -45,19 +56,22 @@ def mark_skin(mesh, made):
     _write(mesh, REST, rig.vertices)
     _write(mesh, TONE, np.stack([palmar, _blush(made, rig, joints, neighbors), nail], axis=1))
     _write(mesh, FINGER, np.stack([place, palmar * on_finger, (1.0 - palmar) * on_finger], axis=1))
+    _write(mesh, NAIL, _nail_places(rig, joints, nail > 0.5))
     _write(mesh, LINES, distance)
     _write(mesh, LINES_FADE, fade)
 
 
 def _write(mesh, name, vectors):
-    attribute = mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "FLOAT_VECTOR", "POINT")
     attribute.data.foreach_set("vector", np.ascontiguousarray(vectors, np.float32).ravel())
 
 
 def _edges(made):
     triangles = np.asarray(made["triangles"])
-    pairs = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    return np.unique(np.sort(pairs, axis=1), axis=0)
+    pairs = np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
+    count = int(triangles.max()) + 1
+    numbers = np.unique(pairs.min(axis=1) * count + pairs.max(axis=1))
+    return np.stack([numbers // count, numbers % count], axis=1)
 
 
 def _smooth(values, edges, passes=1):
@@ -120,6 +134,43 @@ def _finger_places(rig, joints, made):
     return place, on_finger
 
 
+def _nail_places(rig, joints, on_nail):
+    """Places (n, 3) as in `NAIL`; `on_nail` (n,): which vertices lie on a nail."""
+    places = np.full((len(rig.vertices), 3), NO_NAIL)
+    for role, bone in joints.bones.items():
+        own = rig.weights[:, bone] > 0.3
+        if not role.endswith("_distal") or not (own & on_nail).any():
+            continue
+        local = (rig.vertices[own] - rig.rest[bone, :3, 3]) @ rig.rest[bone, :3, :3]
+        half, middle = _nail_size(local, on_nail[own])
+        places[own] = (local - [0.0, middle, 0.0]) / [half, NAIL_LENGTH * half, half]
+    return places
+
+
+def _nail_size(local, on_nail):
+    """Half width and middle, mm, of the outline that parts the vertices on a nail from the others best."""
+    back = local[:, 2] < 0.0
+    across, along, inside = np.abs(local[back, 0]), local[back, 1], on_nail[back]
+    half, middle = across[inside].max(), 0.5 * (along[inside].min() + along[inside].max())
+    for step in (0.8, 0.4, 0.2, 0.1, 0.05):
+        tries = [(half + i * step, middle + j * step) for i in range(-2, 3) for j in range(-2, 3)]
+        half, middle = min(tries, key=lambda size: _missed((across, along), inside, size))
+    return half, middle
+
+
+def _missed(points, inside, size):
+    """How far, mm in all, vertices lie on the wrong side of a nail's outline."""
+    half, middle = size
+    outline = half * nail_outline(points[0] / half, np.abs(points[1] - middle) / half)
+    return np.maximum(np.where(inside, outline, -outline), 0.0).sum()
+
+
+def nail_outline(across, along):
+    """Signed distance to a nail's outline in half widths, negative on it, at distances from its middle (>= 0)."""
+    x, y = across - 1.0 + NAIL_CORNER, along - NAIL_LENGTH + NAIL_CORNER
+    return np.hypot(np.maximum(x, 0.0), np.maximum(y, 0.0)) + np.minimum(np.maximum(x, y), 0.0) - NAIL_CORNER
+
+
 def _palm_lines(made, palmar):
     """Signed distances (n, 3) to the lines of the palm, mm, and their visibility (n, 3)."""
     positions = np.asarray(made["vertices_mm"], float)
@@ -129,8 +180,10 @@ def _palm_lines(made, palmar):
     lengthwise = heads["middle_proximal"][1] / (0.446 * REFERENCE_MM[0])
     flat = positions[:, :2] / [across, lengthwise]
     distances, fades = [], []
+    palm = (palmar > 0.0) & (flat[:, 1] > -FAR_MM) & (flat[:, 1] < REFERENCE_MM[1] + FAR_MM)
     for line in PALM_LINES:
-        distance, part = _to_polyline(flat, _rounded(np.array(line, float)))
+        distance, part = np.full(len(flat), FAR_MM), np.zeros(len(flat))
+        distance[palm], part[palm] = _to_polyline(flat[palm], _rounded(np.array(line, float)))
         distances.append(distance)
         ends = np.clip(np.minimum(part + 0.02, 1.02 - part) / 0.12, 0.0, 1.0)
         fades.append(ends * palmar * (np.abs(distance) < 12.0))

@@ -4,6 +4,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty
 
 from .. import status
+from ..hand_shape import framing
 from ..operators import polling, running
 from . import build, posing
 from .poses import LABELS
@@ -43,6 +44,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
                 shape[name] = getattr(self, name)
         hand, _ = build.add_hand(context, build.make(**shape))
         context.scene.thenar.hand = hand
+        framing.frame(context, hand)
         return hand
 
 

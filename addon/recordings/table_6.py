@@ -3,7 +3,8 @@
 import numpy as np
 
 from .. import headless, names, workflow
-from ..grasp import fitter, fitting
+from ..grasp import fitting
+from ..grasp_fit import fitter
 from ..hand import pads
 from ..scene import attributes
 from ..scene.checks import Refusal

@@ -36,7 +36,7 @@ def hand(blender, made):
 @pytest.fixture(scope="session")
 def arrays(made):
     """The median hand without Blender: `fitter.Hand`."""
-    from thenar_blender.grasp import fitter
+    from thenar_blender.grasp_fit import fitter
     from thenar_blender.hand import capsules, model, pads
 
     rig = model.rig_of(made)

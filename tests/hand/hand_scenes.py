@@ -2,7 +2,8 @@
 
 import bpy
 import numpy as np
-from thenar_blender.grasp import fitter, fitting
+from thenar_blender.grasp import fitting
+from thenar_blender.grasp_fit import fitter
 from thenar_blender.hand import pads, products, studio
 
 

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from hand_scenes import evaluated_mm, with_cylinder
 from mathutils import Vector
-from thenar_blender.grasp import fitting, walls
+from thenar_blender.grasp import fitting
+from thenar_blender.grasp_fit import walls
 from thenar_blender.hand import bonemap, build, pads, reading, roles
 
 MM = 1e-3

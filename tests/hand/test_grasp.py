@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.grasp import fitter, least_squares, task, walls
+from thenar_blender.grasp_fit import fitter, least_squares, task, walls
 from thenar_blender.hand import capsules, pads, products, roles, skinning
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from hand_scenes import evaluated_mm, with_cylinder
 from mathutils.bvhtree import BVHTree
-from thenar_blender.grasp import fitting, samples, walls
+from thenar_blender.grasp import fitting, samples
+from thenar_blender.grasp_fit import walls
 from thenar_blender.hand import build, pads, reading
 
 SAMPLE_KINDS = (

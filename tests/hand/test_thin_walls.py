@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.grasp import closing, fitter, walls
+from thenar_blender.grasp_fit import closing, fitter, walls
 from thenar_blender.hand import capsules, pads, poses, products, roles, skinning
 
 UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}

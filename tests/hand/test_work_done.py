@@ -5,7 +5,8 @@ import time
 import pytest
 import thenar
 from hand_scenes import triangles_of
-from thenar_blender.grasp import fitter, fitting
+from thenar_blender.grasp import fitting
+from thenar_blender.grasp_fit import fitter
 from thenar_blender.hand import build, pads, products, studio
 from thenar_blender.recordings import table_6
 from thenar_blender.scene import units

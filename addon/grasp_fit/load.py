@@ -22,6 +22,17 @@ RANGE = 4.0
 
 
 @dataclass(frozen=True)
+class Touched:
+    """Skin at a product: its vertices (k,), where they are (k, 3), mm, their gaps (k,), mm, and the product's outward
+    direction at each (k, 3)."""
+
+    rows: np.ndarray
+    points: np.ndarray
+    gap: np.ndarray
+    outward: np.ndarray
+
+
+@dataclass(frozen=True)
 class Load:
     """`stiffness` (n,) of every vertex of the hand, N / mm^1.6, zero where no pad is.
 
@@ -37,24 +48,21 @@ class Load:
     outer_moment_nmm: np.ndarray
     wanted_n: float | None = None
 
-    def residuals(self, rows, points, gap, outward):
-        """Seven residuals, mm: net force, net moment over `ARM_MM`, and sum, of the vertices `rows`.
-
-        `points` (k, 3) world mm, `gap` (k,) mm, `outward` (k, 3) the product's direction at each.
-        """
-        force = self.stiffness[rows] * np.maximum(-gap, 0.0) ** POWER
-        push = -outward * force[:, None]
+    def residuals(self, skin):
+        """Seven residuals, mm, of `Touched` skin: net force, net moment over `ARM_MM`, and sum."""
+        force = self.stiffness[skin.rows] * np.maximum(-skin.gap, 0.0) ** POWER
+        push = -skin.outward * force[:, None]
         net = push.sum(axis=0) + self.outer_n
-        moment = np.cross(points - self.about_mm, push).sum(axis=0) + self.outer_moment_nmm
+        moment = np.cross(skin.points - self.about_mm, push).sum(axis=0) + self.outer_moment_nmm
         excess = 0.0 if self.wanted_n is None else force.sum() - self.wanted_n
         return self.weight_mm / self.reference_n * np.concatenate([net, moment / ARM_MM, [excess]])
 
-    def slopes(self, rows, points, gap, outward, moves):
+    def slopes(self, skin, moves):
         """Derivative (7, d) of the residuals; `moves` (k, d): how the gap of each vertex changes."""
-        rise = self.stiffness[rows] * POWER * np.maximum(-gap, 0.0) ** (POWER - 1.0)
+        rise = self.stiffness[skin.rows] * POWER * np.maximum(-skin.gap, 0.0) ** (POWER - 1.0)
         change = -rise[:, None] * moves
-        net = -outward.T @ change
-        moment = -np.cross(points - self.about_mm, outward).T @ change
+        net = -skin.outward.T @ change
+        moment = -np.cross(skin.points - self.about_mm, skin.outward).T @ change
         total = np.zeros(moves.shape[1]) if self.wanted_n is None else change.sum(axis=0)
         return self.weight_mm / self.reference_n * np.vstack([net, moment / ARM_MM, total])
 

@@ -22,6 +22,7 @@ from ..hand.skinning import (
 )
 from . import habits
 from .least_squares import Problem
+from .load import Touched
 
 ARM_MM = 60.0
 """A turn of the whole hand is counted in mm at this arm, so that turns and shifts weigh alike."""
@@ -134,7 +135,7 @@ class Task:
         self.state = (angles, posed, (points, gap, slopes), chosen, (overlap, contacts, direction))
         bones = (capsules_of_hand.center_points(self.hand.capsules, self.rig, posed) - self.pivot) @ turn.T
         crossed = CROSSED * self.gauge.is_crossed(bones + self.pivot + shift)
-        loads = self.goal.load.residuals(self.rows, points, gap, slopes) if self.goal.load is not None else []
+        loads = self.goal.load.residuals(Touched(self.rows, points, gap, slopes)) if self.goal.load is not None else []
         lies = [WEIGHT_AROUND * max(AROUND - self._thumb_around(posed, (turn, shift))[0], 0.0)]
         return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x), [crossed], lies, loads])
 
@@ -191,7 +192,7 @@ class Task:
             self._thumb_slope(posed, angles, (turn, x[-6:-3])),
         ]
         if self.goal.load is not None:
-            out.append(self.goal.load.slopes(self.rows[used], points[used], gap[used], slopes, by_vertex))
+            out.append(self.goal.load.slopes(Touched(self.rows[used], points[used], gap[used], slopes), by_vertex))
         return np.vstack(out)
 
     def _thumb_around(self, posed, motion):
