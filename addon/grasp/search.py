@@ -36,8 +36,10 @@ ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 15, 2
 LAST, LAST_ROUNDS = 2, 6
 LOST = 0.4
+TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
-the next where that one does not; what leaves more than `LOST` of its forces over is no grasp."""
+the next where that one does not; what leaves more than `LOST` of its forces over, or presses a vertex harder than
+`TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
@@ -92,11 +94,17 @@ def search(fit, watch=fitter.ALONE, aim=None, end=0):
 
 def _refuse_what_does_not_hold(state):
     """Raises `GraspError` where even the best way is none."""
+    peak = float(state.peaks_mpa.max())
     if state.imbalance > LOST or fitter.CROSSED_TEXT in state.grasp.warnings:
-        raise fitter.GraspError(
-            f"no way to hold the product was found: the best one leaves {state.imbalance:.0%} of the forces over. Put "
-            "the product's origin where the hand shall close, or pose the hand there and press Light (current pose)"
-        )
+        reason = f"leaves {state.imbalance:.0%} of the forces over"
+    elif peak > TOO_HARD_MPA:
+        reason = f"presses an edge with {1e3 * peak:.0f} kPa"
+    else:
+        return
+    raise fitter.GraspError(
+        f"no way to hold the product was found: the best one {reason}. Put the product's origin where the hand shall "
+        "close, or pose the hand there and press Light (current pose)"
+    )
 
 
 def _finished(stage, one, aim, seconds):
