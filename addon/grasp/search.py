@@ -33,7 +33,7 @@ BAR_COST = 15.0
 """Residual, mm2, that a bar's cost of one adds: a bar as a hand likes it goes before a better fit on another part."""
 
 ROUGH, ROUGH_EVALUATIONS = 6, 20
-FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 15, 2
+FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
 LAST, LAST_ROUNDS = 2, 6
 LOST = 0.4
 TOO_HARD_MPA = 0.6

@@ -41,7 +41,7 @@ FORCE_MISS = 0.02
 EVALUATIONS, LATER_EVALUATIONS = 25, 15
 """Of the fit in the first round, and in the others."""
 
-NEAR = 0.1
+NEAR = 0.2
 MOST_LEFT = 0.3
 LEVERS = np.array([1.0, 1.0, 1.0, loads.ARM_MM, loads.ARM_MM, loads.ARM_MM])
 """What earlier rounds left over counts once it is a small share of the sum of forces, `NEAR`, and up to `MOST_LEFT` of
