@@ -35,11 +35,12 @@ BAR_COST = 15.0
 ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
 LAST, LAST_ROUNDS = 2, 6
+UNSETTLED = 2.0
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
-the next where that one does not; what leaves more than `LOST` of its forces over, or presses a vertex harder than
-`TOO_HARD_MPA`, is no grasp."""
+the next where that one does not. One that is settled goes before another by `UNSETTLED` in its score. What leaves more
+than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +126,7 @@ def score_of(state, aim):
         score += 3.0 * min(abs(state.total_n / aim.total_n - 1.0), 1.0)
     score += 2.0 * max(float(state.peaks_mpa.max()) / settling.MOST_MPA - 1.0, 0.0)
     score += 0.3 * max(grasp.deepest_body_mm - 1.0, 0.0) + 5.0 * (fitter.CROSSED_TEXT in grasp.warnings)
+    score += 0.0 if settling.is_settled(state, aim) else UNSETTLED
     return score + (10.0 if state.contact.grade == "do not use" else 0.0)
 
 

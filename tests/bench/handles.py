@@ -15,6 +15,8 @@ from collections import Counter
 from itertools import product
 from pathlib import Path
 
+import numpy as np
+
 TESTS = Path(__file__).resolve().parents[1]
 MOST_REFUSED = 0.05
 PERCENTILES = (1, 5, 50, 95, 99)
@@ -87,6 +89,7 @@ def report(rows):
         refused = sum(grasping.is_refused(rows[case]) for case in chosen)
         unsound = sum(bool(wrong[case]) for case in chosen)
         print(f"{name:<18}{len(chosen):>7}{refused:>9}{unsound:>9}" + "".join(f"{count[name]:>9}" for name in FAULTS))
+    print("over the starts of a handle and a size, at most: " + _spread(rows))
     texts = Counter(f"{row['refused']}: {row['text'][:140]}" for row in rows.values() if "refused" in row)
     for text, number in texts.most_common(12):
         print(f"refused {number} at {text}")
@@ -104,6 +107,19 @@ def report(rows):
     )
     results.record("bench", "target/venv/bin/python tests/bench/handles.py", [figure])
     return int(not is_met)
+
+
+def _spread(rows):
+    """How far force and area of one handle and size lie apart over the starts, and what a grasp took."""
+    groups = {}
+    for case, row in rows.items():
+        if "force_n" in row:
+            percentile, _, handle = case.split(", ")
+            groups.setdefault((percentile, handle), []).append((row["force_n"], row["area_mm2"]))
+    apart = [max(np.ptp(each) / max(*each, 1e-9) for each in np.array(of_one).T) for of_one in groups.values()]
+    seconds = sorted(row["fit_s"] for row in rows.values() if "force_n" in row)
+    middle = seconds[len(seconds) // 2] if seconds else 0.0
+    return f"{100 * max(apart, default=0.0):.2f} % of force and area; a grasp took {middle:.1f} s in the middle"
 
 
 def _sentence(row):
