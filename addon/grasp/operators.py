@@ -136,7 +136,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         best = found[0]
         for text in best.grasp.warnings:
             self.report({"WARNING"}, running.sentence(text))
-        level, text = words.held(best.state, best.friction, context.scene.thenar_grasps.friction)
+        level, text = words.held(best.state, (best.friction, context.scene.thenar_grasps.friction), best.asked_n)
         ways = "1 way" if len(found) == 1 else f"the best of {len(found)} ways"
         self.report({level}, f"{text}; {ways} to hold it, {best.grasp.seconds:.1f} s")
         return {"FINISHED"}
@@ -166,7 +166,9 @@ class THENAR_OT_settle_grasp(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, found):
         _, state, friction = found
-        level, text = words.held(state, friction, context.scene.thenar_grasps.friction)
+        level, text = words.held(
+            state, (friction, context.scene.thenar_grasps.friction), context.scene.thenar_grasps.total_n or None
+        )
         self.report({level}, text)
         return {"FINISHED"}
 

@@ -47,7 +47,7 @@ than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, 
 class Found:
     """A grasp of the search with what was found of it. `score` counts against it; `spot` which bar, `end` which end of
     its axis is at the thumb (1 or -1), `roll` the palm's side; `friction` suffices to hold it; `pose` is angles (b, 3)
-    and place (4, 4) in the product's own frame."""
+    and place (4, 4) in the product's own frame; `asked_n` the sum of forces that was asked for."""
 
     grasp: fitter.Grasp
     state: settling.State
@@ -57,6 +57,7 @@ class Found:
     roll: int
     friction: float = np.inf
     pose: tuple = ()
+    asked_n: float | None = None
 
 
 def search(fit, watch=fitter.ALONE, aim=None, end=0):
@@ -96,7 +97,9 @@ def search(fit, watch=fitter.ALONE, aim=None, end=0):
 def _refuse_what_does_not_hold(state):
     """Raises `GraspError` where even the best way is none."""
     peak = float(state.peaks_mpa.max())
-    if state.imbalance > LOST or fitter.CROSSED_TEXT in state.grasp.warnings:
+    if fitter.CROSSED_TEXT in state.grasp.warnings:
+        reason = "has a finger in a thin wall of the product"
+    elif state.imbalance > LOST:
         reason = f"leaves {state.imbalance:.0%} of the forces over"
     elif peak > TOO_HARD_MPA:
         reason = f"presses an edge with {1e3 * peak:.0f} kPa"
@@ -112,7 +115,7 @@ def _finished(stage, one, aim, seconds):
     """A grasp found, in the scene's frame, with what its holding takes."""
     carried = replace(stage.carried(one.grasp), force_n=one.state.total_n, seconds=seconds)
     held = settling.friction_of(stage, one.state, aim)
-    return replace(one, grasp=carried, friction=held, pose=(one.grasp.angles, one.grasp.place))
+    return replace(one, grasp=carried, friction=held, pose=(one.grasp.angles, one.grasp.place), asked_n=aim.total_n)
 
 
 def score_of(state, aim):
@@ -142,18 +145,8 @@ def _rough(stage, only, watch):
         watch.report("Trying where to hold it", 0.2 * number / len(ways))
         fitter.leave_if_cancelled(watch)
         start = fitter.start_of(sparse, stage.gauge, wanted, (_placing(hand, *name), None, STOPS_DEG))
-        tasks.append(
-            (
-                Task(
-                    hand,
-                    stage.gauge,
-                    settling.goal_of(wanted, _bar(*name)),
-                    start,
-                    wish,
-                ),
-                name,
-            )
-        )
+        task = Task(hand, stage.gauge, settling.goal_of(wanted, _bar(*name)), start, wish)
+        tasks.append((task, name))
     tasks.sort(key=lambda task: in_steps(task[0].first_cost + BAR_COST * task[1][0].cost))
     fitted = []
     for task, name in tasks[:ROUGH]:

@@ -8,10 +8,17 @@ ALMOST = 0.005
 """Friction below this is none: a product is held by the normal forces alone."""
 
 
-def held(state, needed, available):
-    """Report level and sentence for a `settling.State` that needs a coefficient of friction, with one available."""
+SHORT = 0.9
+"""A sum of forces below this share of what was asked for is said."""
+
+
+def held(state, friction, asked_n=None):
+    """Report level and sentence for a `settling.State`: `friction` that it needs and that is there; what was asked."""
+    needed, available = friction
     net = math.sqrt(sum(part * part for part in state.net_n))
-    text = f"{state.total_n:.0f} N of grip, {net:.1f} N left over"
+    is_short = asked_n is not None and state.total_n < SHORT * asked_n
+    grip = f"{state.total_n:.0f} of {asked_n:.0f} N of grip" if is_short else f"{state.total_n:.0f} N of grip"
+    text = f"{grip}, {net:.1f} N left over"
     if state.imbalance <= settling.BALANCED and needed <= available:
         return "INFO", f"In balance: {text}" + ("" if needed < ALMOST else f", held by a friction of {needed:.2f}")
     if needed <= available:
