@@ -31,6 +31,7 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
 
     bl_label = "Bones"
     bl_parent_id = "THENAR_PT_hand"
+    bl_order = 2
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
