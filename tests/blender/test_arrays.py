@@ -7,8 +7,9 @@ import thenar_blender
 
 SOURCES = [path for path in Path(thenar_blender.__file__).parent.rglob("*.py") if "hand" not in path.parts[-2:-1]]
 ELEMENTS = {"vertices", "loops", "polygons", "edges", "points", "loop_triangles", "vertex_normals"}
-# Weights have no array access, and the nodes that read them whole touch the scene, which a digest of it must not.
-ALLOWED = {("regions.py", "vertices")}
+# Weights have no array access, and the nodes that read them whole touch the scene, which neither a digest of it nor the
+# update of a hand's settings must do.
+ALLOWED = {("regions.py", "vertices"), ("weights.py", "vertices")}
 
 
 def walked(tree):

@@ -45,7 +45,7 @@ def test_the_same_from_everywhere(blender, scene):
     results = []
     for turn, shift in (((0, 0, 0), (0, 0, 0)), ((-25, 10, 140), (0.1, 0.5, -0.2)), ((90, 0, 45), (0, 0, 0.4))):
         blender.ops.wm.read_homefile(use_empty=True)
-        hand, _ = scene(shapes.SHAPES["pistol grip"](), turn, shift)
+        hand, _ = scene(shapes.SHAPES["door knob"](), turn, shift)
         hand.parent.location = (0.3, shift[0], 0.1)
         blender.context.view_layer.update()
         blender.ops.thenar.fit_grasp()
