@@ -25,7 +25,7 @@ RIDGES = 300
 
 APART_MM = 45.0
 SPOTS = 3
-"""So many spots are kept beside the whole product, at least so far apart or turned by 50 degrees."""
+"""So many spots are kept besides the whole product, at least so far apart or turned by 50 degrees."""
 
 MARK_MM = 10.0
 MARKED = 0.4

@@ -87,7 +87,7 @@ def search(fit, watch=fitter.ALONE, aim=None, end=0):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
-        state = settling.settle(stage, one.grasp, replace(aim, bar=_bar(one.spot, one.end, 0)), LAST_ROUNDS, watch)
+        state = settling.settle(stage, one.grasp, replace(aim, bar=_bar(one.spot, one.end)), LAST_ROUNDS, watch)
         out[place] = replace(one, grasp=state.grasp, state=state, score=score_of(state, aim) + one.spot.cost)
     out.sort(key=lambda found: in_steps(found.score))
     _refuse_what_does_not_hold(out[0].state)
@@ -145,7 +145,7 @@ def _rough(stage, only, watch):
         watch.report("Trying where to hold it", 0.2 * number / len(ways))
         fitter.leave_if_cancelled(watch)
         start = fitter.start_of(sparse, stage.gauge, wanted, (_placing(hand, *name), None, STOPS_DEG))
-        task = Task(hand, stage.gauge, settling.goal_of(wanted, _bar(*name)), start, wish)
+        task = Task(hand, stage.gauge, settling.goal_of(wanted, _bar(*name[:2])), start, wish)
         tasks.append((task, name))
     tasks.sort(key=lambda task: in_steps(task[0].first_cost + BAR_COST * task[1][0].cost))
     fitted = []
@@ -176,8 +176,8 @@ def _thinned(hand, step):
     return replace(hand, pads=pads, body_step=hand.body_step * step)
 
 
-def _bar(bar, end, roll):
-    """What the thumb closes around."""
+def _bar(bar, end):
+    """What the thumb closes around: center (3) and axis (3) of the bar, toward the thumb's side."""
     return bar.center, end * bar.axis
 
 

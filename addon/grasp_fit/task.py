@@ -212,6 +212,8 @@ class Task:
         return float(direction @ around), around, direction
 
     def _thumb_slope(self, posed, angles, motion):
+        """The row of the Jacobian, without how the way around turns as the thumb's head moves: the direction is right,
+        the size may be a third of the true one."""
         out = np.zeros((1, len(self.dofs) + 6))
         cosine, around, direction = self._thumb_around(posed, motion)
         if cosine >= AROUND:

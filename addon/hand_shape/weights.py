@@ -1,4 +1,4 @@
-"""Vertex groups of a hand as arrays: read in one pass, and told apart from the user's own by a digest."""
+"""Vertex groups of a hand as arrays: read in one pass, and distinguished from the user's own by a digest."""
 
 import hashlib
 

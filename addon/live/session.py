@@ -197,7 +197,7 @@ def _shape(hand, fields, place):
 
 
 def _paint(session, obj, fields, look):
-    """Pressure, edge and colors, anew only where they changed; nothing where nothing presses or pressed."""
+    """Pressure, edge and colors, written only where they changed; nothing where nothing presses or pressed."""
     (settings, scale, bare), (pressure, edge) = look, fields
     before = session.painted.get(obj.name)
     under = before.under if before is not None else colors.ground(obj, bare)

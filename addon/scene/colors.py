@@ -109,7 +109,7 @@ def mapped(values: Sequence[Floats], scale: maps.Scale, under: Ground) -> Floats
 
 
 def recolor(obj: Object, look: PropertyGroup, color: Color) -> None:
-    """Colour the object anew from its pressure and from the map that is shown, after a range or the colours changed."""
+    """Color the object again from its pressure and from the map that is shown, after a range or the colours changed."""
     mesh, under = obj.data, ground(obj, color)
     pressure = attributes.read(mesh, names.PRESSURE_KPA)
     if pressure is not None:

@@ -81,6 +81,33 @@ def test_grasps_found_are_kept_with_the_product(blender, scene, bar, tmp_path):
         blender.ops.thenar.use_grasp(index=0)
 
 
+def mirrored(blender, hand, product):
+    """The product turned into its mirror image."""
+    product.scale = (-1.0, 1.0, 1.0)
+
+
+def uneven(blender, hand, product):
+    """The product drawn out across its axis."""
+    product.scale = (1.0, 1.25, 1.0)
+
+
+def subdivided(blender, hand, product):
+    """A hand with a Subdivision level."""
+    hand.modifiers.new("Subdivision", "SUBSURF").levels = 1
+
+
+@pytest.mark.parametrize("changed", [mirrored, uneven, subdivided])
+def test_scenes_of_others_are_balanced_as_well(blender, scene, changed):
+    hand, product = scene(shapes.revolved(np.array([0.0, 16.0, 16.0, 0.0]), np.array([-70.0, -70.0, 70.0, 70.0]), 48))
+    changed(blender, hand, product)
+    blender.context.view_layer.update()
+    assert blender.ops.thenar.fit_grasp() == {"FINISHED"}
+    blender.ops.thenar.solve()
+    result = blender.context.scene.thenar.result
+    assert result.force_n == pytest.approx(FIRM_N, rel=0.1)
+    assert np.linalg.norm(result.force_vector_n) < 0.08 * result.force_n
+
+
 def test_settle_carries_a_weight(blender, scene, bar):
     hand, _ = scene(bar, turn=(0, 90, 0))
     blender.ops.thenar.fit_grasp()

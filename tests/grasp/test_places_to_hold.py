@@ -41,8 +41,10 @@ def test_the_bar_of_a_dumbbell_goes_before_its_heads():
 
 
 def test_an_open_hollow_counts_as_a_bar():
-    best = spots(*arrays("joystick"))[0]
+    vertices, triangles = arrays("joystick")
+    best = places.spots(thenar.Product(vertices, triangles), vertices, triangles)[0]
     assert 14.0 < best.radius_mm < 23.0, "the stick is a shell without a bottom"
+    assert abs(best.axis[2]) > 0.9 and -60.0 < best.center[2] < 55.0, "the stick stands upright on its base"
 
 
 def test_an_origin_on_the_product_marks_a_spot():

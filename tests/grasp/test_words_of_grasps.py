@@ -1,4 +1,4 @@
-"""What a user is told of a grasp: balance, friction, a grip that falls short, a product that would slip."""
+"""What the report says of a grasp: balance, friction, a grip that falls short, a product that would slip."""
 
 from types import SimpleNamespace
 

@@ -74,13 +74,17 @@ def test_out_of_reach_is_refused(arrays):
         fitter.fit(arrays, product, far, fitter.Wish(pads.LIGHT_MM, is_placed=True))
 
 
-def test_jacobian_of_the_fit(arrays):
+AROUND = {"bar": (np.zeros(3), np.array([0.0, 0.0, 1.0])), "shallow_mm": 4.0, "is_smooth": True}
+
+
+@pytest.mark.parametrize("extra", [{}, AROUND], ids=["single fit", "search"])
+def test_jacobian_of_the_fit(arrays, extra):
     product, vertices = product_of(products.cylinder(60))
     wish = fitter.Wish(pads.FIRM_MM, **UPRIGHT)
     wanted = fitter.wanted_depths(arrays.pads, wish)
     gauge = walls.Gauge(product, is_thin=False)
     start = fitter.start_of(arrays, gauge, wanted, (fitter._placings(arrays, vertices, wish)[0], None))
-    asked = task.Task(arrays, gauge, task.Goal(wanted), start, wish)
+    asked = task.Task(arrays, gauge, task.Goal(wanted, **extra), start, wish)
     rng = np.random.default_rng(0)
     x = asked.start + 0.03 * rng.normal(size=len(asked.start))
     x[-6:] *= 20.0
@@ -90,6 +94,27 @@ def test_jacobian_of_the_fit(arrays):
     quotient = np.stack([(asked.residuals(x + e) - asked.residuals(x - e)) / 2e-5 for e in step], axis=1)
     off = np.abs(slope - quotient) > 0.02 * np.abs(quotient).max()
     assert off.any(axis=1).sum() <= 2, "a few pads may change which vertices are deepest within the step"
+
+
+def test_slope_of_the_thumb_around_a_bar_leads_the_right_way(arrays):
+    product, vertices = product_of(products.cylinder(60))
+    wish = fitter.Wish(pads.FIRM_MM, **UPRIGHT)
+    wanted = fitter.wanted_depths(arrays.pads, wish)
+    gauge = walls.Gauge(product, is_thin=False)
+    start = fitter.start_of(arrays, gauge, wanted, (fitter._placings(arrays, vertices, wish)[0], None))
+    seen = []
+    for end in (1.0, -1.0):
+        goal = task.Goal(wanted, bar=(np.array([3.0, -2.0, 0.0]), np.array([0.0, 0.0, end])))
+        asked = task.Task(arrays, gauge, goal, start, wish)
+        seen.append(asked.residuals(asked.start)[-1])
+        slope = asked.jacobian(asked.start)[-1, :-6]
+        step = 1e-5 * np.eye(len(asked.start))[: len(slope)]
+        ahead = np.array([asked.residuals(asked.start + e)[-1] for e in step])
+        back = np.array([asked.residuals(asked.start - e)[-1] for e in step])
+        quotient = (ahead - back) / 2e-5
+        if seen[-1] > 0.0:
+            assert slope @ quotient > 0.9 * np.linalg.norm(slope) * np.linalg.norm(quotient)
+    assert max(seen) > 0.0, "at one end the thumb lies the wrong way around"
 
 
 def test_minimizer_keeps_bounds_and_resists_an_outlier():
