@@ -114,14 +114,13 @@ def can_search(fit):
 def search_all(fit, asked, cancel=None, progress=None):
     """The `search.Found` grasps of a `Fit`, best first. Raises `fitter.GraspError`.
 
-    `asked`: the sum of forces, N (a share of it where not all pads take part), or None; and at which end of the bar the
-    thumb shall be (1 or -1; 0: either).
+    `asked`: a `search.Asked`; where not all pads take part a share of its sum is asked for.
     """
-    total_n, end = asked
     watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
     taking = np.isfinite(fitter.wanted_depths(fit.hand.pads, fit.wish)).mean()
-    aim = settling.Aim(np.zeros(3), np.zeros(3), None if total_n is None else float(total_n * taking))
-    return search.search(fit, watch, aim, end)
+    if asked.total_n is not None:
+        asked = replace(asked, total_n=float(asked.total_n * taking))
+    return search.search(fit, watch, asked)
 
 
 def settle_here(fit, weight_n, total_n, cancel=None, progress=None):

@@ -14,6 +14,27 @@ LEAST_SHARE = 1e-4
 """Vertices that carry less of the sum are left out."""
 
 
+EASE = 0.2
+"""Fingers press so much harder or softer than they were fitted before they need friction."""
+
+
+def eased(points, push, net, moment):
+    """Net force (3), N, and moment (3), N mm, that stay when each of the forces `push` changes by up to `EASE` of it so
+    that less is left over; arguments as of `needed`."""
+    size = np.linalg.norm(push, axis=1)
+    used = size > LEAST_SHARE * size.sum()
+    points, push, size = points[used], push[used], size[used]
+    if len(size) == 0:
+        return net, moment
+    arm = max(float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean()), 1.0)
+    maps = np.concatenate([push, np.cross(points, push) / arm], axis=1)
+    share, *_ = np.linalg.lstsq(maps.T @ maps, -np.concatenate([net, moment / arm]), rcond=1e-9)
+    change = maps @ share
+    change *= min(1.0, EASE / max(float(np.abs(change).max()), 1e-12))
+    gained = change @ maps
+    return net + gained[:3], moment + arm * gained[3:]
+
+
 def needed(points, push, net, moment):
     """The coefficient of friction that suffices to balance a net force and moment, or infinity if none does.
 

@@ -11,7 +11,7 @@ from ..hand import pads
 from ..hand.operators import can_make, can_pose
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
-from . import fitting, samples, words
+from . import fitting, samples, search, words
 
 STRENGTHS = (
     ("LIGHT", "Light", "60 N in sum over the skin, as in a loose hold"),
@@ -31,6 +31,11 @@ ENDS = (
     ("AUTO", "Automatic", "Whichever end of the handle scores better", 0),
     ("FIRST", "One End", "The thumb at one end of the handle", 1),
     ("SECOND", "Other End", "The thumb at the other end of the handle", 2),
+)
+KINDS = (
+    ("AUTO", "Automatic", "A power grip; a pinch where no power grip holds"),
+    ("POWER", "Power", "The hand closes around a part of the product"),
+    ("PINCH", "Pinch", "Thumb and fingertips from two sides; two fifths of a power grip's forces"),
 )
 END_OF = {"AUTO": 0, "FIRST": 1, "SECOND": -1}
 DIGITS = (
@@ -72,6 +77,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
     )
+    kind: EnumProperty(name="Kind", description="How the hand holds the product", items=KINDS)
     end: EnumProperty(name="Thumb At", description="Which end of the handle the thumb is at", items=ENDS)
 
     @classmethod
@@ -84,7 +90,9 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         for name in ("strength", "place", "moves"):
             layout.prop(self, name)
         if self.place == "LAY":
-            layout.prop(self, "end")
+            layout.prop(self, "kind")
+            if self.kind != "PINCH":
+                layout.prop(self, "end")
         if self.strength == "CUSTOM":
             for name in ("distal_mm", "middle_mm", "proximal_mm", "palm_mm"):
                 layout.prop(self, name)
@@ -98,7 +106,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
         if fitting.is_searched(wish) and fitting.can_search(fit):
             total = self.force_n or fitting.TOTALS_N.get(self.strength)
-            found = yield partial(fitting.search_all, fit, (total, END_OF[self.end]))
+            found = yield partial(fitting.search_all, fit, search.Asked(total, END_OF[self.end], self.kind))
             fitting.finish(context, fit, found[0].grasp, self.moves)
             fitting.keep(context, fit, found)
             return found

@@ -53,6 +53,9 @@ class Spot:
     cost: float = 0.0
 
 
+ROBERTS = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps of a sequence of points that fills a square evenly: 1 / p and 1 / p^2 with p^3 = p + 1 (Roberts 2018)."""
+
 ALIKE = 0.02
 """Moments that differ by less, relative, have no axes of their own: the order of the vertices then decides."""
 
@@ -97,6 +100,23 @@ def _first_off(marks, axis):
     far = np.linalg.norm(off, axis=1)
     first = np.flatnonzero(far > 0.5 * far.max())[0]
     return off[first] / far[first]
+
+
+def sampled(vertices, triangles, count):
+    """Points (count, 3) spread over a surface by its area, and the unit normal (count, 3) of the triangle of each.
+
+    They go along when the surface is moved: the order of the triangles decides where they lie.
+    """
+    corners = vertices[triangles]
+    crosses = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(crosses, axis=1)
+    sums = np.cumsum(areas)
+    number = np.arange(count)
+    chosen = np.minimum(np.searchsorted(sums, (number + 0.5) / count * sums[-1]), len(areas) - 1)
+    u, v = (number[:, None] * ROBERTS % 1.0).T
+    u, v = np.where(u + v > 1.0, 1.0 - u, u)[:, None], np.where(u + v > 1.0, 1.0 - v, v)[:, None]
+    a, b, c = (corners[chosen, k] for k in range(3))
+    return a + u * (b - a) + v * (c - a), crosses[chosen] / np.maximum(areas[chosen, None], 1e-12)
 
 
 def spots(product, vertices, triangles, mark=None):

@@ -9,22 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
-from ..grasp_fit import closing, fitter
+from ..grasp_fit import fitter
 from ..grasp_fit.least_squares import minimize
 from ..grasp_fit.task import Task
 from ..scene.checks import Refusal
-from . import places, settling
+from . import settling, ways
+from .settings import FRICTION
 from .stage import stage_of
-
-ROLLS = 4
-"""Directions around a bar from which the palm is tried."""
-
-STOPS_DEG = {"thumb_proximal": 30.0, "thumb_distal": 25.0}
-"""The thumb closes this far before a fit: further, its tip hooks into the palm and stays there."""
-
-OBLIQUE_DEG = 12.0
-ALONG = -0.25
-"""The bar's axis against the line of the knuckles, and its place along the fingers in parts of the hand's breadth."""
 
 THINNED = 3
 """A rough fit looks at each third vertex of a pad, and at each twelfth of the other skin."""
@@ -34,51 +25,83 @@ BAR_COST = 15.0
 
 ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
-LAST, LAST_ROUNDS = 2, 6
+LAST, LAST_ROUNDS = 2, 8
 UNSETTLED = 2.0
+SLIPS = 2.0
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
-the next where that one does not. One that is settled goes before another by `UNSETTLED` in its score. What leaves more
+the next where that one does not. What is not settled counts `UNSETTLED` more, what slips `SLIPS`. What leaves more
 than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
+class Asked:
+    """What a search is to find: the sum of forces of a power grip, N, or None; at which `end` of a bar's axis the thumb
+    shall be (1 or -1; 0: either); the `kind`, `ways.POWER` or `ways.PINCH`, or AUTO."""
+
+    total_n: float | None = None
+    end: int = 0
+    kind: str = "AUTO"
+
+
+@dataclass(frozen=True)
 class Found:
-    """A grasp of the search with what was found of it. `score` counts against it; `spot` which bar, `end` which end of
-    its axis is at the thumb (1 or -1), `roll` the palm's side; `friction` suffices to hold it; `pose` is angles (b, 3)
-    and place (4, 4) in the product's own frame; `asked_n` the sum of forces that was asked for."""
+    """A grasp of the search with what was found of it, and the `way` it began. `score` counts against it; `friction`
+    suffices to hold it; `pose` is angles (b, 3) and place (4, 4) in the product's own frame; `asked_n` the sum of
+    forces that was asked for."""
 
     grasp: fitter.Grasp
     state: settling.State
     score: float
-    spot: places.Spot
-    end: int
-    roll: int
-    friction: float = np.inf
-    pose: tuple = ()
-    asked_n: float | None = None
+    way: ways.Way
+    friction: float
+    pose: tuple
+    asked_n: float | None
 
 
-def search(fit, watch=fitter.ALONE, aim=None, end=0):
+def search(fit, watch=fitter.ALONE, asked=None):
     """Grasps of a `fitting.Fit`, best first, in the scene's frame; at least one.
 
-    `end`: 1 or -1 keeps the thumb at that end of the bar's axis, 0 tries both. Raises `GraspError` if none holds.
+    A power grip is sought first, and a pinch beside it where none holds, unless `asked` names the kind. Raises
+    `GraspError` if none holds.
     """
-    began = time.perf_counter()
+    began, asked = time.perf_counter(), asked or Asked()
     stage = stage_of(fit)
-    aim = aim or settling.Aim(np.zeros(3), np.zeros(3))
+    found, refusals = [], []
+    for kind in (ways.POWER, ways.PINCH):
+        if asked.kind not in ("AUTO", kind) or (found and found[0].friction <= FRICTION):
+            continue
+        ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
+        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n)
+        if kind == ways.PINCH and asked.total_n is not None:
+            aim = replace(aim, total_n=ways.PINCH_SHARE * asked.total_n)
+        try:
+            found += _best(ready, aim, watch)
+        except (Refusal, native.module.SolveError) as refusal:
+            fitter.leave_if_cancelled(watch)
+            refusals.append(refusal)
+    if not found:
+        raise refusals[0]
+    found.sort(key=lambda one: in_steps(one.score))
+    return [_finished(one, time.perf_counter() - began) for one in found]
+
+
+def _best(ready, aim, watch):
+    """The grasps that ways lead to, best first. Raises `Refusal` or `SolveError` where even the best one is none."""
+    if not ready:
+        raise fitter.GraspError("no two sides of the product can be pinched; move it, or make it thinner")
     out, refusals = [], []
-    for count, (task, x, name) in enumerate(_rough(stage, end, watch)):
+    for count, (task, x, way) in enumerate(_rough(ready, watch)):
         watch.report("Fitting", 0.3 + 0.15 * count)
         fitter.leave_if_cancelled(watch)
         try:
-            grasp = _fine(stage, task, x, watch)
-            state = settling.settle(stage, grasp, replace(aim, bar=task.goal.bar), FINE_ROUNDS, watch)
+            grasp = _fine(way, task, x, watch)
+            state = settling.settle(way.stage, grasp, replace(aim, bar=way.bar), FINE_ROUNDS, watch)
         except (Refusal, native.module.SolveError) as refusal:
             refusals.append(refusal)
             continue
-        out.append(Found(state.grasp, state, score_of(state, aim) + name[0].cost, *name))
+        out.append(_found(state, aim, way))
     if not out:
         raise refusals[0] if refusals else fitter.GraspError("no way to hold the product was found")
     out.sort(key=lambda found: in_steps(found.score))
@@ -87,11 +110,11 @@ def search(fit, watch=fitter.ALONE, aim=None, end=0):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
-        state = settling.settle(stage, one.grasp, replace(aim, bar=_bar(one.spot, one.end)), LAST_ROUNDS, watch)
-        out[place] = replace(one, grasp=state.grasp, state=state, score=score_of(state, aim) + one.spot.cost)
+        state = settling.settle(one.way.stage, one.grasp, replace(aim, bar=one.way.bar), LAST_ROUNDS, watch)
+        out[place] = _found(state, aim, one.way)
     out.sort(key=lambda found: in_steps(found.score))
     _refuse_what_does_not_hold(out[0].state)
-    return [_finished(stage, one, aim, time.perf_counter() - began) for one in out]
+    return out
 
 
 def _refuse_what_does_not_hold(state):
@@ -111,11 +134,17 @@ def _refuse_what_does_not_hold(state):
     )
 
 
-def _finished(stage, one, aim, seconds):
-    """A grasp found, in the scene's frame, with what its holding takes."""
-    carried = replace(stage.carried(one.grasp), force_n=one.state.total_n, seconds=seconds)
-    held = settling.friction_of(stage, one.state, aim)
-    return replace(one, grasp=carried, friction=held, pose=(one.grasp.angles, one.grasp.place), asked_n=aim.total_n)
+def _found(state, aim, way):
+    """A grasp as a way led to it, with its score and what its holding takes."""
+    held = settling.friction_of(way.stage, state, aim)
+    score = score_of(state, aim) + way.spot.cost + (SLIPS if held > FRICTION else 0.0)
+    pose = state.grasp.angles, state.grasp.place
+    return Found(state.grasp, state, score, way, held, pose, aim.total_n)
+
+
+def _finished(one, seconds):
+    """A grasp found, in the scene's frame."""
+    return replace(one, grasp=replace(one.way.stage.carried(one.grasp), force_n=one.state.total_n, seconds=seconds))
 
 
 def score_of(state, aim):
@@ -133,34 +162,30 @@ def score_of(state, aim):
     return score + (10.0 if state.contact.grade == "do not use" else 0.0)
 
 
-def _rough(stage, only, watch):
-    """The best starts after a rough fit: (task, x, name), name is (spot, end, roll)."""
-    hand, sparse = (_thinned(stage.hand, step) for step in (THINNED, 2 * THINNED))
-    wish = stage.fit.wish
-    wanted = fitter.wanted_depths(hand.pads, wish)
-    bars = places.spots(stage.gauge.product, stage.vertices, stage.triangles, stage.mark)
-    ways = [(bar, end, roll) for bar in bars for end in (1, -1) if only in (0, end) for roll in range(ROLLS)]
+def _rough(ready, watch):
+    """The best of the ways after a rough fit: (task, x, way)."""
     tasks = []
-    for number, name in enumerate(ways):
-        watch.report("Trying where to hold it", 0.2 * number / len(ways))
+    hand, sparse = (_thinned(ready[0].stage.hand, step) for step in (THINNED, 2 * THINNED))
+    for number, way in enumerate(ready):
+        watch.report("Trying where to hold it", 0.2 * number / len(ready))
         fitter.leave_if_cancelled(watch)
-        start = fitter.start_of(sparse, stage.gauge, wanted, (_placing(hand, *name), None, STOPS_DEG))
-        task = Task(hand, stage.gauge, settling.goal_of(wanted, _bar(*name[:2])), start, wish)
-        tasks.append((task, name))
-    tasks.sort(key=lambda task: in_steps(task[0].first_cost + BAR_COST * task[1][0].cost))
+        wanted = fitter.wanted_depths(hand.pads, way.stage.fit.wish)
+        goal = settling.goal_of(wanted, way.bar)
+        tasks.append((Task(hand, way.stage.gauge, goal, way.start(sparse, wanted), way.stage.fit.wish), way))
+    tasks.sort(key=lambda task: in_steps(task[0].first_cost + BAR_COST * task[1].spot.cost))
     fitted = []
-    for task, name in tasks[:ROUGH]:
+    for task, way in tasks[:ROUGH]:
         watch.report("Fitting roughly", 0.2)
         fitter.leave_if_cancelled(watch)
         solved = minimize(task.problem(), task.start, ROUGH_EVALUATIONS, cancelled=watch.cancelled)
-        fitted.append((solved.cost + BAR_COST * name[0].cost, task, solved.x, name))
+        fitted.append((solved.cost + BAR_COST * way.spot.cost, task, solved.x, way))
     fitted.sort(key=lambda entry: in_steps(entry[0]))
     return _varied([entry[1:] for entry in fitted])[:FINE]
 
 
 def _varied(fitted):
     """The best one, then the best on another bar, then the others: one bar shall not take all places."""
-    others = [entry for entry in fitted[1:] if entry[2][0] is not fitted[0][2][0]]
+    others = [entry for entry in fitted[1:] if entry[2].spot is not fitted[0][2].spot]
     rest = [entry for entry in fitted[1:] if not others or entry is not others[0]]
     return [fitted[0], *others[:1], *rest]
 
@@ -176,22 +201,11 @@ def _thinned(hand, step):
     return replace(hand, pads=pads, body_step=hand.body_step * step)
 
 
-def _bar(bar, end):
-    """What the thumb closes around: center (3) and axis (3) of the bar, toward the thumb's side."""
-    return bar.center, end * bar.axis
-
-
-def _placing(hand, bar, end, roll):
-    turn = 2.0 * np.pi * roll / ROLLS
-    third = np.cross(bar.axis, bar.side)
-    toward = np.cos(turn) * bar.side + np.sin(turn) * third
-    return closing.Placing(bar.center, end * bar.axis, np.radians(OBLIQUE_DEG), ALONG * fitter.breadth_of(hand), toward)
-
-
-def _fine(stage, rough, x, watch):
+def _fine(way, rough, x, watch):
     """The grasp from a rough fit, with all vertices."""
     angles, place = fitter.motion_of(rough, x)
-    goal = settling.goal_of(fitter.wanted_depths(stage.hand.pads, stage.fit.wish), rough.goal.bar)
-    task = Task(stage.hand, stage.gauge, goal, (place, angles), stage.fit.wish)
+    hand, wish = way.stage.hand, way.stage.fit.wish
+    goal = settling.goal_of(fitter.wanted_depths(hand.pads, wish), way.bar)
+    task = Task(hand, way.stage.gauge, goal, (place, angles), wish)
     solved = minimize(task.problem(), task.start, FINE_EVALUATIONS, cancelled=watch.cancelled)
     return fitter.grasp_of(task, solved.x, solved.evaluations, 0.0)

@@ -41,11 +41,11 @@ FORCE_MISS = 0.02
 EVALUATIONS, LATER_EVALUATIONS = 25, 15
 """Of the fit in the first round, and in the others."""
 
-NEAR = 0.2
+NEAR, FAR = 0.2, 0.6
 MOST_LEFT = 0.3
 LEVERS = np.array([1.0, 1.0, 1.0, loads.ARM_MM, loads.ARM_MM, loads.ARM_MM])
-"""What earlier rounds left over counts once it is a small share of the sum of forces, `NEAR`, and up to `MOST_LEFT` of
-it; moments at `load.ARM_MM`."""
+"""What earlier rounds left over counts in full where it is a small share of the sum of forces, `NEAR`, and not at all
+from `FAR` on; up to `MOST_LEFT` of the sum; moments at `load.ARM_MM`."""
 
 RISE = 1.3
 """Where a pad was too hard in a round, the sum rises again by no more in the next."""
@@ -111,13 +111,15 @@ def pressed(stage, found, aim, cancel=None):
 
 
 def friction_of(stage, state, aim):
-    """The coefficient of friction that suffices to hold what a state leaves over (`friction.needed`)."""
+    """The coefficient of friction that suffices to hold what a state leaves over, once the fingers have eased it."""
     forces = np.asarray(state.contact.force_n)
     used = np.flatnonzero(forces > 0.0)
     rig = stage.hand.rig.subset(used).moved(state.grasp.place)
     points = skin(rig, pose_matrices(rig, state.grasp.angles)) + np.asarray(state.contact.displacement_mm)[used]
     push = -np.nan_to_num(np.asarray(state.contact.product_normal)[used]) * forces[used, None]
-    return friction.needed(points - aim.about_mm, push, state.net_n, state.moment_nmm)
+    points = points - aim.about_mm
+    left = friction.eased(points, push, state.net_n, state.moment_nmm)
+    return friction.needed(points, push, *left)
 
 
 def settle(stage, first, aim, rounds, watch=fitter.ALONE):
@@ -149,8 +151,8 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
         wanted = wanted * np.clip(own * whole, LEAST_FACTOR, 1.0 / LEAST_FACTOR)
         deepest = np.array([-state.gap_mm[pad.rows].min() for pad in stage.hand.pads])
         limits = np.where(own < 1.0, np.minimum(limits, np.maximum(deepest, 0.3) * own), limits)
-        is_near = state.imbalance < NEAR and state.lever < NEAR
-        left = is_near * (left + np.concatenate([state.net_n, state.moment_nmm]))
+        share = np.clip((FAR - max(state.imbalance, state.lever)) / (FAR - NEAR), 0.0, 1.0)
+        left = share * (left + np.concatenate([state.net_n, state.moment_nmm]))
         goal = goal_of(wanted, aim.bar, limits, _load(stage, state, (now, left), areas))
         evaluations = EVALUATIONS if count == 0 else LATER_EVALUATIONS
         found = fitter.refit(stage.hand, found, replace(stage.fit.wish, evaluations=evaluations), watch, goal)

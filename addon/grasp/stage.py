@@ -60,6 +60,10 @@ DIGITS = 6
 precision leaves is then gone, and the same product gives the same bits."""
 
 
+SAMPLES = 1000
+"""Points of the surface at which walls are looked at: a box of twelve triangles has no vertices on its sides."""
+
+
 def stage_of(fit):
     """The `Stage` of a `fitting.Fit`."""
     vertices, triangles = fit.product_mm
@@ -71,7 +75,8 @@ def stage_of(fit):
     local = ((shape - origin) @ axes).round(DIGITS)
     product = native.module.Product(local, triangles)
     deepest = np.nanmax(fitter.wanted_depths(fit.hand.pads, fit.wish), initial=0.0)
-    gauge = replace(walls.gauge_of(product, local, deepest), field=field.field_of(product, local))
+    surface = places.sampled(local, triangles, SAMPLES)[0]
+    gauge = replace(walls.gauge_of(product, surface, deepest), field=field.field_of(product, local), is_faced=True)
     hand, home = _at_home(fit.hand)
     return Stage(fit, hand, gauge, local, frame @ own, home)
 

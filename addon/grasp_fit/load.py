@@ -23,13 +23,23 @@ RANGE = 4.0
 
 @dataclass(frozen=True)
 class Touched:
-    """Skin at a product: its vertices (k,), where they are (k, 3), mm, their gaps (k,), mm, and the product's outward
-    direction at each (k, 3)."""
+    """Skin at a product: its vertices (k,), their places (k, 3), mm, their gaps (k,), mm, and the gap's `slope` (k, 3):
+    the product's outward direction, shorter where the depth counts in part."""
 
     rows: np.ndarray
     points: np.ndarray
     gap: np.ndarray
-    outward: np.ndarray
+    slope: np.ndarray
+
+    @property
+    def outward(self):
+        """The product's outward direction at each vertex (k, 3); zero where there is no slope."""
+        return unit(self.slope)
+
+
+def unit(vectors):
+    """The directions (k, 3) of vectors (k, 3); zero where a vector is."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
 
 
 @dataclass(frozen=True)
@@ -57,14 +67,27 @@ class Load:
         excess = 0.0 if self.wanted_n is None else force.sum() - self.wanted_n
         return self.weight_mm / self.reference_n * np.concatenate([net, moment / ARM_MM, [excess]])
 
-    def slopes(self, skin, moves):
-        """Derivative (7, d) of the residuals; `moves` (k, d): how the gap of each vertex changes."""
-        rise = self.stiffness[skin.rows] * POWER * np.maximum(-skin.gap, 0.0) ** (POWER - 1.0)
-        change = -rise[:, None] * moves
-        net = -skin.outward.T @ change
-        moment = -np.cross(skin.points - self.about_mm, skin.outward).T @ change
-        total = np.zeros(moves.shape[1]) if self.wanted_n is None else change.sum(axis=0)
-        return self.weight_mm / self.reference_n * np.vstack([net, moment / ARM_MM, total])
+    def slopes(self, skin, moves, turning):
+        """Derivative (7, d) of the residuals. `moves` (k, d, 3): how each point moves with each unknown; `turning`
+        (k, 3, 3): how the outward direction changes with the point, 1 / mm."""
+        depth = np.maximum(-skin.gap, 0.0)
+        force = (self.stiffness[skin.rows] * depth**POWER)[:, None, None]
+        rise = (self.stiffness[skin.rows] * POWER * depth ** (POWER - 1.0))[:, None, None]
+        slope, outward = skin.slope[:, None, :], skin.outward[:, :, None]
+        push = rise * outward * slope - force * turning
+        moment = _crosses(force[:, :, 0] * skin.outward) + _crosses(skin.points - self.about_mm) @ push
+        total = np.zeros_like(slope) if self.wanted_n is None else -rise * slope
+        parts = np.concatenate([push, moment / ARM_MM, total], axis=1)
+        return self.weight_mm / self.reference_n * np.einsum("kij,kdj->id", parts, moves, optimize=True)
+
+
+def _crosses(vectors):
+    """Matrices (k, 3, 3) that take the cross product of vectors (k, 3) with what they are applied to."""
+    out = np.zeros((len(vectors), 3, 3))
+    x, y, z = vectors.T
+    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -z, y, -x
+    out[:, 1, 0], out[:, 2, 0], out[:, 2, 1] = z, -y, x
+    return out
 
 
 def stiffness_of(pads, areas_mm2, gap, force_n=None):

@@ -22,7 +22,7 @@ from ..hand.skinning import (
 )
 from . import habits
 from .least_squares import Problem
-from .load import Touched
+from .load import Touched, unit
 
 ARM_MM = 60.0
 """A turn of the whole hand is counted in mm at this arm, so that turns and shifts weigh alike."""
@@ -45,6 +45,11 @@ WEIGHT_AROUND = 12.0
 AROUND = 0.7
 """mm for each unit that the cosine between the thumb and the way around a bar stays below `AROUND`: in a power grip
 the thumb closes around the bar, against the fingers."""
+
+TURN_MM = 1.0
+TURN_COSINE = 0.7
+"""How the outward direction turns is read so far aside, so that facets count as the curve they stand for; where it
+turns farther than this there is an edge between, or the other wall."""
 
 PLACE = np.array([WEIGHT_SHIFT] * 3 + [WEIGHT_TURN] * 3)
 
@@ -172,61 +177,83 @@ class Task:
         angles, posed, (points, gap, slopes), chosen, apart = self.state
         turn, spin = rotation_of(x[-3:] / ARM_MM), left_jacobian(x[-3:] / ARM_MM) / ARM_MM
         used = np.unique(np.concatenate([rows for rows, _ in chosen]).astype(int))
-        if self.goal.load is not None:
-            used = np.union1d(used, np.flatnonzero((gap < 0.0) & (self.goal.load.stiffness[self.rows] > 0.0)))
-        slopes = slopes[used]
-        moves = vertex_jacobian(self.part.subset(used), posed, angles, [dof[:2] for dof in self.dofs])
-        count = len(self.dofs)
-        by_vertex = np.zeros((len(used), count + 6))
-        by_vertex[:, :count] = np.einsum("nkj,nj->nk", moves, slopes @ turn)
-        by_vertex[:, count : count + 3] = slopes
+        load = self.goal.load
+        if load is not None:
+            touched = np.flatnonzero((gap < 0.0) & (load.stiffness[self.rows] > 0.0))
+            used = np.union1d(used, touched)
+        moves = np.empty((len(used), len(self.dofs) + 6, 3))
+        bent = vertex_jacobian(self.part.subset(used), posed, angles, [dof[:2] for dof in self.dofs])
+        moves[:, :-6] = bent @ turn.T
+        moves[:, -6:-3] = np.eye(3)
         arms = points[used] - self.pivot - x[-6:-3]
-        by_vertex[:, count + 3 :] = np.cross(arms, slopes) @ spin
-        depth = np.zeros((len(chosen), count + 6))
+        moves[:, -3:] = np.cross(spin.T, arms[:, None])
+        by_vertex = np.einsum("nkj,nj->nk", moves, slopes[used])
+        depth = np.zeros((len(chosen), len(self.dofs) + 6))
         for row, (rows, factors) in enumerate(chosen):
             depth[row] = factors @ by_vertex[np.searchsorted(used, rows)]
         out = [
             depth,
             self._apart(posed, angles, apart),
             self._soft_slope(),
-            self._thumb_slope(posed, angles, (turn, x[-6:-3])),
+            self._thumb_slope(posed, angles, (turn, x[-6:-3], spin)),
         ]
-        if self.goal.load is not None:
-            out.append(self.goal.load.slopes(Touched(self.rows[used], points[used], gap[used], slopes), by_vertex))
+        if load is not None:
+            skin_there = Touched(self.rows[touched], points[touched], gap[touched], slopes[touched])
+            turning = self._turning(skin_there)
+            out.append(load.slopes(skin_there, moves[np.searchsorted(used, touched)], turning))
         return np.vstack(out)
 
+    def _turning(self, touched):
+        """How the product's outward direction changes with the place (k, 3, 3), 1 / mm, at `Touched` skin."""
+        outward = touched.outward
+        out = np.zeros((len(outward), 3, 3))
+        side = unit(np.cross(outward, np.eye(3)[np.abs(outward).argmin(axis=1)]))
+        for way in (side, np.cross(outward, side)):
+            there = self.gauge.read(touched.points + TURN_MM * way)[1]
+            change = np.where((there * outward).sum(axis=1, keepdims=True) > TURN_COSINE, there - outward, 0.0)
+            out += change[:, :, None] / TURN_MM * way[:, None]
+        return out
+
     def _thumb_around(self, posed, motion):
-        """Cosine between the thumb's last bone and the way around the bar, that way (3), and the bone's direction (3).
+        """Cosine between the thumb's last bone and the way around the bar; that way (3), the bone's direction (3), its
+        head (3), and how the cosine changes with the head (3), 1 / mm.
 
         Around a bar the thumb runs against the fingers.
         """
         bone = self.hand.joints.bone("thumb_distal")
         if self.goal.bar is None or bone is None:
-            return 1.0, np.zeros(3), np.zeros(3)
+            return 1.0, *np.zeros((4, 3))
         (center, axis), (turn, shift) = self.goal.bar, motion
         head = turn @ (to_world(self.rig, posed[[bone], :3, 3])[0] - self.pivot) + self.pivot + shift
         around = self.hand.joints.side * np.cross(head - center, axis)
-        around = around / max(np.linalg.norm(around), 1e-9)
+        far = max(np.linalg.norm(around), 1e-9)
+        around = around / far
         direction = turn @ self.rig.world_from_rig[:3, :3] @ posed[bone, :3, :3] @ self.rig.axes[bone, :, TWIST]
         direction = direction / np.linalg.norm(direction)
-        return float(direction @ around), around, direction
+        cosine = float(direction @ around)
+        by_head = self.hand.joints.side * np.cross(axis, direction - cosine * around) / far
+        return cosine, around, direction, head, by_head
 
     def _thumb_slope(self, posed, angles, motion):
-        """The row of the Jacobian, without how the way around turns as the thumb's head moves: the direction is right,
-        the size may be a third of the true one."""
+        """The row of the Jacobian that goes with `_thumb_around`; `motion`: the turn, the shift, and the spin (3, 3)
+        that a change of the turn's vector makes."""
         out = np.zeros((1, len(self.dofs) + 6))
-        cosine, around, direction = self._thumb_around(posed, motion)
+        turn, shift, spin = motion
+        cosine, around, direction, head, by_head = self._thumb_around(posed, (turn, shift))
         if cosine >= AROUND:
             return out
-        linear = motion[0] @ self.rig.world_from_rig[:3, :3]
+        linear = turn @ self.rig.world_from_rig[:3, :3]
         mirror = np.sign(np.linalg.det(linear))
-        _, axes = joint_axes(self.rig, posed, angles)
+        origins, axes = joint_axes(self.rig, posed, angles)
+        origins = (to_world(self.rig, origins) - self.pivot) @ turn.T + self.pivot + shift
         below = descendants(self.rig.parents)[:, self.hand.joints.bone("thumb_distal")]
         for k, (bone, column, _) in enumerate(self.dofs):
             if below[bone]:
                 axis = linear @ axes[bone, :, column]
-                out[0, k] = mirror * np.cross(axis / np.linalg.norm(axis), direction) @ around
-        out[0, -3:] = np.cross(direction, around) / ARM_MM
+                axis = mirror * axis / np.linalg.norm(axis)
+                out[0, k] = np.cross(axis, direction) @ around + np.cross(axis, head - origins[bone]) @ by_head
+        out[0, -6:-3] = by_head
+        out[0, -3:] = (np.cross(direction, around) + np.cross(head - self.pivot - shift, by_head)) @ spin
         return -WEIGHT_AROUND * out
 
     def _apart(self, posed, angles, apart):

@@ -19,7 +19,10 @@ THROUGH = 0.3
 """Cosine between the way in and the way out from which the latter leads through: beside an edge it is about 0."""
 
 THIN_SHARE = 0.02
-"""Share of the product's vertices that must stand on thin walls: fewer are a rim or a ridge."""
+"""Share of the points of the product's surface that must stand on thin walls: fewer are a rim or a ridge."""
+
+FACED = 0.5
+"""Skin faces a wall in full from this cosine on, 60 degrees; less where it turns away more, and not at all at 90."""
 
 DEEPEST_MM = 15.0
 """Depth to which skin is followed through a wall, mm: the tissue of a palm."""
@@ -31,18 +34,21 @@ BONE_MM = 1.2
 @dataclass(frozen=True)
 class Gauge:
     """A product's distances as the fit reads them; `is_thin`: with the skin's normals. A `field.Field` answers for
-    skin that is far away, if there is one."""
+    skin that is far away, if there is one. `is_faced`: depth through thin walls counts as far as the skin faces the
+    product there, so that it does not jump where the next vertex is read from the other side."""
 
     product: object
     is_thin: bool
     field: object = None
+    is_faced: bool = False
 
     def gaps(self, points, normals=None):
         """Signed gaps (n,) of world points, mm, at most `FAR_MM`; `normals` (n, 3) of the skin if it is thin."""
         return self.read(points, normals)[0]
 
     def read(self, points, normals=None):
-        """Signed gaps (n,), mm, and their gradients (n, 3): the outward direction at the nearest point."""
+        """Signed gaps (n,), mm, and their gradients (n, 3): the outward direction at the nearest point, a unit vector;
+        shorter where the depth counts in part."""
         if self.field is None:
             return self._exact(points, normals)
         gap, slope, is_far = self.field.read(points)
@@ -55,7 +61,12 @@ class Gauge:
         if self.is_thin and normals is not None:
             limits |= {"skin_normals": normals, "max_depth_mm": DEEPEST_MM}
         found = self.product.gap_mm(points, **limits)
-        return np.minimum(found["gap_mm"], FAR_MM), np.nan_to_num(found["normal"])
+        gap, slope = np.minimum(found["gap_mm"], FAR_MM), np.nan_to_num(found["normal"])
+        if self.is_faced and "skin_normals" in limits:
+            counts = np.clip(-(normals * slope).sum(axis=1) / FACED, 0.0, 1.0)
+            counts[(gap >= 0.0) | ~normals.any(axis=1)] = 1.0
+            gap, slope = gap * counts, slope * counts[:, None]
+        return gap, slope
 
     def is_crossed(self, points):
         """Whether some of `points` (k, 3) on bones, at most 2 mm apart, stand in a thin wall."""
@@ -64,13 +75,13 @@ class Gauge:
         )
 
 
-def gauge_of(product, vertices, depth_mm):
-    """The `Gauge` of a product with world `vertices` (k, 3), mm, into which skin is to go `depth_mm` deep."""
-    return Gauge(product, thin_share(product, vertices, REACH * depth_mm) > THIN_SHARE)
+def gauge_of(product, points, depth_mm):
+    """The `Gauge` of a product with `points` (k, 3) of its surface, world mm, into which skin is to go `depth_mm`."""
+    return Gauge(product, thin_share(product, points, REACH * depth_mm) > THIN_SHARE)
 
 
-def thin_share(product, vertices, reach_mm):
-    """Share of the vertices where, `reach_mm` in, the way out leads to another side than the one come from."""
-    inward = -np.nan_to_num(product.gap_mm(vertices)["normal"])
-    beyond = np.nan_to_num(product.gap_mm(vertices + reach_mm * inward)["normal"])
+def thin_share(product, points, reach_mm):
+    """Share of the points where, `reach_mm` in, the way out leads to another side than the one come from."""
+    inward = -np.nan_to_num(product.gap_mm(points)["normal"])
+    beyond = np.nan_to_num(product.gap_mm(points + reach_mm * inward)["normal"])
     return float(((beyond * inward).sum(axis=1) > THROUGH).mean())

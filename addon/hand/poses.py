@@ -96,3 +96,15 @@ OPEN = {
 }
 """The open hand from which a grasp closes: fingers parallel, as they run together when they flex (index 11, ring 9,
 little 19 degrees to the middle finger), the thumb out of the palm and opposite the fingers."""
+
+PINCHED = {
+    **_fingers((2, 18, 84, 42), (0, 18, 86, 42), (-2, 18, 84, 42), (-4, 18, 82, 42)),
+    **_thumb((12, -26, -6), 30, -8),
+    **_cup(4, 9),
+}
+SPREAD = {
+    **_fingers((-2, 2, 40, 20), (0, 2, 40, 20), (2, 2, 40, 20), (4, 2, 40, 20)),
+    **_thumb((10, 6, -16), -4, -8),
+}
+"""A pinch begins between these two: pads together and far apart. Of the postures within the joint limits these turn the
+pads toward each other the most; the thumb of this hand has no joint that would turn its pad further."""

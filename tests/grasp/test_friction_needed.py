@@ -43,8 +43,34 @@ def test_as_little_as_a_linear_program_finds(seed):
     assert 0.995 * least <= found <= 1.05 * least
 
 
-def least_friction(points, push, net, moment):
-    """The least coefficient by a linear program: cones of `SIDES` sides inside Coulomb's, so up to 0.3 % too large."""
+@pytest.mark.parametrize("seed", range(12))
+def test_fingers_that_ease_need_less_and_no_less_than_a_linear_program_finds(seed):
+    rng = np.random.default_rng(100 + seed)
+    points = rng.normal(0.0, 25.0, (rng.integers(5, 30), 3))
+    push = -points / np.linalg.norm(points, axis=1)[:, None] * rng.uniform(0.5, 8.0, len(points))[:, None]
+    push *= rng.uniform(0.8, 1.2, len(points))[:, None]
+    net, moment = push.sum(axis=0) + rng.normal(0.0, 1.0, 3), rng.normal(0.0, 40.0, 3)
+    found = friction.needed(points, push, *friction.eased(points, push, net, moment))
+    assert least_friction(points, push, net, moment, friction.EASE) * 0.995 <= found
+    assert found < friction.needed(points, push, net, moment)
+
+
+def test_two_jaws_on_a_sheet_balance_by_pressing_a_little_harder():
+    turn = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
+    pad = 6.0 * np.stack([np.cos(turn), np.zeros(24), np.sin(turn)], axis=1)
+    points = np.concatenate([pad + [0.0, 1.5, 0.0], pad - [0.0, 1.5, 0.0]])
+    push = np.concatenate([np.tile([0.0, -0.52, 0.0], (24, 1)), np.tile([0.0, 0.5, 0.0], (24, 1))])
+    net, moment = push.sum(axis=0), np.cross(points, push).sum(axis=0)
+    assert np.isinf(friction.needed(points, push, net, moment)), "the sides of a sheet have no friction across it"
+    left = friction.eased(points, push, net, moment)
+    assert friction.needed(points, push, *left) == pytest.approx(0.0, abs=1e-6)
+
+
+def least_friction(points, push, net, moment, ease=0.0):
+    """The least coefficient by a linear program: cones of `SIDES` sides inside Coulomb's, so up to 0.3 % too large.
+
+    Each force may change by `ease` of itself first; the cone stays that of the force as it was.
+    """
     size = np.linalg.norm(push, axis=1)
     columns, owner = [], []
     for k, (point, force) in enumerate(zip(points, push, strict=True)):
@@ -58,11 +84,13 @@ def least_friction(points, push, net, moment):
             owner.append(k)
     columns, owner = np.array(columns).T, np.array(owner)
     count = columns.shape[1]
-    cone = np.zeros((len(points), count + 1))
+    cone = np.zeros((len(points), count + 1 + len(points)))
     cone[owner, np.arange(count)] = 1.0
-    cone[:, -1] = -size
-    balance = np.hstack([columns, np.zeros((6, 1))])
-    cost = np.r_[np.zeros(count), 1.0]
-    solved = linprog(cost, A_ub=cone, b_ub=np.zeros(len(points)), A_eq=balance, b_eq=-np.r_[net, moment])
+    cone[:, count] = -size
+    harder = np.concatenate([push, np.cross(points, push)], axis=1).T
+    balance = np.hstack([columns, np.zeros((6, 1)), harder])
+    cost = np.r_[np.zeros(count), 1.0, np.zeros(len(points))]
+    bounds = [(0.0, None)] * (count + 1) + [(-ease, ease)] * len(points)
+    solved = linprog(cost, A_ub=cone, b_ub=np.zeros(len(points)), A_eq=balance, b_eq=-np.r_[net, moment], bounds=bounds)
     assert solved.success
     return solved.fun

@@ -14,22 +14,26 @@ class Pad:
     rows: np.ndarray
 
 
-def test_slopes_are_those_of_the_residuals():
+def test_slopes_are_those_of_the_residuals_on_a_ball():
     rng = np.random.default_rng(3)
-    count = 40
-    outward = rng.normal(size=(count, 3))
-    outward /= np.linalg.norm(outward, axis=1)[:, None]
-    points, gap = rng.normal(0.0, 20.0, (count, 3)), rng.uniform(-4.0, 2.0, count)
-    moves = rng.normal(size=(count, 5))
+    count, radius = 40, 25.0
+    ways = rng.normal(size=(count, 3))
+    points = ways / np.linalg.norm(ways, axis=1)[:, None] * rng.uniform(radius - 4.0, radius + 2.0, count)[:, None]
+    moves = rng.normal(size=(count, 5, 3))
     held = load.Load(rng.uniform(0.01, 0.1, count), rng.normal(size=3), 50.0, 60.0, np.ones(3), np.full(3, 40.0), 80.0)
 
-    def residuals(x):
-        return held.residuals(load.Touched(np.arange(count), points, gap + moves @ x, outward))
+    def touched(x):
+        there = points + np.einsum("kdj,d->kj", moves, x)
+        far = np.linalg.norm(there, axis=1)
+        return load.Touched(np.arange(count), there, far - radius, there / far[:, None])
 
     step = 1e-6
-    quotient = np.stack([(residuals(step * e) - residuals(-step * e)) / (2.0 * step) for e in np.eye(5)], axis=1)
-    slopes = held.slopes(load.Touched(np.arange(count), points, gap, outward), moves)
-    assert slopes == pytest.approx(quotient, rel=1e-5, abs=1e-6)
+    pairs = [(held.residuals(touched(step * e)), held.residuals(touched(-step * e))) for e in np.eye(5)]
+    quotient = np.stack([(ahead - back) / (2.0 * step) for ahead, back in pairs], axis=1)
+    here = touched(np.zeros(5))
+    far = np.linalg.norm(points, axis=1)[:, None, None]
+    turning = (np.eye(3) - here.outward[:, :, None] * here.outward[:, None]) / far
+    assert held.slopes(here, moves, turning) == pytest.approx(quotient, rel=1e-5, abs=1e-6)
 
 
 def test_two_pads_that_press_from_both_sides_balance():

@@ -197,6 +197,36 @@ fn cup_of_a_single_sheet_reads_right_from_outside_and_inside() {
 }
 
 #[test]
+fn skin_deeper_in_a_hollow_sheet_than_the_cut_off_reads_its_depth() {
+    let pot = cup(false);
+    for depth in [7.0, 9.0, 12.0, 14.0] {
+        let center = v(30.0 + 40.0 - depth, 0.0, 30.0);
+        let skin = moved(&sphere(40.0, 48, 72), |p| v(p.z, p.x, p.y) + center);
+        let mut deep = 0;
+        for (p, gap) in skin.positions().iter().zip(press(&pot, &skin)) {
+            let wanted = p.xy().norm() - 30.0;
+            if wanted < 0.0 && p.x > 0.0 && (15.0..55.0).contains(&p.z) {
+                let found = gap.map_or(f64::INFINITY, |gap| gap.distance);
+                assert!(
+                    (found - wanted).abs() < 0.02,
+                    "{found} for {wanted} at {p:?}"
+                );
+                deep += usize::from(wanted < -LIMITS.cut_off_mm);
+            }
+        }
+        assert_eq!(deep > 0, depth > LIMITS.cut_off_mm);
+    }
+}
+
+#[test]
+fn finger_in_a_pot_without_a_lid_is_outside_however_far_from_its_walls() {
+    let finger = moved(&sphere(R, 32, 28), |p| v(p.x, p.y, 6.0 * p.z + 60.0));
+    for gap in press(&cup(false), &finger) {
+        assert!(gap.is_none_or(|gap| gap.distance > 0.0), "{gap:?}");
+    }
+}
+
+#[test]
 fn flat_sheet_reads_right_from_both_sides() {
     let corners = vec![
         v(-60., -60., 0.),

@@ -117,9 +117,11 @@ impl<'a> Facing<'a> {
     }
 
     /// A point with no face within the cut-off is outside, or so deep inside that the search goes on in full.
+    ///
+    /// Skin in the hollow of a sheet may have come there through its wall, or through its opening; `sheet_side` tells which.
     fn far_inside(&mut self, query: &Query, skin: Option<Vec3>) -> Option<Gap> {
         if !self.product.holds_far(query, self.pending) {
-            return None;
+            return self.far_in_hollow(query, skin);
         }
         let hit = self
             .product
@@ -131,6 +133,21 @@ impl<'a> Facing<'a> {
         } else {
             self.inside(query, skin, hit)
         }
+    }
+
+    /// What skin in the hollow of a sheet reads of the sheet's wall, beyond the cut-off, as from outside.
+    fn far_in_hollow(&mut self, query: &Query, skin: Option<Vec3>) -> Option<Gap> {
+        let product = self.product;
+        let is_hollow = |point| product.has_sheets() && product.winds_around(point);
+        if skin.is_none() || !is_hollow(query.point + product.tree.center) {
+            return None;
+        }
+        let reach = square(self.limits.max_depth_mm);
+        let hit = product
+            .tree
+            .nearest(query, reach, self.pending, |_, _| 1.0)?;
+        let is_sheet = product.tree.faces[hit.slot as usize].is_sheet;
+        is_sheet.then(|| product.reading(query, &hit, Side::Outside))
     }
 
     /// The depth of a point inside, whose nearest face is `hit`.

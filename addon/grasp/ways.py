@@ -1,0 +1,81 @@
+"""Ways to begin a grasp: power grips around a bar, pinches between two sides. Knows nothing of Blender."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..grasp_fit import closing, fitter, pinching
+from . import pinches, places
+
+ROLLS = 4
+"""Directions around a bar from which the palm is tried."""
+
+STOPS_DEG = {"thumb_proximal": 30.0, "thumb_distal": 25.0}
+"""The thumb closes this far before a fit: further, its tip hooks into the palm and stays there."""
+
+OBLIQUE_DEG = 12.0
+ALONG = -0.25
+"""The bar's axis against the line of the knuckles, and its place along the fingers in parts of the hand's breadth."""
+
+POWER, PINCH = "POWER", "PINCH"
+
+PINCH_SHARE = 0.15
+"""Of the sum of forces of a power grip, this is asked of a pinch of the same strength. Maximal grips are 160 to 240 N
+in a dynamometer (PMC3855544), palmar pinches 70 to 110 N (Mathiowetz 1985)."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to begin: its `kind`; the `stage.Stage` with the wish of that kind; where: a `places.Spot` or a
+    `pinches.Pinch`. Of a power grip, which `end` of the bar's axis is at the thumb (1 or -1), and the palm's side,
+    `roll` of `ROLLS`."""
+
+    kind: str
+    stage: object
+    spot: object
+    end: int = 1
+    roll: int = 0
+
+    @property
+    def bar(self):
+        """What the thumb closes around: center (3) and axis (3) of the bar, toward the thumb's side; or None."""
+        return (self.spot.center, self.end * self.spot.axis) if self.kind == POWER else None
+
+    def start(self, hand, wanted):
+        """Place (4, 4) and angles (b, 3) of the hand from which a fit begins; `wanted` (p,) depths of its pads."""
+        if self.kind == PINCH:
+            return pinching.start_of(hand, self.stage.gauge, self.spot)
+        turn = 2.0 * np.pi * self.roll / ROLLS
+        third = np.cross(self.spot.axis, self.spot.side)
+        toward = np.cos(turn) * self.spot.side + np.sin(turn) * third
+        center, axis = self.bar
+        along = ALONG * fitter.breadth_of(hand)
+        placing = closing.Placing(center, axis, np.radians(OBLIQUE_DEG), along, toward)
+        return fitter.start_of(hand, self.stage.gauge, wanted, (placing, None, STOPS_DEG))
+
+
+def powers(stage, end):
+    """Power grips of a product on a `Stage`; `end` 1 or -1 keeps the thumb there, 0 tries both."""
+    bars = places.spots(stage.gauge.product, stage.vertices, stage.triangles, stage.mark)
+    return [
+        Way(POWER, stage, bar, side, roll)
+        for bar in bars
+        for side in (1, -1)
+        if end in (0, side)
+        for roll in range(ROLLS)
+    ]
+
+
+def pinched(stage):
+    """Pinches of a product on a `Stage`; none for a hand, or a wish, without thumb and fingertips."""
+    wish = stage.fit.wish
+    if not pinching.can_pinch(stage.hand) or "distal" not in wish.targets_mm:
+        return []
+    out = []
+    for spot in pinches.spots(stage.gauge, stage.vertices, stage.triangles, stage.mark):
+        digits = [digit for digit in spot.digits if wish.digits is None or digit in wish.digits]
+        if "thumb" not in digits or len(digits) < 2:
+            continue
+        own = replace(wish, targets_mm={"distal": wish.targets_mm["distal"]}, digits=tuple(digits))
+        out.append(Way(PINCH, replace(stage, fit=replace(stage.fit, wish=own)), spot))
+    return out
