@@ -116,7 +116,9 @@ def _parser():
     picture.add_argument("--height", type=int, default=1080, metavar="PIXELS")
     picture.add_argument("--samples", type=int, default=8, help="rays per pixel")
     picture.add_argument("--rate", type=int, default=24, help="frames a second of a film")
-    picture.add_argument("--percentiles", action="store_true", help="on a card: hands of three sizes, grasped anew")
+    picture.add_argument(
+        "--percentiles", action="store_true", help="on a card: hands of three sizes that grasp the product"
+    )
     picture.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
     picture.add_argument("--order", metavar="JSON", help=argparse.SUPPRESS)
     picture.set_defaults(run=_picture)

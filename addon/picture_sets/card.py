@@ -64,8 +64,8 @@ def _views(sheet, order, scene, place):
         ((MARGIN, y, width, height), subject.gripped(), views.of_grip(context, subject)),
         ((MARGIN + width + _GAP, y, width, height), [subject.opened], views.of_print(context, subject)),
     )
-    told = orders.Told(order, 0.0, _VIEWS_SHARE if order.with_percentiles else 1.0)
-    mm = grip_and_print.lay(sheet, (subject, context), parts, told)
+    progress = orders.Progress(order, 0.0, _VIEWS_SHARE if order.with_percentiles else 1.0)
+    mm = grip_and_print.lay(sheet, (subject, context), parts, progress)
     page.add_scale_bar(sheet, (MARGIN, y - 36.0), mm * order.factor, 180.0)
     page.add_legend(sheet, context.scene.thenar, (WIDTH - MARGIN - 380.0, y - 34.0, 380.0, 18.0))
 
@@ -103,8 +103,8 @@ def _three(sheet, order, context, y):
     width = (WIDTH - 2.0 * MARGIN - 2.0 * _GAP) / 3.0
     below = 48.0 + 24.0 * len(_foot(context.scene.thenar.result)) + 118.0
     box_height = y - 20.0 - below
-    told = orders.Told(order, _VIEWS_SHARE, 1.0 - _VIEWS_SHARE)
-    found = sizes.drawn(order, context, (width, box_height), told)
+    progress = orders.Progress(order, _VIEWS_SHARE, 1.0 - _VIEWS_SHARE)
+    found = sizes.drawn(order, context, (width, box_height), progress)
     for number, hand in enumerate(found):
         x = MARGIN + number * (width + _GAP)
         if hand.pixels is not None:

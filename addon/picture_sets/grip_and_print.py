@@ -20,7 +20,7 @@ def draw(order, subject, context):
         (_GRIP, subject.gripped(), views.of_grip(context, subject)),
         (_PRINT, [subject.opened], views.of_print(context, subject)),
     )
-    mm = lay(sheet, (subject, context), parts, orders.Told(order))
+    mm = lay(sheet, (subject, context), parts, orders.Progress(order))
     for part, caption in zip(parts, ("Grip", "The same hand, opened"), strict=True):
         box = part[0]
         sheet.text((box[0] + box[2] / 2.0, box[1] + 2.0, "center"), 22.0, caption, page.FAINT)
@@ -30,18 +30,18 @@ def draw(order, subject, context):
     return sheet
 
 
-def lay(sheet, scene, parts, told):
+def lay(sheet, scene, parts, progress):
     """Lay pictures of `parts` (box, solids, view) on the sheet, all in one scale. Returns mm a pixel.
 
     `scene`: the subject and the context.
     """
-    (subject, context), factor = scene, told.order.factor
+    (subject, context), factor = scene, progress.order.factor
     mm = max(_window(subject, part, factor).mm for part in parts)
     for number, part in enumerate(parts):
         box, solids, view = part
         window = stage.Window(_window(subject, part, factor).middle, mm, _pixels(box, factor))
-        shot = stage.Shot(context.scene.thenar, solids, view, window, subject.scale, samples=told.order.samples)
-        shot.on_progress = told.part(number, len(parts))
+        shot = stage.Shot(context.scene.thenar, solids, view, window, subject.scale, samples=progress.order.samples)
+        shot.on_progress = progress.part(number, len(parts))
         sheet.picture(box, stage.take(shot))
     return mm
 

@@ -54,7 +54,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Told:
+class Progress:
     """Part of an order's progress: from where, and how much of it."""
 
     order: Order

@@ -29,7 +29,7 @@ def steps(context, order):
     orders.check(order)
     order.scene, order.is_stale = context.scene.name, workflow.is_out_of_date(context)
     wanted = orders.targets(order)
-    with tempfile.TemporaryDirectory(prefix="thenar-") as folder:
+    with tempfile.TemporaryDirectory(prefix="thenar-", ignore_cleanup_errors=True) as folder:
         scene, inside = Path(folder) / "scene.blend", Path(folder) / wanted[0].name
         bpy.data.libraries.write(str(scene), {context.scene}, path_remap="ABSOLUTE")
         given = orders.Order(**{**json.loads(orders.to_text(order)), "target": str(inside)})
@@ -107,9 +107,9 @@ class _Heard:
 
 def _why(code, complaints):
     lines = [line.strip() for line in complaints.splitlines() if line.strip()]
-    told = [line.removeprefix("thenar: ") for line in lines if line.startswith("thenar: ")]
-    if told:
-        return told[-1]
+    refusals = [line.removeprefix("thenar: ") for line in lines if line.startswith("thenar: ")]
+    if refusals:
+        return refusals[-1]
     return f"the process that draws ended with code {code}" + (f": {lines[-1]}" if lines else "")
 
 

@@ -24,7 +24,7 @@ class ThenarPictures(bpy.types.PropertyGroup):
     )
     with_percentiles: BoolProperty(
         name="5th, 50th, 95th Percentile",
-        description="On a comfort card, hands of three sizes grasp the product anew and are solved: takes minutes more",
+        description="On a comfort card, hands of three sizes grasp the product and are solved: takes minutes more",
     )
 
 

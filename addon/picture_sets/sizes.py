@@ -1,4 +1,4 @@
-"""Hands of the 5th, 50th and 95th percentile that grasp the scene's product anew, with their prints in one scale."""
+"""Hands of the 5th, 50th and 95th percentile that grasp the scene's product again, with their prints in one scale."""
 
 from dataclasses import dataclass
 
@@ -31,13 +31,14 @@ def how(context):
     settings = context.scene.thenar
     shape = _shape(settings.hand)
     pressed = f", then is pressed to {settings.force_n:g} N" if settings.use_force else ""
-    return f"{shape['sex']} hands; each grasps the product anew (firm, 200 N){pressed}; prints in a scale of their own"
+    grasped = f"each grasps the product by itself (firm, 200 N){pressed}"
+    return f"{shape['sex']} hands; {grasped}; prints in a scale of their own"
 
 
-def drawn(order, context, size, told):
+def drawn(order, context, size, progress):
     """The three hands; `size`: of each print, units of the page.
 
-    Opens the file anew for each, so that nothing read from it before may be used afterwards. A hand that cannot grasp
+    Opens the file again for each, so that nothing read from it before may be used afterwards. A hand that cannot grasp
     or be solved has the reason in its place.
     """
     file, shape = bpy.data.filepath, _shape(context.scene.thenar.hand)
@@ -46,7 +47,7 @@ def drawn(order, context, size, told):
     mm = float((np.ptp(largest, axis=0)[:2] / pixels).max() / _FILL)
     found = []
     for number, percentile in enumerate(PERCENTILES):
-        told.part(number, len(PERCENTILES), f"grasp of percentile {percentile}")(0.0)
+        progress.part(number, len(PERCENTILES), f"grasp of percentile {percentile}")(0.0)
         hand = Hand(percentile)
         found.append(hand)
         headless.open_file(file)

@@ -25,7 +25,7 @@ def draw(order, subject, context):
     target = orders.targets(order)[0]
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix="thenar-") as folder:
+        with tempfile.TemporaryDirectory(prefix="thenar-", ignore_cleanup_errors=True) as folder:
             frames = _frames(order, subject, context, Path(folder))
             if not has_ffmpeg():
                 return [_put(frame, target.with_name(f"{target.stem}-{frame.name}")) for frame in frames]
@@ -57,7 +57,7 @@ def _frames(order, subject, context, folder):
         shown = stage.Window((middle[0], window.middle[1]), window.mm, window.size)
         shot = stage.Shot(context.scene.thenar, subject.gripped(), turned, shown, subject.scale, samples=order.samples)
         shot.floor_mm = middle[2] - floor
-        shot.on_progress = orders.Told(order).part(frame, number)
+        shot.on_progress = orders.Progress(order).part(frame, number)
         sheet = page.Page(grip_and_print.WIDTH, grip_and_print.HEIGHT, stage.PAGE)
         sheet.picture(_TURN, stage.take(shot))
         grip_and_print.head(sheet, context, order.is_stale)

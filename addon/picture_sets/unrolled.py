@@ -25,7 +25,7 @@ def draw(order, subject, context):
     flat, radius = unrolled(subject, view[1])
     sheet = page.Page(grip_and_print.WIDTH, grip_and_print.HEIGHT, stage.PAGE)
     parts = ((_WRAPPED, subject.gripped(), view), (_FLAT, [flat], np.eye(3)))
-    mm = grip_and_print.lay(sheet, (subject, context), parts, orders.Told(order))
+    mm = grip_and_print.lay(sheet, (subject, context), parts, orders.Progress(order))
     words = ("Wrapped", f"Unrolled about its long axis, seen from outside; arcs at a radius of {radius:.1f} mm")
     for part, caption in zip(parts, words, strict=True):
         box = part[0]

@@ -47,6 +47,16 @@ class Solid:
             attribute.data.foreach_get("value", out)
         return out
 
+    def is_clear(self):
+        """Whether light passes through one of its materials, so that what lies behind is seen."""
+        trees = [material.node_tree for material in self.mesh.materials if material is not None and material.node_tree]
+        return any(
+            node.type in {"BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"}
+            or (node.type == "BSDF_PRINCIPLED" and node.inputs["Transmission Weight"].default_value > 0.5)
+            for tree in trees
+            for node in tree.nodes
+        )
+
 
 @dataclass
 class Subject:

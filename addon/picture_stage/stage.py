@@ -77,7 +77,7 @@ def take(shot):
         mapped, bare = values.material(shot.look), values.nothing()
         for obj, solid in placed:
             _bare(obj, mapped if solid.has_map else bare)
-            obj.hide_render = solid.kind != "hand" and _is_clear(solid)
+            obj.hide_render = solid.kind != "hand" and solid.is_clear()
         _bare(sheet, bare)
         scene.world = values.dark()
         held = _rendered(scene, shot, is_data=True)
@@ -183,7 +183,7 @@ def _rendered(scene, shot, is_data=False):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "shot.exr"
         scene.render.filepath = str(path)
-        with _told(shot, (_LIGHT_SHARE, 1.0) if is_data else (0.0, _LIGHT_SHARE)):
+        with _reporting(shot, (_LIGHT_SHARE, 1.0) if is_data else (0.0, _LIGHT_SHARE)):
             bpy.ops.render.render(scene=scene.name, write_still=True)
         image = bpy.data.images.load(str(path))
         try:
@@ -197,7 +197,7 @@ def _rendered(scene, shot, is_data=False):
 
 
 @contextmanager
-def _told(shot, shares):
+def _reporting(shot, shares):
     """Pass on how far a render is, from the first of `shares` to the second."""
     first, last = shares
 
@@ -219,17 +219,6 @@ def _bare(obj, material):
     shading.hide(obj)
     obj.data.materials.clear()
     obj.data.materials.append(material)
-
-
-def _is_clear(solid):
-    """Whether light passes through one of its materials, so that the map shows through it."""
-    trees = [material.node_tree for material in solid.mesh.materials if material is not None and material.node_tree]
-    return any(
-        node.type in {"BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"}
-        or (node.type == "BSDF_PRINCIPLED" and node.inputs["Transmission Weight"].default_value > 0.5)
-        for tree in trees
-        for node in tree.nodes
-    )
 
 
 def _feathered(picture):

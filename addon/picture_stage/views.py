@@ -10,8 +10,8 @@ _GRIP_AWAY, _GRIP_UP = (0.15, 0.08, 0.98), (0.92, 0.32, -0.2)
 """The view of a grip in the opened hand's frame (thumb's side, fingers, palm): it sees fingers close over a product."""
 _BACK_AWAY = (0.35, -0.25, -0.9)
 """The same where the product hides the hand from the palm's side."""
-_LEAST_SEEN = 0.3
-"""Share of the hand that a view has to show."""
+_LEAST_SEEN = 0.55
+"""Share of the hand that a view has to show: of the samples, a 100 mm cylinder hides more, the others less."""
 _SAMPLED = 600
 _FRAMED = 0.1
 """Share of the picture's width that the hand spans in a camera that was placed for it."""
@@ -100,10 +100,11 @@ def _upright(subject, view):
 
 
 def seen_share(subject, away):
-    """Share of the hand's corners that no product part hides from an eye far away in the direction `away`."""
+    """Share of the hand's corners that no opaque part hides from an eye far away in the direction `away`."""
     trees = [
         BVHTree.FromPolygons(part.points_mm(subject.scale).tolist(), mesh.triangles(part.mesh).tolist())
         for part in subject.product
+        if not part.is_clear()
     ]
     points, normals = subject.hand.points_mm(subject.scale), subject.hand.normals()
     step = max(1, len(points) // _SAMPLED)

@@ -6,9 +6,10 @@ import bpy
 import numpy as np
 import pytest
 import stage as scenes
+from thenar_blender.hand import studio
 from thenar_blender.picture_sets import grip_and_print
 from thenar_blender.picture_sets.order import Order
-from thenar_blender.picture_stage import laying, page, stage
+from thenar_blender.picture_stage import laying, page, stage, views
 from thenar_blender.picture_stage import pixels as pixels_file
 
 VIRIDIS = {
@@ -82,8 +83,8 @@ def test_scale_bar_is_as_long_as_what_it_says():
     front = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
     sheet = page.Page(1920.0, 1080.0, stage.PAGE)
     part = ((60.0, 128.0, 1020.0, 750.0), subject.gripped(), front)
-    told = SimpleNamespace(order=order, part=lambda *_: lambda share: None)
-    mm = grip_and_print.lay(sheet, (subject, bpy.context), [part], told)
+    progress = SimpleNamespace(order=order, part=lambda *_: lambda share: None)
+    mm = grip_and_print.lay(sheet, (subject, bpy.context), [part], progress)
     length = page.add_scale_bar(sheet, (64.0, 52.0), mm * order.factor, 220.0)
     pixels = page.painted(sheet, order.factor)
     bar = [item for item in sheet.items if isinstance(item, page.Text)]
@@ -113,3 +114,17 @@ def test_a_shot_leaves_what_it_shows_as_it_was():
     first, scenes_before = stage.take(shot), len(bpy.data.scenes)
     np.testing.assert_allclose(stage.take(shot), first, atol=1e-6)
     assert first[8, 8].max() < 0.3 and len(bpy.data.scenes) == scenes_before
+
+
+def test_view_of_a_grip_goes_round_what_hides_the_hand():
+    """A closed form: a wide board under a ball hides it from below, and nothing hides it from above."""
+    ball, board = scenes.pad(), scenes.plate(size=200.0, cuts=2, top=-8.0)
+    solids = [
+        laying.Solid(obj.data, np.array(obj.matrix_world), kind, True)
+        for obj, kind in ((ball, "hand"), (board, "product"))
+    ]
+    subject = laying.Subject(solids[0], solids[0], solids[1:], [], 1000.0)
+    assert views.seen_share(subject, np.array([0.0, 0.0, -1.0])) == 0.0
+    assert views.seen_share(subject, np.array([0.0, 0.0, 1.0])) == 1.0
+    board.data.materials.append(studio.clear("Glass", (1.0, 1.0, 1.0, 1.0)))
+    assert views.seen_share(subject, np.array([0.0, 0.0, -1.0])) == 1.0
