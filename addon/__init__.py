@@ -1,9 +1,22 @@
 """Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
 
-from . import diagnosis, grasp, hand, hand_shape, handlers, live, operators, panels, recordings, settings
+from . import diagnosis, grasp, hand, hand_shape, handlers, live, operators, panels, picture_sets, recordings, settings
 from .views import viewport
 
-_MODULES = (settings, operators, panels, hand, grasp, hand_shape, recordings, diagnosis, viewport, handlers, live)
+_MODULES = (
+    settings,
+    operators,
+    panels,
+    hand,
+    grasp,
+    hand_shape,
+    picture_sets,
+    recordings,
+    diagnosis,
+    viewport,
+    handlers,
+    live,
+)
 
 
 def register():

@@ -69,6 +69,12 @@ def _demo(options):
     demo.run(options.sample or options.samples, Path(options.out), options.frames)
 
 
+def _picture(options):
+    from . import picture_sets
+
+    picture_sets.run(options)
+
+
 def _samples(options):
     try:
         maker = importlib.import_module(".grasp.samples", __package__)
@@ -103,6 +109,19 @@ def _parser():
     demo.add_argument("--out", default="target/demo", metavar="DIR")
     demo.add_argument("--frames", action="store_true", help="solve it at least, mean and greatest force (Xie Fig. 21)")
     demo.set_defaults(run=_demo)
+    picture = commands.add_parser("picture", help="make a picture of the result that a file holds")
+    picture.add_argument("blend", metavar="FILE.blend")
+    picture.add_argument("--kind", choices=("grip_and_print", "comfort_card", "turntable", "unrolled"))
+    picture.add_argument("--out", metavar="FILE", help="where to: .png, for a film .mp4; a card is written as .pdf too")
+    picture.add_argument("--height", type=int, default=1080, metavar="PIXELS")
+    picture.add_argument("--samples", type=int, default=8, help="rays per pixel")
+    picture.add_argument("--rate", type=int, default=24, help="frames a second of a film")
+    picture.add_argument(
+        "--percentiles", action="store_true", help="on a card: hands of three sizes that grasp the product"
+    )
+    picture.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
+    picture.add_argument("--order", metavar="JSON", help=argparse.SUPPRESS)
+    picture.set_defaults(run=_picture)
     samples = commands.add_parser("samples", help="make the sample files again")
     samples.add_argument("--out", required=True, metavar="DIR")
     samples.set_defaults(run=_samples)

@@ -14,7 +14,7 @@ from . import pixel_font
 TICKS = 5
 PLATE = (0.09, 0.09, 0.10, 0.78)
 """Colour behind the legend, sRGB with alpha."""
-_FINER = 3
+FINER = 3
 """How much larger letters are drawn than shown: Blender's own edges are hard at the sizes of a legend."""
 
 
@@ -102,19 +102,19 @@ def ink(texts, width, height):
         return pixel_font.ink(texts, width, height)
     import imbuf
 
-    fine = (width * _FINER, height * _FINER)
+    fine = (width * FINER, height * FINER)
     buffer = imbuf.new(fine)
     with blf.bind_imbuf(0, buffer):
         for x, y, size, text in texts:
-            blf.size(0, size * _FINER)
+            blf.size(0, size * FINER)
             blf.color(0, 1.0, 1.0, 1.0, 1.0)
-            blf.position(0, x * _FINER, y * _FINER, 0)
+            blf.position(0, x * FINER, y * FINER, 0)
             blf.draw_buffer(0, text)
     handle, path = tempfile.mkstemp(suffix=".png")
     os.close(handle)
     try:
         imbuf.write(buffer, filepath=path)
-        return _red(path, *fine).reshape(height, _FINER, width, _FINER).mean(axis=(1, 3))
+        return _red(path, *fine).reshape(height, FINER, width, FINER).mean(axis=(1, 3))
     finally:
         os.unlink(path)
 
