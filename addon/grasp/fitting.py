@@ -10,7 +10,7 @@ from ..grasp_fit import fitter, walls
 from ..grasp_fit.task import Goal, Task
 from ..hand import capsules, normals, pads, reading, roles
 from ..scene import checks, mesh, read, regions, sizes, units
-from . import force, search, settings, settling
+from . import force, polishing, search, settings, settling
 from .stage import stage_of
 
 _PALM = re.compile("palm|thenar")
@@ -140,7 +140,7 @@ def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
     aim = settling.Aim(np.zeros(3), weight, total_n, depths_mm=depths)
     if total_n is None:
         aim = replace(aim, total_n=max(settling.pressed(stage, first, aim, cancel).total_n, 2.0 * weight_n))
-    state = settling.settle(stage, first, aim, SETTLE_ROUNDS, watch)
+    state = polishing.polish(stage, settling.settle(stage, first, aim, SETTLE_ROUNDS, watch), aim, watch)
     return stage.carried(state.grasp), state, settling.friction_of(stage, state, aim)
 
 

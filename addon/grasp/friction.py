@@ -10,6 +10,12 @@ STEPS = 60
 LEAST_WEIGHT = 1e-4
 """No point's weight falls below this share of the mean: the system would be singular."""
 
+NOTHING = 0.02
+"""So small a share of the forces counts as nothing left over: a grasp that is in balance to it is in balance."""
+
+EASE_STEPS = 20
+HALVES = 0.5 ** np.arange(8)
+
 LEAST_SHARE = 1e-4
 """Vertices that carry less of the sum are left out."""
 
@@ -17,22 +23,42 @@ LEAST_SHARE = 1e-4
 EASE = 0.2
 """Fingers press so much harder or softer than they were fitted before they need friction."""
 
+RELUCTANCE = 0.003
+"""Weight of the changes against what is left over, in parts of what the forces reach with ease: no force changes much
+for what it can hardly help."""
+
 
 def eased(points, push, net, moment):
     """Net force (3), N, and moment (3), N mm, that stay when each of the forces `push` changes by up to `EASE` of it so
-    that less is left over; arguments as of `needed`."""
+    that less is left over, less `NOTHING`; arguments as of `needed`.
+
+    Bounded least squares in its six dual unknowns by Newton's method, for each force a column.
+    """
     size = np.linalg.norm(push, axis=1)
     used = size > LEAST_SHARE * size.sum()
     points, push, size = points[used], push[used], size[used]
     if len(size) == 0:
         return net, moment
     arm = max(float(np.linalg.norm(points - points.mean(axis=0), axis=1).mean()), 1.0)
-    maps = np.concatenate([push, np.cross(points, push) / arm], axis=1)
-    share, *_ = np.linalg.lstsq(maps.T @ maps, -np.concatenate([net, moment / arm]), rcond=1e-9)
-    change = maps @ share
-    change *= min(1.0, EASE / max(float(np.abs(change).max()), 1e-12))
-    gained = change @ maps
-    return net + gained[:3], moment + arm * gained[3:]
+    maps = np.concatenate([push, np.cross(points, push) / arm], axis=1).T / size.sum()
+    wrench = np.concatenate([net, moment / arm]) / size.sum()
+    weight = RELUCTANCE * float(np.linalg.eigvalsh(maps @ maps.T)[-1])
+    left = wrench
+    for _ in range(EASE_STEPS):
+        change = np.clip(-(left @ maps) / weight, -EASE, EASE)
+        miss = left - wrench - maps @ change
+        free = maps[:, np.abs(change) < EASE]
+        step = np.linalg.solve(np.eye(6) + free @ free.T / weight, -miss)
+        for share in HALVES:
+            trial = left + share * step
+            if np.linalg.norm(trial - wrench - maps @ np.clip(-(trial @ maps) / weight, -EASE, EASE)) < np.linalg.norm(
+                miss
+            ):
+                break
+        left = trial
+    left = wrench + maps @ np.clip(-(left @ maps) / weight, -EASE, EASE)
+    left = left * size.sum() * max(0.0, 1.0 - NOTHING / max(float(np.linalg.norm(left)), 1e-12))
+    return left[:3], arm * left[3:]
 
 
 def needed(points, push, net, moment):

@@ -13,7 +13,7 @@ from ..grasp_fit import fitter
 from ..grasp_fit.least_squares import minimize
 from ..grasp_fit.task import Task
 from ..scene.checks import Refusal
-from . import settling, ways
+from . import polishing, settling, ways
 from .settings import FRICTION
 from .stage import stage_of
 
@@ -25,14 +25,16 @@ BAR_COST = 15.0
 
 ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
-LAST, LAST_ROUNDS = 2, 8
+LAST, LAST_ROUNDS = 3, 5
 UNSETTLED = 2.0
 SLIPS = 2.0
+POOR = 8.0
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
-the next where that one does not. What is not settled counts `UNSETTLED` more, what slips `SLIPS`. What leaves more
-than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is no grasp."""
+the next where that one does not. What is not settled counts `UNSETTLED` more, what slips `SLIPS`; a power grip that
+counts more than `POOR` is compared with pinches. What leaves more than `LOST` of its forces over, or presses a vertex
+harder than `TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +65,15 @@ class Found:
 def search(fit, watch=fitter.ALONE, asked=None):
     """Grasps of a `fitting.Fit`, best first, in the scene's frame; at least one.
 
-    A power grip is sought first, and a pinch beside it where none holds, unless `asked` names the kind. Raises
-    `GraspError` if none holds.
+    A power grip is sought first, and a pinch as well where none holds or the best is poor, unless `asked` names the
+    kind. Raises `GraspError` if none holds.
     """
     began, asked = time.perf_counter(), asked or Asked()
     stage = stage_of(fit)
     found, refusals = [], []
     for kind in (ways.POWER, ways.PINCH):
-        if asked.kind not in ("AUTO", kind) or (found and found[0].friction <= FRICTION):
+        is_held = bool(found) and found[0].friction <= FRICTION and found[0].score <= POOR
+        if asked.kind not in ("AUTO", kind) or is_held:
             continue
         ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
         aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n)
@@ -110,7 +113,9 @@ def _best(ready, aim, watch):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
-        state = settling.settle(one.way.stage, one.grasp, replace(aim, bar=one.way.bar), LAST_ROUNDS, watch)
+        own = replace(aim, bar=one.way.bar)
+        state = settling.settle(one.way.stage, one.grasp, own, LAST_ROUNDS, watch)
+        state = polishing.polish(one.way.stage, state, own, watch)
         out[place] = _found(state, aim, one.way)
     out.sort(key=lambda found: in_steps(found.score))
     _refuse_what_does_not_hold(out[0].state)

@@ -21,8 +21,9 @@ THROUGH = 0.3
 THIN_SHARE = 0.02
 """Share of the points of the product's surface that must stand on thin walls: fewer are a rim or a ridge."""
 
-FACED = 0.5
-"""Skin faces a wall in full from this cosine on, 60 degrees; less where it turns away more, and not at all at 90."""
+FACED = (0.3, 0.7)
+"""Skin faces a wall in full from the second cosine on, 46 degrees, and not at all below the first, from which the other
+wall is read: so that depth fades out and in, and does not jump."""
 
 DEEPEST_MM = 15.0
 """Depth to which skin is followed through a wall, mm: the tissue of a palm."""
@@ -63,7 +64,8 @@ class Gauge:
         found = self.product.gap_mm(points, **limits)
         gap, slope = np.minimum(found["gap_mm"], FAR_MM), np.nan_to_num(found["normal"])
         if self.is_faced and "skin_normals" in limits:
-            counts = np.clip(-(normals * slope).sum(axis=1) / FACED, 0.0, 1.0)
+            cosine = -(normals * slope).sum(axis=1)
+            counts = np.clip((cosine - FACED[0]) / (FACED[1] - FACED[0]), 0.0, 1.0)
             counts[(gap >= 0.0) | ~normals.any(axis=1)] = 1.0
             gap, slope = gap * counts, slope * counts[:, None]
         return gap, slope

@@ -69,7 +69,8 @@ def test_two_jaws_on_a_sheet_balance_by_pressing_a_little_harder():
 def least_friction(points, push, net, moment, ease=0.0):
     """The least coefficient by a linear program: cones of `SIDES` sides inside Coulomb's, so up to 0.3 % too large.
 
-    Each force may change by `ease` of itself first; the cone stays that of the force as it was.
+    With `ease` each force may change by that share of itself first, the cone stays that of the force as it was, and
+    what counts as nothing may be left over in each direction.
     """
     size = np.linalg.norm(push, axis=1)
     columns, owner = [], []
@@ -88,9 +89,13 @@ def least_friction(points, push, net, moment, ease=0.0):
     cone[owner, np.arange(count)] = 1.0
     cone[:, count] = -size
     harder = np.concatenate([push, np.cross(points, push)], axis=1).T
-    balance = np.hstack([columns, np.zeros((6, 1)), harder])
-    cost = np.r_[np.zeros(count), 1.0, np.zeros(len(points))]
-    bounds = [(0.0, None)] * (count + 1) + [(-ease, ease)] * len(points)
+    arm = np.linalg.norm(points - points.mean(axis=0), axis=1).mean()
+    slack = (ease > 0.0) * friction.NOTHING * size.sum()
+    rest = np.diag([1.0, 1.0, 1.0, arm, arm, arm])
+    balance = np.hstack([columns, np.zeros((6, 1)), harder, rest])
+    cone = np.hstack([cone, np.zeros((len(points), 6))])
+    cost = np.r_[np.zeros(count), 1.0, np.zeros(len(points) + 6)]
+    bounds = [(0.0, None)] * (count + 1) + [(-ease, ease)] * len(points) + [(-slack, slack)] * 6
     solved = linprog(cost, A_ub=cone, b_ub=np.zeros(len(points)), A_eq=balance, b_eq=-np.r_[net, moment], bounds=bounds)
     assert solved.success
     return solved.fun
