@@ -641,8 +641,10 @@ def compare_print(
 def spread_map(values: ArrayLike, mat: Record, positions_mm: ArrayLike, depth_mm: float = 0.0) -> NDArray[np.float64]:
     """Values of sensels at positions on the mat or near it, NaN away from it. Raises `MeshError`."""
 
-def read_recording(file: str | PathLike[str]) -> Record:
-    """Reads a measurement file of any maker: `format`, `maps` and `curves`. Raises `RecordingError`."""
+def read_recording(
+    file: str | PathLike[str], *, columns: dict[str, str] | None = None, run: str | None = None
+) -> Record:
+    """Reads a measurement file of any maker: `format`, `maps`, `curves` and `notes`. Raises `RecordingError`."""
 
 def hand(
     length_mm: float | None = None,

@@ -42,6 +42,12 @@ pub struct CompareArguments {
 pub struct ReadArguments {
     /// Export of a pressure mat or indenter, or a folder with study.toml.
     pub file: PathBuf,
+    /// Which column of a table is what, where the file does not say: travel_mm=-Extension, force=Fz; a minus before the name turns the sign.
+    #[arg(long = "column", value_name = "WHAT=NAME")]
+    pub columns: Vec<String>,
+    /// The one run to read of a workbook or a map of curves.
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<String>,
 }
 
 #[derive(Debug, Args)]

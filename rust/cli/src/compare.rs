@@ -48,6 +48,15 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
     Ok(())
 }
 
+/// A name as a cell of a CSV; an apostrophe keeps spreadsheets from taking it for a formula.
+fn cell(name: &str) -> String {
+    let name = name.replace('"', "\"\"");
+    match name.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        true => format!("\"'{name}\""),
+        false => format!("\"{name}\""),
+    }
+}
+
 /// residual.csv: for every calibrated mat the residual per skin vertex in its worst frame, kPa, empty away from the mat.
 fn residuals(comparison: &Comparison) -> Option<Output> {
     let mats: Vec<_> = comparison
@@ -58,11 +67,11 @@ fn residuals(comparison: &Comparison) -> Option<Output> {
     let vertices = mats.first()?.residual_kpa.len();
     let mut text = "recording,vertex,residual_kpa\n".to_owned();
     for recording in &mats {
-        let name = recording.name.replace('"', "\"\"");
+        let name = cell(&recording.name);
         for vertex in 0..vertices {
             let residual = recording.residual_kpa[vertex];
             if !residual.is_nan() {
-                let _ = writeln!(text, "\"{name}\",{vertex},{residual}");
+                let _ = writeln!(text, "{name},{vertex},{residual}");
             }
         }
     }
@@ -82,10 +91,10 @@ fn prints(comparison: &Comparison) -> Option<Output> {
             continue;
         };
         has_any = true;
-        let name = recording.name.replace('"', "\"\"");
+        let name = cell(&recording.name);
         let known = print.on_skin.iter().enumerate();
         for (vertex, residual) in known.filter(|(_, residual)| !residual.is_nan()) {
-            let _ = writeln!(text, "\"{name}\",{vertex},{residual}");
+            let _ = writeln!(text, "{name},{vertex},{residual}");
         }
     }
     has_any.then_some(Output {

@@ -13,8 +13,7 @@ use toml::de::{DeTable, DeValue};
 /// # Errors
 /// Names file, line and remedy: unknown effects, numbers, options and regions. Ranges are checked when a skin takes them.
 pub fn read(file: &Path, regions: &RegionTable) -> Result<Vec<ActiveEffect>, Fault> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Fault::Input(format!("{}: cannot be read ({error})", file.display())))?;
+    let text = crate::table::text(file)?;
     let source = Source { file, text: &text };
     let document = DeTable::parse(&text)
         .map_err(|error| source.fault(error.span().unwrap_or(0..0), error.message().trim()))?;

@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
-            eprintln!("thenar: {fault}");
+            eprintln!("thenar: {}", printable(&fault.to_string()));
             ExitCode::from(fault.code() as u8)
         }
     }
@@ -65,7 +65,7 @@ fn run() -> Result<(), Fault> {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Read(arguments) => {
-            tell(&read::told(&arguments.file)?);
+            tell(&read::report(&arguments)?);
             Ok(())
         }
     }
@@ -73,5 +73,11 @@ fn run() -> Result<(), Fault> {
 
 /// Writes to the terminal; a reader that has gone away (`thenar ... | head`) is no fault.
 fn tell(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    let _ = std::io::stdout().write_all(printable(text).as_bytes());
+}
+
+/// The text without what moves a terminal's cursor or changes its state: names out of files stand in it.
+fn printable(text: &str) -> String {
+    let safe = |c: char| if c.is_control() && c != '\n' { '?' } else { c };
+    text.chars().map(safe).collect()
 }

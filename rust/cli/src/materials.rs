@@ -19,8 +19,7 @@ pub fn presets(model: Model, regions: &RegionTable) -> Vec<Material> {
 /// # Errors
 /// Names file, line and remedy: unknown tables and keys, numbers that no tissue has, regions without a material.
 pub fn read(file: &Path, model: Model, regions: &RegionTable) -> Result<Vec<Material>, Fault> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Fault::Input(format!("{}: cannot be read ({error})", file.display())))?;
+    let text = crate::table::text(file)?;
     let source = Source { file, text: &text };
     let document = DeTable::parse(&text)
         .map_err(|error| source.fault(error.span().unwrap_or(0..0), error.message().trim()))?;

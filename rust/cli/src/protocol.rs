@@ -10,6 +10,8 @@ use thenar_surface::Vec3;
 
 const DEMANDS: [&str; 3] = ["offset_mm", "depth_mm", "force_n"];
 const SLIDES: [&str; 3] = ["slide_x_mm", "slide_y_mm", "slide_z_mm"];
+/// Largest time, length or force that a protocol may ask for, s, mm, N.
+const LARGEST: f64 = 1e6;
 const KPA_PER_MPA: f64 = 1e3;
 
 /// Reads `time_s` with one of `offset_mm`, `depth_mm` and `force_n` per row (the others empty), and slides if there are any.
@@ -51,9 +53,12 @@ fn row(headers: &[String], record: &csv::StringRecord) -> Result<Row, String> {
         let text = place
             .and_then(|place| record.get(place))
             .filter(|text| !text.is_empty());
-        let number = |text: &str| {
-            text.parse()
-                .map_err(|_| format!("{name} is {text:?}, which is no number"))
+        let number = |text: &str| match text.parse::<f64>() {
+            Ok(number) if number.abs() > LARGEST => Err(format!(
+                "{name} is {text}, which is out of range; give at most {LARGEST} either way"
+            )),
+            Ok(number) => Ok(number),
+            Err(_) => Err(format!("{name} is {text:?}, which is no number")),
         };
         text.map(number).transpose()
     };

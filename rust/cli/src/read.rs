@@ -1,21 +1,40 @@
 //! `thenar read`: what a measurement file or a study holds, its totals checked, and what it does not say.
 
+use crate::arguments::ReadArguments;
 use crate::fault::Fault;
 use std::fmt::{Error, Write};
 use std::path::Path;
 use thenar_recordings::study::{Data, Study};
-use thenar_recordings::{Check, Curve, PressureMap, PressureUnit, RecordingFile, Source};
+use thenar_recordings::{
+    Check, Curve, PressureMap, PressureUnit, ReadOptions, RecordingFile, Source,
+};
+
+/// Most runs of a file that are written out; a map of curves has thousands.
+const MOST_RUNS: usize = 20;
 
 /// The report on a file or a study's folder.
 ///
 /// # Errors
 /// What is wrong with it, in one sentence.
-pub fn told(file: &Path) -> Result<String, Fault> {
+pub fn report(arguments: &ReadArguments) -> Result<String, Fault> {
+    let file = &arguments.file;
+    let options = options(arguments)?;
     let mut text = String::new();
     let written = if file.is_dir() {
+        if options != ReadOptions::default() {
+            let problem =
+                "a study's recordings say in study.toml which run and which columns they are";
+            return Err(Fault::Input(format!(
+                "{problem}; take --column and --run out"
+            )));
+        }
         write_study(&mut text, &Study::load(file)?)
     } else {
-        write_file(&mut text, file, &thenar_recordings::read(file)?)
+        write_file(
+            &mut text,
+            file,
+            &thenar_recordings::read_with(file, &options)?,
+        )
     };
     written.map_err(|_| Fault::Other("the report could not be written".into()))?;
     Ok(text)
@@ -24,9 +43,39 @@ pub fn told(file: &Path) -> Result<String, Fault> {
 fn write_file(text: &mut String, file: &Path, read: &RecordingFile) -> Result<(), Error> {
     writeln!(text, "{}: {}", file.display(), read.format.name())?;
     read.maps.iter().try_for_each(|map| write_map(text, map))?;
-    read.curves
+    let curves = read.curves.iter().take(MOST_RUNS);
+    curves
+        .into_iter()
+        .try_for_each(|curve| write_curve(text, curve))?;
+    if let Some(last) = read.curves.last().filter(|_| read.curves.len() > MOST_RUNS) {
+        writeln!(
+            text,
+            "  and {} more runs, the last is {:?}",
+            read.curves.len() - MOST_RUNS,
+            last.name
+        )?;
+    }
+    read.notes
         .iter()
-        .try_for_each(|curve| write_curve(text, curve))
+        .try_for_each(|note| writeln!(text, "  note: {note}"))
+}
+
+/// What the arguments say of the file.
+fn options(arguments: &ReadArguments) -> Result<ReadOptions, Fault> {
+    let mut options = ReadOptions {
+        run: arguments.run.clone(),
+        ..ReadOptions::default()
+    };
+    for text in &arguments.columns {
+        let Some((key, header)) = text.split_once('=') else {
+            let problem =
+                format!("--column {text}: no name of a column; write --column travel_mm=NAME");
+            return Err(Fault::Input(problem));
+        };
+        let added = options.columns.add(key.trim(), header);
+        added.map_err(|problem| Fault::Input(format!("--column {text}: {problem}")))?;
+    }
+    Ok(options)
 }
 
 fn write_study(text: &mut String, study: &Study) -> Result<(), Error> {

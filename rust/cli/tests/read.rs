@@ -139,3 +139,74 @@ fn what_cannot_be_read_is_refused_with_file_and_line() {
     );
     refused(&["read"], "<FILE>");
 }
+
+const STRANGE: &str = "\"t\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(N)\"\n0,0,0\n1,-1,2\n";
+
+#[test]
+fn a_column_is_named_on_the_command_line() {
+    let folder = Folder::new("read_columns");
+    let file = folder.file("press.csv", STRANGE);
+    assert!(told(&file).contains("not known: the travel: which of 'Extension' is it?"));
+    let output = thenar(&["read", &file, "--column", "travel=-Extension"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("    travel_mm: 0 to 1\n"), "{text}");
+    refused(
+        &["read", &file, "--column", "travel"],
+        "--column travel: no name of a column; write --column travel_mm=NAME",
+    );
+    refused(
+        &["read", &file, "--column", "speed=Load"],
+        "--column speed=Load: 'speed' is nothing that a column can hold; use time, depth",
+    );
+    refused(
+        &["read", &file, "--column", "force=Kraft"],
+        "press.csv, line 1: no line of names holds 'Kraft'",
+    );
+}
+
+#[test]
+fn a_study_names_columns_and_runs() {
+    let folder = Folder::new("read_named");
+    folder.file("skin.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n");
+    folder.file("press.csv", STRANGE);
+    let study = |more: &str| {
+        folder.file(
+            "study.toml",
+            &format!(
+                "[study]\ntitle = \"Finger\"\n[skin]\nmesh = \"skin.obj\"\n[indenters.plate]\nshape = \"plane\"\n[sites.pad]\n\
+                 point_mm = [0.5, 0.5, 0]\ndirection = [0, 0, -1]\n[[recordings]]\nname = \"press\"\nkind = \"indentation\"\nfile = \"press.csv\"\n\
+                 indenter = \"plate\"\nsite = \"pad\"\n{more}"
+            ),
+        );
+    };
+    study("[recordings.columns]\ntravel_mm = \"-Extension\"\n");
+    assert!(told(folder.0.to_str().unwrap()).contains("    travel_mm: 0 to 1\n"));
+    study("");
+    refused(
+        &["read", folder.0.to_str().unwrap()],
+        "press.csv, line 1: the indentation has no depth: which of 'Extension' is it; name it: travel = \"Extension\" under [recordings.columns]",
+    );
+    study("[recordings.columns]\nspeed = \"Load\"\n");
+    refused(
+        &["read", folder.0.to_str().unwrap()],
+        "study.toml, line 17: 'speed' is nothing that a column can hold; use time",
+    );
+    study("run = \"Probe 2\"\n");
+    refused(
+        &["read", folder.0.to_str().unwrap()],
+        "press.csv: 0 of its runs are called 'Probe 2'; take run out: its run has no name",
+    );
+}
+
+#[test]
+fn names_out_of_files_do_not_steer_the_terminal() {
+    let folder = Folder::new("read_escapes");
+    let text = told(&folder.file(
+        "mat.csv",
+        &COUNTS.replace("6900", "69\u{1b}]0;title\u{7}00"),
+    ));
+    assert!(
+        text.contains("I-Scan, 69?]0;title?00)") && !text.contains('\u{1b}'),
+        "{text}"
+    );
+}

@@ -3,24 +3,44 @@
 use crate::arrays::{column, table};
 use crate::errors::Failure;
 use crate::record::record;
-use crate::running::{Hooks, run};
+use crate::running::Hooks;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
-use thenar_recordings::{Channel, Check, Curve, PressureMap, PressureUnit, Source};
+use thenar_recordings::{Channel, Check, Curve, PressureMap, PressureUnit, ReadOptions, Source};
 
 /// Reads a measurement file of any maker; the format follows from what it holds.
 ///
-/// Returns a record: `format`, `maps` and `curves`, a record each. A map has `pressure_kpa` or `counts` (frames, sensels), NaN
+/// `columns` names the columns of a table that calls them otherwise or does not say what they are: `{"travel_mm": "-Extension"}`, where a
+/// minus turns the sign; `run` is the one run to read of a file with several.
+///
+/// Returns a record: `format`, `maps` and `curves`, a record each, and `notes` of what was not read. A map has `pressure_kpa` or `counts` (frames, sensels), NaN
 /// where there is no sensel, `is_clipped` of the same shape, `time_s` (frames,) or None, `row`, `column`, `number` (sensels,), -1
 /// where not known, `center_mm` (sensels, 2) and `area_mm2` (sensels,), NaN where not known, `force_n` (frames,) or None. A curve
 /// has `channels`, a record of arrays by name (`time_s`, `force_n`, `depth_mm` from first touch, `travel_mm` from any zero). Both
 /// have `checks` of the file's own totals, `unknown` and `warnings`. Raises `RecordingError`.
 #[pyfunction]
-pub fn read_recording(py: Python<'_>, file: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+#[pyo3(signature = (file, *, columns=None, run=None))]
+pub fn read_recording(
+    py: Python<'_>,
+    file: &Bound<'_, PyAny>,
+    columns: Option<&Bound<'_, PyDict>>,
+    run: Option<String>,
+) -> PyResult<Py<PyAny>> {
     let file = path("file", file)?;
-    let read = run(py, &Hooks::new(None, None)?, move |_| {
-        thenar_recordings::read(&file).map_err(Failure::Recording)
+    let mut options = ReadOptions {
+        run,
+        ..ReadOptions::default()
+    };
+    for (key, header) in columns.into_iter().flatten() {
+        let (key, header) = (key.extract::<String>()?, header.extract::<String>()?);
+        let added = options.columns.add(&key, &header);
+        added.map_err(|problem| {
+            crate::errors::RecordingError::new_err(format!("columns: {problem}"))
+        })?;
+    }
+    let read = crate::running::run(py, &Hooks::new(None, None)?, move |_| {
+        thenar_recordings::read_with(&file, &options).map_err(Failure::Recording)
     })?;
     let entries = PyDict::new(py);
     entries.set_item("format", read.format.name())?;
@@ -36,6 +56,7 @@ pub fn read_recording(py: Python<'_>, file: &Bound<'_, PyAny>) -> PyResult<Py<Py
         .map(|curve| curve_record(py, curve))
         .collect::<PyResult<_>>()?;
     entries.set_item("curves", PyList::new(py, curves)?)?;
+    entries.set_item("notes", read.notes)?;
     record(entries)
 }
 

@@ -1,14 +1,14 @@
 //! Which maker's format a file has, from its first bytes.
 
 use crate::fault::Fault;
-use crate::fields::Separator;
-use crate::lines::Lines;
-use crate::tables::columns;
+use crate::lines::{Line, Lines};
+use crate::tables::head::{Found, Search};
+use crate::tables::mapping::Columns;
 
 /// Bytes that are looked at.
 pub(crate) const HEAD: usize = 1 << 16;
 /// Lines among them.
-const LINES: usize = 80;
+const LINES: usize = 1000;
 
 /// The formats that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,6 +27,8 @@ pub enum Format {
     Footscan,
     /// Logger of sensor insoles, CSV.
     InsoleLogger,
+    /// Biomomentum Mach-1, text.
+    Mach1,
     /// Aurora Scientific DMC, `.ddf`.
     Aurora,
     /// Optics11 Chiaro or Piuma, text.
@@ -54,6 +56,7 @@ impl Format {
             Format::Xsensor => "XSENSOR CSV",
             Format::Footscan => "RSscan footscan",
             Format::InsoleLogger => "insole logger CSV",
+            Format::Mach1 => "Mach-1",
             Format::Aurora => "Aurora DMC",
             Format::Optics11 => "Optics11 Chiaro or Piuma",
             Format::JpkText => "JPK text",
@@ -63,28 +66,29 @@ impl Format {
             Format::MapTable => "pressure table",
         }
     }
-
-    pub(crate) fn is_archive(self) -> bool {
-        matches!(self, Format::JpkArchive | Format::Workbook)
-    }
 }
 
-/// The format of a file that begins with `head`.
-pub(crate) fn format_of(head: &[u8]) -> Result<Format, Fault> {
+/// How a file is to be opened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Text(Format),
+    /// A workbook or a JPK archive, which its list of contents says.
+    Zip,
+    /// A workbook of the old kind.
+    OldWorkbook,
+}
+
+/// What a file is that begins with `head`; `named` are the columns that a user named.
+pub(crate) fn kind_of(head: &[u8], named: &Columns) -> Result<Kind, Fault> {
     if head.is_empty() {
         let problem = "the file is empty".to_string();
         return Err(Fault::line(1, problem, "export the recording again"));
     }
     if head.starts_with(b"PK\x03\x04") {
-        let is_jpk = memchr::memmem::find(head, b"header.properties").is_some();
-        return Ok(if is_jpk {
-            Format::JpkArchive
-        } else {
-            Format::Workbook
-        });
+        return Ok(Kind::Zip);
     }
     if head.starts_with(b"\xD0\xCF\x11\xE0") {
-        return Ok(Format::Workbook);
+        return Ok(Kind::OldWorkbook);
     }
     if head.starts_with(b"\xFF\xFE") || head.starts_with(b"\xFE\xFF") {
         let problem = "the text is saved as UTF-16".to_string();
@@ -100,16 +104,29 @@ pub(crate) fn format_of(head: &[u8]) -> Result<Format, Fault> {
         .iter()
         .find(|(_, is_that)| is_that(&lines))
         .map(|(format, _)| *format)
-        .or_else(|| table_format(&lines))
-        .ok_or_else(not_known)
+        .or_else(|| table_format(&lines, named))
+        .map(Kind::Text)
+        .ok_or_else(|| match named.is_empty() {
+            true => not_known(),
+            false => not_named(named),
+        })
 }
 
 fn not_known() -> Fault {
     Fault::line(
         1,
-        "this is no recording format that is known (Tekscan, Novel, XSENSOR, footscan, Aurora, Optics11, JPK, testing machine, CSV)"
+        "this is no recording format that is known (Tekscan, Novel, XSENSOR, footscan, Aurora, Optics11, JPK, Mach-1, testing machine, CSV)"
             .into(),
         "export it as text from the maker's program, or as CSV with columns such as time_s, depth_mm, force_n",
+    )
+}
+
+fn not_named(named: &Columns) -> Fault {
+    let problem = format!("no line of names holds {}", named.headers());
+    Fault::line(
+        1,
+        problem,
+        "name the columns as the file does, without a unit or with it",
     )
 }
 
@@ -132,7 +149,8 @@ const MARKS: &[(Format, Mark)] = &[
             && lines.iter().any(|line| line.contains("Sensor area:"))
     }),
     (Format::Xsensor, |lines| {
-        any(lines, &["SENSOR,"]) && any(lines, &["Units:,", "FRAME,"])
+        let has = |keys: &[&str]| lines.iter().any(|line| keys.contains(&key(line).as_str()));
+        has(&["sensor"]) && has(&["units", "frame"]) && has(&["sensels"])
     }),
     (Format::Footscan, |lines| {
         any(
@@ -148,6 +166,9 @@ const MARKS: &[(Format, Mark)] = &[
     (Format::InsoleLogger, |lines| {
         first(lines).starts_with("sole_id") && first(lines).contains("pressure_")
     }),
+    (Format::Mach1, |lines| {
+        first(lines).starts_with("<Mach-1 File>")
+    }),
     (Format::Aurora, |lines| {
         first(lines).starts_with("DMC") && first(lines).contains("Data File")
     }),
@@ -158,6 +179,12 @@ const MARKS: &[(Format, Mark)] = &[
         any(lines, &["# columns:"]) && any(lines, &["# units:"])
     }),
 ];
+
+/// The first word of an XSENSOR line, in any style.
+fn key(line: &str) -> String {
+    let word = line.split([',', '\t']).next().unwrap_or("");
+    word.trim().trim_end_matches(':').to_ascii_lowercase()
+}
 
 fn any(lines: &[String], starts: &[&str]) -> bool {
     lines
@@ -182,15 +209,14 @@ fn first_lines(head: &[u8]) -> Vec<String> {
     found
 }
 
-fn table_format(lines: &[String]) -> Option<Format> {
-    lines.iter().find_map(|line| {
-        let names = columns::names(line, Separator::of(line));
-        if columns::is_map(&names) {
-            Some(Format::MapTable)
-        } else if columns::is_curve(&names) {
-            Some(Format::CurveTable)
-        } else {
-            None
-        }
-    })
+fn table_format(lines: &[String], named: &Columns) -> Option<Format> {
+    let mut search = Search::new(named);
+    let found = lines
+        .iter()
+        .find_map(|text| match search.take(&Line { number: 0, text }) {
+            Found::Nothing => None,
+            Found::Map => Some(Format::MapTable),
+            Found::Head(_) | Found::Fault(_) => Some(Format::CurveTable),
+        });
+    found.or_else(|| search.ended().map(|_| Format::CurveTable))
 }

@@ -4,6 +4,9 @@ use crate::RecordingError;
 use std::borrow::Cow;
 use std::path::Path;
 
+/// Largest number that is taken for a measurement in any unit; some programs write 1e300 for "no value".
+pub(crate) const LARGEST: f64 = 1e30;
+
 /// Where in a file a fault lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
@@ -35,6 +38,21 @@ impl Fault {
             problem,
             remedy: remedy.into(),
         }
+    }
+
+    /// What is wrong, without its place.
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
+
+    /// The same fault of a workbook, whose lines are the rows of one of its sheets.
+    pub fn in_sheet(self, sheet: &str) -> Fault {
+        let sheet = shown(sheet.as_bytes());
+        let problem = match self.place {
+            Place::Line(row) => format!("sheet {sheet}, row {row}: {}", self.problem),
+            _ => format!("sheet {sheet}: {}", self.problem),
+        };
+        Fault::at(Place::File, problem, self.remedy)
     }
 
     pub fn in_file(self, file: &Path) -> RecordingError {
@@ -83,6 +101,7 @@ pub(crate) fn number(word: &[u8]) -> Result<f64, String> {
     match value {
         None => Err(format!("{} is not a number", shown(word))),
         Some(value) if !value.is_finite() => Err(format!("{} is not a finite number", shown(word))),
+        Some(value) if value.abs() > LARGEST => Err(format!("{} is out of range", shown(word))),
         Some(value) => Ok(value),
     }
 }

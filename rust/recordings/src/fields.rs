@@ -1,6 +1,6 @@
 //! A line of text to fields and numbers, with points or commas as decimals.
 
-use crate::fault::{Fault, shown};
+use crate::fault::{Fault, LARGEST, shown};
 use crate::lines::Line;
 
 /// Most numbers that one recording may hold: 2^26, half a gigabyte.
@@ -67,13 +67,36 @@ pub(crate) fn value(text: &str) -> Result<f64, String> {
         Err(_) if !text.contains('.') && text.matches(',').count() == 1 => {
             text.replace(',', ".").parse().ok()
         }
-        Err(_) => None,
+        Err(_) => ungrouped(text).and_then(|text| text.parse().ok()),
     };
     match parsed {
+        Some(value) if value.abs() > LARGEST && value.is_finite() => {
+            Err(format!("{} is out of range", shown(text.as_bytes())))
+        }
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(format!("{} is not a finite number", shown(text.as_bytes()))),
         None => Err(format!("{} is not a number", shown(text.as_bytes()))),
     }
+}
+
+/// `1,000.5` or `1.000,5` without what parts the thousands: groups of three digits before the other sign.
+fn ungrouped(text: &str) -> Option<String> {
+    let at = text.rfind([',', '.'])?;
+    let (whole, fraction) = (&text[..at], &text[at + 1..]);
+    let between = if text[at..].starts_with('.') {
+        ','
+    } else {
+        '.'
+    };
+    let mut groups = whole.trim_start_matches(['-', '+']).split(between);
+    let is_digits = |group: &str| group.bytes().all(|byte| byte.is_ascii_digit());
+    let is_first = groups
+        .next()
+        .is_some_and(|first| (1..=3).contains(&first.len()) && is_digits(first));
+    let is_grouped =
+        whole.contains(between) && groups.all(|group| group.len() == 3 && is_digits(group));
+    (is_first && is_grouped && is_digits(fraction))
+        .then(|| format!("{}.{fraction}", whole.replace(between, "")))
 }
 
 /// How the rows of a table of numbers look.
@@ -105,7 +128,7 @@ impl Row {
             if field.is_empty() {
                 break;
             }
-            into.push(value(field).map_err(|problem| line.fault(problem, DAMAGED))?);
+            into.push(value(field).map_err(|problem| line.fault(problem, ODD))?);
         }
         let count = into.len() - start;
         if count < self.columns {
@@ -122,6 +145,9 @@ impl Row {
 
 /// What to do about a file that is not as its maker writes it.
 pub(crate) const DAMAGED: &str = "the file is damaged or cut short; export it again";
+/// What to do about a line that cannot be understood, although nothing is missing.
+pub(crate) const ODD: &str =
+    "this maker's exports are not known to hold such a line; export it again, or report the file";
 
 #[cfg(test)]
 mod tests {
@@ -132,6 +158,12 @@ mod tests {
     fn points_and_commas_are_decimals_and_nothing_else_is_a_number() {
         for text in ["1.5", "1,5", "+1.5", "15e-1", "1,5"] {
             assert_eq!(value(text), Ok(1.5), "{text}");
+        }
+        for (text, expected) in [("1,000.5", 1000.5), ("-1.234.567,25", -1_234_567.25)] {
+            assert_eq!(value(text), Ok(expected), "{text}");
+        }
+        for text in ["1,000,292", "1,00.5", "1000,000.5", "1.000.5", ",000.5"] {
+            assert!(value(text).is_err(), "{text}");
         }
         for text in ["", "1,2,3", "1.2,3", "x", "--1", "1 5"] {
             assert!(
@@ -162,9 +194,13 @@ mod tests {
             ("1,2", "the row holds 2 values, expected 3"),
             ("1,,3", "the row holds 1 values, expected 3"),
             ("1,2,3,4", "the row holds more than 3 values"),
-            ("1,b,3", "'b' is not a number"),
         ] {
             assert_eq!(read(text), Err(Fault::line(7, problem.into(), DAMAGED)));
         }
+        // What is no number is not for that reason damaged.
+        assert_eq!(
+            read("1,b,3"),
+            Err(Fault::line(7, "'b' is not a number".into(), ODD))
+        );
     }
 }

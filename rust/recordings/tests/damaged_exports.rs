@@ -25,7 +25,7 @@ fn tekscan_faults_are_placed() {
         (
             "ROWS 2",
             "ROWS two",
-            "a.txt, line 5: ROWS: 'two' is not a number of rows; the file is damaged",
+            "a.txt, line 5: ROWS: 'two' is not a number of rows; this maker's exports",
         ),
         (
             "ROWS 2",
@@ -116,7 +116,7 @@ fn novel_faults_are_placed() {
         PEDAR,
         "2\t3\t1\t2",
         "2\t3\t4\t5",
-        "a.txt, line 10: the columns hold the sensors of one insole, expected two",
+        "a.txt, line 10: the columns hold 5 sensors of one insole, and the masks name 3 and 2",
     );
     refused(
         PLIANCE,

@@ -215,7 +215,7 @@ fn images_that_are_no_print_are_refused() {
         (
             &good[..good.len() / 2].to_vec(),
             OPTIONS,
-            "the image is damaged or cut off; scan it or save it anew",
+            "the image is damaged or cut off; scan it or save it again",
         ),
         (
             &good,

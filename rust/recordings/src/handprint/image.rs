@@ -1,7 +1,8 @@
 //! Decodes the image of a print: brightness by pixel, and which pixels are there at all.
 
-use crate::RecordingError;
 use crate::fault::Fault;
+use crate::{RecordingError, plain_file};
+use image::error::{LimitError, LimitErrorKind};
 use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
 use std::fs::File;
 use std::io::BufReader;
@@ -11,6 +12,8 @@ use std::path::Path;
 const LONGEST: u32 = 32_768;
 /// Most memory that decoding may take, bytes.
 const MOST_MEMORY: u64 = 1 << 30;
+/// Most pixels: with what decoding and the copies take, 1 GiB.
+const MOST_PIXELS: u64 = 80_000_000;
 /// Transparency from which a pixel is none, of 65535.
 const OPAQUE_FROM: u16 = 1 << 15;
 
@@ -32,7 +35,7 @@ pub fn read(file: &Path) -> Result<Gray, RecordingError> {
         source,
     };
     // By what the file holds, whatever its name ends on.
-    let reader = ImageReader::new(BufReader::new(File::open(file).map_err(unreadable)?));
+    let reader = ImageReader::new(BufReader::new(plain_file::open(file)?.0));
     let mut reader = reader.with_guessed_format().map_err(unreadable)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(LONGEST);
@@ -45,6 +48,12 @@ pub fn read(file: &Path) -> Result<Gray, RecordingError> {
 
 fn decode(reader: ImageReader<BufReader<File>>) -> Result<DynamicImage, ImageError> {
     let mut decoder = reader.into_decoder()?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(ImageError::Limits(LimitError::from_kind(
+            LimitErrorKind::DimensionError,
+        )));
+    }
     let orientation = decoder.orientation()?;
     let mut image = DynamicImage::from_decoder(decoder)?;
     image.apply_orientation(orientation);
@@ -58,12 +67,14 @@ fn fault(error: &ImageError) -> Fault {
             "save the print as PNG, JPEG or TIFF",
         ),
         ImageError::Limits(_) => Fault::file(
-            format!("the image is longer than {LONGEST} pixels, or takes more than 1 GiB"),
+            format!(
+                "the image is longer than {LONGEST} pixels, has more than {MOST_PIXELS} of them, or takes more than 1 GiB"
+            ),
             "save it with fewer dpi; 100 to 300 are enough",
         ),
         _ => Fault::file(
             "the image is damaged or cut off".into(),
-            "scan it or save it anew",
+            "scan it or save it again",
         ),
     }
 }

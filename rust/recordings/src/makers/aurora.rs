@@ -2,7 +2,7 @@
 
 use crate::curve::{Channel, Curve};
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, Row, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::Source;
 use crate::units::{Quantity, Unit, unit};
@@ -40,7 +40,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<Curve>, Fault> {
             return Err(lines.ended("the line 'Sample' of the test data"));
         };
         let text = line.text.trim_end();
-        let fault = |problem: String| line.fault(problem, DAMAGED);
+        let fault = |problem: String| line.fault(problem, ODD);
         if let Some(rest) = text.strip_prefix("Sample Frequency (Hz):") {
             frequency = Some(value(rest.trim()).map_err(fault)?).filter(|rate| *rate > 0.0);
         } else if text.starts_with("Protocol Array:") {
@@ -64,7 +64,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<Curve>, Fault> {
     };
     let used = calibration
         .used(&columns)
-        .map_err(|problem| Fault::line(lines.number(), problem, DAMAGED))?;
+        .map_err(|problem| Fault::line(lines.number(), problem, ODD))?;
     curve.push_fact("sample_frequency_hz", frequency);
     read_samples(lines, &columns, &used, (&mut curve, frequency))?;
     curve

@@ -3,7 +3,7 @@
 use super::count;
 use crate::check::Check;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, Row, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Source, grid_sensels};
 use crate::units::{Quantity, measure};
@@ -64,7 +64,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     }
     let area = platform.area_mm2;
     let (first, size) = window(&pages);
-    super::check_cells(size[0], size[1]).map_err(|problem| Fault::file(problem, DAMAGED))?;
+    super::check_cells(size[0], size[1]).map_err(|problem| Fault::file(problem, ODD))?;
     if pages.len().saturating_mul(size[0] * size[1]) > MOST_VALUES {
         return Err(Fault::file(
             "the pictures' windows lie too far apart".into(),
@@ -113,7 +113,7 @@ fn next_page(lines: &mut Lines, platform: &mut Platform) -> Result<Option<Page>,
             .trim_matches(|c: char| c.is_whitespace() || c == '\u{c}');
         platform
             .take(text)
-            .map_err(|problem| line.fault(problem, DAMAGED))?;
+            .map_err(|problem| line.fault(problem, ODD))?;
         if let Some((_, rest)) = text.split_once("Pict-No.:") {
             let word = rest.split_whitespace().next().unwrap_or("");
             let number = word.parse::<usize>().ok().filter(|number| *number > 0);
@@ -128,7 +128,7 @@ fn next_page(lines: &mut Lines, platform: &mut Platform) -> Result<Option<Page>,
             is_summary = true;
         } else if text.ends_with("Force") && text.starts_with(|c: char| c.is_ascii_digit()) {
             let (first_column, columns) =
-                column_numbers(text).map_err(|problem| line.fault(problem, DAMAGED))?;
+                column_numbers(text).map_err(|problem| line.fault(problem, ODD))?;
             let mut page = Page {
                 first_column,
                 columns,
@@ -200,7 +200,7 @@ fn read_rows(lines: &mut Lines, page: &mut Page) -> Result<(), Fault> {
                 .filter(|field| !field.is_empty())
                 .last()
                 .unwrap_or("");
-            page.total = value(total).map_err(|problem| line.fault(problem, DAMAGED))?;
+            page.total = value(total).map_err(|problem| line.fault(problem, ODD))?;
             return Ok(());
         }
         row.clear();

@@ -3,7 +3,7 @@
 use super::count;
 use crate::clock::Clock;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, Row, Separator, value};
+use crate::fields::{ODD, Row, Separator, value};
 use crate::lines::Lines;
 use crate::pressure_map::{PressureMap, PressureUnit, Source, grid_sensels};
 
@@ -29,13 +29,21 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     let (mut feet, mut open) = (Vec::new(), None::<Foot>);
     while let Some(line) = lines.next_filled(&[])? {
         let text = line.text.trim();
-        let fault = |problem: String| line.fault(problem, DAMAGED);
+        let fault = |problem: String| line.fault(problem, ODD);
         if let Some(foot) = text.strip_suffix(" foot data") {
             name = format!("{} foot", foot.to_lowercase());
             rectangle = Rectangle::default();
             feet.extend(open.take().map(Foot::finish));
         } else if let Some(rest) = text.strip_prefix("Rectangle") {
-            rectangle.take(rest).map_err(fault)?;
+            let mut words = rest
+                .split([' ', '\t', ':', ','])
+                .filter(|word| !word.is_empty());
+            let (side, number) = (words.next().unwrap_or("").to_string(), words.next());
+            match number {
+                Some(number) => rectangle.take(&side, number).map_err(fault)?,
+                // The number stands in the line below.
+                None => below(lines, &side, &mut rectangle)?,
+            }
         } else if text.starts_with("Frame ") {
             let (frame, time) = frame_line(text).map_err(fault)?;
             let number = line.number;
@@ -72,12 +80,19 @@ fn frame_line(text: &str) -> Result<(usize, f64), String> {
     Ok((number, value(time.ok_or_else(problem)?.trim())? * 1e-3))
 }
 
+/// Takes the number of a side from the next line.
+fn below(lines: &mut Lines, side: &str, rectangle: &mut Rectangle) -> Result<(), Fault> {
+    let Some(line) = lines.next_filled(&[])? else {
+        return Err(lines.ended(&format!("the rectangle's {side}")));
+    };
+    let number = line.text.trim();
+    rectangle
+        .take(side, number)
+        .map_err(|problem| line.fault(problem, ODD))
+}
+
 impl Rectangle {
-    fn take(&mut self, text: &str) -> Result<(), String> {
-        let mut words = text
-            .split([' ', '\t', ':', ','])
-            .filter(|word| !word.is_empty());
-        let (side, number) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
+    fn take(&mut self, side: &str, number: &str) -> Result<(), String> {
         let place = || number.parse().ok().filter(|at| *at < super::WIDEST);
         let problem = || format!("{} is no place on the plate", shown(number.as_bytes()));
         match side {

@@ -2,7 +2,7 @@
 
 use crate::clock::Clock;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
 
@@ -38,7 +38,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
             );
             return Err(line.fault(problem, DAMAGED));
         }
-        let fault = |problem: String| line.fault(problem, DAMAGED);
+        let fault = |problem: String| line.fault(problem, ODD);
         let stamp = value(fields[columns.timestamp]).map_err(fault)?;
         let sole = sole_of(&mut soles, fields[0], &columns).map_err(fault)?;
         // Milliseconds since 1970.

@@ -4,22 +4,22 @@ mod aurora;
 mod emed;
 mod footscan;
 mod insole_logger;
-mod jpk_archive;
-mod jpk_properties;
-mod jpk_text;
+pub(crate) mod jpk;
+mod mach1;
 mod optics11;
 mod pedar;
 mod pliance;
 mod tekscan;
 mod tekscan_header;
-mod workbook;
 mod xsensor;
 mod xsensor_block;
 
 use crate::detection::Format;
 use crate::fault::Fault;
 use crate::lines::Lines;
-use crate::recording::RecordingFile;
+use crate::recording_file::RecordingFile;
+
+pub(crate) use mach1::read as mach1;
 
 /// Most rows or columns of a mat; the largest on the market have 256.
 const WIDEST: usize = 4096;
@@ -32,7 +32,7 @@ pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFi
     let maps = |maps| RecordingFile::of_maps(format, maps);
     let curves = |curves| RecordingFile::of_curves(format, curves);
     match format {
-        Format::Tekscan => tekscan::read(lines).map(maps),
+        Format::Tekscan => tekscan::read(lines),
         Format::Pedar => pedar::read(lines).map(maps),
         Format::Pliance => pliance::read(lines).map(maps),
         Format::Emed => emed::read(lines).map(maps),
@@ -41,34 +41,16 @@ pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFi
         Format::InsoleLogger => insole_logger::read(lines).map(maps),
         Format::Aurora => aurora::read(lines).map(curves),
         Format::Optics11 => optics11::read(lines).map(curves),
-        Format::JpkText => jpk_text::read(lines).map(curves),
-        Format::JpkArchive | Format::Workbook | Format::CurveTable | Format::MapTable => {
-            Err(Fault::file(
-                format!("{} is no maker's text", format.name()),
-                "report this",
-            ))
-        }
+        Format::JpkText => jpk::text::read(lines).map(curves),
+        Format::Mach1
+        | Format::JpkArchive
+        | Format::Workbook
+        | Format::CurveTable
+        | Format::MapTable => Err(Fault::file(
+            format!("{} is no maker's text", format.name()),
+            "report this",
+        )),
     }
-}
-
-/// Reads a workbook or an archive that lies in memory.
-pub(crate) fn read_archive(format: Format, bytes: Vec<u8>) -> Result<RecordingFile, Fault> {
-    let curves = match format {
-        Format::JpkArchive => jpk_archive::read(bytes)?,
-        _ => quietly(|| workbook::read(bytes))?,
-    };
-    Ok(RecordingFile::of_curves(format, curves))
-}
-
-/// Turns a panic of the workbook library, which a damaged cell reference can cause, into a fault of the file.
-fn quietly(
-    read: impl FnOnce() -> Result<Vec<crate::Curve>, Fault>,
-) -> Result<Vec<crate::Curve>, Fault> {
-    let run = std::panic::catch_unwind(std::panic::AssertUnwindSafe(read));
-    run.unwrap_or_else(|_| {
-        let problem = "a cell or its place breaks the rules of workbooks".to_string();
-        Err(Fault::file(problem, "save it again as .xlsx, or as CSV"))
-    })
 }
 
 /// A count of rows, columns or sensors that a header states.

@@ -3,7 +3,7 @@
 use crate::clock::Clock;
 use crate::curve::{Channel, Curve};
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, Row, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
 use crate::lines::Lines;
 use crate::pressure_map::Source;
 use crate::tables::columns::{Column, names};
@@ -116,8 +116,15 @@ fn read_header(lines: &mut Lines, curve: &mut Curve) -> Result<Vec<Column>, Faul
             .iter()
             .find(|(known, ..)| *known == key.replace('μ', "µ"))
         {
+            // The instrument writes NaN where its own fit found nothing.
+            if rest.eq_ignore_ascii_case("nan") {
+                curve
+                    .unknown
+                    .push(format!("{key}: the instrument states NaN"));
+                continue;
+            }
             let number =
-                value(rest).map_err(|problem| line.fault(format!("{key}: {problem}"), DAMAGED))?;
+                value(rest).map_err(|problem| line.fault(format!("{key}: {problem}"), ODD))?;
             curve.push_fact(*name, number * factor);
         }
     }

@@ -3,19 +3,25 @@
 use super::count;
 use crate::clock::Clock;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, Row, Separator};
+use crate::fields::{DAMAGED, ODD, Row, Separator};
 use crate::lines::Lines;
 use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
 
 pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     let header = read_header(lines)?;
-    let counts = [header.feet[0].1.len(), header.feet[1].1.len()];
+    let counts: Vec<usize> = header
+        .feet
+        .iter()
+        .map(|(_, numbers)| numbers.len())
+        .collect();
     let shape = Row {
         separator: Separator::Blank,
-        columns: 1 + counts[0] + counts[1],
+        columns: 1 + counts.iter().sum::<usize>(),
         missing: None,
     };
-    let mut maps = header.feet.map(|(name, numbers)| {
+    let is_one = counts.len() == 1;
+    let feet = header.feet.into_iter();
+    let maps = feet.map(|(name, numbers)| {
         let numbered = |number| Sensel {
             number: Some(number),
             ..Sensel::default()
@@ -33,13 +39,17 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
         map.name = name;
         map
     });
+    let mut maps: Vec<PressureMap> = maps.collect();
     let (mut clock, mut row) = (Clock::default(), Vec::new());
     while let Some(line) = lines.next_filled(&[])? {
         row.clear();
         shape.read(line, &mut row)?;
         clock.push(line.number, row[0])?;
-        maps[0].values.extend_from_slice(&row[1..=counts[0]]);
-        maps[1].values.extend_from_slice(&row[1 + counts[0]..]);
+        let mut at = 1;
+        for (map, count) in maps.iter_mut().zip(&counts) {
+            map.values.extend_from_slice(&row[at..at + count]);
+            at += count;
+        }
         if maps[0].values.len() > crate::fields::MOST_VALUES {
             return Err(Fault::line(
                 lines.number(),
@@ -59,21 +69,24 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
         );
         map.unknown
             .push("where the sensors lie: the file numbers them only".into());
-        map.warnings
-            .push("which insole is which follows the order of the mask; please confirm it".into());
+        map.warnings.push(if is_one {
+            "the file holds one insole; whose it is follows the mask, please confirm it".into()
+        } else {
+            "which insole is which follows the order of the mask; please confirm it".into()
+        });
     }
-    Ok(maps.into())
+    Ok(maps)
 }
 
 struct Header {
     sensor: String,
-    /// Name and sensor numbers, in the order of the columns.
-    feet: [(String, Vec<u32>); 2],
+    /// Name and sensor numbers of one insole or two, in the order of the columns.
+    feet: Vec<(String, Vec<u32>)>,
 }
 
 fn read_header(lines: &mut Lines) -> Result<Header, Fault> {
     let mut sensor = String::new();
-    let mut names: Vec<String> = Vec::new();
+    let mut masks: Vec<(String, usize)> = Vec::new();
     loop {
         let Some(line) = lines.next()? else {
             return Err(lines.ended("the line 'time[secs]'"));
@@ -84,29 +97,54 @@ fn read_header(lines: &mut Lines) -> Result<Header, Fault> {
         } else if text.starts_with("pressure values") && !text.ends_with("kPa") {
             let problem = format!("{} are not in kPa", crate::fault::shown(text.as_bytes()));
             return Err(line.fault(problem, "export the pressures in kPa"));
-        } else if let Some((name, _)) = text
+        } else if let Some((name, mask)) = text
             .split_once(':')
             .filter(|(name, _)| name.ends_with(" insole"))
         {
-            names.push(name.to_string());
+            let sensors = mask.split(',').filter(|number| !number.trim().is_empty());
+            masks.push((name.to_string(), sensors.count()));
         } else if let Some(columns) = text.strip_prefix("time[secs]") {
-            let feet = split_feet(columns).map_err(|problem| line.fault(problem, DAMAGED))?;
-            let mut names = names.into_iter();
-            let mut name = |otherwise: &str| names.next().unwrap_or_else(|| otherwise.to_string());
-            let [first, second] = feet;
+            let feet = split_feet(columns).map_err(|problem| line.fault(problem, ODD))?;
+            let names = names(&masks, &feet).map_err(|problem| line.fault(problem, DAMAGED))?;
             return Ok(Header {
                 sensor,
-                feet: [
-                    (name("first insole"), first),
-                    (name("second insole"), second),
-                ],
+                feet: names.into_iter().zip(feet).collect(),
             });
         }
     }
 }
 
-/// The sensor numbers of the column line, which start again with the second insole.
-fn split_feet(columns: &str) -> Result<[Vec<u32>; 2], String> {
+/// What the insoles are called: both by the order of the masks, one by the mask of as many sensors.
+fn names(masks: &[(String, usize)], feet: &[Vec<u32>]) -> Result<Vec<String>, String> {
+    if feet.len() > 1 {
+        let name = |k: usize, otherwise: &str| {
+            masks
+                .get(k)
+                .map_or(otherwise.into(), |(name, _)| name.clone())
+        };
+        return Ok(vec![name(0, "first insole"), name(1, "second insole")]);
+    }
+    let sensors = feet.first().map_or(0, Vec::len);
+    let fitting: Vec<&String> = masks
+        .iter()
+        .filter(|(_, count)| *count == sensors)
+        .map(|(name, _)| name)
+        .collect();
+    match fitting[..] {
+        [name] => Ok(vec![name.clone()]),
+        [] if !masks.is_empty() => {
+            let counts: Vec<String> = masks.iter().map(|(_, count)| count.to_string()).collect();
+            Err(format!(
+                "the columns hold {sensors} sensors of one insole, and the masks name {}",
+                counts.join(" and ")
+            ))
+        }
+        _ => Ok(vec!["one insole".into()]),
+    }
+}
+
+/// The sensor numbers of the column line, which start again with the second insole where there is one.
+fn split_feet(columns: &str) -> Result<Vec<Vec<u32>>, String> {
     let mut feet = [Vec::new(), Vec::new()];
     let mut last = 0;
     let mut foot = 0;
@@ -120,8 +158,11 @@ fn split_feet(columns: &str) -> Result<[Vec<u32>; 2], String> {
             .ok_or("the sensor numbers start again more than once")?
             .push(number);
     }
-    if feet[1].is_empty() {
-        return Err("the columns hold the sensors of one insole, expected two".into());
+    if feet[0].is_empty() {
+        return Err("the line names no sensor".into());
     }
-    Ok(feet)
+    Ok(feet
+        .into_iter()
+        .filter(|numbers| !numbers.is_empty())
+        .collect())
 }

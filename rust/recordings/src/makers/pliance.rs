@@ -4,7 +4,7 @@ use super::count;
 use crate::check::Check;
 use crate::clock::Clock;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, Row, Separator, value};
+use crate::fields::{DAMAGED, ODD, Row, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
 
@@ -67,7 +67,7 @@ fn sensor_numbers(columns: &str, line: &Line) -> Result<Vec<u32>, Fault> {
         .split_whitespace()
         .map(|word| count(word, "sensors").map(|number| number as u32))
         .collect();
-    let numbers = numbers.map_err(|problem| line.fault(problem, DAMAGED))?;
+    let numbers = numbers.map_err(|problem| line.fault(problem, ODD))?;
     if numbers.is_empty() {
         return Err(line.fault("no sensor is named".into(), DAMAGED));
     }
@@ -129,7 +129,7 @@ fn read_forces(lines: &mut Lines) -> Result<Vec<[f64; 2]>, Fault> {
         let mut words = line.text.split_whitespace();
         let mut next = || value(words.next().unwrap_or(""));
         let pair = next().and_then(|time| Ok([time, next()?]));
-        forces.push(pair.map_err(|problem| line.fault(problem, DAMAGED))?);
+        forces.push(pair.map_err(|problem| line.fault(problem, ODD))?);
         if forces.len() > crate::fields::MOST_VALUES / 2 {
             return Err(line.fault(
                 "the table of forces is too long".into(),

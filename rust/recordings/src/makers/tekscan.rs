@@ -3,10 +3,15 @@
 use super::tekscan_header::{self, Header};
 use crate::check::Check;
 use crate::clock::Clock;
+use crate::detection::Format;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, Row, Separator, value};
+use crate::fields::{DAMAGED, ODD, Row, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Threshold, grid_sensels};
+use crate::recording_file::RecordingFile;
+use crate::tables;
+use crate::tables::curves::Rows;
+use crate::tables::mapping::Columns;
 
 /// Counts go from 0 to 255; a count of 255 is clipped.
 const LARGEST_COUNT: f64 = 255.0;
@@ -19,8 +24,29 @@ struct FrameLine {
     raw_sum: Option<f64>,
 }
 
-pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
+pub(super) fn read(lines: &mut Lines) -> Result<RecordingFile, Fault> {
     let header = tekscan_header::read(lines)?;
+    if header.is_graph {
+        return read_graph(lines, &header);
+    }
+    let maps = read_movie(lines, header)?;
+    Ok(RecordingFile::of_maps(Format::Tekscan, maps))
+}
+
+/// A graph: totals of the mat by frame, as columns.
+fn read_graph(lines: &mut Lines, header: &Header) -> Result<RecordingFile, Fault> {
+    let mut curves = tables::curves::read(lines, &Columns::default(), Rows::Whole)?;
+    for curve in &mut curves {
+        curve.source = header.source();
+        curve.unknown.push(
+            "the pressures: the file is a graph of the mat's totals; export the movie for them"
+                .into(),
+        );
+    }
+    Ok(RecordingFile::of_curves(Format::Tekscan, curves))
+}
+
+fn read_movie(lines: &mut Lines, header: Header) -> Result<Vec<PressureMap>, Fault> {
     let header_end = lines.number();
     let needed = |what: &str| {
         let problem = format!("the header does not state {what}");
@@ -28,8 +54,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     };
     let rows = header.rows.ok_or_else(|| needed("ROWS"))?;
     let columns = header.columns.ok_or_else(|| needed("COLS"))?;
-    super::check_cells(rows, columns)
-        .map_err(|problem| Fault::line(header_end, problem, DAMAGED))?;
+    super::check_cells(rows, columns).map_err(|problem| Fault::line(header_end, problem, ODD))?;
     let (unit, factor) = header.unit.ok_or_else(|| needed("UNITS"))?;
     let sensels = grid_sensels([0, 0], [rows, columns], header.area_mm2);
     let mut map = PressureMap::new(header.source(), unit, sensels);
@@ -98,7 +123,7 @@ fn frame_line(rest: &str, line: &Line) -> Result<FrameLine, Fault> {
         let problem = format!("{} is not a frame number", shown(number.as_bytes()));
         return Err(line.fault(problem, DAMAGED));
     };
-    let fault = |problem| line.fault(problem, DAMAGED);
+    let fault = |problem| line.fault(problem, ODD);
     let seconds = match fields.next() {
         Some(text) if !text.is_empty() => Some(value(text).map_err(fault)?),
         _ => None,

@@ -2,7 +2,7 @@
 
 use super::count;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, value};
+use crate::fields::{ODD, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureUnit, Source};
 use crate::units::{Quantity, measure, unit};
@@ -27,6 +27,8 @@ pub(super) struct Header {
     pub is_mirrored: [Option<bool>; 2],
     pub calibration_points: usize,
     pub calibration_mode: String,
+    /// A graph of totals over time, in place of frames.
+    pub is_graph: bool,
 }
 
 /// Keys that stand after the comment, which may itself look like a key.
@@ -67,11 +69,12 @@ pub(super) fn read(lines: &mut Lines) -> Result<Header, Fault> {
 impl Header {
     fn take(&mut self, key: &str, text: &str, line: &Line) -> Result<(), Fault> {
         self.set(key, text)
-            .map_err(|problem| line.fault(format!("{key}: {problem}"), DAMAGED))
+            .map_err(|problem| line.fault(format!("{key}: {problem}"), ODD))
     }
 
     fn set(&mut self, key: &str, text: &str) -> Result<(), String> {
         match key {
+            "DATA_TYPE" => self.is_graph = text.eq_ignore_ascii_case("GRAPH"),
             "VERSION" => self.version = text.to_string(),
             "SENSOR_TYPE" => self.sensor = text.to_string(),
             "ROWS" => self.rows = Some(count(text, "rows")?),

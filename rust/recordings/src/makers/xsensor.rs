@@ -1,10 +1,10 @@
 //! XSENSOR CSV: frames of one or more sensors; the groups of cells behind them are no sensors.
 
-use super::xsensor_block::{Block, pair};
+use super::xsensor_block::{Block, lower, pair};
 use crate::check::Check;
 use crate::clock::Clock;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Source, Threshold, grid_sensels};
 use crate::units::{Quantity, unit};
@@ -33,20 +33,20 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     let (mut mats, mut clock, mut frames) = (Vec::<Mat>::new(), Clock::default(), 0);
     let mut held = 0;
     while let Some(line) = lines.next_filled(&[','])? {
-        let (key, text) = pair(&line);
-        let fault = |problem: String| line.fault(format!("{key} {problem}"), DAMAGED);
-        match key {
-            "Units:" => factor = Some(pressure_factor(text).map_err(fault)?),
-            "Threshold:" => threshold = value(text).map_err(fault)?,
-            "FRAME" => {
+        let (name, text) = pair(&line);
+        let fault = |problem: String| line.fault(format!("{name} {problem}"), ODD);
+        match lower(name).as_str() {
+            "units" => factor = Some(pressure_factor(text).map_err(fault)?),
+            "threshold" => threshold = value(text).map_err(fault)?,
+            "frame" => {
                 check_frame(&mats, frames, &line)?;
                 frames += 1;
             }
-            "Time" if frames > 0 => {
+            "time" if frames > 0 => {
                 let time = since_start(clock_time(text).map_err(fault)?, &clock);
                 clock.push(line.number, time)?;
             }
-            "SENSOR" => {
+            "sensor" => {
                 let number = line.number;
                 let Some(factor) = factor else {
                     return Err(
@@ -64,7 +64,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
                     ));
                 }
                 take(&mut mats, &block, [factor, threshold], frames)
-                    .map_err(|problem| Fault::line(number, problem, DAMAGED))?;
+                    .map_err(|problem| Fault::line(number, problem, ODD))?;
             }
             _ => {}
         }
@@ -92,6 +92,8 @@ fn pressure_factor(text: &str) -> Result<f64, String> {
 fn clock_time(text: &str) -> Result<f64, String> {
     let parts: Result<Vec<f64>, String> = text.split(':').map(|part| value(part.trim())).collect();
     match parts?[..] {
+        // A workbook keeps the time of day as part of a day.
+        [part] if (0.0..1.0).contains(&part) => Ok(DAY * part),
         [hours, minutes, seconds] => Ok(3600.0 * hours + 60.0 * minutes + seconds),
         _ => Err(format!("{} is not a time of day", shown(text.as_bytes()))),
     }
@@ -165,8 +167,8 @@ fn take(mats: &mut Vec<Mat>, block: &Block, scale: [f64; 2], frames: usize) -> R
 
 impl Mat {
     fn new(block: &Block, factor: f64, threshold: f64) -> Mat {
-        let area = match block.cell_cm {
-            [Some(height), Some(width)] => Some(100.0 * height * width),
+        let area = match block.cell_mm {
+            [Some(height), Some(width)] => Some(height * width),
             _ => None,
         };
         let source = Source {
@@ -177,17 +179,19 @@ impl Mat {
         let sensels = grid_sensels([0, 0], [block.rows, block.columns], area);
         let mut map = PressureMap::new(source, PressureUnit::Kilopascal, sensels);
         map.name.clone_from(&block.name);
-        if let [Some(height), Some(width)] = block.cell_cm {
-            map.pitch_mm = Some([10.0 * height, 10.0 * width]);
+        if let [Some(height), Some(width)] = block.cell_mm {
+            map.pitch_mm = Some([height, width]);
         }
         map.threshold = Some(Threshold {
             value: threshold * factor,
             unit: PressureUnit::Kilopascal,
         });
         map.unknown.push("at which pressure cells clip".into());
-        if block.total_area_cm2.zip(area).is_some_and(|(total, area)| {
-            total * 100.0 < 0.999 * area * (block.rows * block.columns) as f64
-        }) {
+        if block
+            .total_area_mm2
+            .zip(area)
+            .is_some_and(|(total, area)| total < 0.999 * area * (block.rows * block.columns) as f64)
+        {
             map.unknown.push("which cells lie outside the sensor's outline: they are written as 0 like unloaded ones".into());
         }
         Mat {
@@ -210,11 +214,11 @@ impl Mat {
                 .compare(frame, stated * factor, self.map.peak(frame));
         }
         if let (Some(stated), Some(ours)) = (
-            block.contact_area_cm2,
+            block.contact_area_mm2,
             self.map.contact_area_mm2(frame, 0.0),
         ) {
             let per_cent = if stated > 0.0 {
-                ours / stated
+                100.0 * ours / stated
             } else {
                 100.0 + ours
             };

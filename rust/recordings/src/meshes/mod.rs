@@ -9,8 +9,8 @@ mod polygons;
 mod stl;
 mod weld;
 
-use crate::RecordingError;
 use crate::fault::{Fault, number};
+use crate::{RecordingError, plain_file};
 use nalgebra::Vector3;
 use std::path::Path;
 
@@ -119,16 +119,7 @@ fn known<T>(file: &Path, format: Option<T>, remedy: &'static str) -> Result<T, R
 }
 
 fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordingError> {
-    let unreadable = |source| RecordingError::Unreadable {
-        file: file.to_path_buf(),
-        source,
-    };
-    let size = std::fs::metadata(file).map_err(unreadable)?.len();
-    if size > LARGEST_FILE {
-        let problem = format!("{size} bytes are more than the {LARGEST_FILE} that are read");
-        return Err(Fault::file(problem, "decimate the mesh").in_file(file));
-    }
-    std::fs::read(file).map_err(unreadable)
+    plain_file::bytes(file, LARGEST_FILE, "decimate the mesh")
 }
 
 /// Reads a mesh from the bytes of a file that is called `file` in messages.
@@ -141,6 +132,10 @@ pub fn read_bytes(bytes: &[u8], format: Format, file: &Path) -> Result<MeshFile,
 
 /// A mesh with or without faces.
 fn points(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
+    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
+        let problem = "the text is saved as UTF-16".to_string();
+        return Err(Fault::line(1, problem, "save it as UTF-8"));
+    }
     filled(match format {
         Format::Obj => obj::parse(bytes)?,
         Format::Ply => ply::parse(bytes)?,

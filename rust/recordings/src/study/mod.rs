@@ -1,5 +1,15 @@
 //! A study: a folder with `study.toml`, the recordings it names and what they were taken from.
 //!
+//! A recording of kind `indentation` may say which run of its file it is, and which column of a table is what, where the file does not say:
+//!
+//! ```toml
+//! run = "Probe 2"            # of a workbook or a map with several runs
+//!
+//! [recordings.columns]
+//! travel_mm = "-Position"    # name in the file; a minus before it turns the sign; the unit in the key where the file states none
+//! force = "Fz"
+//! ```
+//!
 //! A mat's sensels are placed by a table (`sensels = "sensels.csv"`: row, col or sensor, x_mm, y_mm, z_mm, area_mm2) or by how the
 //! flat mat lies:
 //!
@@ -54,6 +64,7 @@ mod sensels;
 mod seat;
 mod charts;
 mod prints;
+mod indentation;
 mod recordings;
 mod instrument;
 
@@ -65,8 +76,8 @@ pub use sensels::PlacedSensel;
 pub use sites::Site;
 pub use skin::{StudyMaterial, StudySkin};
 
-use crate::RecordingError;
 use crate::fault::Fault;
+use crate::{RecordingError, plain_file};
 use place::Folder;
 use std::path::{Path, PathBuf};
 use toml_tree::{Document, Section};
@@ -155,6 +166,14 @@ impl Study {
     }
 }
 
+/// Whether the file a link names lies outside of the folder, or nowhere.
+fn leaves(folder: &Path, link: &Path) -> bool {
+    match (folder.canonicalize(), link.canonicalize()) {
+        (Ok(folder), Ok(file)) => !file.starts_with(folder),
+        _ => true,
+    }
+}
+
 fn read_text(folder: &Path, file: &Path) -> Result<String, RecordingError> {
     if !folder.is_dir() {
         let fault = Fault::file(
@@ -163,16 +182,16 @@ fn read_text(folder: &Path, file: &Path) -> Result<String, RecordingError> {
         );
         return Err(fault.in_file(folder));
     }
-    let unreadable = |source| RecordingError::Unreadable {
-        file: file.to_path_buf(),
-        source,
-    };
-    let size = std::fs::metadata(file).map_err(unreadable)?.len();
-    if size > LARGEST_STUDY {
-        let problem = format!("{size} bytes are more than the {LARGEST_STUDY} that are read");
-        return Err(Fault::file(problem, "keep measurements in files of their own").in_file(file));
+    if std::fs::symlink_metadata(file).is_ok_and(|about| about.is_symlink()) && leaves(folder, file)
+    {
+        let problem = "it is a link that leaves the study's folder".to_string();
+        return Err(Fault::file(problem, "copy the file into the folder").in_file(file));
     }
-    let bytes = std::fs::read(file).map_err(unreadable)?;
+    let bytes = plain_file::bytes(
+        file,
+        LARGEST_STUDY,
+        "keep measurements in files of their own",
+    )?;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&bytes);
     match std::str::from_utf8(bytes) {
         Ok(text) => Ok(text.to_string()),

@@ -1,6 +1,7 @@
 //! The recordings that a study lists, with what they were taken from.
 
 use super::charts::{self, OffChart};
+use super::indentation;
 use super::indenters::Indenter;
 use super::place::Folder;
 use super::prints;
@@ -8,12 +9,13 @@ use super::seat;
 use super::sensels::{self, PlacedSensel};
 use super::sites::Site;
 use super::toml_tree::{Section, nearest};
+use crate::RecordingError;
 use crate::curve::Curve;
 use crate::fault::{Fault, shown};
 use crate::handprint::Handprint;
 use crate::meshes::{self, MeshFile};
 use crate::pressure_map::{PressureMap, PressureUnit};
-use crate::{RecordingError, recording};
+use crate::recording_file::ReadOptions;
 use std::path::{Path, PathBuf};
 
 /// A recording and its setting.
@@ -212,7 +214,7 @@ fn read_data(
     };
     let file = folder.file(&file)?;
     let data = match kind.as_str() {
-        "indentation" => Data::Indentation(read_curve(&file)?),
+        "indentation" => Data::Indentation(indentation::of_section(section, &file, folder)?),
         "scan" => read_scan(section, &file, folder)?,
         "handprint" => prints::read(section, (&file, skin), folder)?,
         _ => read_map(section, &file, folder)?,
@@ -220,36 +222,9 @@ fn read_data(
     Ok((file, data))
 }
 
-/// The one indentation of a file.
-fn read_curve(file: &Path) -> Result<Curve, RecordingError> {
-    let fault =
-        |problem: String, remedy: &'static str| Fault::line(1, problem, remedy).in_file(file);
-    let mut curves = recording::read(file)?.curves;
-    if curves.len() != 1 {
-        let problem = format!("the file holds {} indentations, expected one", curves.len());
-        return Err(fault(problem, "export each run to a file of its own"));
-    }
-    let curve = curves.remove(0);
-    let has = |name: &str| curve.channel(name).is_some();
-    for (is_there, what, column) in [
-        (has("time_s"), "time", "add a column time_s"),
-        (has("force_n"), "force", "add a column force_n"),
-        (
-            has("depth_mm") || has("travel_mm"),
-            "depth",
-            "add a column depth_mm",
-        ),
-    ] {
-        if !is_there {
-            return Err(fault(format!("the indentation has no {what}"), column));
-        }
-    }
-    Ok(curve)
-}
-
 fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data, RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
-    let maps = recording::read(file)?.maps;
+    let maps = crate::read(file)?.maps;
     let wanted = section.text("mat").map_err(here)?;
     let mut map = choose(section, maps, wanted).map_err(here)?;
     if let Some(entry) = section.get("calibrated") {
@@ -292,7 +267,8 @@ pub(super) fn read_motion(
 ) -> Result<Option<Box<Curve>>, RecordingError> {
     let entry = section.get("motion");
     let file = entry.map(|entry| folder.file(&entry)).transpose()?;
-    file.map(|file| read_curve(&file).map(Box::new)).transpose()
+    let read = |file: PathBuf| indentation::read(&file, &ReadOptions::default()).map(Box::new);
+    file.map(read).transpose()
 }
 
 fn read_scan(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data, RecordingError> {

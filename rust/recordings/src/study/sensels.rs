@@ -1,14 +1,13 @@
 //! Where the cells of a mat lie on the product: a CSV of row, col (or sensor), x_mm, y_mm, z_mm, area_mm2.
 
-use crate::RecordingError;
 use crate::fault::{Fault, shown};
 use crate::fields::{Separator, value};
 use crate::lines::Lines;
 use crate::pressure_map::{PressureMap, Sensel};
 use crate::tables::columns::{Column, names};
 use crate::units::Quantity;
+use crate::{RecordingError, plain_file};
 use std::collections::HashMap;
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
@@ -32,11 +31,7 @@ pub(super) fn read(
     file: &Path,
     map: &PressureMap,
 ) -> Result<Vec<Option<PlacedSensel>>, RecordingError> {
-    let unreadable = |source| RecordingError::Unreadable {
-        file: file.to_path_buf(),
-        source,
-    };
-    let mut lines = Lines::new(BufReader::new(File::open(file).map_err(unreadable)?));
+    let mut lines = Lines::new(BufReader::new(plain_file::open(file)?.0));
     let placed = parse(&mut lines).and_then(|places| of_map(&places, map));
     placed.map_err(|fault| fault.in_file(file))
 }

@@ -2,12 +2,11 @@
 
 use super::place::Folder;
 use super::toml_tree::{Section, nearest};
-use crate::RecordingError;
 use crate::fault::{Fault, shown};
 use crate::fields::Separator;
 use crate::lines::Lines;
 use crate::meshes::{self, MeshFile};
-use std::fs::File;
+use crate::{RecordingError, plain_file};
 use std::io::BufReader;
 use std::path::Path;
 
@@ -159,11 +158,7 @@ fn check_covered(skin: &StudySkin, line: usize) -> Result<(), Fault> {
 
 /// Region of each vertex and the names of the regions, from a CSV of vertex,region.
 fn read_regions(file: &Path, vertices: usize) -> Result<(Vec<i32>, Vec<String>), RecordingError> {
-    let unreadable = |source| RecordingError::Unreadable {
-        file: file.to_path_buf(),
-        source,
-    };
-    let mut lines = Lines::new(BufReader::new(File::open(file).map_err(unreadable)?));
+    let mut lines = Lines::new(BufReader::new(plain_file::open(file)?.0));
     parse_regions(&mut lines, vertices).map_err(|fault| fault.in_file(file))
 }
 

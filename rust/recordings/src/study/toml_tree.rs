@@ -136,6 +136,19 @@ impl<'d> Section<'d> {
         }
     }
 
+    /// Every key of a table whose keys are the user's, with its value.
+    pub fn pairs(self) -> Vec<(String, Entry<'d>)> {
+        let pairs = self.table.iter().map(|(key, value)| {
+            let entry = Entry {
+                line: line_of(self.text, value.span()),
+                name: key.get_ref().to_string(),
+                value: value.get_ref(),
+            };
+            (key.get_ref().to_string(), entry)
+        });
+        pairs.collect()
+    }
+
     /// The tables under this table, in the order of the file: key and table.
     pub fn sections(&self) -> Result<Vec<(String, Section<'d>)>, Fault> {
         let mut all = Vec::new();

@@ -1,7 +1,7 @@
 //! Column names with their units: `time_s`, `force_mN`, `Load (N)`, `Engineering Strain [-]`.
 
-use crate::fault::Fault;
-use crate::fault::shown;
+use super::names::{known, quantity};
+use crate::fault::{Fault, shown};
 use crate::fields::Separator;
 use crate::lines::Line;
 use crate::units::{Quantity, Unit, unit};
@@ -14,98 +14,78 @@ pub(crate) struct Column {
     /// The unit as written, empty if there is none.
     pub unit_text: String,
     pub unit: Option<Unit>,
+    /// The name as it stands in the file.
+    pub header: String,
+    /// The numbers count away from what their name says, as a user states.
+    pub is_reversed: bool,
 }
 
-/// Names that files use, the name here, and what it must measure.
-const KNOWN: &[(&str, &str, Option<Quantity>)] = &[
-    ("time", "time", Some(Quantity::Time)),
-    ("t", "time", Some(Quantity::Time)),
-    ("test_time", "time", Some(Quantity::Time)),
-    ("temps_d'essai", "time", Some(Quantity::Time)),
-    ("temps", "time", Some(Quantity::Time)),
-    ("prüfzeit", "time", Some(Quantity::Time)),
-    ("zeit", "time", Some(Quantity::Time)),
-    ("depth", "depth", Some(Quantity::Length)),
-    ("compression", "depth", Some(Quantity::Length)),
-    ("travel", "travel", Some(Quantity::Length)),
-    ("displacement", "travel", Some(Quantity::Length)),
-    ("length", "travel", Some(Quantity::Length)),
-    ("force", "force", Some(Quantity::Force)),
-    ("load", "force", Some(Quantity::Force)),
-    ("standard_force", "force", Some(Quantity::Force)),
-    ("force_standard", "force", Some(Quantity::Force)),
-    ("standardkraft", "force", Some(Quantity::Force)),
-    ("kraft", "force", Some(Quantity::Force)),
-    ("tool_separation", "tool_gap", Some(Quantity::Length)),
-    (
-        "ecartement_entre_outils",
-        "tool_gap",
-        Some(Quantity::Length),
-    ),
-    (
-        "écartement_entre_outils",
-        "tool_gap",
-        Some(Quantity::Length),
-    ),
-    ("werkzeugabstand", "tool_gap", Some(Quantity::Length)),
-    ("allongement", "elongation", Some(Quantity::Length)),
-    ("area", "area", Some(Quantity::Area)),
-    ("slide", "slide", Some(Quantity::Length)),
-    (
-        "tangential_force",
-        "tangential_force",
-        Some(Quantity::Force),
-    ),
-    ("pressure", "pressure", Some(Quantity::Pressure)),
-    ("row", "row", None),
-    ("col", "column", None),
-    ("column", "column", None),
-    ("phase", "phase", None),
-    ("segment", "segment", None),
-];
+/// Longest line of names, bytes.
+const LONGEST_HEAD: usize = 1 << 14;
+/// Words between a name and its unit: `Kraft in N`, `Force / N`, `Fz, gf`.
+const BEFORE_UNITS: &[&str] = &[", ", " in ", " / "];
 
 impl Column {
-    /// Reads a name such as `force_mN` or `Load (N)`.
+    /// Reads a name such as `force_mN`, `Load (N)` or `Fz, gf`.
     pub fn of(text: &str) -> Column {
         let text = text.trim().trim_matches('"').trim();
+        let of_parts = |base: &str, unit_text: &str| Column {
+            header: text.to_string(),
+            ..Column::new(base, unit_text)
+        };
         for (open, close) in [('(', ')'), ('[', ']')] {
             if let Some((base, unit_text)) = text
                 .strip_suffix(close)
                 .and_then(|text| text.rsplit_once(open))
             {
-                return Column::new(base, unit_text);
+                return of_parts(base, unit_text);
             }
         }
         if let Some((base, _)) = text.to_ascii_lowercase().split_once("_n_per_") {
-            return Column::new(&text[..base.len()], &text[base.len() + 1..]);
+            return of_parts(&text[..base.len()], &text[base.len() + 1..]);
+        }
+        for word in BEFORE_UNITS {
+            if let Some((base, unit_text)) = text.rsplit_once(word) {
+                let column = of_parts(base, unit_text);
+                if column.unit.is_some() {
+                    return column;
+                }
+            }
         }
         match text.rsplit_once('_') {
             Some((base, suffix))
                 if unit(suffix).is_some()
-                    || known(base).is_some_and(|(_, what)| what.is_some()) =>
+                    || known(&normal(base)).is_some_and(|(_, what)| what.is_some()) =>
             {
-                Column::new(base, suffix)
+                of_parts(base, suffix)
             }
-            _ => Column::new(text, ""),
+            _ => of_parts(text, ""),
         }
     }
 
+    /// A column of this name whose unit stands apart from it, in brackets or without.
     pub fn new(base: &str, unit_text: &str) -> Column {
+        let header = base.trim().to_string();
         let base = normal(base);
-        let (name, _) = known(&base).unwrap_or((&base, None));
+        let (name, what) = known(&base).unwrap_or((&base, None));
+        let unit_text = bare_unit(unit_text);
+        // Texture analysers and balances write grams where they mean the weight of so many.
+        let meant = match (what, unit_text) {
+            (Some(Quantity::Force), "g") => "gf",
+            _ => unit_text,
+        };
         Column {
             base: name.to_string(),
-            unit_text: unit_text.trim().to_string(),
-            unit: unit(unit_text),
+            unit_text: unit_text.to_string(),
+            unit: unit(meant),
+            header,
+            is_reversed: false,
         }
     }
 
     /// What the column must measure, if its name is known.
     pub fn quantity(&self) -> Option<Quantity> {
-        KNOWN
-            .iter()
-            .find(|(_, name, _)| *name == self.base)
-            .and_then(|(_, _, quantity)| *quantity)
+        quantity(&self.base)
     }
 
     /// Whether a known quantity has a unit of its kind.
@@ -126,7 +106,8 @@ impl Column {
     }
 }
 
-fn normal(text: &str) -> String {
+/// A name in lower case, its words parted by underscores.
+pub(super) fn normal(text: &str) -> String {
     let lower = text.trim().to_lowercase();
     lower
         .split([' ', '_', '\u{a0}'])
@@ -135,20 +116,23 @@ fn normal(text: &str) -> String {
         .join("_")
 }
 
-fn known(base: &str) -> Option<(&'static str, Option<Quantity>)> {
-    let base = normal(base);
-    KNOWN
-        .iter()
-        .find(|(name, ..)| *name == base)
-        .map(|(_, name, quantity)| (*name, *quantity))
+/// A unit without brackets around it.
+pub(super) fn bare_unit(text: &str) -> &str {
+    let text = text.trim();
+    [('(', ')'), ('[', ']')]
+        .into_iter()
+        .find_map(|(open, close)| text.strip_prefix(open)?.strip_suffix(close))
+        .map_or(text, str::trim)
 }
 
 /// The columns that a line names; empty if the line is no line of names.
 pub(crate) fn names(text: &str, separator: Separator) -> Vec<Column> {
-    if separator == Separator::Blank || text.starts_with('#') || text.len() > 4096 {
+    if separator == Separator::Blank || text.starts_with('#') || text.len() > LONGEST_HEAD {
         return Vec::new();
     }
-    separator.split(text).map(Column::of).collect()
+    let line = Line { number: 0, text };
+    let fields = fields(&line, separator);
+    fields.iter().map(|field| Column::of(field)).collect()
 }
 
 /// Whether these are the columns of an indentation: two known quantities at least.
@@ -206,6 +190,10 @@ mod tests {
             ("depth_furlong", "depth", "furlong"),
             ("\"Temps d'essai\"", "time", ""),
             ("Auxiliary", "auxiliary", ""),
+            ("Standardkraft in N", "force", "N"),
+            ("Position (z), mm", "position_(z)", "mm"),
+            ("Distance / mm", "travel", "mm"),
+            ("Fn [mN]", "force", "mN"),
         ] {
             let column = Column::of(text);
             assert_eq!(
@@ -214,6 +202,12 @@ mod tests {
                 "{text}"
             );
         }
+        // 1 g of force is 9.80665 mN; 1 g of anything else is no force.
+        assert_eq!(
+            Column::of("Force (g)").unit.map(|unit| unit.factor),
+            Some(9.80665e-3)
+        );
+        assert_eq!(Column::of("Sample (g)").unit, None);
         assert!(!Column::of("depth_furlong").is_sound());
         assert!(!Column::of("depth_s").is_sound());
         assert!(Column::of("auxiliary").is_sound());

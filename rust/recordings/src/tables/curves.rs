@@ -1,84 +1,71 @@
-//! Table of an indentation: column names with units, one row per sample, free lines before.
+//! Table of indentations: column names with units, one row per sample, free lines before.
 
-use super::columns::{Column, fields, is_curve, names};
-use crate::clock::Clock;
-use crate::curve::{Channel, Curve, Segment};
+use super::columns::{Column, fields};
+use super::head::{Found, Head, Search, is_units};
+use super::mapping::Columns;
+use super::run::{Run, divided};
+use crate::curve::Curve;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, value};
 use crate::lines::{Line, Lines};
-use crate::recording::RecordingFile;
 use crate::units::unit;
 
-/// Columns that must not have an empty cell.
-const NEEDED: &[&str] = &["time", "depth", "travel", "force"];
+/// The line that ends a Tekscan export.
+const END: &str = "@@";
 
-/// A table while it is read.
-struct Table {
-    columns: Vec<Column>,
-    separator: Separator,
-    values: Vec<Vec<f64>>,
-    /// The column `segment`, which divides the run.
-    segment: Option<usize>,
-    segments: Vec<Segment>,
-    clock: Clock,
+/// How strict a table is taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Rows {
+    /// Every row must be whole, as in a file that a program wrote.
+    Whole,
+    /// A row with a bad cell is left out with a note, as in a sheet that people edit.
+    LeftOut,
 }
 
-pub(crate) fn read(lines: &mut Lines) -> Result<RecordingFile, Fault> {
-    let mut curve = Curve::default();
-    let mut table = read_head(lines, &mut curve)?;
+pub(crate) fn read(lines: &mut Lines, named: &Columns, rows: Rows) -> Result<Vec<Curve>, Fault> {
+    let mut about = Curve::default();
+    let head = read_head(lines, named, &mut about)?;
+    about.warnings.extend(head.notes.iter().cloned());
+    let mut table = Table::new(head, lines.number(), rows)?;
     while let Some(line) = lines.next_filled(&[',', ';'])? {
+        if line.text.trim() == END {
+            break;
+        }
         if !line.text.trim_start().starts_with('#') {
             table.take(&line)?;
         }
     }
-    let samples = table.values.iter().map(Vec::len).max().unwrap_or(0);
-    if samples == 0 {
-        return Err(lines.ended("the first row of values"));
+    if table.runs.iter().all(|run| run.samples() == 0) {
+        return Err(table.left_out.map_or_else(
+            || lines.ended("the first row of values"),
+            |first| first.fault,
+        ));
     }
-    table.finish(&mut curve, samples);
-    Ok(RecordingFile::of_curves(
-        crate::Format::CurveTable,
-        vec![curve],
-    ))
+    table.finish(&about)
 }
 
 /// Reads facts of free lines up to the line of column names.
-fn read_head(lines: &mut Lines, curve: &mut Curve) -> Result<Table, Fault> {
+fn read_head(lines: &mut Lines, named: &Columns, about: &mut Curve) -> Result<Head, Fault> {
+    let mut search = Search::new(named);
     loop {
         let Some(line) = lines.next_filled(&[',', ';'])? else {
-            return Err(lines.ended("the line of column names"));
-        };
-        let separator = Separator::of(line.text);
-        let columns = names(line.text, separator);
-        if !is_curve(&columns) {
-            take_fact(line.text, curve);
-            continue;
-        }
-        if let Some(fault) = columns
-            .iter()
-            .find_map(|column| column.unit_fault(line.number))
-        {
-            return Err(fault);
-        }
-        for (k, column) in columns.iter().enumerate() {
-            if columns[..k]
-                .iter()
-                .any(|other| other.base == column.base && column.quantity().is_some())
-            {
-                return Err(line.fault(
-                    format!("two columns hold {}", column.base),
-                    "leave one of them out",
-                ));
+            if let Some(fault) = search.ended() {
+                return Err(fault);
             }
+            if named.is_empty() {
+                return Err(lines.ended("the line of column names"));
+            }
+            let problem = format!("no line of names holds {}", named.headers());
+            return Err(Fault::file(
+                problem,
+                "name the columns as the file does, without a unit or with it",
+            ));
+        };
+        match search.take(&line) {
+            Found::Head(head) => return Ok(head),
+            Found::Fault(fault) => return Err(fault),
+            Found::Nothing | Found::Map => take_fact(line.text, about),
         }
-        return Ok(Table {
-            values: vec![Vec::new(); columns.len()],
-            segment: columns.iter().position(|column| column.base == "segment"),
-            columns,
-            separator,
-            segments: Vec::new(),
-            clock: Clock::default(),
-        });
     }
 }
 
@@ -114,41 +101,90 @@ fn take_fact(text: &str, curve: &mut Curve) {
     }
 }
 
+/// Rows that were left out.
+struct LeftOut {
+    fault: Fault,
+    line: usize,
+    count: usize,
+}
+
+/// A table while it is read.
+struct Table {
+    runs: Vec<Run>,
+    separator: crate::fields::Separator,
+    columns: usize,
+    rows: Rows,
+    is_first: bool,
+    left_out: Option<LeftOut>,
+}
+
 impl Table {
+    fn new(head: Head, line: usize, rows: Rows) -> Result<Table, Fault> {
+        let columns = head.columns.len();
+        let runs = divided(head.columns, &head.above);
+        if let Some(part) = runs.iter().find(|run| runs.len() > 1 && !run.is_whole()) {
+            let what = part.first().to_string();
+            let remedy = format!(
+                "leave one of them out, or name the one: {what} = \"NAME\" in study.toml, or --column {what}=NAME"
+            );
+            return Err(Fault::line(
+                line,
+                format!("two columns hold {what}"),
+                remedy,
+            ));
+        }
+        Ok(Table {
+            runs,
+            separator: head.separator,
+            columns,
+            rows,
+            is_first: true,
+            left_out: None,
+        })
+    }
+
     fn take(&mut self, line: &Line) -> Result<(), Fault> {
-        let fields = fields(line, self.separator);
-        let padding = fields
-            .iter()
-            .skip(self.columns.len())
-            .all(|field| field.is_empty());
-        if fields.len() < self.columns.len() || !padding {
+        let row = fields(line, self.separator);
+        if std::mem::take(&mut self.is_first) && is_units(&row) {
+            return Ok(());
+        }
+        let padding = row.iter().skip(self.columns).all(|field| field.is_empty());
+        let is_strict = self.rows == Rows::Whole;
+        let is_short = row.len() < self.columns && self.runs.len() == 1;
+        if is_strict && (is_short || !padding) {
             let problem = format!(
                 "the row holds {} values, expected {}",
-                fields.len(),
-                self.columns.len()
+                row.len(),
+                self.columns
             );
             return Err(line.fault(problem, DAMAGED));
         }
-        if let Some(k) = self.segment {
-            self.divide(&fields[k]);
-        }
-        for (k, (column, field)) in self.columns.iter().zip(&fields).enumerate() {
-            if Some(k) == self.segment {
+        let is_only = self.runs.len() == 1 && is_strict;
+        for run in &mut self.runs {
+            if run.is_past(&row) && !is_only {
                 continue;
             }
-            let number = if field.is_empty() && !NEEDED.contains(&column.base.as_str()) {
-                f64::NAN
-            } else {
-                let problem = |problem| line.fault(format!("{}: {problem}", column.base), REMEDY);
-                value(field).map_err(problem)?
-            };
-            if column.base == "time" && self.segment.is_none() {
-                self.clock.push(line.number, number)?;
+            match run.take(line, &row) {
+                Ok(()) => {}
+                Err(fault) if is_strict => return Err(fault),
+                Err(fault) => match &mut self.left_out {
+                    Some(left_out) => left_out.count += 1,
+                    None => {
+                        self.left_out = Some(LeftOut {
+                            fault,
+                            line: line.number,
+                            count: 1,
+                        });
+                    }
+                },
             }
-            self.values[k].push(number);
         }
-        let samples = self.values.iter().map(Vec::len).max().unwrap_or(0);
-        if samples.saturating_mul(self.columns.len()) > MOST_VALUES {
+        let held: usize = self
+            .runs
+            .iter()
+            .map(|run| run.samples().saturating_mul(run.width()))
+            .sum();
+        if held > MOST_VALUES {
             return Err(line.fault(
                 "the recording holds too many values".into(),
                 "export a shorter part of it",
@@ -157,54 +193,23 @@ impl Table {
         Ok(())
     }
 
-    fn divide(&mut self, name: &str) {
-        let at = self
-            .values
-            .iter()
-            .enumerate()
-            .find(|(k, _)| Some(*k) != self.segment);
-        let at = at.map_or(0, |(_, values)| values.len());
-        match self.segments.last_mut() {
-            Some(last) if last.name == name => last.end = at + 1,
-            _ => self.segments.push(Segment {
-                name: name.to_string(),
-                start: at,
-                end: at + 1,
-            }),
-        }
-    }
-
-    fn finish(self, curve: &mut Curve, samples: usize) {
-        for (column, values) in self.columns.iter().zip(self.values) {
-            if values.len() != samples {
-                continue;
+    fn finish(self, about: &Curve) -> Result<Vec<Curve>, Fault> {
+        let samples: usize = self.runs.iter().map(Run::samples).sum();
+        let mut about = about.clone();
+        if let Some(left_out) = self.left_out {
+            // More bad rows than good ones: this is no curve.
+            if left_out.count > samples {
+                return Err(left_out.fault);
             }
-            curve.channels.push(match column.unit {
-                Some(unit) => Channel::converted(&column.base, unit, values),
-                None => Channel {
-                    name: column.base.clone(),
-                    unit: column.unit_text.clone(),
-                    values,
-                },
-            });
+            about.warnings.push(format!(
+                "{} row{} left out, the first is row {}: {}",
+                left_out.count,
+                if left_out.count == 1 { " is" } else { "s are" },
+                left_out.line,
+                left_out.fault.problem()
+            ));
         }
-        curve.segments = self.segments;
-        let has = |name: &str| curve.channel(name).is_some();
-        let unknown = [
-            (
-                has("time_s"),
-                "the time of the samples: rates and relaxation",
-            ),
-            (has("force_n"), "the force"),
-            (
-                has("depth_mm"),
-                "where contact begins: no column holds a depth from first touch",
-            ),
-        ];
-        let missing = unknown.iter().filter(|(is_known, _)| !is_known);
-        let missing: Vec<String> = missing.map(|(_, what)| what.to_string()).collect();
-        curve.unknown.extend(missing);
+        let with_samples = self.runs.into_iter().filter(|run| run.samples() > 0);
+        Ok(with_samples.map(|run| run.finish(about.clone())).collect())
     }
 }
-
-const REMEDY: &str = "give every sample a finite number, or leave the sample out";

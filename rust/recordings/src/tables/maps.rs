@@ -7,7 +7,7 @@ use crate::fault::{Fault, shown};
 use crate::fields::{MOST_VALUES, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
-use crate::recording::RecordingFile;
+use crate::recording_file::RecordingFile;
 use std::collections::HashMap;
 
 /// Most cells that are listed, 16 bytes each while they are read.

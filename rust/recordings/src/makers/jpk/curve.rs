@@ -1,44 +1,49 @@
-//! JPK force curve as the instrument saves it: a zip of properties and of integers, big end first.
+//! One force curve of a JPK archive: segments of whole numbers, big end first, and their conversions to N and m.
 
-use super::jpk_properties::Properties;
+use super::archive::{Archive, inside};
+use super::properties::Properties;
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::Fault;
 use crate::fields::MOST_VALUES;
 use crate::pressure_map::Source;
 use crate::units::Quantity;
-use std::io::{Cursor, Read};
 
-/// Largest file inside the archive that is unpacked, bytes.
-const LARGEST_MEMBER: u64 = 256 << 20;
-const REMEDY: &str =
-    "the file is damaged or of a version that is not known; export it as text from JPK's program";
-/// Column of the archive, name here.
+/// Channel of the archive, name here. Of the heights that a sensor measured the first counts; older instruments call theirs otherwise.
 const CHANNELS: &[(&str, &str, Quantity)] = &[
     ("vDeflection", "force", Quantity::Force),
     ("height", "piezo_height", Quantity::Length),
     ("measuredHeight", "measured_height", Quantity::Length),
+    (
+        "capacitiveSensorHeight",
+        "measured_height",
+        Quantity::Length,
+    ),
+    ("strainGaugeHeight", "measured_height", Quantity::Length),
 ];
 
-type Archive = zip::ZipArchive<Cursor<Vec<u8>>>;
+/// What a channel of a segment holds.
+enum Samples {
+    Known(Vec<f64>),
+    /// In a unit that is neither N nor m.
+    Uncalibrated(String),
+    Missing,
+}
 
-pub(super) fn read(bytes: Vec<u8>) -> Result<Vec<Curve>, Fault> {
-    let mut archive = Archive::new(Cursor::new(bytes))
-        .map_err(|error| Fault::file(format!("the archive cannot be opened ({error})"), REMEDY))?;
-    let shared = match archive.index_for_name("shared-data/header.properties") {
-        Some(_) => properties(&mut archive, "shared-data/header.properties")?,
-        None => Properties::default(),
-    };
+/// A channel over the segments read so far; `None` once one of them lacks it.
+type Column = Option<Vec<f64>>;
+
+pub(super) fn read(archive: &mut Archive, root: &str, shared: &Properties) -> Result<Curve, Fault> {
     let mut curve = Curve::of(Source::of("JPK", "force curve"));
-    let (mut time, mut columns, mut start_s) =
-        (Vec::new(), vec![Some(Vec::new()); CHANNELS.len()], 0.0);
+    let (mut time, mut start_s) = (Vec::new(), 0.0);
+    let mut columns: Vec<Column> = vec![Some(Vec::new()); CHANNELS.len()];
     for number in 0.. {
-        let folder = format!("segments/{number}/");
+        let folder = format!("{root}segments/{number}/");
         let name = format!("{folder}segment-header.properties");
-        if archive.index_for_name(&name).is_none() {
+        if !archive.has(&name) {
             break;
         }
-        let header = properties(&mut archive, &name)?;
-        if let Some(stiffness) = spring_constant(&header, &shared).filter(|_| number == 0) {
+        let header = archive.properties(&name)?;
+        if let Some(stiffness) = spring_constant(&header, shared).filter(|_| number == 0) {
             curve.push_fact("spring_constant_n_per_mm", stiffness * 1e-3);
         }
         let points = take_segment(&header, &mut curve, time.len())?;
@@ -47,13 +52,24 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<Vec<Curve>, Fault> {
             .map_err(|problem| inside(&name, problem))?;
         time.extend((0..points).map(|k| start_s + duration * k as f64 / points.max(1) as f64));
         start_s += duration;
-        for ((channel, ..), column) in CHANNELS.iter().zip(&mut columns) {
-            let found = read_channel(&mut archive, &folder, channel, [&header, &shared])?;
+        for ((channel, _, quantity), column) in CHANNELS.iter().zip(&mut columns) {
+            let found = match column {
+                Some(_) => read_channel(archive, &folder, (channel, *quantity), [&header, shared])?,
+                None => Samples::Missing,
+            };
             match (found, column.as_mut()) {
-                (Some(values), Some(column)) if values.len() == points => column.extend(values),
-                (Some(values), Some(_)) => {
+                (Samples::Known(values), Some(column)) if values.len() == points => {
+                    column.extend(values)
+                }
+                (Samples::Known(values), Some(_)) => {
                     let problem = format!("{channel} holds {} samples of {points}", values.len());
                     return Err(inside(&name, problem));
+                }
+                (Samples::Uncalibrated(unit), _) if *quantity == Quantity::Force => {
+                    curve.unknown.push(format!(
+                        "the force: the deflection is recorded in {unit}, without the stiffness of its cantilever"
+                    ));
+                    *column = None;
                 }
                 _ => *column = None,
             }
@@ -63,10 +79,7 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<Vec<Curve>, Fault> {
         }
     }
     if time.is_empty() {
-        return Err(Fault::file(
-            "the archive holds no segment with samples".into(),
-            REMEDY,
-        ));
+        return Err(inside(root, "no segment holds samples".into()));
     }
     curve
         .channels
@@ -78,13 +91,21 @@ pub(super) fn read(bytes: Vec<u8>) -> Result<Vec<Curve>, Fault> {
         } else {
             1.0
         };
-        let scaled = column.map(|values| values.iter().map(|value| value * factor).collect());
-        curve
-            .channels
-            .extend(scaled.map(|values| Channel::named(base, *quantity, values)));
+        let scaled: Option<Vec<f64>> =
+            column.map(|values| values.iter().map(|value| value * factor).collect());
+        let channel = scaled.map(|values| Channel::named(base, *quantity, values));
+        let is_new = |channel: &Channel| {
+            curve
+                .channels
+                .iter()
+                .all(|other| other.name != channel.name)
+        };
+        if let Some(channel) = channel.filter(is_new) {
+            curve.channels.push(channel);
+        }
     }
     with_travel(&mut curve);
-    Ok(vec![curve])
+    Ok(curve)
 }
 
 /// Name and length of a segment; facts of the first one that states them.
@@ -108,16 +129,16 @@ fn take_segment(header: &Properties, curve: &mut Curve, start: usize) -> Result<
     Ok(points as usize)
 }
 
-/// The samples of a channel in N or m; `None` if the segment has no such channel, or it is not calibrated.
+/// The samples of a channel in N or m.
 fn read_channel(
     archive: &mut Archive,
     folder: &str,
-    channel: &str,
+    (channel, quantity): (&str, Quantity),
     headers: [&Properties; 2],
-) -> Result<Option<Vec<f64>>, Fault> {
+) -> Result<Samples, Fault> {
     let [header, shared] = headers;
     let Some(file) = header.text(&format!("channel.{channel}.data.file.name")) else {
-        return Ok(None);
+        return Ok(Samples::Missing);
     };
     let (scales, root, encoder) = match header.text(&format!("channel.{channel}.lcd-info.*")) {
         Some(number) => (
@@ -131,7 +152,16 @@ fn read_channel(
             format!("channel.{channel}.data.encoder."),
         ),
     };
-    let bytes = member(archive, &format!("{folder}{file}"))?;
+    let (unit, conversions) = conversions(scales, &root);
+    let wanted = if quantity == Quantity::Force {
+        "N"
+    } else {
+        "m"
+    };
+    if unit != wanted {
+        return Ok(Samples::Uncalibrated(unit.to_string()));
+    }
+    let bytes = archive.member(&format!("{folder}{file}"))?;
     let fault = |problem| inside(file, problem);
     let mut values = decode(
         &bytes,
@@ -139,9 +169,6 @@ fn read_channel(
     )
     .map_err(fault)?;
     let mut steps = vec![encoder];
-    let Some(conversions) = conversions(scales, &root) else {
-        return Ok(None);
-    };
     steps.extend(conversions);
     for step in steps {
         let [multiplier, offset] = scales.scaling(&step).map_err(fault)?;
@@ -149,25 +176,33 @@ fn read_channel(
             .iter_mut()
             .for_each(|value| *value = multiplier * *value + offset);
     }
-    Ok(Some(values))
+    Ok(Samples::Known(values))
 }
 
-/// The steps from the raw unit to the default one, in the order they apply; `None` if that is not force or a length.
-fn conversions(properties: &Properties, root: &str) -> Option<Vec<String>> {
+/// The unit of a channel and the steps to it from the raw numbers, in the order they apply.
+fn conversions<'p>(properties: &'p Properties, root: &str) -> (&'p str, Vec<String>) {
+    const NO_UNIT: (&str, Vec<String>) = ("no unit", Vec::new());
     let set = format!("{root}conversion-set.conversion");
-    let base = properties.text(&format!("{set}s.base"))?;
-    let mut name = properties.text(&format!("{set}s.default"))?;
-    let unit = properties.text(&format!("{set}.{name}.scaling.unit.unit"))?;
-    if !["N", "m"].contains(&unit) {
-        return None;
-    }
+    let base = properties.text(&format!("{set}s.base"));
+    let last = properties.text(&format!("{set}s.default"));
+    let (Some(base), Some(mut name)) = (base, last) else {
+        return NO_UNIT;
+    };
+    // The raw numbers name their unit nowhere but in the name of their slot, `volts`.
+    let stated = properties.text(&format!("{set}.{name}.scaling.unit.unit"));
+    let Some(unit) = stated.or(Some(base).filter(|base| *base == name)) else {
+        return NO_UNIT;
+    };
     let mut steps = Vec::new();
     while name != base && steps.len() < 8 {
         steps.push(format!("{set}.{name}."));
-        name = properties.text(&format!("{set}.{name}.base-calibration-slot"))?;
+        match properties.text(&format!("{set}.{name}.base-calibration-slot")) {
+            Some(slot) => name = slot,
+            None => return NO_UNIT,
+        }
     }
     steps.reverse();
-    Some(steps)
+    (unit, steps)
 }
 
 /// The cantilever's stiffness, N/m: force over distance of the deflection's last conversion.
@@ -218,41 +253,22 @@ fn decode(bytes: &[u8], kind: &str) -> Result<Vec<f64>, String> {
     }
 }
 
-fn properties(archive: &mut Archive, name: &str) -> Result<Properties, Fault> {
-    let bytes = member(archive, name)?;
-    Ok(Properties::of(&String::from_utf8_lossy(&bytes)))
-}
-
-/// The bytes of a file inside the archive.
-fn member(archive: &mut Archive, name: &str) -> Result<Vec<u8>, Fault> {
-    let opened = archive
-        .by_name(name)
-        .map_err(|error| inside(name, format!("cannot be unpacked ({error})")))?;
-    let mut bytes = Vec::new();
-    let reading = opened.take(LARGEST_MEMBER + 1).read_to_end(&mut bytes);
-    reading.map_err(|error| inside(name, format!("cannot be unpacked ({error})")))?;
-    if bytes.len() as u64 > LARGEST_MEMBER {
-        return Err(inside(name, format!("more than {LARGEST_MEMBER} bytes")));
-    }
-    Ok(bytes)
-}
-
-fn inside(member: &str, problem: String) -> Fault {
-    Fault::file(
-        format!(
-            "{} in the archive: {problem}",
-            crate::fault::shown(member.as_bytes())
-        ),
-        REMEDY,
-    )
-}
-
 /// Adds the travel of the tip into the sample: the height falls as the tip goes down, and bends back by force over stiffness.
 pub(super) fn with_travel(curve: &mut Curve) {
     curve
         .unknown
         .push("shape and size of the tip: no modulus without assuming one".into());
     curve.unknown.push("where contact begins".into());
+    if curve.channel("force_n").is_none()
+        && curve
+            .unknown
+            .iter()
+            .all(|text| !text.starts_with("the force"))
+    {
+        curve
+            .unknown
+            .push("the force: the file holds no deflection in N".into());
+    }
     let stiffness = curve
         .fact("spring_constant_n_per_mm")
         .filter(|stiffness| *stiffness > 0.0);

@@ -1,9 +1,9 @@
 //! JPK force curve exported as text: `# key: value` lines before each segment, then its samples.
 
-use super::jpk_archive::with_travel;
+use super::curve::with_travel;
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, Row, Separator, value};
+use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
 use crate::lines::{Line, Lines};
 use crate::pressure_map::Source;
 use crate::units::{Unit, unit};
@@ -27,14 +27,14 @@ struct Block {
     values: Vec<Vec<f64>>,
 }
 
-pub(super) fn read(lines: &mut Lines) -> Result<Vec<Curve>, Fault> {
+pub(crate) fn read(lines: &mut Lines) -> Result<Vec<Curve>, Fault> {
     let mut curve = Curve::of(Source::of("JPK", "force curve, exported as text"));
     let (mut head, mut blocks, mut held) = (Head::default(), Vec::<Block>::new(), 0);
     let (mut row, mut is_open) = (Vec::new(), false);
     while let Some(line) = lines.next_filled(&[])? {
         if let Some(comment) = line.text.trim().strip_prefix('#') {
             is_open = false;
-            let fault = |problem: String| line.fault(problem, DAMAGED);
+            let fault = |problem: String| line.fault(problem, ODD);
             head.take(comment.trim(), &mut curve).map_err(fault)?;
             continue;
         }
@@ -178,7 +178,7 @@ fn join(blocks: &[Block], curve: &mut Curve) {
     }
 }
 
-/// Name here of a JPK column. `time` starts anew with each segment, `seriesTime` does not.
+/// Name here of a JPK column. `time` starts again with each segment, `seriesTime` does not.
 fn base(name: &str, unit: Unit) -> String {
     use crate::units::Quantity::{Force, Time};
     match (name, unit.quantity) {
@@ -186,9 +186,15 @@ fn base(name: &str, unit: Unit) -> String {
         ("seriesTime", Time) => "time".into(),
         ("time", Time) => "segment_time".into(),
         ("height", _) => "piezo_height".into(),
-        ("measuredHeight" | "capacitiveSensorHeight" | "strainGaugeHeight", _) => {
-            "measured_height".into()
-        }
+        (
+            "measuredHeight"
+            | "capacitiveSensorHeight"
+            | "strainGaugeHeight"
+            | "smoothedMeasuredHeight"
+            | "smoothedCapacitiveSensorHeight"
+            | "smoothedStrainGaugeHeight",
+            _,
+        ) => "measured_height".into(),
         ("verticalTipPosition", _) => "tip_height".into(),
         _ => name.to_string(),
     }

@@ -1,0 +1,88 @@
+//! Files that would take all memory, all time, or never end.
+
+use crate::jpk::{archive, curve};
+use crate::makers::refused;
+use std::path::Path;
+
+#[test]
+fn archives_that_grow_beyond_all_bounds_are_refused_in_time() {
+    let started = std::time::Instant::now();
+    // 60 channels of 16 MiB of zeros: 960 MiB in a file of 1 MB.
+    let zeros = vec![0_u8; 16 << 20];
+    let curves = (0..60).map(|k| {
+        let mut curve = curve(&format!("index/{k}/"), None);
+        curve[1].1.clone_from(&zeros);
+        curve
+    });
+    let bytes = crate::sheets::zipped(&archive("N", &curves.collect::<Vec<_>>(), "x"));
+    let message = refused(&bytes);
+    assert!(message.starts_with("a: "), "{message}");
+    // A list of 15 million empty texts: 64 MB, 100 kB packed.
+    let mut texts = String::from("<sst>");
+    texts.extend(std::iter::repeat_n("<si/>", 15_000_000));
+    let bytes = crate::sheets::zipped(&[
+        ("xl/workbook.xml".to_string(), b"<workbook/>".to_vec()),
+        ("xl/sharedStrings.xml".to_string(), texts.into_bytes()),
+    ]);
+    assert!(
+        refused(&bytes).starts_with(
+            "a: all of the workbook but its sheets unpacks to 75000016 bytes, more than"
+        ),
+        "{}",
+        refused(&bytes)
+    );
+    assert!(started.elapsed().as_secs() < 60);
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_devices_and_links_out_of_the_folder_are_refused_at_once() {
+    let folder = std::env::temp_dir().join(format!("thenar_pipes_{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let pipe = folder.join("study.toml");
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let told = "it is a pipe or a device, not a file; save what it gives to a file, and name that";
+    for message in [
+        thenar_recordings::read(&pipe).unwrap_err().to_string(),
+        thenar_recordings::read(Path::new("/dev/zero"))
+            .unwrap_err()
+            .to_string(),
+        thenar_recordings::study::Study::load(&folder)
+            .unwrap_err()
+            .to_string(),
+    ] {
+        assert!(message.ends_with(told), "{message}");
+    }
+    std::fs::remove_file(&pipe).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &pipe).unwrap();
+    let message = thenar_recordings::study::Study::load(&folder)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.ends_with(
+            "it is a link that leaves the study's folder; copy the file into the folder"
+        ),
+        "{message}"
+    );
+    let mesh = folder.join("skin.obj");
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&mesh)
+            .status()
+            .unwrap()
+            .success()
+    );
+    assert!(
+        thenar_recordings::meshes::read(&mesh)
+            .unwrap_err()
+            .to_string()
+            .ends_with(told)
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
