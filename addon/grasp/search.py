@@ -93,7 +93,9 @@ def search(fit, watch=fitter.ALONE, asked=None):
 def _best(ready, aim, watch):
     """The grasps that ways lead to, best first. Raises `Refusal` or `SolveError` where even the best one is none."""
     if not ready:
-        raise fitter.GraspError("no two sides of the product can be pinched; move it, or make it thinner")
+        raise fitter.GraspError(
+            "no two sides of the product can be pinched; choose another kind of grasp, or make the product thinner"
+        )
     out, refusals = [], []
     for count, (task, x, way) in enumerate(_rough(ready, watch)):
         watch.report("Fitting", 0.3 + 0.15 * count)

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native, workflow
-from ..grasp_fit import closing, field, fitter, walls
+from ..grasp_fit import closing, field, fitter, places, walls
 from ..hand.skinning import pose_matrices, skin
-from . import places
 
 
 @dataclass(frozen=True)

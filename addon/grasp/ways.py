@@ -4,8 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..grasp_fit import closing, fitter, pinching
-from . import pinches, places
+from ..grasp_fit import closing, fitter, pinches, pinching, places
 
 ROLLS = 4
 """Directions around a bar from which the palm is tried."""

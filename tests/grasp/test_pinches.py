@@ -5,8 +5,7 @@ import pytest
 import thenar
 from handles import shapes
 from scipy.spatial.transform import Rotation
-from thenar_blender.grasp import pinches, places
-from thenar_blender.grasp_fit import walls
+from thenar_blender.grasp_fit import pinches, places, walls
 
 PALM = {"thenar", "hypothenar", "palm_hollow", "distal_palm_radial", "distal_palm_ulnar"}
 

@@ -5,7 +5,7 @@ import pytest
 import thenar
 from handles import shapes
 from scipy.spatial.transform import Rotation
-from thenar_blender.grasp import places
+from thenar_blender.grasp_fit import places
 
 NOISE_MM = 1e-5
 """What single precision leaves of coordinates of a few hundred mm."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..grasp_fit.pinching import Pinching
+from .pinching import Pinching
 from .places import own_frame, sampled
 
 SAMPLES = 400
