@@ -21,6 +21,7 @@ TESTS = Path(__file__).resolve().parents[1]
 MOST_REFUSED = 0.05
 PERCENTILES = (1, 5, 50, 95, 99)
 STARTS = ("made", "turned", "over", "tilted", "leaned", "lying")
+MOST_BACK_DEG, MOST_OFF_DEG, PINCH_N = 10.0, 25.0, 45.0
 FAULTS = ("spike", "patch", "inside", "peak", "died")
 
 
@@ -90,6 +91,7 @@ def report(rows):
         unsound = sum(bool(wrong[case]) for case in chosen)
         print(f"{name:<18}{len(chosen):>7}{refused:>9}{unsound:>9}" + "".join(f"{count[name]:>9}" for name in FAULTS))
     print("over the starts of a handle and a size, at most: " + _spread(rows))
+    print(_anatomy(rows))
     texts = Counter(f"{row['refused']}: {row['text'][:140]}" for row in rows.values() if "refused" in row)
     for text, number in texts.most_common(12):
         print(f"refused {number} at {text}")
@@ -120,6 +122,24 @@ def _spread(rows):
     seconds = sorted(row["fit_s"] for row in rows.values() if "force_n" in row)
     middle = seconds[len(seconds) // 2] if seconds else 0.0
     return f"{100 * max(apart, default=0.0):.2f} % of force and area; a grasp took {middle:.1f} s in the middle"
+
+
+def _anatomy(rows):
+    """Joints bent back, the thumb's pad, and skin in skin, over all grasps."""
+    held = [row for row in rows.values() if "force_n" in row and "dip_back_deg" in row]
+    if not held:
+        return "no grasp was held"
+    back = sum(row["dip_back_deg"] > MOST_BACK_DEG for row in held)
+    power = [row for row in held if row["force_n"] > PINCH_N]
+    off = sorted(row["thumb_off_deg"] for row in power) or [0.0]
+    facing = sum(angle <= MOST_OFF_DEG for angle in off)
+    folded = sum(row["in_skin"] > 0 for row in held)
+    return (
+        f"last joint bent back beyond {MOST_BACK_DEG:g} degrees in {back} of {len(held)}; thumb's pad within "
+        f"{MOST_OFF_DEG:g} degrees of facing the index finger's in {facing} of {len(power)} power grips, "
+        f"{off[len(off) // 2]:.0f} in the middle; skin more than 1 mm deep in skin in {folded}, at most "
+        f"{max(row['in_skin'] for row in held)} vertices"
+    )
 
 
 def _sentence(row):

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 import thenar_blender
 import thenar_blender.workflow
-from handles import measuring
+from handles import anatomy, measuring
 from mathutils import Euler
 from scipy.spatial import cKDTree
 
@@ -45,7 +45,8 @@ def grasp(mesh, percentile, start, dump=None):
                 settings.product = product
             elif step == "fit":
                 bpy.ops.thenar.fit_grasp()
-                before = seen(settings.hand)[0]
+                before, triangles = seen(settings.hand)
+                row |= anatomy.of(settings.hand, before, triangles)
                 if dump:
                     save(dump)
             else:
