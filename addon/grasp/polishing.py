@@ -20,11 +20,12 @@ STEP_MM = 0.4
 """Motions by which slopes are taken; turns and joints at `load.ARM_MM`."""
 
 MOST_MM = 2.0
-STEPS = 10
+ROUNDS = 3
+STEPS = 8
 HALVINGS = 3
 DAMPING = 0.03
-"""One step moves nothing further than `MOST_MM`; so many steps, each halved so often where it does not help. Damping in
-parts of the greatest slope."""
+"""One step moves nothing further than `MOST_MM`. Slopes are taken so often; so many steps go by each; each step is
+halved so often where it does not help. Damping in parts of the greatest slope."""
 
 FAR = 0.6
 """What leaves more than this share over is not near enough to any balance."""
@@ -41,12 +42,26 @@ def polish(stage, state, aim, watch=fitter.ALONE):
     """The best `settling.State` that small motions lead to from `state`; itself where none is better."""
     if settling.is_settled(state, aim) or max(state.imbalance, state.lever) > FAR:
         return state
+    best = state
+    for _ in range(ROUNDS):
+        before = best
+        best = _walked(stage, best, aim, watch)
+        if best is before or settling.is_settled(best, aim):
+            break
+    if best is state:
+        return state
+    goal = settling.goal_of(fitter.wanted_depths(stage.hand.pads, stage.fit.wish), aim.bar)
+    wish = replace(stage.fit.wish, evaluations=1)
+    return replace(best, grasp=fitter.refit(stage.hand, best.grasp, wish, watch, goal))
+
+
+def _walked(stage, state, aim, watch):
+    """The best state on the way from `state` with slopes taken there; itself where none is better."""
     moves = _Moves(stage, state.grasp)
-    before, best = state, state
     slopes = _slopes(stage, moves, (state, aim), watch)
     if slopes is None:
         return state
-    x = np.zeros(slopes.shape[1])
+    before, best, x = state, state, np.zeros(slopes.shape[1])
     for count in range(STEPS):
         watch.report("Balancing the forces", 0.9 + 0.1 * count / STEPS)
         fitter.leave_if_cancelled(watch)
@@ -65,11 +80,7 @@ def polish(stage, state, aim, watch=fitter.ALONE):
             best = after
         if settling.is_settled(after, aim):
             break
-    if best is state:
-        return state
-    goal = settling.goal_of(fitter.wanted_depths(stage.hand.pads, stage.fit.wish), aim.bar)
-    wish = replace(stage.fit.wish, evaluations=1)
-    return replace(best, grasp=fitter.refit(stage.hand, best.grasp, wish, watch, goal))
+    return best
 
 
 def _step(slopes, values):
