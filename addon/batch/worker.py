@@ -137,7 +137,7 @@ def _fit(context, strength):
     wish = fitter.Wish({"light": pads.LIGHT_MM, "firm": pads.FIRM_MM}[strength])
     fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish)
     if fitting.can_search(fit):
-        found = fitting.search_all(fit, search.Asked(fitting.TOTALS_N[strength.upper()]))[0].grasp
+        found = fitting.search_all(fit, search.Asked(*fitting.sums_of(strength.upper())))[0].grasp
     else:
         found = fitting.compute(fit)
     fitting.finish(context, fit, found, "HAND")

@@ -18,6 +18,10 @@ TOTALS_N = {"LIGHT": 60.0, "FIRM": 200.0}
 """Sum of forces over the skin by strength, N. Maximal grips sum to 337, 260 and 122 N on 48, 60 and 100 mm as a mat
 reads them (Xie Table 6): firm is about two thirds of one on a common handle, light a third of that."""
 
+PINCHES_N = {"LIGHT": 9.0, "FIRM": 30.0}
+"""The same of a pinch, 15 N from each side where it is firm: palmar pinches are 70 to 110 N at most (Mathiowetz 1985),
+and objects are lifted with a few newtons."""
+
 SETTLE_ROUNDS = 10
 """Rounds of pressing and fitting again, at most."""
 
@@ -121,6 +125,11 @@ def search_all(fit, asked, cancel=None, progress=None):
     if asked.total_n is not None:
         asked = replace(asked, total_n=float(asked.total_n * taking))
     return search.search(fit, watch, asked)
+
+
+def sums_of(name, own_n=0.0):
+    """The sums of forces, N, of a power grip and of a pinch by the name of a strength; `own_n` for both if not 0."""
+    return (own_n or TOTALS_N.get(name), own_n or PINCHES_N.get(name))
 
 
 def settle_here(fit, weight_n, total_n, cancel=None, progress=None):

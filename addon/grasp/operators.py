@@ -35,7 +35,7 @@ ENDS = (
 KINDS = (
     ("AUTO", "Automatic", "A power grip; a pinch where no power grip holds"),
     ("POWER", "Power", "The hand closes around a part of the product"),
-    ("PINCH", "Pinch", "Thumb and fingertips from two sides; two fifths of a power grip's forces"),
+    ("PINCH", "Pinch", "Thumb and fingertips from two sides: 30 N in sum if firm, 9 N if light"),
 )
 END_OF = {"AUTO": 0, "FIRST": 1, "SECOND": -1}
 DIGITS = (
@@ -105,8 +105,8 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         wish = self._wish()
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
         if fitting.is_searched(wish) and fitting.can_search(fit):
-            total = self.force_n or fitting.TOTALS_N.get(self.strength)
-            found = yield partial(fitting.search_all, fit, search.Asked(total, END_OF[self.end], self.kind))
+            asked = search.Asked(*fitting.sums_of(self.strength, self.force_n), END_OF[self.end], self.kind)
+            found = yield partial(fitting.search_all, fit, asked)
             fitting.finish(context, fit, found[0].grasp, self.moves)
             fitting.keep(context, fit, found)
             return found

@@ -39,10 +39,12 @@ harder than `TOO_HARD_MPA`, is no grasp."""
 
 @dataclass(frozen=True)
 class Asked:
-    """What a search is to find: the sum of forces of a power grip, N, or None; at which `end` of a bar's axis the thumb
-    shall be (1 or -1; 0: either); the `kind`, `ways.POWER` or `ways.PINCH`, or AUTO."""
+    """What a search is to find: the sum of forces of a power grip and of a pinch, N, or None for whatever comes; at
+    which `end` of a bar's axis the thumb shall be (1 or -1; 0: either); the `kind`, `ways.POWER` or `ways.PINCH`, or
+    AUTO."""
 
     total_n: float | None = None
+    pinch_n: float | None = None
     end: int = 0
     kind: str = "AUTO"
 
@@ -76,9 +78,8 @@ def search(fit, watch=fitter.ALONE, asked=None):
         if asked.kind not in ("AUTO", kind) or is_held:
             continue
         ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
-        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n)
-        if kind == ways.PINCH and asked.total_n is not None:
-            aim = replace(aim, total_n=ways.PINCH_SHARE * asked.total_n)
+        total_n = asked.total_n if kind == ways.POWER else asked.pinch_n
+        aim = settling.Aim(np.zeros(3), np.zeros(3), total_n)
         try:
             found += _best(ready, aim, watch)
         except (Refusal, native.module.SolveError) as refusal:

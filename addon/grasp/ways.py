@@ -18,10 +18,6 @@ ALONG = -0.25
 
 POWER, PINCH = "POWER", "PINCH"
 
-PINCH_SHARE = 0.15
-"""Of the sum of forces of a power grip, this is asked of a pinch of the same strength. Maximal grips are 160 to 240 N
-in a dynamometer (PMC3855544), palmar pinches 70 to 110 N (Mathiowetz 1985)."""
-
 
 @dataclass(frozen=True)
 class Way:

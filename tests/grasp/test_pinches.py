@@ -123,3 +123,9 @@ def test_the_kind_is_the_users(blender, scene, bar):
     carried = {row.name for row in result.regions if row.force_n > 0.01}
     assert not PALM & carried, "a pinch leaves the palm bare"
     assert result.force_n == pytest.approx(30.0, rel=0.25)
+
+
+def test_a_force_of_the_user_is_the_whole_one_for_a_pinch_too(blender, scene, bar):
+    scene(bar)
+    assert blender.ops.thenar.fit_grasp(kind="PINCH", force_n=20.0) == {"FINISHED"}
+    assert blender.context.scene.thenar_grasps.found[0].total_n == pytest.approx(20.0, rel=0.1)
