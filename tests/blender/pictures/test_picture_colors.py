@@ -128,3 +128,21 @@ def test_view_of_a_grip_goes_round_what_hides_the_hand():
     assert views.seen_share(subject, np.array([0.0, 0.0, 1.0])) == 1.0
     board.data.materials.append(studio.clear("Glass", (1.0, 1.0, 1.0, 1.0)))
     assert views.seen_share(subject, np.array([0.0, 0.0, -1.0])) == 1.0
+
+
+class Bare:
+    """Render settings of a Blender that was built without a denoiser: the list of denoisers is empty."""
+
+    @property
+    def denoiser(self):
+        """None of an empty list."""
+        return ""
+
+    @denoiser.setter
+    def denoiser(self, name):
+        raise TypeError(f'bpy_struct: item.attr = val: enum "{name}" not found in ()')
+
+
+def test_a_blender_without_a_denoiser_draws_all_the_same():
+    assert stage.can_denoise(bpy.context.scene.cycles)
+    assert not stage.can_denoise(Bare())
