@@ -41,6 +41,15 @@ def test_a_light_grasp_carries_less(blender, scene, bar):
     assert np.linalg.norm(net) < SURFACE * total
 
 
+def test_a_case_of_a_batch_is_grasped_as_by_the_button(blender, scene, bar):
+    from thenar_blender.batch import worker
+
+    scene(bar)
+    worker._fit(blender.context, "light")
+    blender.ops.thenar.solve()
+    assert blender.context.scene.thenar.result.force_n == pytest.approx(60.0, rel=0.1)
+
+
 def test_the_same_from_everywhere(blender, scene):
     results = []
     for turn, shift in (((0, 0, 0), (0, 0, 0)), ((-25, 10, 140), (0.1, 0.5, -0.2)), ((90, 0, 45), (0, 0, 0.4))):
