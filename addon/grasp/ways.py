@@ -66,8 +66,8 @@ def pinched(stage):
     wish = stage.fit.wish
     if not pinching.can_pinch(stage.hand) or "distal" not in wish.targets_mm:
         return []
-    out = []
-    for spot in pinches.spots(stage.gauge, stage.vertices, stage.triangles, stage.mark):
+    found, out = pinches.spots(stage.gauge, stage.vertices, stage.triangles, stage.mark), []
+    for spot in found:
         digits = [digit for digit in spot.digits if wish.digits is None or digit in wish.digits]
         if "thumb" not in digits or len(digits) < 2:
             continue

@@ -66,8 +66,9 @@ impl<'m> Search<'m> {
         let found = self.look(&row, line);
         self.above = std::mem::replace(&mut self.previous, row);
         match found {
+            // A map may hold depths and times as well.
+            _ if self.is_map() => Found::Map,
             Ok(Some(columns)) => Found::Head(self.head(columns, separator)),
-            Ok(None) if self.is_map() => Found::Map,
             Ok(None) => Found::Nothing,
             Err(fault) => Found::Fault(fault),
         }

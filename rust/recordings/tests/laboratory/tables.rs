@@ -238,3 +238,11 @@ fn names_of_a_language_that_is_not_known_are_read_by_their_units() {
         ]
     );
 }
+
+#[test]
+fn a_table_of_sensels_stays_a_map_with_times_and_depths_in_it() {
+    let text = "time_s,row,col,pressure_kpa,depth_mm\n0.3,0,0,1,0.1\n0.3,0,1,2,0.1\n0.4,0,0,3,0.2\n0.4,0,1,4,0.2\n";
+    let file = read(text.as_bytes());
+    assert!(file.curves.is_empty());
+    assert_eq!(file.maps.len(), 1);
+}
