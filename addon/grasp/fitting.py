@@ -25,6 +25,9 @@ and objects are lifted with a few newtons."""
 SETTLE_ROUNDS = 10
 """Rounds of pressing and fitting again, at most."""
 
+MOST_FRICTION = 99.0
+"""A grasp that no friction holds is kept with this one: a property of Blender holds no infinity that is shown well."""
+
 MOVES = ("HAND", "PRODUCT", "FINGERS")
 """What a fit may carry through the world; with FINGERS hand and product both stay."""
 
@@ -156,7 +159,14 @@ def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
 def keep(context, fit, found):
     """Keep the grasps found in the scene, best first."""
     rows = [
-        (settings.packed(*one.pose), one.state.total_n, float(np.linalg.norm(one.state.net_n)), one.friction, one.score)
+        {
+            "pose": settings.packed(*one.pose),
+            "kind": one.way.kind,
+            "total_n": one.state.total_n,
+            "net_n": float(np.linalg.norm(one.state.net_n)),
+            "friction": min(one.friction, MOST_FRICTION),
+            "score": one.score,
+        }
         for one in found
     ]
     settings.keep(context.scene, _named(fit), rows)

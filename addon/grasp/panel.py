@@ -41,7 +41,8 @@ def _draw_found(layout, stored):
     for index, row in enumerate(stored.found):
         icon = "CHECKMARK" if row.friction <= stored.friction else "ERROR"
         slip = "slips" if row.friction > stored.friction else f"friction {row.friction:.2f}"
-        text = f"{index + 1}: {row.total_n:.0f} N, {row.net_n:.0f} N left over, {slip}"
+        kind = f"{row.kind.capitalize()}, " if row.kind else ""
+        text = f"{index + 1}: {kind}{row.total_n:.0f} N, {row.net_n:.0f} N left over, {slip}"
         column.operator("thenar.use_grasp", text=text, icon=icon, depress=stored.shown == index).index = index
 
 

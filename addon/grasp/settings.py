@@ -13,10 +13,11 @@ WEIGHT_MOST_N = 500.0
 
 
 class ThenarGrasp(bpy.types.PropertyGroup):
-    """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; the rest says what it
-    carries when it is pressed."""
+    """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; `kind` POWER or PINCH;
+    the rest says what it carries when it is pressed."""
 
     pose: StringProperty()
+    kind: StringProperty()
     total_n: FloatProperty()
     net_n: FloatProperty()
     friction: FloatProperty()
@@ -52,13 +53,14 @@ class ThenarGrasps(bpy.types.PropertyGroup):
 
 
 def keep(scene, names, rows):
-    """Write the grasps found, `rows` of (pose, total N, net N, friction, score), best first; the first is shown."""
+    """Write the grasps found, best first; the first is shown. `rows`: values by property of `ThenarGrasp`."""
     stored = scene.thenar_grasps
     stored.hand, stored.product = names
     stored.found.clear()
-    for pose, total, net, friction, score in rows:
+    for values in rows:
         row = stored.found.add()
-        row.pose, row.total_n, row.net_n, row.friction, row.score = pose, total, net, min(friction, 99.0), score
+        for name, value in values.items():
+            setattr(row, name, value)
     stored.shown = 0 if rows else -1
 
 

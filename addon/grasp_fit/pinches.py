@@ -136,9 +136,9 @@ def _approaches(gauge, pinched, axes):
         yield reach, BLOCKED * sum(shares), bool((broad < 0.5).all())
 
 
-def _grid(along, beside, across):
-    """Points (n, 3) of a grid: how far along, beside and across."""
-    return np.stack(np.meshgrid(along, beside, across, indexing="ij"), axis=-1).reshape(-1, 3)
+def _grid(along, aside, across):
+    """Points (n, 3) of a grid: how far along, aside and across."""
+    return np.stack(np.meshgrid(along, aside, across, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def _differ(one, other):

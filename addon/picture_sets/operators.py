@@ -43,7 +43,13 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        problems = (status.native_problem, no_text(), polling.no_hand(context), no_result(context), polling.busy())
+        problems = (
+            status.native_problem,
+            orders.no_text(),
+            polling.no_hand(context),
+            no_result(context),
+            polling.busy(),
+        )
         return polling.allows(cls, *problems, polling.live(context), polling.wrong_mode(context))
 
     def steps(self, context):
@@ -91,11 +97,6 @@ def last_made():
 def no_result(context):
     """The scene keeps no result."""
     return "" if context.scene.thenar.result.is_valid else "there is no result to show; press Solve first"
-
-
-def no_text():
-    """Blender before 4.4 cannot write text into an image."""
-    return "" if bpy.app.version >= (4, 4) else "pictures need Blender 4.4 or later, which writes text into images"
 
 
 def _folder(chosen):

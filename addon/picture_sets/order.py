@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+import bpy
+
 from ..scene.checks import Refusal
 
 GRIP, CARD, TURN, UNROLLED = "GRIP_AND_PRINT", "COMFORT_CARD", "TURNTABLE", "UNROLLED"
@@ -78,8 +80,15 @@ def from_text(text):
     return Order(**json.loads(text))
 
 
+def no_text():
+    """Blender before 4.4 cannot write text into an image."""
+    return "" if bpy.app.version >= (4, 4) else "pictures need Blender 4.4 or later, which writes text into images"
+
+
 def check(order):
     """Refuse what cannot be made. Raises `Refusal`."""
+    if no_text():
+        raise Refusal(no_text())
     if order.kind not in SUFFIXES:
         raise Refusal(f"there is no picture '{order.kind}'; known: {', '.join(SUFFIXES)}")
     if not LEAST <= order.height <= MOST:

@@ -10,7 +10,7 @@ from ..hand import build
 from ..picture_stage import facts, laying, stage, views
 from ..scene.checks import Refusal
 
-PERCENTILES = (5, 50, 95)
+PERCENTILES, MIDDLE = (5, 50, 95), 50
 _FILL = 0.88
 """Share of its place that the print of the largest hand fills."""
 
@@ -31,31 +31,34 @@ def how(context):
     settings = context.scene.thenar
     shape = _shape(settings.hand)
     pressed = f", then is pressed to {settings.force_n:g} N" if settings.use_force else ""
-    grasped = f"each grasps the product by itself (firm, 200 N){pressed}"
+    grasped = f"each grasps the product by itself (firm){pressed}"
     return f"{shape['sex']} hands; {grasped}; prints in a scale of their own"
 
 
 def drawn(order, context, size, progress):
     """The three hands; `size`: of each print, units of the page.
 
-    Opens the file again for each, so that nothing read from it before may be used afterwards. A hand that cannot grasp
-    or be solved has the reason in its place.
+    Opens the file again for each, so that nothing read from it before may be used afterwards. The middle size is the
+    first: the others hold the product by the same kind of grasp. A hand that cannot grasp or be solved has the reason
+    in its place.
     """
     file, shape = bpy.data.filepath, _shape(context.scene.thenar.hand)
     pixels = tuple(round(value * order.factor) for value in size)
     largest = np.asarray(build.make(**shape, percentile=float(max(PERCENTILES)))["vertices_mm"])
     mm = float((np.ptp(largest, axis=0)[:2] / pixels).max() / _FILL)
-    found = []
-    for number, percentile in enumerate(PERCENTILES):
+    found, kind = [], "AUTO"
+    for number, percentile in enumerate(sorted(PERCENTILES, key=lambda percentile: abs(percentile - MIDDLE))):
         progress.part(number, len(PERCENTILES), f"grasp of percentile {percentile}")(0.0)
         hand = Hand(percentile)
         found.append(hand)
         headless.open_file(file)
         try:
-            subject = _solved(bpy.context, shape | {"percentile": float(percentile)})
+            subject = _solved(bpy.context, shape | {"percentile": float(percentile)}, kind)
         except Refusal as error:
             hand.problem = str(error)
             continue
+        grasps = bpy.context.scene.thenar_grasps.found
+        kind = grasps[0].kind if kind == "AUTO" and grasps else kind
         result, look = bpy.context.scene.thenar.result, bpy.context.scene.thenar
         hand.grade, hand.summary = result.grade, facts.summary(result)
         view = views.of_print(bpy.context, subject)
@@ -63,7 +66,7 @@ def drawn(order, context, size, progress):
         window = stage.Window(window.middle, mm, pixels)
         shot = stage.Shot(look, [subject.opened], view, window, subject.scale, samples=order.samples)
         hand.pixels = stage.take(shot)
-    return found
+    return sorted(found, key=lambda hand: hand.percentile)
 
 
 def _shape(hand):
@@ -73,14 +76,14 @@ def _shape(hand):
     return {"sex": kept.sex, "side": kept.side}
 
 
-def _solved(context, shape):
+def _solved(context, shape, kind):
     """The `Subject` of a hand of that shape that grasps the product by the same buttons. Raises `Refusal`."""
     settings = context.scene.thenar
     workflow.clear(context)
     _take_out(context, settings.hand)
     settings.hand, _ = build.add_hand(context, build.make(**shape))
     try:
-        bpy.ops.thenar.fit_grasp(strength="FIRM")
+        bpy.ops.thenar.fit_grasp(strength="FIRM", kind=kind)
         bpy.ops.thenar.solve()
     except RuntimeError as error:  # what those operators report
         raise Refusal(" ".join(str(error).removeprefix("Error: ").split())) from None

@@ -28,10 +28,10 @@ FAULTS = ("spike", "patch", "inside", "peak", "died")
 def main():
     """Runs what was asked for. Returns the exit code."""
     from bench import searching
-    from handles import shapes
+    from handles import everyday, shapes
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--handles", nargs="+", default=list(shapes.SHAPES), choices=list(shapes.SHAPES))
+    parser.add_argument("--handles", nargs="+", default=list(shapes.SHAPES), choices=[*shapes.SHAPES, *everyday.SHAPES])
     parser.add_argument("--percentiles", nargs="+", type=int, default=list(PERCENTILES))
     parser.add_argument("--starts", nargs="+", default=list(STARTS), choices=STARTS)
     parser.add_argument("--workers", type=int, default=1)
@@ -60,12 +60,14 @@ def case_name(percentile, start, handle):
 def child(out, dump):
     """Runs cases in one Blender process; it ends at once, since bpy may hang at exit with the add-on registered."""
     from bench import searching
-    from handles import grasping, shapes
+    from handles import everyday, grasping, shapes
+
+    known = shapes.SHAPES | everyday.SHAPES
 
     def one(case):
         percentile, start, handle = case.split(", ")
         path = Path(dump) / f"{handle}_{percentile}_{start}.npz".replace(" ", "_") if dump else None
-        row = grasping.grasp(shapes.SHAPES[handle](), float(percentile), start, path)
+        row = grasping.grasp(known[handle](), float(percentile), start, path)
         return {"handle": handle, "percentile": int(percentile), "start": start} | row
 
     grasping.register()

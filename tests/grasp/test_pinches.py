@@ -31,7 +31,7 @@ def test_a_sheet_is_pinched_across_from_its_rim(thickness):
         assert pinch.center[2] == pytest.approx(0.0, abs=0.01)
         assert abs(pinch.reach[2]) < 1e-6
         web = pinch.center[:2] - pinches.WEB_MM[-1] * pinch.reach[:2]
-        assert (np.abs(web) > [80.0, 55.0]).any(), "the web of the thumb stands beside the sheet"
+        assert (np.abs(web) > [80.0, 55.0]).any(), "the web of the thumb stands off the sheet"
 
 
 def test_a_block_too_thick_to_span_is_not_pinched():
@@ -128,4 +128,6 @@ def test_the_kind_is_the_users(blender, scene, bar):
 def test_a_force_of_the_user_is_the_whole_one_for_a_pinch_too(blender, scene, bar):
     scene(bar)
     assert blender.ops.thenar.fit_grasp(kind="PINCH", force_n=20.0) == {"FINISHED"}
-    assert blender.context.scene.thenar_grasps.found[0].total_n == pytest.approx(20.0, rel=0.1)
+    best = blender.context.scene.thenar_grasps.found[0]
+    assert best.total_n == pytest.approx(20.0, rel=0.1)
+    assert best.kind == "PINCH"

@@ -1,4 +1,4 @@
-"""Six grasps through the add-on's buttons that once threw skin away: now sound, or refused; and the verdict itself.
+"""Grasps through the add-on's buttons that once threw skin away or were refused: now sound; and the verdict itself.
 
 `tests/bench/handles.py` does all twelve handles with five hands and six starts.
 """
@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("bpy")
 
-from handles import grasping, random_products, shapes  # noqa: E402
+from handles import everyday, grasping, random_products, shapes  # noqa: E402
 
 BULB = (
     (8, 14, 17, 18.5, 18.5, 16.5, 18, 19, 17, 13, 11, 14, 14, 5),
@@ -31,6 +31,8 @@ CASES = {
     "door knob, 50, made": (shapes.door_knob, 50.0, "made"),
     "pistol grip, 50, made": (shapes.pistol_grip, 50.0, "made"),
     "toothbrush, 50, made": (shapes.toothbrush, 50.0, "made"),
+    "phone, 50, tilted": (everyday.SHAPES["phone"], 50.0, "tilted"),
+    "marble, 50, tilted": (everyday.SHAPES["marble"], 50.0, "tilted"),
 }
 
 

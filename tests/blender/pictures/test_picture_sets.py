@@ -323,3 +323,43 @@ def test_order_survives_its_text():
     again = orders.from_text(orders.to_text(order))
     assert json.loads(orders.to_text(again)) == json.loads(orders.to_text(order))
     assert [path.suffix for path in orders.targets(again)] == [".png", ".pdf"] and Path(again.target).name == "a.png"
+
+
+def test_hands_of_a_card_hold_the_product_by_the_kind_of_the_middle_one(solved, tmp_path, monkeypatch):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "card.blend"))
+    asked = []
+
+    def as_it_stands(context, shape, kind):
+        asked.append((shape["percentile"], kind))
+        context.scene.thenar_grasps.found.add().kind = "PINCH"
+        return laying.gather(context)
+
+    monkeypatch.setattr(sizes, "_solved", as_it_stands)
+    order = orders.Order(orders.CARD, "x.png", **SMALL)
+    found = sizes.drawn(order, bpy.context, (200.0, 200.0), orders.Progress(order))
+    assert asked[0] == (50.0, "AUTO")
+    assert sorted(asked[1:]) == [(5.0, "PINCH"), (95.0, "PINCH")]
+    assert [hand.percentile for hand in found] == [5, 50, 95]
+
+
+def test_hand_of_a_card_has_the_numbers_of_the_buttons(blender_scene_of_a_bar, tmp_path, monkeypatch):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "bar.blend"))
+    monkeypatch.setattr(sizes, "PERCENTILES", (50,))
+    order = orders.Order(orders.CARD, "x.png", **SMALL)
+    found = sizes.drawn(order, bpy.context, (200.0, 200.0), orders.Progress(order))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "bar.blend"))
+    bpy.ops.thenar.fit_grasp(strength="FIRM")
+    bpy.ops.thenar.solve()
+    result = bpy.context.scene.thenar.result
+    assert found[0].summary.startswith(f"{result.force_n:.1f} N")
+    assert found[0].problem == "" and found[0].pixels.shape[2] == 3
+
+
+@pytest.fixture
+def blender_scene_of_a_bar():
+    """A made hand and a round bar of 34 mm."""
+    from handles import grasping, shapes
+
+    bpy.ops.thenar.make_hand(percentile=50.0)
+    bar = shapes.revolved(np.array([0.0, 17.0, 17.0, 0.0]), np.array([-70.0, -70.0, 70.0, 70.0]), 48)
+    bpy.context.scene.thenar.product = grasping._add(bar, (0, 0, 0))
