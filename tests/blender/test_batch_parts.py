@@ -1,12 +1,13 @@
 """Parts of a batch alone: what a case's digest depends on, what counts as done, fresh processes, groups, stiffness."""
 
+import csv
 import json
 import os
 import sys
 
 import pytest
 import stage
-from thenar_blender.batch import child, cluster, conductor, here, jobs, processors, worker
+from thenar_blender.batch import child, cluster, conductor, here, jobs, processors, rows, worker
 
 
 @pytest.fixture
@@ -92,6 +93,16 @@ def test_a_process_of_other_variables_is_replaced():
         for process in children.values():
             process.close()
     assert told == ["red", "red", "blue"]
+
+
+def test_no_cell_of_a_table_is_computed_by_a_spreadsheet(tmp_path):
+    names = ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "plain", "a=b"]
+    found = [rows.row({"name": name}, "", {"summary": {"force_n": -2.5}}) for name in names]
+    rows.save(tmp_path, found)
+    with open(tmp_path / "results.csv", encoding="utf-8", newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [row["name"] for row in table] == ["'=1+1", "'+1", "'-1", "'@SUM(A1)", "'\t=1", "plain", "a=b"]
+    assert [row["force_n"] for row in table] == ["-2.5"] * len(names), "numbers stay numbers"
 
 
 def test_pictures_take_the_threads_of_blender():

@@ -1,28 +1,18 @@
 //! CSV files that a person wrote: opened, with their column names, and their faults in a sentence.
 
 use crate::fault::Fault;
-use std::fs::File;
-use std::io::Read;
+use std::io::Cursor;
 use std::path::Path;
+use thenar_recordings::plain_file;
 
 /// Largest file of settings that is read, bytes.
 const LARGEST: u64 = 64 << 20;
 
-/// Opens a file that a person wrote; a folder, a pipe or a device, which may never end, is refused.
-fn plain(file: &Path) -> Result<File, Fault> {
-    let unreadable = |error: std::io::Error| {
-        Fault::Input(format!("{}: cannot be read ({error})", file.display()))
-    };
-    let about = std::fs::metadata(file).map_err(unreadable)?;
-    let problem = match about.is_file() {
-        true if about.len() <= LARGEST => return File::open(file).map_err(unreadable),
-        true => format!(
-            "{} bytes are more than the {LARGEST} that are read",
-            about.len()
-        ),
-        false => "it is no file; name one".to_owned(),
-    };
-    Err(Fault::Input(format!("{}: {problem}", file.display())))
+/// What to do about a larger one.
+const REMEDY: &str = "a table of settings holds a line for each; look at what it is";
+
+fn bytes(file: &Path) -> Result<Vec<u8>, Fault> {
+    plain_file::bytes(file, LARGEST, REMEDY).map_err(|error| Fault::Input(error.to_string()))
 }
 
 /// The text of a file that a person wrote.
@@ -30,22 +20,15 @@ fn plain(file: &Path) -> Result<File, Fault> {
 /// # Errors
 /// A file that cannot be read, is none, is too large or is not UTF-8.
 pub fn text(file: &Path) -> Result<String, Fault> {
-    let mut text = String::new();
-    let read = plain(file)?.take(LARGEST).read_to_string(&mut text);
-    match read {
-        Ok(_) => Ok(text),
-        Err(error) => Err(Fault::Input(format!(
-            "{}: cannot be read ({error})",
-            file.display()
-        ))),
-    }
+    String::from_utf8(bytes(file)?)
+        .map_err(|error| Fault::Input(format!("{}: cannot be read ({error})", file.display())))
 }
 
 /// A CSV file whose first line was read.
 pub struct Table {
     /// Names of the columns, without a byte-order mark.
     pub columns: Vec<String>,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<Cursor<Vec<u8>>>,
     /// File and what it must be, for sentences.
     told: (String, &'static str),
 }
@@ -59,7 +42,7 @@ impl Table {
         let told = (file.display().to_string(), expected);
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
-            .from_reader(plain(file)?);
+            .from_reader(Cursor::new(bytes(file)?));
         let headers = reader.headers().map_err(|error| fault(&told, &error))?;
         let bare = |name: &str| name.trim_start_matches('\u{feff}').to_owned();
         let columns = headers.iter().map(bare).collect();

@@ -102,6 +102,12 @@ fn bad_protocols_and_effects_are_refused_with_their_line() {
     );
     with("--protocol", "e.csv", "time_s,depth_mm\n", "no rows");
     with(
+        "--protocol",
+        "f.csv",
+        "time_s,depth_mm\n0,0\n1,1e300\n",
+        "depth_mm is 1e300, which is out of range",
+    );
+    with(
         "--effects",
         "a.toml",
         "[[effect]]\nname = \"magic\"\n",

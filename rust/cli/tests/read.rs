@@ -8,7 +8,7 @@ use sheets::{Folder, refused, thenar};
 const COUNTS: &str = "DATA_TYPE MOVIE\nVERSION I-Scan\nSENSOR_TYPE 6900\nROWS 2\nCOLS 2\nSECONDS_PER_FRAME 0.1\nUNITS raw\nASCII_DATA @@\n\n\
     Frame 1, 0,,,,,Raw Sum=,,30\nB,10\n20,0\n\nFrame 2, 0.1,,,,,Raw Sum=,,256\nB,255\n0,0\n@@\n";
 
-fn told(file: &str) -> String {
+fn said(file: &str) -> String {
     let output = thenar(&["read", file]);
     assert!(output.status.success(), "{output:?}");
     String::from_utf8(output.stdout).unwrap()
@@ -17,7 +17,7 @@ fn told(file: &str) -> String {
 #[test]
 fn a_mat_is_told_with_its_check_and_what_is_not_known() {
     let folder = Folder::new("read_mat");
-    let text = told(&folder.file("mat.csv", COUNTS));
+    let text = said(&folder.file("mat.csv", COUNTS));
     for line in [
         "mat.csv: Tekscan ASCII\n",
         "  mat (Tekscan, I-Scan, 6900)\n",
@@ -45,7 +45,7 @@ fn a_study_is_told_recording_by_recording() {
          point_mm = [0.5, 0.5, 0]\ndirection = [0, 0, -1]\n[[recordings]]\nname = \"press\"\nkind = \"indentation\"\nfile = \"press.csv\"\n\
          indenter = \"plate\"\nsite = \"pad\"\n",
     );
-    let text = told(folder.0.to_str().unwrap());
+    let text = said(folder.0.to_str().unwrap());
     for line in [
         ": Finger\nskin: 3 vertices, 1 triangles, 1 regions\n",
         "\npress (plate at pad)\n",
@@ -61,7 +61,7 @@ fn a_study_is_told_recording_by_recording() {
 fn small_numbers_keep_their_digits() {
     let folder = Folder::new("read_small");
     let table = "time_s,depth_mm,force_n\n0,0,0\n1,0.01,4.919e-8\n2,0.02,-1.7127e-8\n";
-    let text = told(&folder.file("curve.csv", table));
+    let text = said(&folder.file("curve.csv", table));
     assert!(
         text.contains("    force_n: -1.71270e-8 to 4.91900e-8\n"),
         "{text}"
@@ -146,7 +146,7 @@ const STRANGE: &str = "\"t\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(N)\"\n0
 fn a_column_is_named_on_the_command_line() {
     let folder = Folder::new("read_columns");
     let file = folder.file("press.csv", STRANGE);
-    assert!(told(&file).contains("not known: the travel: which of 'Extension' is it?"));
+    assert!(said(&file).contains("not known: the travel: which of 'Extension' is it?"));
     let output = thenar(&["read", &file, "--column", "travel=-Extension"]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("    travel_mm: 0 to 1\n"), "{text}");
@@ -180,7 +180,7 @@ fn a_study_names_columns_and_runs() {
         );
     };
     study("[recordings.columns]\ntravel_mm = \"-Extension\"\n");
-    assert!(told(folder.0.to_str().unwrap()).contains("    travel_mm: 0 to 1\n"));
+    assert!(said(folder.0.to_str().unwrap()).contains("    travel_mm: 0 to 1\n"));
     study("");
     refused(
         &["read", folder.0.to_str().unwrap()],
@@ -201,7 +201,7 @@ fn a_study_names_columns_and_runs() {
 #[test]
 fn names_out_of_files_do_not_steer_the_terminal() {
     let folder = Folder::new("read_escapes");
-    let text = told(&folder.file(
+    let text = said(&folder.file(
         "mat.csv",
         &COUNTS.replace("6900", "69\u{1b}]0;title\u{7}00"),
     ));

@@ -11,7 +11,6 @@ mod check;
 mod pressure_map;
 mod curve;
 mod detection;
-mod plain_file;
 mod tables;
 mod recording_file;
 mod makers;
@@ -19,6 +18,7 @@ mod contents;
 mod recording;
 pub mod handprint;
 pub mod meshes;
+pub mod plain_file;
 pub mod study;
 
 pub use check::Check;

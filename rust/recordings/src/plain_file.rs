@@ -33,11 +33,7 @@ pub(crate) fn open(file: &Path) -> Result<(File, u64), RecordingError> {
 ///
 /// # Errors
 /// As [`open`], and for a larger file, with `remedy`.
-pub(crate) fn bytes(
-    file: &Path,
-    largest: u64,
-    remedy: &'static str,
-) -> Result<Vec<u8>, RecordingError> {
+pub fn bytes(file: &Path, largest: u64, remedy: &'static str) -> Result<Vec<u8>, RecordingError> {
     use std::io::Read;
     let unreadable = |source| RecordingError::Unreadable {
         file: file.to_path_buf(),

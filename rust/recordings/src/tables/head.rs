@@ -19,7 +19,7 @@ pub(crate) struct Head {
     pub separator: Separator,
     /// The row above the names, which may name the runs of a table that holds several side by side.
     pub above: Vec<String>,
-    /// What a reader should be told, a sentence each.
+    /// What a reader should know, a sentence each.
     pub notes: Vec<String>,
 }
 

@@ -47,7 +47,8 @@ fn pipes_devices_and_links_out_of_the_folder_are_refused_at_once() {
             .unwrap()
             .success()
     );
-    let told = "it is a pipe or a device, not a file; save what it gives to a file, and name that";
+    let ending =
+        "it is a pipe or a device, not a file; save what it gives to a file, and name that";
     for message in [
         thenar_recordings::read(&pipe).unwrap_err().to_string(),
         thenar_recordings::read(Path::new("/dev/zero"))
@@ -57,7 +58,7 @@ fn pipes_devices_and_links_out_of_the_folder_are_refused_at_once() {
             .unwrap_err()
             .to_string(),
     ] {
-        assert!(message.ends_with(told), "{message}");
+        assert!(message.ends_with(ending), "{message}");
     }
     std::fs::remove_file(&pipe).unwrap();
     std::os::unix::fs::symlink("/dev/zero", &pipe).unwrap();
@@ -82,7 +83,57 @@ fn pipes_devices_and_links_out_of_the_folder_are_refused_at_once() {
         thenar_recordings::meshes::read(&mesh)
             .unwrap_err()
             .to_string()
-            .ends_with(told)
+            .ends_with(ending)
     );
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A PNG that ends where its pixels begin: width and height, 8 bits of gray.
+fn png(width: u32, height: u32) -> Vec<u8> {
+    let mut part = b"IHDR".to_vec();
+    part.extend(width.to_be_bytes());
+    part.extend(height.to_be_bytes());
+    part.extend([8, 0, 0, 0, 0]);
+    let mut sum = u32::MAX;
+    for byte in &part {
+        sum ^= u32::from(*byte);
+        for _ in 0..8 {
+            sum = if sum & 1 == 1 {
+                sum >> 1 ^ 0xEDB8_8320
+            } else {
+                sum >> 1
+            };
+        }
+    }
+    let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
+    bytes.extend(part);
+    bytes.extend((!sum).to_be_bytes());
+    bytes.extend(b"\0\x10\0\0IDAT\x78\x01");
+    bytes
+}
+
+#[test]
+fn image_of_more_pixels_than_are_read_is_refused_by_its_head() {
+    use thenar_recordings::handprint::{Handprint, PrintOptions, Scale};
+    let options = PrintOptions {
+        scale: Scale::MmPerPixel(0.1),
+        cell_mm: 1.0,
+        threshold: None,
+        ink: None,
+        paper_px: None,
+        is_mirrored: false,
+    };
+    let file = std::env::temp_dir().join(format!("thenar_pixels_{}.png", std::process::id()));
+    for (width, height, is_too_large) in
+        [(9_000, 9_000, true), (40_000, 10, true), (300, 200, false)]
+    {
+        std::fs::write(&file, png(width, height)).unwrap();
+        let message = Handprint::read(&file, &options).unwrap_err().to_string();
+        assert_eq!(
+            message.contains("more than 80000000 of them"),
+            is_too_large,
+            "{message}"
+        );
+    }
+    std::fs::remove_file(&file).unwrap();
 }
