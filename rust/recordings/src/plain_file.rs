@@ -32,7 +32,7 @@ pub(crate) fn open(file: &Path) -> Result<(File, u64), RecordingError> {
 /// The bytes of a file of at most `largest` bytes.
 ///
 /// # Errors
-/// As [`open`], and for a larger file, with `remedy`.
+/// For what is no plain file or cannot be read, and for a larger file, with `remedy`.
 pub fn bytes(file: &Path, largest: u64, remedy: &'static str) -> Result<Vec<u8>, RecordingError> {
     use std::io::Read;
     let unreadable = |source| RecordingError::Unreadable {
