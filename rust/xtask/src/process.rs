@@ -9,6 +9,15 @@ use std::time::{Duration, Instant};
 /// How many lines of a failed program's output are shown.
 const TAIL_LINES: usize = 25;
 
+/// When a watched program's output is shown.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Output {
+    /// Line by line.
+    AsItComes,
+    /// Not by the watcher; whoever asked shows it.
+    AtTheEnd,
+}
+
 /// What a watched program wrote and how it ended.
 pub struct Watched {
     /// Standard output and error together, as they came.
@@ -54,11 +63,11 @@ pub fn in_view(command: &mut Command, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// Runs with its output in view and kept; kills it and all it started when `limit` has passed.
+/// Runs with its output kept and shown as `output` says; kills it and all it started when `limit` has passed.
 ///
 /// # Errors
 /// If the program cannot be started.
-pub fn watched(command: &mut Command, limit: Duration) -> Result<Watched> {
+pub fn watched(command: &mut Command, limit: Duration, output: Output) -> Result<Watched> {
     let mut child = command
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
@@ -72,7 +81,7 @@ pub fn watched(command: &mut Command, limit: Duration) -> Result<Watched> {
     if let Some(pipe) = child.stderr.take() {
         forward(pipe, sender);
     }
-    collect(&mut child, &lines, limit)
+    collect(&mut child, &lines, limit, output)
 }
 
 /// The last lines of a long text.
@@ -81,15 +90,22 @@ pub fn tail(text: &str) -> String {
     lines[lines.len().saturating_sub(TAIL_LINES)..].join("\n")
 }
 
-fn collect(child: &mut Child, lines: &mpsc::Receiver<String>, limit: Duration) -> Result<Watched> {
+fn collect(
+    child: &mut Child,
+    lines: &mpsc::Receiver<String>,
+    limit: Duration,
+    output: Output,
+) -> Result<Watched> {
     let end = Instant::now() + limit;
     let mut text = String::new();
     let mut timed_out = false;
     loop {
         match lines.recv_timeout(Duration::from_millis(200)) {
             Ok(line) => {
-                print!("{line}");
-                std::io::stdout().flush().ok();
+                if output == Output::AsItComes {
+                    print!("{line}");
+                    std::io::stdout().flush().ok();
+                }
                 text.push_str(&line);
             }
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
@@ -225,6 +241,7 @@ mod tests {
         let end = watched(
             &mut shell("echo out; echo err >&2"),
             Duration::from_secs(20),
+            Output::AsItComes,
         )
         .unwrap();
         assert!(end.succeeded && end.text.contains("out") && end.text.contains("err"));
@@ -236,6 +253,7 @@ mod tests {
         let end = watched(
             &mut shell("sleep 61.25 & sleep 61.25; :"),
             Duration::from_millis(600),
+            Output::AtTheEnd,
         )
         .unwrap();
         assert!(end.timed_out && !end.succeeded);
@@ -250,7 +268,12 @@ mod tests {
     #[test]
     fn watched_ends_although_a_grandchild_keeps_the_pipe() {
         let start = Instant::now();
-        let end = watched(&mut shell("sleep 5 & echo done"), Duration::from_secs(30)).unwrap();
+        let end = watched(
+            &mut shell("sleep 5 & echo done"),
+            Duration::from_secs(30),
+            Output::AtTheEnd,
+        )
+        .unwrap();
         assert!(end.succeeded && end.text.contains("done"));
         assert!(start.elapsed() < Duration::from_secs(4));
     }

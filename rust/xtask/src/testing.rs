@@ -1,13 +1,14 @@
 //! `cargo xtask test`: every check as a step with a time limit, and one honest sum at the end.
 
 use crate::places::Places;
-use crate::process::{self, Watched};
+use crate::process::{self, Output, Watched};
 use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
 use crate::setup::{self, cargo};
 use crate::tally::{self, Tally};
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Longest time for one step; the longest takes a few minutes on two cores.
@@ -16,8 +17,14 @@ const LIMIT: Duration = Duration::from_secs(30 * 60);
 /// Name of the step that looks for known vulnerabilities.
 const ADVISORIES: &str = "cargo deny advisories";
 
+/// How many steps of Python tests run at a time; most of them keep one core busy.
+const LANES: usize = 2;
+
 /// Folders of `tests` for which there are steps of their own.
 const NOT_PLAIN: [&str; 1] = ["blender"];
+
+/// The plain folder that takes longest; it starts early, so that no lane ends long after the others.
+const LONGEST: &str = "trial";
 
 /// How the tests of a step are counted.
 #[derive(Clone, Copy)]
@@ -49,7 +56,7 @@ pub fn run(places: &Places) -> Result<ExitCode> {
     let mut steps = rust_steps(places);
     steps.extend(lint_steps(places));
     steps.extend(type_steps(places));
-    steps.extend(python_steps(places)?);
+    let python_steps = python_steps(places)?;
     let mut done = Vec::new();
     match advisory_step(places) {
         Some(step) => steps.push(step),
@@ -64,8 +71,10 @@ pub fn run(places: &Places) -> Result<ExitCode> {
         }),
     }
     for step in steps {
-        done.push(run_step(step));
+        println!("\n== {}", step.name);
+        done.push(run_step(step, Output::AsItComes));
     }
+    done.extend(run_in_lanes(python_steps));
     Ok(report(&done))
 }
 
@@ -167,17 +176,19 @@ fn python_steps(places: &Places) -> Result<Vec<Step>> {
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .filter(|name| !NOT_PLAIN.contains(&name.as_str()))
         .collect();
-    folders.sort();
-    let mut steps: Vec<Step> = folders
-        .iter()
-        .map(|folder| pytest(places, folder, BLENDER_50.name))
-        .collect();
-    if tests.join("python").is_dir() && python::find(PLAIN_313.version).is_ok() {
-        steps.push(pytest(places, "python", PLAIN_313.name));
-    }
+    folders.sort_by_key(|folder| (folder != LONGEST, folder.clone()));
+    let mut steps = Vec::new();
     if tests.join("blender").is_dir() {
         steps.push(pytest(places, "blender", BLENDER_50.name));
         steps.push(pytest(places, "blender", BLENDER_45.name));
+    }
+    steps.extend(
+        folders
+            .iter()
+            .map(|folder| pytest(places, folder, BLENDER_50.name)),
+    );
+    if tests.join("python").is_dir() && python::find(PLAIN_313.version).is_ok() {
+        steps.push(pytest(places, "python", PLAIN_313.name));
     }
     Ok(steps)
 }
@@ -201,7 +212,10 @@ fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
         // Keeps the preferences of the person who runs this out of the tests, and the tests out of theirs.
         .env(
             "BLENDER_USER_RESOURCES",
-            places.target.join("test-blender").join(environment),
+            places
+                .target
+                .join("test-blender")
+                .join(format!("{environment}-{folder}")),
         );
     step(
         &format!("pytest tests/{folder} ({environment})"),
@@ -218,10 +232,39 @@ fn step(name: &str, command: Command, counted: Counted) -> Step {
     }
 }
 
-fn run_step(mut step: Step) -> Done {
-    println!("\n== {}", step.name);
+/// Runs steps side by side in the order given, each one's output printed whole at its end; done in that order too.
+fn run_in_lanes(steps: Vec<Step>) -> Vec<Done> {
+    let count = steps.len();
+    let waiting = Mutex::new(steps.into_iter().enumerate());
+    let done = Mutex::new(Vec::with_capacity(count));
+    std::thread::scope(|scope| {
+        for _ in 0..LANES {
+            scope.spawn(|| {
+                loop {
+                    let next = locked(&waiting).next();
+                    let Some((place, step)) = next else { break };
+                    println!("\n== {} begins", step.name);
+                    locked(&done).push((place, run_step(step, Output::AtTheEnd)));
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    done.sort_by_key(|(place, _)| *place);
+    done.into_iter().map(|(_, done)| done).collect()
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn run_step(mut step: Step, output: Output) -> Done {
     let start = Instant::now();
-    let (tally, note) = match process::watched(&mut step.command, LIMIT) {
+    let ended = process::watched(&mut step.command, LIMIT, output);
+    if let (Output::AtTheEnd, Ok(end)) = (output, &ended) {
+        println!("\n== {}\n{}", step.name, end.text.trim_end());
+    }
+    let (tally, note) = match ended {
         Ok(end) if end.timed_out => (count(step.counted, &end), "ran past its time limit"),
         Ok(end) => (count(step.counted, &end), ""),
         Err(error) => {
