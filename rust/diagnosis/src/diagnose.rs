@@ -248,5 +248,10 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     }
     crate::place::add_place(study, found);
     found.notes.push(form_note(&ready.elastic));
+    let forces = ready.courses.iter().filter_map(|course| {
+        let sample = course.rows.iter().find_map(|row| row.sample)?;
+        Some((course.recording, sample - course.samples.0))
+    });
+    found.notes.extend(ready.noise.wander_note(forces));
     found.notes.extend(untested(&ready.courses));
 }

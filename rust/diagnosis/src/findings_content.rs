@@ -231,7 +231,8 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
         ("temper", rungs.overdispersion),
         ("repeat_gain_sd", ready.noise.gain),
         ("repeat_zero_sd_mm", ready.noise.zero_mm.unwrap_or(f64::NAN)),
-        ("noise_memory_s", ready.noise.memory_s[0]),
+        ("noise_memory_s", ready.noise.correlation[0].memory_s),
+        ("noise_white_share", ready.noise.correlation[0].white),
     ];
     if let Some(heteroscedasticity) = rungs.heteroscedasticity {
         all.push(("noise_under_load_over_without", heteroscedasticity.ratio));

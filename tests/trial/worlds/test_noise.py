@@ -7,8 +7,17 @@ import pytest
 import thenar
 from trial.worlds import closed_forms
 
-# Something was accused in each before depth noise, noise in proportion and shared bins were modeled.
-NULLS = [("depth_jitter", 101), ("depth_jitter", 105), ("in_proportion", 104), ("mixture", 108), ("mixture", 110)]
+# Something was accused in each before depth noise, noise in proportion, shared bins and wandering zeros were modeled.
+NULLS = [
+    ("depth_jitter", 101),
+    ("depth_jitter", 105),
+    ("in_proportion", 104),
+    ("mixture", 108),
+    ("mixture", 110),
+    ("wander", 25),
+    ("wander", 36),
+    ("wander", 38),
+]
 
 
 @pytest.mark.parametrize(("noise", "seed"), NULLS)
@@ -51,3 +60,17 @@ def test_jitter_of_the_depth_is_shown_to_the_user(tmp_path):
     said = " ".join(text for recording in _compared(case, tmp_path) for text in recording["unknown"])
     sizes = [int(part.split(" um")[0]) for part in said.split("its depth jitters by ")[1:]]
     assert sizes and 8 <= np.median(sizes) <= 12
+
+
+def test_wander_of_the_zero_is_shown_to_the_user(tmp_path):
+    """8 mN in 10 s are 2.5 mN in 1 s; each reading has 3 mN besides. White noise is said to wander nowhere."""
+    found = []
+    for seed in (22, 36, 45):
+        closed_forms.draw(seed, "nothing", "wander").write(tmp_path / str(seed))
+        said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / str(seed))).to_json())
+        (note,) = [note for note in said["notes"] if "zero of the force wanders" in note]
+        found.append([float(part.split(" mN")[0]) for part in (note.split("by ")[1], note.split("beside ")[1])])
+    np.testing.assert_allclose(np.mean(found, axis=0), [2.53, 3.0], rtol=0.2)
+    closed_forms.draw(22, "nothing", "white").write(tmp_path / "white")
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / "white")).to_json())
+    assert not any("wanders" in note for note in said["notes"])

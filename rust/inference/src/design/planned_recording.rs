@@ -5,7 +5,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::noise::channel::Channel;
-use crate::noise::deviations::autocorrelation;
+#[cfg(test)]
+use crate::noise::correlation::Correlation;
+use crate::noise::correlation::Filter;
 use crate::observe::measured::Phase;
 
 /// Readings on every leg of a recording, and at its end without contact.
@@ -30,32 +32,35 @@ pub struct Press {
 
 /// The noise of a recording: what a reading adds to what the one before it said.
 pub struct RecordingNoise {
-    sigma: f64,
-    /// By reading from the second, what it remembers, and what is left to divide by.
-    carried: Vec<(f64, f64)>,
+    filter: Filter,
+    /// By reading, what an innovation is divided by.
+    deviation: Vec<f64>,
 }
 
 impl RecordingNoise {
     /// Of a course in a study, with a standard deviation of `sigma` (N).
     pub fn new(ready: &PreparedStudy, course: &ForceRecording, sigma: f64) -> RecordingNoise {
         let channel = Channel::Force as usize;
-        let (memory_s, step) = (ready.noise.memory_s[channel], ready.noise.step[channel]);
-        let one = |pair: &[Row]| {
-            let carried = autocorrelation(pair[1].time_s - pair[0].time_s, memory_s);
-            (carried, step * (1.0 - carried * carried).sqrt())
-        };
-        RecordingNoise {
-            sigma,
-            carried: course.rows.windows(2).map(one).collect(),
-        }
+        let times = course.rows.iter().map(|row| (row.time_s, 1.0));
+        let filter = ready.noise.correlation[channel].filter(times);
+        RecordingNoise::filtered(sigma, filter, ready.noise.step[channel])
     }
 
     /// Noise of which each reading knows nothing of the others.
     #[cfg(test)]
     pub fn white(sigma: f64, readings: usize) -> RecordingNoise {
+        let times = (0..readings).map(|k| (k as f64, 1.0));
+        RecordingNoise::filtered(sigma, Correlation::NONE.filter(times), 1.0)
+    }
+
+    fn filtered(sigma: f64, filter: Filter, step: f64) -> RecordingNoise {
+        let deviation = filter.variances().enumerate().map(|(k, variance)| match k {
+            0 => sigma * variance.sqrt(),
+            _ => sigma * (step * variance.sqrt()),
+        });
         RecordingNoise {
-            sigma,
-            carried: vec![(0.0, 1.0); readings - 1],
+            deviation: deviation.collect(),
+            filter,
         }
     }
 
@@ -80,11 +85,9 @@ impl RecordingNoise {
     }
 
     fn of(&self, column: &[f64]) -> DVector<f64> {
-        let first = std::iter::once(column[0] / self.sigma);
-        let rest = column.windows(2).zip(&self.carried);
-        let rest =
-            rest.map(|(pair, (carried, step))| (pair[1] - carried * pair[0]) / (self.sigma * step));
-        DVector::from_iterator(column.len(), first.chain(rest))
+        let innovations = self.filter.innovations(|k| column[k]);
+        let pairs = innovations.iter().zip(&self.deviation);
+        DVector::from_iterator(column.len(), pairs.map(|(e, deviation)| e / deviation))
     }
 }
 

@@ -1,7 +1,8 @@
-//! Deviations of repeats from their mean, their scatter, and the first-order autoregressive correlation of noise.
+//! Deviations of repeats from their mean, and their scatter.
 
 use nalgebra::Vector2;
 
+use crate::noise::correlation::Correlation;
 use crate::observe::robust_scale::trimmed_deviation;
 
 /// Deviations beyond this many standard deviations are outliers, and not noise.
@@ -9,9 +10,6 @@ pub(crate) const OUTLIER: f64 = 3.5;
 
 /// Variance that values within `OUTLIER` standard deviations of a normal law keep.
 const KEPT_VARIANCE: f64 = 0.9935;
-
-/// Least part of a sample's variance that the one before does not tell.
-pub(crate) const LEAST_FRESH: f64 = 1e-6;
 
 /// Fewest samples of a channel from which noise is told.
 pub(crate) const LEAST_SAMPLES: usize = 8;
@@ -89,19 +87,25 @@ impl Deviations {
         }
     }
 
+    /// Time (s) and profile of a sample.
+    pub(crate) fn sample(&self, k: usize) -> (f64, f64) {
+        (self.time[k], self.profile[k])
+    }
+
+    /// What makes a weighted deviation one over its own standard deviation in noise of that correlation.
+    pub(crate) fn rescaled(&self, k: usize, correlation: Correlation) -> f64 {
+        self.profile[k] / correlation.deviation(self.profile[k])
+    }
+
     /// Deviations made independent, over the standard deviation of the noise, by repeat.
-    pub(crate) fn whitened(&self, (sigma, memory_s): (f64, f64)) -> Vec<Vec<f64>> {
+    pub(crate) fn whitened(&self, (sigma, correlation): (f64, Correlation)) -> Vec<Vec<f64>> {
         let m = self.rest.len() as f64;
         // The repeats' own mean takes part of each.
         let sigma = sigma * ((m - 1.0) / m).sqrt();
-        let steps: Vec<f64> = self.time.windows(2).map(|w| w[1] - w[0]).collect();
+        let filter = correlation.filter((0..self.time.len()).map(|k| self.sample(k)));
         let series = |rest: &Vec<f64>| -> Vec<f64> {
-            (1..rest.len())
-                .map(|k| {
-                    let carried = autocorrelation(steps[k - 1], memory_s);
-                    innovation(rest[k], rest[k - 1], carried) / sigma
-                })
-                .collect()
+            let all = filter.whitened(|k| rest[k] * self.rescaled(k, correlation));
+            all.into_iter().skip(1).map(|white| white / sigma).collect()
         };
         match sigma > 0.0 {
             true => self.rest.iter().map(series).collect(),
@@ -109,16 +113,16 @@ impl Deviations {
         }
     }
 
-    /// Variance of what differs as a whole, for noise of variance 1 with that memory.
-    pub(crate) fn unit_variance(&self, memory_s: f64) -> Vector2<f64> {
+    /// Variance of what differs as a whole, for noise of variance 1 with that correlation.
+    pub(crate) fn unit_variance(&self, correlation: Correlation) -> Vector2<f64> {
         let mut sum = Vector2::zeros();
-        let square = |(a, p): (&Vector2<f64>, &f64)| a * (p * p);
+        let square = |(a, p): (&Vector2<f64>, &f64)| a * (p * correlation.deviation(*p));
         let along: Vec<Vector2<f64>> = self.along.iter().zip(&self.profile).map(square).collect();
         for (k, a) in along.iter().enumerate() {
             sum += a.component_mul(a);
             // Noise remembers little of what lies many memories back.
             for j in (0..k).rev() {
-                let shared = autocorrelation(self.time[k] - self.time[j], memory_s);
+                let shared = correlation.between(self.sample(k), self.sample(j));
                 if shared < 1e-3 {
                     break;
                 }
@@ -127,19 +131,6 @@ impl Deviations {
         }
         sum
     }
-}
-
-/// Correlation of noise over `step`, s, if it forgets itself in `memory_s`.
-pub(crate) fn autocorrelation(step: f64, memory_s: f64) -> f64 {
-    match memory_s > 0.0 {
-        true => libm::exp(-step.max(0.0) / memory_s),
-        false => 0.0,
-    }
-}
-
-/// What is new in a value, of which `carried` of the one before is left, in units of all that it could be.
-pub(crate) fn innovation(now: f64, before: f64, carried: f64) -> f64 {
-    (now - carried * before) / (1.0 - carried * carried).max(LEAST_FRESH).sqrt()
 }
 
 /// Standard deviation without outliers.

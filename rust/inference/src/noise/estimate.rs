@@ -1,13 +1,15 @@
 //! The noise model of a study: standard deviation of every sample, from repeats where there are any.
 
 use crate::noise::channel::{CHANNELS, Channel};
+use crate::noise::correlation::{Correlation, forgotten};
 use crate::noise::deviations::NoiseShape;
 use crate::noise::maps::mat_smoothing::smoothed;
 use crate::noise::periodic_component::Rhythm;
 use crate::noise::repeat_scatter::Repeats;
 use crate::noise::scatter::Scatter;
+use crate::number_format::number;
 use crate::observe::measured::{Measured, Quantity, Sample};
-use crate::observe::robust_scale::noise_of;
+use crate::observe::robust_scale::{median, noise_of};
 
 /// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
 const FLOOR: f64 = 2e-4;
@@ -15,20 +17,25 @@ const FLOOR: f64 = 2e-4;
 /// coefficient of variation is 1.5 % (Yao 2019, Measurement 145:525), a common one's calibration error 2.7 % rms.
 const UNKNOWN_MAT: f64 = 0.03;
 
+/// Time over which a wandering zero is stated, s.
+const WANDER_S: f64 = 1.0;
+
 /// What is known of the noise of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
     /// Standard deviation of every sample, in its unit, by recording.
     pub sigma: Vec<Vec<f64>>,
-    /// Time over which noise forgets itself, s, by [`CHANNELS`]; 0: at once.
-    pub memory_s: [f64; CHANNELS.len()],
+    /// Profile of every sample: what its standard deviation would be without a part with memory, over that of one reading without load.
+    pub profile: Vec<Vec<f64>>,
+    /// Correlation in time, by [`CHANNELS`].
+    pub correlation: [Correlation; CHANNELS.len()],
     /// Degrees of freedom of the standard deviation; None without repeats.
     pub degrees: Option<f64>,
     /// Standard deviation between repeats of the logarithm of the gain; 0 where it cannot be told.
     pub gain: f64,
     /// Standard deviation between repeats of the depth of first touch, mm; None where it cannot be told.
     pub zero_mm: Option<f64>,
-    /// By [`CHANNELS`]: standard deviation of what noise adds from sample to sample, over what the memory says.
+    /// By [`CHANNELS`]: standard deviation of what noise adds from sample to sample, over what the correlation says.
     pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
@@ -62,14 +69,19 @@ pub fn noise(
                 .to_owned(),
         );
     }
-    let sigma = measured
+    let (sigma, profile) = measured
         .iter()
         .enumerate()
         .map(|(recording, one)| sigma(one, recording, &scatter, noise_n))
-        .collect();
+        .unzip();
     Noise {
         sigma,
-        memory_s: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(0.0, |s| s.memory_s)),
+        profile,
+        correlation: [0, 1, 2, 3, 4].map(|c| {
+            scatter[c]
+                .as_ref()
+                .map_or(Correlation::NONE, |s| s.correlation)
+        }),
         degrees: (degrees > 0.0).then_some(degrees),
         gain: forces.or(scatter[3].as_ref()).map_or(0.0, |s| s.gain),
         zero_mm: forces.and_then(|s| s.zero_mm),
@@ -84,13 +96,36 @@ pub fn noise(
     }
 }
 
-/// Standard deviation of every sample of a recording.
+impl Noise {
+    /// That the force's zero wanders, by how much, and how noisy each reading is besides; None where repeats do not show it.
+    /// `forces` are samples of the force, each by its recording and its number there.
+    pub fn wander_note(&self, forces: impl Iterator<Item = (usize, usize)>) -> Option<String> {
+        let correlation = self.correlation[Channel::Force as usize];
+        let size =
+            |(r, k): (usize, usize)| self.sigma[r][k] / correlation.deviation(self.profile[r][k]);
+        let mut sizes: Vec<f64> = forces.map(size).collect();
+        if correlation.white == 0.0 || sizes.is_empty() {
+            return None;
+        }
+        let size = median(&mut sizes);
+        let left = forgotten(WANDER_S, correlation.memory_s);
+        let wander = size * (2.0 * (1.0 - correlation.white) * (1.0 - left)).sqrt();
+        Some(format!(
+            "the zero of the force wanders, in repeats of one protocol by {} mN in {WANDER_S} s, beside {} mN of noise in each reading; \
+             what wanders no further is not taken for an effect",
+            number(1000.0 * wander),
+            number(1000.0 * size * correlation.white.sqrt())
+        ))
+    }
+}
+
+/// Standard deviation and profile of every sample of a recording.
 fn sigma(
     measured: &Measured,
     recording: usize,
     scatter: &[Option<Scatter>; CHANNELS.len()],
     noise_n: Option<f64>,
-) -> Vec<f64> {
+) -> (Vec<f64>, Vec<f64>) {
     let of_channel = CHANNELS.map(|channel| {
         let is_it = |q: Quantity| Channel::of(q) == channel;
         let samples = measured.samples.iter().filter(|s| is_it(s.quantity));
@@ -126,9 +161,16 @@ fn sigma(
         let (constant, proportional, shape) = of_channel[Channel::of(sample.quantity) as usize];
         let readings = f64::from(measured.moments[sample.moment as usize].readings);
         let mean = shape.at(0.0, readings);
-        (constant.hypot(proportional * value) * mean).max(f64::MIN_POSITIVE)
+        let alone = (constant.hypot(proportional * value) * mean).max(f64::MIN_POSITIVE);
+        let profile = alone / constant.max(f64::MIN_POSITIVE);
+        match scatter[Channel::of(sample.quantity) as usize].as_ref() {
+            Some(s) if s.correlation.white > 0.0 => {
+                (constant * s.correlation.deviation(profile), profile)
+            }
+            _ => (alone, profile),
+        }
     };
     let judged = smoothed(measured);
     let samples = measured.samples.iter().zip(&judged);
-    samples.map(|(s, by)| one(s, *by)).collect()
+    samples.map(|(s, by)| one(s, *by)).unzip()
 }

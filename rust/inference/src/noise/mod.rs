@@ -1,6 +1,7 @@
 //! Replicate-based noise model: standard deviation, autocorrelation and between-repeat variance of every channel.
 
 pub(crate) mod channel;
+pub mod correlation;
 pub(crate) mod scatter;
 pub(crate) mod deviations;
 pub(crate) mod noise_shape;

@@ -1,10 +1,11 @@
 //! How the size of noise differs from sample to sample: in proportion to the load, and with the readings of which a sample is the mean.
 
-use crate::noise::deviations::{Deviations, NoiseShape, autocorrelation, innovation};
+use crate::noise::correlation::Correlation;
+use crate::noise::deviations::{Deviations, NoiseShape};
 use crate::noise::restricted_likelihood::{
-    left, likeliest, likelihood, memory_and_inliers, within,
+    correlation_and_inliers, left, likeliest_memory, likeliest_mixture, likelihood,
+    sampling_interval, within,
 };
-use crate::observe::robust_scale::median;
 
 /// Noise in proportion to the load over noise without load, at full load, that is tried.
 const RATIOS: [f64; 9] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 16.0];
@@ -23,27 +24,27 @@ const STEADY: f64 = 1.5;
 pub struct NoiseEstimate {
     /// How it differs from sample to sample.
     pub shape: NoiseShape,
-    /// s; 0: none.
-    pub memory_s: f64,
+    /// Correlation in time.
+    pub correlation: Correlation,
     /// By group: standard deviation, and its degrees of freedom.
     pub sizes: Vec<(f64, f64)>,
 }
 
-/// The likeliest part in proportion to the load, the likeliest memory, and each group's size under it; outliers are left out. The
+/// The likeliest part in proportion to the load, the likeliest correlation, and each group's size under it; outliers are left out. The
 /// deviations are weighted accordingly.
 pub fn estimate(all: &mut Vec<Deviations>) -> NoiseEstimate {
     let shape = likeliest_shape(all);
     if shape != NoiseShape::EVEN {
         *all = all.iter().map(|d| d.weighted(shape)).collect();
     }
-    let (memory_s, kept) = memory_and_inliers(all);
+    let (correlation, kept) = correlation_and_inliers(all, likeliest_mixture);
     let pairs = all.iter().zip(&kept);
     NoiseEstimate {
         shape,
-        memory_s,
+        correlation,
         sizes: pairs
             .map(|(d, kept)| {
-                let (sum, degrees, _) = left(d, kept, memory_s);
+                let (sum, degrees, _) = left(d, kept, correlation);
                 ((sum / degrees).sqrt(), degrees)
             })
             .collect(),
@@ -62,26 +63,50 @@ pub(crate) fn likeliest_shape(all: &[Deviations]) -> NoiseShape {
         averaged.flat_map(|is_averaged| RATIOS.map(|ratio| NoiseShape { ratio, is_averaged }));
     for tried in shapes.filter(|shape| *shape != NoiseShape::EVEN) {
         let weighted: Vec<Deviations> = all.iter().map(|d| d.weighted(tried)).collect();
-        let (memory_s, kept) = memory_and_inliers(&weighted);
-        let even = likeliest(all, &kept);
-        let size = |(d, kept): (&Deviations, &Vec<usize>)| {
-            let logs = kept.iter().map(|k| libm::log(d.profile[*k]));
-            logs.sum::<f64>() * (d.rest.len() as f64 - 1.0)
-        };
-        let sizes: f64 = weighted.iter().zip(&kept).map(size).sum();
-        let gained = likelihood(&weighted, &kept, memory_s) - sizes - likelihood(all, &kept, even);
+        let (memory, kept) = correlation_and_inliers(&weighted, likeliest_memory);
+        let even = likeliest_memory(all, &kept);
+        let gained = likelihood(&weighted, &kept, memory)
+            - weights(&weighted, &kept)
+            - likelihood(all, &kept, even);
         let is_steady = tried.ratio == 0.0
-            || (memory_s <= STEADY * light_memory(all) && !is_slow(&weighted, &kept, memory_s));
+            || (memory.memory_s <= STEADY * light_memory(all)
+                && !is_slow(&weighted, &kept, memory));
         if gained > best && is_steady {
             (best, shape) = (gained, tried);
         }
     }
-    shape
+    match shape == NoiseShape::EVEN || is_mixed_instead(all, shape) {
+        true => NoiseShape::EVEN,
+        false => shape,
+    }
+}
+
+/// Logarithm of what weighting takes from a likelihood.
+fn weights(weighted: &[Deviations], kept: &[Vec<usize>]) -> f64 {
+    let size = |(d, kept): (&Deviations, &Vec<usize>)| {
+        let logs = kept.iter().map(|k| libm::log(d.profile[*k]));
+        logs.sum::<f64>() * (d.rest.len() as f64 - 1.0)
+    };
+    weighted.iter().zip(kept).map(size).sum()
+}
+
+/// Whether even noise with a white part beside a memory explains what a shape seemed to.
+fn is_mixed_instead(all: &[Deviations], shape: NoiseShape) -> bool {
+    let (even, kept) = correlation_and_inliers(all, likeliest_mixture);
+    if even.white == 0.0 {
+        return false;
+    }
+    let weighted: Vec<Deviations> = all.iter().map(|d| d.weighted(shape)).collect();
+    let shaped = likeliest_mixture(&weighted, &kept);
+    let gained = likelihood(&weighted, &kept, shaped)
+        - weights(&weighted, &kept)
+        - likelihood(all, &kept, even);
+    gained <= CLEAR
 }
 
 /// Whether deviations under load go on from sample to sample beyond their memory: something slow is among them, which is no noise in
 /// proportion.
-fn is_slow(weighted: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> bool {
+fn is_slow(weighted: &[Deviations], kept: &[Vec<usize>], memory: Correlation) -> bool {
     let (mut product, mut square, mut count) = (0.0, 0.0, 0.0);
     for (of, kept) in weighted.iter().zip(kept) {
         let loaded: Vec<usize> = kept
@@ -90,11 +115,9 @@ fn is_slow(weighted: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> bool 
             .filter(|&k| of.load[k] > LOADED)
             .collect();
         for series in &of.rest {
-            let fresh = |w: &[usize]| {
-                let carried = autocorrelation(of.time[w[1]] - of.time[w[0]], memory_s);
-                innovation(series[w[1]], series[w[0]], carried)
-            };
-            let fresh: Vec<f64> = loaded.windows(2).map(fresh).collect();
+            let filter = memory.filter(loaded.iter().map(|&k| of.sample(k)));
+            let white = filter.whitened(|k| series[loaded[k]]);
+            let fresh = white.get(1..).unwrap_or_default();
             product += fresh.windows(2).map(|w| w[0] * w[1]).sum::<f64>();
             square += fresh.iter().map(|e| e * e).sum::<f64>();
             count += fresh.len() as f64;
@@ -105,17 +128,14 @@ fn is_slow(weighted: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> bool 
 
 /// Memory of what deviates without load, s, at least the time between samples; where there is too little of it, of all.
 fn light_memory(all: &[Deviations]) -> f64 {
-    let light = |d: &Deviations, memory_s: Option<f64>| -> Vec<usize> {
-        let kept = within(d, memory_s).into_iter();
+    let light = |d: &Deviations| -> Vec<usize> {
+        let kept = within(d, None).into_iter();
         kept.filter(|&k| d.load[k] < LIGHT.0).collect()
     };
-    let kept: Vec<Vec<usize>> = all.iter().map(|d| light(d, None)).collect();
-    let steps = all
-        .iter()
-        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
-    let step = median(&mut steps.collect::<Vec<f64>>());
+    let kept: Vec<Vec<usize>> = all.iter().map(light).collect();
+    let step = sampling_interval(all);
     match kept.iter().map(Vec::len).sum::<usize>() >= LIGHT.1 {
-        true => likeliest(all, &kept).max(step),
+        true => likeliest_memory(all, &kept).memory_s.max(step),
         false => step,
     }
 }
@@ -123,7 +143,7 @@ fn light_memory(all: &[Deviations]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::restricted_likelihood::tests::deviations;
+    use crate::noise::restricted_likelihood::tests::{deviations, deviations_of};
     use crate::random::Random;
 
     /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
@@ -139,7 +159,7 @@ mod tests {
                     (0..5).map(|_| deviations(memory_s, &mut random)).collect();
                 let found = estimate(&mut all);
                 let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
-                let ratio = found.memory_s / memory_s;
+                let ratio = found.correlation.memory_s / memory_s;
                 logs[0] += libm::log(ratio) / studies;
                 logs[1] += libm::log(ratio * variance) / studies;
             }
@@ -155,7 +175,7 @@ mod tests {
         let mut random = Random::new(2);
         let with = (0..100).filter(|_| {
             let mut all: Vec<Deviations> = (0..5).map(|_| deviations(0.0, &mut random)).collect();
-            estimate(&mut all).memory_s > 0.0
+            estimate(&mut all).correlation.memory_s > 0.0
         });
         // Twice two nats is beyond the 95 % point of a chi-square of one number, and a memory can only be longer than none.
         let often = with.count();
@@ -227,5 +247,56 @@ mod tests {
         };
         assert_eq!(often(0.0, true), 20);
         assert!(often(0.6, false) <= 1);
+    }
+
+    /// A zero that walks from nothing under white noise, of which many readings leave a third: the walk's variance in a second, the
+    /// white part and what readings do to it are found; noise of one memory, or without any, is not taken for it.
+    #[test]
+    fn wandering_zero_is_a_memory_and_a_white_part() {
+        let (per_s, white) = (0.3, 0.6);
+        let mut random = Random::new(10);
+        let mut readings = vec![1.0; 78];
+        readings[22..48].fill(9.0);
+        let mut study = |is_wandering: bool, memory_s: f64| -> Vec<Deviations> {
+            let one = |_| {
+                if !is_wandering {
+                    return deviations(memory_s, &mut random);
+                }
+                let mut of = deviations_of(&mut |time| {
+                    let mut zero = 0.0;
+                    let each = (0..time.len()).map(|k| {
+                        let step = if k > 0 { time[k] - time[k - 1] } else { 0.0 };
+                        zero += per_s * step.sqrt() * random.normal();
+                        zero + white / f64::sqrt(readings[k]) * random.normal()
+                    });
+                    each.collect()
+                });
+                of.readings.clone_from(&readings);
+                of
+            };
+            (0..5).map(one).collect()
+        };
+        let (mut logs, mut tared) = ([0.0; 2], 0);
+        for _ in 0..20 {
+            let found = estimate(&mut study(true, 0.0));
+            let correlation = found.correlation;
+            assert!(correlation.white > 0.0 && found.shape.ratio == 0.0);
+            tared += usize::from(correlation.is_tared);
+            // Half of the difference of two repeats is in each, and `sizes` allow for it.
+            let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
+            let slow = 2.0 * variance * (1.0 - correlation.white) / correlation.memory_s;
+            logs[0] += 0.5 * libm::log(slow / (per_s * per_s)) / 20.0;
+            logs[1] += 0.5 * libm::log(variance * correlation.white / (white * white)) / 20.0;
+        }
+        assert!(
+            logs[0].abs() < 0.12 && logs[1].abs() < 0.05 && tared >= 14,
+            "{logs:?} {tared}"
+        );
+        for memory_s in [0.0, 0.15, 0.6] {
+            let often =
+                (0..20).filter(|_| estimate(&mut study(false, memory_s)).correlation.white > 0.0);
+            let often = often.count();
+            assert!(often <= 1, "{memory_s}: {often}");
+        }
     }
 }

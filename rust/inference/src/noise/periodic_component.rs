@@ -6,7 +6,8 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use crate::noise::deviations::{Deviations, autocorrelation, innovation};
+use crate::noise::correlation::{Correlation, Filter};
+use crate::noise::deviations::Deviations;
 use crate::noise::restricted_likelihood::within;
 
 /// Frequencies between which a rhythm is sought, Hz: a heart at rest or at work, a muscle that tenses for seconds. Samples of a press are
@@ -41,10 +42,13 @@ impl Rhythm {
     }
 }
 
-/// The clearest rhythm in the deviations of all groups, of noise that forgets itself in `memory_s`; None where nothing differs. One that is
+/// The clearest rhythm in the deviations of all groups, in noise of that correlation; None where nothing differs. One that is
 /// clearest at an end of the band is none: its chance is 1.
-pub fn rhythm(all: &[Deviations], memory_s: f64) -> Option<Rhythm> {
-    let groups: Vec<Freed> = all.iter().filter_map(|d| Freed::of(d, memory_s)).collect();
+pub fn rhythm(all: &[Deviations], correlation: Correlation) -> Option<Rhythm> {
+    let groups: Vec<Freed> = all
+        .iter()
+        .filter_map(|d| Freed::of(d, correlation))
+        .collect();
     let longest = groups
         .iter()
         .filter_map(|g| Some(g.time.last()? - g.time.first()?));
@@ -92,8 +96,8 @@ struct Freed {
     time: Vec<f64>,
     /// By how much a sample grows with the force.
     load: Vec<f64>,
-    /// What is left of the sample before, and all that it could be.
-    carried: Vec<f64>,
+    /// Makes noise independent.
+    filter: Filter,
     /// Orthonormal: what gain and first touch do.
     along: DMatrix<f64>,
     series: Vec<DVector<f64>>,
@@ -104,30 +108,34 @@ struct Freed {
 }
 
 impl Freed {
-    fn of(of: &Deviations, memory_s: f64) -> Option<Freed> {
-        let kept = within(of, Some(memory_s));
+    fn of(of: &Deviations, correlation: Correlation) -> Option<Freed> {
+        let kept = within(of, Some(correlation));
         if kept.len() < LEAST {
             return None;
         }
         let time: Vec<f64> = kept.iter().map(|k| of.time[*k]).collect();
-        let gaps = time
-            .windows(2)
-            .map(|w| autocorrelation(w[1] - w[0], memory_s));
-        let carried: Vec<f64> = std::iter::once(0.0).chain(gaps).collect();
-        let white = |values: Vec<f64>| whitened(&carried, &values);
-        let column = |j: usize| white(kept.iter().map(|k| of.along[*k][j]).collect());
+        let filter = correlation.filter(kept.iter().map(|k| of.sample(*k)));
+        let scale: Vec<f64> = kept.iter().map(|k| of.rescaled(*k, correlation)).collect();
+        let white = |values: &dyn Fn(usize) -> f64| {
+            DVector::from_vec(filter.whitened(|k| values(kept[k]) * scale[k]))
+        };
+        let column = |j: usize| white(&|k| of.along[k][j]);
         let along = DMatrix::from_columns(&[column(0), column(1)]).qr().q();
         let free = |series: &Vec<f64>| {
-            let flat = white(kept.iter().map(|k| series[*k]).collect());
+            let flat = white(&|k| series[k]);
             &flat - &along * (along.transpose() * &flat)
         };
         let series: Vec<DVector<f64>> = of.rest.iter().map(free).collect();
         let sum: f64 = series.iter().map(|s| s.norm_squared()).sum();
         (sum > 0.0).then(|| Freed {
-            load: kept.iter().map(|k| of.along[*k].x).collect(),
+            load: kept
+                .iter()
+                .zip(&scale)
+                .map(|(k, s)| of.along[*k].x * s)
+                .collect(),
             repeats: series.len() as f64 - 1.0,
             time,
-            carried,
+            filter,
             along,
             series,
             sum,
@@ -138,11 +146,8 @@ impl Freed {
     fn gained(&self, hz: f64) -> f64 {
         let turn = std::f64::consts::TAU * hz;
         let column = |wave: fn(f64) -> f64| {
-            let of = |(t, load): (&f64, &f64)| load * wave(turn * t);
-            let flat = whitened(
-                &self.carried,
-                &self.time.iter().zip(&self.load).map(of).collect::<Vec<_>>(),
-            );
+            let of = |k: usize| self.load[k] * wave(turn * self.time[k]);
+            let flat = DVector::from_vec(self.filter.whitened(of));
             &flat - &self.along * (self.along.transpose() * &flat)
         };
         let waves = [column(libm::sin), column(libm::cos)];
@@ -162,13 +167,6 @@ impl Freed {
 
 /// Fewest samples in which a rhythm is sought.
 const LEAST: usize = 12;
-
-fn whitened(carried: &[f64], values: &[f64]) -> DVector<f64> {
-    let before = |k: usize| if k > 0 { values[k - 1] } else { 0.0 };
-    DVector::from_fn(values.len(), |k, _| {
-        innovation(values[k], before(k), carried[k])
-    })
-}
 
 #[cfg(test)]
 mod tests {
@@ -204,7 +202,7 @@ mod tests {
     fn planted_pulse_is_found_at_its_frequency() {
         let mut random = Random::new(11);
         for _ in 0..20 {
-            let found = rhythm(&study(1.0, &mut random), 0.15).unwrap();
+            let found = rhythm(&study(1.0, &mut random), Correlation::of_memory(0.15)).unwrap();
             assert!(
                 (found.hz - 1.2).abs() < 0.04 && found.chance < 1e-3,
                 "{found:?}"
@@ -230,7 +228,9 @@ mod tests {
                     of
                 })
                 .collect();
-            rhythm(&all, 0.15).unwrap().is_clear()
+            rhythm(&all, Correlation::of_memory(0.15))
+                .unwrap()
+                .is_clear()
         });
         let often = often.count();
         assert!(often <= 6, "{often}");
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn periodic_component_power_grows_with_repeats() {
         let of = &study(1.0, &mut Random::new(6))[0];
-        let mut freed = Freed::of(of, 0.15).unwrap();
+        let mut freed = Freed::of(of, Correlation::of_memory(0.15)).unwrap();
         let two = freed.gained(1.2);
         freed.repeats = 2.0;
         assert!(two > 1.0 && (freed.gained(1.2) / two - 2.0).abs() < 1e-12);
@@ -251,11 +251,11 @@ mod tests {
     fn white_noise_has_no_periodic_component() {
         let mut random = Random::new(4);
         let told = (0..100).filter(|_| {
-            let found = rhythm(&study(0.0, &mut random), 0.15).unwrap();
+            let found = rhythm(&study(0.0, &mut random), Correlation::of_memory(0.15)).unwrap();
             found.chance < 0.05
         });
         let often = told.count();
         assert!(often <= 11, "{often}");
-        assert!(rhythm(&[], 0.15).is_none());
+        assert!(rhythm(&[], Correlation::NONE).is_none());
     }
 }

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::noise::channel::Channel;
+use crate::noise::correlation::Correlation;
 use crate::noise::deviations::{Deviations, Group, OUTLIER, robust_deviation};
 use crate::noise::noise_shape;
 use crate::noise::periodic_component::rhythm;
@@ -87,7 +88,7 @@ impl Repeats {
             return None;
         }
         let noise = noise_shape::estimate(&mut all);
-        let memory_s = noise.memory_s;
+        let correlation = noise.correlation;
         let of_most =
             |(d, (sigma, degrees)): (&Deviations, &(f64, f64))| (sigma / d.most, *degrees);
         let shares: Vec<(f64, f64)> = all.iter().zip(&noise.sizes).map(of_most).collect();
@@ -96,7 +97,7 @@ impl Repeats {
         let shrunk = |(own, n): &(f64, f64)| {
             ((own * own * n + pooled * pooled * POOLED_DEGREES) / (n + POOLED_DEGREES)).sqrt()
         };
-        let between = between(&all, &shares, memory_s);
+        let between = between(&all, &shares, correlation);
         let (step, drawn_from) = pooled_steps(&all, &noise);
         let of_group = all.iter().zip(&shares);
         let each = of_group.flat_map(|(d, s)| d.group.iter().map(move |k| (*k, shrunk(s))));
@@ -106,12 +107,12 @@ impl Repeats {
             proportional: 0.0,
             shape: noise.shape,
             degrees,
-            memory_s,
+            correlation,
             gain: between.x,
             zero_mm: (self.channel == Channel::Force).then_some(between.y),
             step,
             drawn_from,
-            rhythm: rhythm(&all, memory_s),
+            rhythm: rhythm(&all, correlation),
         })
     }
 }
@@ -120,7 +121,7 @@ impl Repeats {
 fn pooled_steps(all: &[Deviations], noise: &noise_shape::NoiseEstimate) -> (f64, Vec<f64>) {
     let of_group = all.iter().zip(&noise.sizes);
     let groups: Vec<Vec<Vec<f64>>> = of_group
-        .map(|(d, (sigma, _))| d.whitened((*sigma, noise.memory_s)))
+        .map(|(d, (sigma, _))| d.whitened((*sigma, noise.correlation)))
         .collect();
     let size = robust_deviation(&groups.concat().concat());
     if size.is_nan() || size == 0.0 {
@@ -147,7 +148,7 @@ fn pooled_steps(all: &[Deviations], noise: &noise_shape::NoiseEstimate) -> (f64,
 }
 
 /// Standard deviations between repeats of gain and zero: what exceeds the error of finding them, with `(nu + 2) / nu` for few repeats.
-fn between(all: &[Deviations], shares: &[(f64, f64)], memory_s: f64) -> Vector2<f64> {
+fn between(all: &[Deviations], shares: &[(f64, f64)], correlation: Correlation) -> Vector2<f64> {
     let (mut sum, mut own, mut degrees) = (Vector2::zeros(), Vector2::zeros(), 0.0);
     for (d, (share, _)) in all.iter().zip(shares) {
         let nu = d.whole.len() as f64 - 1.0;
@@ -155,7 +156,7 @@ fn between(all: &[Deviations], shares: &[(f64, f64)], memory_s: f64) -> Vector2<
         let squares: Vector2<f64> = d.whole.iter().map(|w| (w - mean).map(|x| x * x)).sum();
         let noise = (share * d.most).powi(2);
         sum += squares;
-        own += d.unit_variance(memory_s) * (noise * nu);
+        own += d.unit_variance(correlation) * (noise * nu);
         degrees += nu;
     }
     let variance = (sum - own) / degrees;

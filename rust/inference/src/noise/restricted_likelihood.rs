@@ -1,14 +1,13 @@
-//! Memory and size of the noise in repeats by restricted likelihood: gain and first touch of every repeat are unknown, and what finding
+//! Correlation and size of the noise in repeats by restricted likelihood: gain and first touch of every repeat are unknown, and what finding
 //! them hides of the noise is allowed for (Patterson & Thompson 1971; Harville 1977).
 //!
-//! Noise forgets itself as `exp(-t / memory)`, at whatever times the samples stand: a series of such noise is independent in
-//! `(r_k - c_k r_(k-1)) / sqrt(1 - c_k^2)`, and so are its gain and touch, which are found there by least squares.
+//! Noise forgets itself as `exp(-t / memory)`, all of it or all but a white part, at whatever times the samples stand: a series of such
+//! noise is independent in its innovations ([`crate::noise::correlation`]), and gain and touch are found there by least squares.
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::noise::deviations::{
-    Deviations, LEAST_FRESH, OUTLIER, autocorrelation, innovation, robust_deviation,
-};
+use crate::noise::correlation::{Correlation, LEAST_FRESH};
+use crate::noise::deviations::{Deviations, OUTLIER, robust_deviation};
 use crate::observe::robust_scale::median;
 
 /// Ratios of memory to sampling interval between which the likeliest is sought, and how finely.
@@ -18,34 +17,40 @@ const TRIED: usize = 24;
 const HALVINGS: usize = 4;
 /// How much likelier a memory must be than none, nats, to be believed.
 const BELIEVED: f64 = 2.0;
+/// Memories and white parts that are tried together, and the logarithm of the white part's odds at the ends.
+const MIXED: (usize, usize) = (9, 7);
+const WIDEST: f64 = 4.0;
+/// How much likelier a white part beside a memory must be than a memory alone, nats: a number more, and some that are tried.
+const CLEARLY_MIXED: f64 = 5.0;
 
-/// The likeliest memory of deviations as they are weighted, s, and by group the samples that are no outliers.
-pub(crate) fn memory_and_inliers(all: &[Deviations]) -> (f64, Vec<Vec<usize>>) {
+/// The likeliest correlation by `search` of deviations as they are weighted, and by group the samples that are no outliers.
+pub(crate) fn correlation_and_inliers(
+    all: &[Deviations],
+    search: impl Fn(&[Deviations], &[Vec<usize>]) -> Correlation,
+) -> (Correlation, Vec<Vec<usize>>) {
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, None)).collect();
-    let rough = likeliest(all, &kept);
+    let rough = search(all, &kept);
     let kept: Vec<Vec<usize>> = all.iter().map(|d| within(d, Some(rough))).collect();
-    (likeliest(all, &kept), kept)
+    (search(all, &kept), kept)
 }
 
 /// Restricted likelihood of all groups, nats.
-pub(crate) fn likelihood(all: &[Deviations], kept: &[Vec<usize>], memory_s: f64) -> f64 {
+pub(crate) fn likelihood(all: &[Deviations], kept: &[Vec<usize>], correlation: Correlation) -> f64 {
     let each = all.iter().zip(kept);
-    each.map(|(d, kept)| left(d, kept, memory_s).2).sum()
+    each.map(|(d, kept)| left(d, kept, correlation).2).sum()
 }
 
-/// Samples that are no outliers: not far off, and, once a memory is known, not far from what their neighbors say of them.
-pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
+/// Samples that are no outliers: not far off, and, once a correlation is known, not far from what their neighbors say of them.
+pub(crate) fn within(of: &Deviations, correlation: Option<Correlation>) -> Vec<usize> {
     let n = of.time.len();
     let off = |series: &Vec<f64>, k: usize| -> f64 {
-        let Some(memory_s) = memory_s else {
+        let Some(correlation) = correlation else {
             return series[k];
         };
         let share = |at: Option<usize>| {
             let at = at.filter(|at| *at < n)?;
-            Some((
-                series[at],
-                autocorrelation((of.time[k] - of.time[at]).abs(), memory_s),
-            ))
+            let value = series[at] * of.rescaled(at, correlation);
+            Some((value, correlation.between(of.sample(k), of.sample(at))))
         };
         let ((a, before), (b, after)) = (
             share(k.checked_sub(1)).unwrap_or((0.0, 0.0)),
@@ -53,6 +58,15 @@ pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
         );
         // Mean and deviation given both neighbors.
         let (c, d) = (before * before, after * after);
+        if correlation.white > 0.0 {
+            let ends = k.checked_sub(1).filter(|_| k + 1 < n);
+            let both = ends.map_or(0.0, |j| correlation.between(of.sample(j), of.sample(k + 1)));
+            let all = 1.0 - both * both;
+            let mean = (a * (before - both * after) + b * (after - both * before)) / all;
+            let variance = 1.0 - (c + d - 2.0 * both * before * after) / all;
+            let own = series[k] * of.rescaled(k, correlation);
+            return (own - mean) / variance.max(LEAST_FRESH).sqrt();
+        }
         let all = (1.0 - c * d).max(LEAST_FRESH);
         let mean = (a * before * (1.0 - d) + b * after * (1.0 - c)) / all;
         (series[k] - mean) / ((1.0 - c) * (1.0 - d) / all).max(LEAST_FRESH).sqrt()
@@ -68,13 +82,10 @@ pub(crate) fn within(of: &Deviations, memory_s: Option<f64>) -> Vec<usize> {
         .collect()
 }
 
-/// The memory of largest restricted likelihood, s; none where it is hardly likelier than none.
-pub(crate) fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
-    let steps = all
-        .iter()
-        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
-    let step = median(&mut steps.collect::<Vec<f64>>());
-    let likelihood = |memory_s: f64| likelihood(all, kept, memory_s);
+/// The one memory of largest restricted likelihood; none where it is hardly likelier than none.
+pub(crate) fn likeliest_memory(all: &[Deviations], kept: &[Vec<usize>]) -> Correlation {
+    let step = sampling_interval(all);
+    let likelihood = |memory_s: f64| likelihood(all, kept, Correlation::of_memory(memory_s));
     let at = |place: f64| step * LEAST * libm::pow(MOST / LEAST, place / TRIED as f64);
     let tried = (0..=TRIED).map(|k| (likelihood(at(k as f64)), k as f64));
     let mut best = tried.fold(
@@ -91,33 +102,87 @@ pub(crate) fn likeliest(all: &[Deviations], kept: &[Vec<usize>]) -> f64 {
         }
     }
     match best.0 > likelihood(0.0) + BELIEVED {
-        true => at(best.1),
-        false => 0.0,
+        true => Correlation::of_memory(at(best.1)),
+        false => Correlation::NONE,
     }
+}
+
+/// As [`likeliest_memory`], or with a white part beside a memory of up to twice the longest recording's time, where that is clearly
+/// likelier; the part with memory may begin with nothing.
+pub(crate) fn likeliest_mixture(all: &[Deviations], kept: &[Vec<usize>]) -> Correlation {
+    let plain = likeliest_memory(all, kept);
+    let longest = all
+        .iter()
+        .filter_map(|d| Some(d.time.last()? - d.time.first()?));
+    let (low, high) = (sampling_interval(all), 2.0 * longest.fold(0.0, f64::max));
+    if low.is_nan() || high <= low {
+        return plain;
+    }
+    // Coordinates between 0 and 1: the memory's logarithm, and the logarithm of the white part's odds.
+    let mut best = (likelihood(all, kept, plain) + CLEARLY_MIXED, plain);
+    for is_tared in [false, true] {
+        let at = |[memory, white]: [f64; 2]| Correlation {
+            memory_s: low * libm::pow(high / low, memory),
+            white: 1.0 / (1.0 + libm::exp(WIDEST * (1.0 - 2.0 * white))),
+            is_tared,
+        };
+        let found = highest(&|place| likelihood(all, kept, at(place)));
+        if found.0 > best.0 {
+            best = (found.0, at(found.1));
+        }
+    }
+    best.1
+}
+
+/// The highest value of a function on the unit square, and where: on a grid, refined by halves.
+fn highest(of: &dyn Fn([f64; 2]) -> f64) -> (f64, [f64; 2]) {
+    let grid = (0..=MIXED.0).flat_map(|i| {
+        (0..=MIXED.1).map(move |j| [i as f64 / MIXED.0 as f64, j as f64 / MIXED.1 as f64])
+    });
+    let better = |a: (f64, [f64; 2]), b: (f64, [f64; 2])| if b.0 > a.0 { b } else { a };
+    let tried = grid.map(|place| (of(place), place));
+    let mut best = tried.fold((f64::NEG_INFINITY, [0.0; 2]), better);
+    for halving in 0..HALVINGS {
+        let share = libm::pow(0.5, halving as f64 + 1.0);
+        for (axis, count) in [MIXED.0, MIXED.1].into_iter().enumerate() {
+            for sign in [-1.0, 1.0] {
+                let mut place = best.1;
+                place[axis] = (place[axis] + sign * share / count as f64).clamp(0.0, 1.0);
+                best = better(best, (of(place), place));
+            }
+        }
+    }
+    best
+}
+
+/// Median time between samples, s; not a number where there are none.
+pub(crate) fn sampling_interval(all: &[Deviations]) -> f64 {
+    let steps = all
+        .iter()
+        .flat_map(|d| d.time.windows(2).map(|w| w[1] - w[0]));
+    median(&mut steps.collect::<Vec<f64>>())
 }
 
 /// Sum of the squares that gain and touch leave of the whitened deviations, their degrees of freedom, and the restricted likelihood with
 /// the size that these have, nats.
-pub(crate) fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64, f64) {
+pub(crate) fn left(of: &Deviations, kept: &[usize], correlation: Correlation) -> (f64, f64, f64) {
     let repeats = of.rest.len() as f64 - 1.0;
     let degrees = (repeats * (kept.len() as f64 - 2.0)).max(1.0);
-    let (mut before, mut log) = (None::<usize>, 0.0);
+    let filter = correlation.filter(kept.iter().map(|&k| of.sample(k)));
+    let scale: Vec<f64> = kept.iter().map(|&k| of.rescaled(k, correlation)).collect();
+    let white = |values: &dyn Fn(usize) -> f64| filter.whitened(|k| values(kept[k]) * scale[k]);
+    let (gains, touches) = (white(&|k| of.along[k].x), white(&|k| of.along[k].y));
+    let all: Vec<Vec<f64>> = of.rest.iter().map(|series| white(&|k| series[k])).collect();
     let (mut gram, mut pulls) = (Matrix2::zeros(), vec![Vector2::zeros(); of.rest.len()]);
-    let mut sum = 0.0;
-    for &k in kept {
-        let carried = before.map_or(0.0, |j| autocorrelation(of.time[k] - of.time[j], memory_s));
-        let of_all = |values: &dyn Fn(usize) -> f64| {
-            innovation(values(k), before.map_or(0.0, values), carried)
-        };
-        let along = Vector2::new(of_all(&|k| of.along[k].x), of_all(&|k| of.along[k].y));
+    let (mut sum, mut log) = (0.0, 0.0);
+    for (k, variance) in filter.variances().enumerate() {
+        let along = Vector2::new(gains[k], touches[k]);
         gram += along * along.transpose();
-        for (series, pull) in of.rest.iter().zip(&mut pulls) {
-            let own = of_all(&|k| series[k]);
-            sum += own * own;
-            *pull += along * own;
+        for (series, pull) in all.iter().zip(&mut pulls) {
+            sum += series[k] * series[k];
+            *pull += along * series[k];
         }
-        log += libm::log((1.0 - carried * carried).max(LEAST_FRESH));
-        before = Some(k);
+        log += libm::log(variance.max(LEAST_FRESH)) - 2.0 * libm::log(scale[k]);
     }
     // Scaled, so that what one adds beside the other can be told.
     let scale = Matrix2::from_diagonal(
@@ -139,6 +204,7 @@ pub(crate) fn left(of: &Deviations, kept: &[usize], memory_s: f64) -> (f64, f64,
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::noise::correlation::forgotten;
     use crate::random::Random;
     use nalgebra::{DMatrix, DVector};
 
@@ -155,6 +221,20 @@ pub(crate) mod tests {
 
     /// Two repeats of noise of standard deviation 1 with that memory, with a gain and a touch of their own found and taken out.
     pub fn deviations(memory_s: f64, random: &mut Random) -> Deviations {
+        deviations_of(&mut |time| {
+            let mut noise = vec![random.normal()];
+            for k in 1..time.len() {
+                let carried = forgotten(time[k] - time[k - 1], memory_s);
+                noise.push(
+                    carried * noise[k - 1] + (1.0 - carried * carried).sqrt() * random.normal(),
+                );
+            }
+            noise
+        })
+    }
+
+    /// The same of noise that is drawn at given times.
+    pub fn deviations_of(draw: &mut dyn FnMut(&[f64]) -> Vec<f64>) -> Deviations {
         let time = times();
         let n = time.len();
         let press = |t: f64| (t / 0.44).min(1.0).min(((time[n - 7] - t) / 0.48).max(0.0));
@@ -162,16 +242,7 @@ pub(crate) mod tests {
             0 => press(time[k]).powf(1.5),
             _ => press(time[k]).sqrt(),
         });
-        let mut draw = || {
-            let mut noise = vec![random.normal()];
-            for k in 1..n {
-                let carried = autocorrelation(time[k] - time[k - 1], memory_s);
-                noise.push(
-                    carried * noise[k - 1] + (1.0 - carried * carried).sqrt() * random.normal(),
-                );
-            }
-            DVector::from_vec(noise)
-        };
+        let mut draw = || DVector::from_vec(draw(&time));
         let half = 0.5 * (draw() - draw());
         let gram = (columns.transpose() * &columns).try_inverse().unwrap();
         let rest = &half - &columns * (&gram * (columns.transpose() * &half));
@@ -197,7 +268,7 @@ pub(crate) mod tests {
         let of = deviations(0.15, &mut Random::new(1));
         let n = of.time.len();
         let all: Vec<usize> = (0..n).collect();
-        let (sum, degrees, _) = left(&of, &all, 0.0);
+        let (sum, degrees, _) = left(&of, &all, Correlation::NONE);
         let squares: f64 = of.rest.iter().flatten().map(|r| r * r).sum();
         assert!((sum / squares - 1.0).abs() < 1e-9);
         assert_eq!(degrees, n as f64 - 2.0);
@@ -229,7 +300,7 @@ pub(crate) mod tests {
             (sum, -0.5 * (logs + degrees * libm::log(sum / degrees)))
         };
         let own = |memory_s: f64| {
-            let (sum, _, likelihood) = left(&of, &kept, memory_s);
+            let (sum, _, likelihood) = left(&of, &kept, Correlation::of_memory(memory_s));
             (sum, likelihood)
         };
         let gained = |by: &dyn Fn(f64) -> (f64, f64)| by(0.9).1 - by(0.2).1;
@@ -241,11 +312,14 @@ pub(crate) mod tests {
     #[test]
     fn outliers_are_left_out() {
         let mut of = deviations(0.6, &mut Random::new(7));
-        let quiet = within(&of, Some(0.6)).len();
+        let quiet = within(&of, Some(Correlation::of_memory(0.6))).len();
         for (at, off, memory_s) in [(30, 8.0, None), (10, 2.5, Some(0.6))] {
             of.rest[0][at] += off;
             of.rest[1][at] -= off;
-            assert!(!within(&of, memory_s).contains(&at), "{at}");
+            assert!(
+                !within(&of, memory_s.map(Correlation::of_memory)).contains(&at),
+                "{at}"
+            );
         }
         assert!(quiet > of.time.len() - 4);
     }

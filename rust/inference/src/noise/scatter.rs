@@ -1,5 +1,6 @@
 //! What repeats of one channel show: noise within a recording, and variance of gain and first touch between recordings.
 
+use crate::noise::correlation::Correlation;
 use crate::noise::deviations::NoiseShape;
 use crate::noise::periodic_component::Rhythm;
 
@@ -16,13 +17,13 @@ pub struct Scatter {
     pub shape: NoiseShape,
     /// Degrees of freedom.
     pub degrees: f64,
-    /// Time over which noise forgets itself, s.
-    pub memory_s: f64,
+    /// Correlation in time.
+    pub correlation: Correlation,
     /// Standard deviation between repeats of the logarithm of the gain.
     pub gain: f64,
     /// Standard deviation between repeats of first touch, mm.
     pub zero_mm: Option<f64>,
-    /// Standard deviation of whitened deviations: 1 if noise forgets itself as that memory says.
+    /// Standard deviation of whitened deviations: 1 if noise is correlated as stated.
     pub step: f64,
     /// Whitened deviations over it, outliers among them.
     pub drawn_from: Vec<f64>,
@@ -39,7 +40,7 @@ impl Scatter {
             proportional: parts.1,
             shape: NoiseShape::EVEN,
             degrees,
-            memory_s: 0.0,
+            correlation: Correlation::NONE,
             gain,
             zero_mm: None,
             step: 1.0,

@@ -111,9 +111,9 @@ fn planted_noise_within_and_between_repeats_is_recovered() {
     let sigma = told.sigma.iter().map(|s| s[0]).sum::<f64>() / 32.0 / PEAK_N;
     assert!((sigma / planted.noise - 1.0).abs() < 0.15, "{sigma}");
     assert!(
-        (told.memory_s[0] / planted.memory_s - 1.0).abs() < 0.4,
+        (told.correlation[0].memory_s / planted.memory_s - 1.0).abs() < 0.4,
         "{:?}",
-        told.memory_s
+        told.correlation
     );
     // 24 degrees of freedom tell a standard deviation to a seventh.
     assert!(
@@ -146,7 +146,7 @@ fn identical_repeats_have_no_between_repeat_variance() {
         told.gain,
         told.zero_mm
     );
-    assert_eq!(told.memory_s[0], 0.0);
+    assert_eq!(told.correlation[0].memory_s, 0.0);
 }
 
 #[test]

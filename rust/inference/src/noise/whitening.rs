@@ -3,12 +3,12 @@
 use nalgebra::DMatrix;
 
 use crate::distributions::{log_normal_cdf, log_normal_density};
-use crate::noise::channel::{CHANNELS, Channel};
-use crate::noise::deviations::autocorrelation;
+use crate::noise::channel::Channel;
+use crate::noise::correlation::Filter;
 use crate::noise::estimate::Noise;
-use crate::observe::measured::{Censoring, Measured};
+use crate::observe::measured::{Censoring, Measured, Sample};
 
-/// How each sample's residual is whitened: `w_k = (r_k / s_k - c r_j / s_j) / sqrt(1 - c^2)`, j the sample before it.
+/// How each sample's residual is whitened: the innovations of `r_k / s_k` along the samples of one channel, over their deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Whitening {
     /// Values and limits, all recordings stacked.
@@ -16,12 +16,19 @@ pub struct Whitening {
     censoring: Vec<Censoring>,
     channel: Vec<Channel>,
     sigma: Vec<f64>,
-    /// Sample before it whose noise it remembers, and how much of it.
-    before: Vec<Option<(usize, f64)>>,
-    /// By channel, what is left to divide by.
-    step: [f64; CHANNELS.len()],
+    /// Samples of one channel of one recording in the order of time, and their filter.
+    series: Vec<Series>,
     /// False for samples that are left out.
     is_used: Vec<bool>,
+}
+
+/// One channel of one recording.
+#[derive(Debug, Clone, PartialEq)]
+struct Series {
+    samples: Vec<usize>,
+    filter: Filter,
+    /// By sample, what an innovation is divided by.
+    deviation: Vec<f64>,
 }
 
 /// Whitened residuals, and what makes their derivatives.
@@ -33,6 +40,33 @@ pub struct Whitened {
     censored_slope: Vec<f64>,
 }
 
+/// Channels whose samples follow each other in time; sensels of one frame and points of one scan do not.
+const IN_TIME: [Channel; 3] = [Channel::Force, Channel::Tangential, Channel::Area];
+
+impl Series {
+    /// Of the seen samples of `channel`; `at` are the numbers of the recording and of its first sample.
+    fn of(one: &Measured, channel: Channel, at: (usize, usize), noise: &Noise) -> Series {
+        let is_it = |(_, s): &(usize, &Sample)| {
+            Channel::of(s.quantity) == channel && s.censoring == Censoring::Seen
+        };
+        let samples = || one.samples.iter().enumerate().filter(is_it);
+        let (recording, first) = at;
+        let profile = &noise.profile[recording];
+        let each = samples().map(|(k, s)| (one.moments[s.moment as usize].time_s, profile[k]));
+        let filter = noise.correlation[channel as usize].filter(each);
+        let step = noise.step[channel as usize];
+        let deviation = filter.variances().enumerate().map(|(k, variance)| match k {
+            0 => variance.sqrt(),
+            _ => step * variance.sqrt(),
+        });
+        Series {
+            samples: samples().map(|(k, _)| first + k).collect(),
+            deviation: deviation.collect(),
+            filter,
+        }
+    }
+}
+
 impl Whitening {
     /// For recordings with that noise; those not in use are left out.
     pub fn new(measured: &[Measured], noise: &Noise, is_used: &[bool]) -> Whitening {
@@ -41,33 +75,24 @@ impl Whitening {
             censoring: Vec::new(),
             channel: Vec::new(),
             sigma: Vec::new(),
-            before: Vec::new(),
-            step: noise.step,
+            series: Vec::new(),
             is_used: Vec::new(),
         };
         for (recording, one) in measured.iter().enumerate() {
-            let mut last: [Option<usize>; CHANNELS.len()] = [None; CHANNELS.len()];
             let first = whitening.measured.len();
             for (k, sample) in one.samples.iter().enumerate() {
-                let channel = Channel::of(sample.quantity);
-                let is_seen = sample.censoring == Censoring::Seen;
-                let before = last[channel as usize].filter(|_| is_seen).map(|j: usize| {
-                    let time = |k: usize| one.moments[one.samples[k].moment as usize].time_s;
-                    let carried =
-                        autocorrelation(time(k) - time(j), noise.memory_s[channel as usize]);
-                    (first + j, carried)
-                });
-                // Sensels of one frame stand beside each other in the list, not after each other in time.
-                let is_series = !matches!(channel, Channel::Pressure | Channel::Scan);
-                if is_series && is_seen {
-                    last[channel as usize] = Some(k);
-                }
                 whitening.measured.push(sample.value);
                 whitening.censoring.push(sample.censoring);
-                whitening.channel.push(channel);
+                whitening.channel.push(Channel::of(sample.quantity));
                 whitening.sigma.push(noise.sigma[recording][k]);
-                whitening.before.push(before);
                 whitening.is_used.push(is_used[recording]);
+            }
+            if is_used[recording] {
+                let series =
+                    IN_TIME.map(|channel| Series::of(one, channel, (recording, first), noise));
+                whitening
+                    .series
+                    .extend(series.into_iter().filter(|s| !s.samples.is_empty()));
             }
         }
         whitening
@@ -88,12 +113,10 @@ impl Whitening {
         let n = self.len();
         let (mut residual, mut censored_slope) = (vec![0.0; n], vec![0.0; n]);
         let scaled = |k: usize| (self.measured[k] - simulated[k]) / self.sigma[k];
+        self.seen(&scaled, &mut |k, white| residual[k] = white);
         for k in (0..n).filter(|&k| self.is_used[k]) {
             let sign = match self.censoring[k] {
-                Censoring::Seen => {
-                    residual[k] = self.differenced(k, &scaled);
-                    continue;
-                }
+                Censoring::Seen => continue,
                 Censoring::AtMost => 1.0,
                 Censoring::AtLeast => -1.0,
             };
@@ -120,11 +143,11 @@ impl Whitening {
         for column in 0..jacobian.ncols() {
             let scaled = |k: usize| jacobian[(k, column)] / self.sigma[k];
             for k in (0..self.len()).filter(|&k| self.is_used[k]) {
-                whitened[(k, column)] = match self.censoring[k] {
-                    Censoring::Seen => self.differenced(k, &scaled),
-                    _ => -at.censored_slope[k] * scaled(k),
-                };
+                if self.censoring[k] != Censoring::Seen {
+                    whitened[(k, column)] = -at.censored_slope[k] * scaled(k);
+                }
             }
+            self.seen(&scaled, &mut |k, white| whitened[(k, column)] = white);
         }
         whitened
     }
@@ -144,14 +167,18 @@ impl Whitening {
         self.channel[k]
     }
 
-    fn differenced(&self, k: usize, scaled: &dyn Fn(usize) -> f64) -> f64 {
-        match self.before[k] {
-            Some((j, autocorrelation)) => {
-                let step = self.step[self.channel[k] as usize]
-                    * (1.0 - autocorrelation * autocorrelation).sqrt();
-                (scaled(k) - autocorrelation * scaled(j)) / step
+    /// Gives every seen sample in use with its whitened value.
+    fn seen(&self, scaled: &dyn Fn(usize) -> f64, give: &mut dyn FnMut(usize, f64)) {
+        for k in (0..self.len()).filter(|&k| self.is_used[k]) {
+            if self.censoring[k] == Censoring::Seen && !IN_TIME.contains(&self.channel[k]) {
+                give(k, scaled(k));
             }
-            None => scaled(k),
+        }
+        for series in &self.series {
+            let innovations = series.filter.innovations(|k| scaled(series.samples[k]));
+            for (k, innovation) in innovations.into_iter().enumerate() {
+                give(series.samples[k], innovation / series.deviation[k]);
+            }
         }
     }
 }

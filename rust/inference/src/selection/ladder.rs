@@ -71,7 +71,11 @@ pub fn climb(
     let pairs = trial.pairs(&singles, &scale)?;
     let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
     Ok(Rungs {
-        heteroscedasticity: heteroscedasticity(&surrogate, sizes, ready.noise.memory_s[0]),
+        heteroscedasticity: heteroscedasticity(
+            &surrogate,
+            sizes,
+            ready.noise.correlation[0].memory_s,
+        ),
         base,
         singles,
         pairs,

@@ -11,6 +11,7 @@ use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::elastic_table::Tabulated;
 use crate::interpolation::Table;
 use crate::noise::channel::CHANNELS;
+use crate::noise::correlation::Correlation;
 use crate::noise::estimate::Noise;
 use crate::noise::whitening::Whitening;
 use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
@@ -174,7 +175,11 @@ fn noise(measured: &[Measured], sigma: f64) -> Noise {
             .iter()
             .map(|one| vec![sigma; one.samples.len()])
             .collect(),
-        memory_s: [0.0; CHANNELS.len()],
+        profile: measured
+            .iter()
+            .map(|one| vec![1.0; one.samples.len()])
+            .collect(),
+        correlation: [Correlation::NONE; CHANNELS.len()],
         degrees: None,
         gain: 0.0,
         zero_mm: None,
