@@ -117,12 +117,20 @@ def _best(ready, aim, watch):
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
         own = replace(aim, bar=one.way.bar)
-        state = settling.settle(one.way.stage, one.grasp, own, LAST_ROUNDS, watch)
-        state = polishing.polish(one.way.stage, state, own, watch)
-        out[place] = _found(state, aim, one.way)
+        for further in (_settled, polishing.polish):
+            try:
+                one = _found(further(one.way.stage, one.state, own, watch), aim, one.way)
+            except (Refusal, native.module.SolveError):
+                fitter.leave_if_cancelled(watch)
+        out[place] = one
     out.sort(key=lambda found: in_steps(found.score))
     _refuse_what_does_not_hold(out[0].state)
     return out
+
+
+def _settled(stage, state, aim, watch):
+    """A `State` after all rounds of settling."""
+    return settling.settle(stage, state.grasp, aim, LAST_ROUNDS, watch)
 
 
 def _refuse_what_does_not_hold(state):
@@ -130,6 +138,8 @@ def _refuse_what_does_not_hold(state):
     peak = float(state.peaks_mpa.max())
     if fitter.CROSSED_TEXT in state.grasp.warnings:
         reason = "has a finger in a thin wall of the product"
+    elif state.sunk_mm > 0.0:
+        reason = f"presses skin {state.sunk_mm:.1f} mm farther than it is thick"
     elif state.imbalance > LOST:
         reason = f"leaves {state.imbalance:.0%} of the forces over"
     elif peak > TOO_HARD_MPA:
@@ -166,6 +176,7 @@ def score_of(state, aim):
         score += 3.0 * min(abs(state.total_n / aim.total_n - 1.0), 1.0)
     score += 2.0 * max(float(state.peaks_mpa.max()) / settling.MOST_MPA - 1.0, 0.0)
     score += 0.3 * max(grasp.deepest_body_mm - 1.0, 0.0) + 5.0 * (fitter.CROSSED_TEXT in grasp.warnings)
+    score += settling.SUNK * state.sunk_mm
     score += 0.0 if settling.is_settled(state, aim) else UNSETTLED
     return score + (10.0 if state.contact.grade == "do not use" else 0.0)
 

@@ -12,6 +12,7 @@ from .. import native
 from ..grasp_fit import fitter
 from ..grasp_fit import load as loads
 from ..grasp_fit.task import Goal
+from ..hand.pads import TISSUE_SHARE
 from ..hand.skinning import pose_matrices, skin, skin_normals
 from ..scene.checks import Refusal
 from . import friction
@@ -50,6 +51,9 @@ from `FAR` on; up to `MOST_LEFT` of the sum; moments at `load.ARM_MM`."""
 RISE = 1.3
 """Where a pad was too hard in a round, the sum rises again by no more in the next."""
 
+SUNK = 5.0
+"""Cost of each millimetre that skin is pressed farther than its tissue is thick: bone is then in the product."""
+
 LEAST_FACTOR = 0.6
 """The depth of a pad is eased by no more in one round."""
 
@@ -71,7 +75,8 @@ class Aim:
 @dataclass(frozen=True)
 class State:
     """A pressed grasp of the own frame: `contact`, `gap_mm` (n,) before it, sum, net force (3) with the weight, net
-    moment (3) about the aim, and the greatest pressure of each pad (p,), MPa."""
+    moment (3) about the aim, the greatest pressure of each pad (p,), MPa, and how much farther than its tissue is thick
+    the deepest skin is pressed, mm; 0: no bone is in the product."""
 
     grasp: fitter.Grasp
     contact: object
@@ -80,6 +85,7 @@ class State:
     net_n: np.ndarray
     moment_nmm: np.ndarray
     peaks_mpa: np.ndarray
+    sunk_mm: float = 0.0
 
     @property
     def imbalance(self):
@@ -107,7 +113,9 @@ def pressed(stage, found, aim, cancel=None):
     push = np.asarray(contact.total_force_n)
     moment = np.asarray(contact.total_moment_nmm) - np.cross(aim.about_mm, push)
     peaks = np.array([pressures[pad.rows].max() for pad in stage.hand.pads])
-    return State(found, contact, gap, float(forces.sum()), push + aim.weight_n, moment, peaks)
+    depths = np.linalg.norm(contact.displacement_mm, axis=1)
+    sunk = max(float(depths[pad.rows].max()) - pad.limit_mm / TISSUE_SHARE for pad in stage.hand.pads)
+    return State(found, contact, gap, float(forces.sum()), push + aim.weight_n, moment, peaks, max(sunk, 0.0))
 
 
 def friction_of(stage, state, aim):
@@ -169,7 +177,7 @@ def _reach(state, aim, before):
 
 def is_settled(state, aim):
     """Whether forces balance, no pad is pressed too hard, and the sum is the wanted one or not too large."""
-    if state.imbalance > BALANCED or state.lever > MOMENT or state.peaks_mpa.max() > MOST_MPA:
+    if state.imbalance > BALANCED or state.lever > MOMENT or state.peaks_mpa.max() > MOST_MPA or state.sunk_mm > 0.0:
         return False
     if aim.total_n is None:
         return state.total_n <= MOST_N
@@ -179,7 +187,7 @@ def is_settled(state, aim):
 def cost_of(state, aim):
     """How far a state is from settled: 1 for each tolerance that it misses by its own size."""
     cost = max(state.imbalance / BALANCED, 1.0) + max(state.lever / MOMENT, 1.0)
-    cost += 10.0 * max(state.peaks_mpa.max() / MOST_MPA - 1.0, 0.0)
+    cost += 10.0 * max(state.peaks_mpa.max() / MOST_MPA - 1.0, 0.0) + SUNK * state.sunk_mm
     if aim.total_n is None:
         return cost + 10.0 * max(state.total_n / MOST_N - 1.0, 0.0)
     return cost + max(abs(state.total_n / aim.total_n - 1.0) / FORCE_MISS, 1.0)

@@ -6,13 +6,22 @@ nodal forces is held to less.
 """
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import thenar
 from handles import shapes
-from thenar_blender import names
+from thenar_blender import names, workflow
+from thenar_blender.grasp import fitting, search, settling
+from thenar_blender.grasp.stage import stage_of
+from thenar_blender.grasp_fit import fitter
+from thenar_blender.hand import pads
+from thenar_blender.scene.checks import Refusal
 
 FIRM_N = 200.0
+PALM_MM = 15.0
+"""No tissue of the hand is thicker (palm, Xie Table 2)."""
 SURFACE = 0.12
 """Share of all forces that the shown surface may seem to leave over."""
 MPA_PER_KPA = 1e-3
@@ -130,6 +139,42 @@ def test_settle_carries_a_weight(blender, scene, bar):
     assert np.linalg.norm(net[:2]) < SURFACE * total
     push = np.array(blender.context.scene.thenar.result.force_vector_n)
     assert np.linalg.norm(push - [0.0, 0.0, 20.0]) < 0.1 * total
+
+
+def test_a_way_that_is_lost_in_balancing_loses_no_other(blender, scene):
+    """On a mug's handle one way of a small hand leaves the product while it is balanced; the others hold it."""
+    scene(shapes.SHAPES["mug handle"](), percentile=5.0)
+    assert blender.ops.thenar.fit_grasp(kind="PINCH") == {"FINISHED"}
+    blender.ops.thenar.solve()
+    assert blender.context.scene.thenar.result.force_n == pytest.approx(30.0, rel=0.1)
+
+
+def test_skin_moved_farther_than_it_is_thick_is_seen_and_refused(blender, scene, bar):
+    """A bar moved 12 mm into a hand that holds it: some skin of 7.1 mm goes farther than through all of its tissue."""
+    hand, product = scene(bar)
+    blender.ops.thenar.fit_grasp()
+    blender.context.view_layer.update()
+    parts = workflow.product_parts(blender.context.scene.thenar)
+    fit = fitting.prepare(blender.context, hand, parts, fitter.Wish(pads.FIRM_MM), 1.0)
+    stage = stage_of(fit)
+    aim = settling.Aim(np.zeros(3), np.zeros(3), FIRM_N)
+    held = search.search(fit, asked=search.Asked(FIRM_N, 30.0, 0, "POWER"))[0].state
+    assert held.sunk_mm == 0.0
+    seen = []
+    for way in np.vstack([np.eye(3), -np.eye(3)]):
+        moved = np.eye(4)
+        moved[:3, 3] = 12.0 * way
+        try:
+            state = settling.pressed(stage, replace(held.grasp, place=moved @ held.grasp.place), aim)
+        except (Refusal, thenar.SolveError):
+            continue
+        seen.append(state.sunk_mm)
+        assert state.sunk_mm > 0.0 or np.linalg.norm(state.contact.displacement_mm, axis=1).max() < PALM_MM
+        if state.sunk_mm > 0.0:
+            assert not settling.is_settled(state, aim)
+            with pytest.raises(Refusal, match="mm farther than it is thick"):
+                search._refuse_what_does_not_hold(state)
+    assert max(seen) > 1.0
 
 
 def test_a_product_without_a_hold_is_refused(blender, scene):
