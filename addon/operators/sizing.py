@@ -18,7 +18,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_both(cls, context)
+        return _can_scale(cls, context)
 
     def execute(self, context):
         settings = context.scene.thenar
@@ -40,7 +40,7 @@ class THENAR_OT_accept_size(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_both(cls, context)
+        return _can_scale(cls, context)
 
     def execute(self, context):
         settings = context.scene.thenar
@@ -48,8 +48,8 @@ class THENAR_OT_accept_size(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _has_both(cls, context):
-    return polling.allows(cls, polling.no_hand(context), polling.no_product(context), polling.busy())
+def _can_scale(cls, context):
+    return polling.allows(cls, polling.no_product(context), polling.busy())
 
 
 CLASSES = (THENAR_OT_scale_product, THENAR_OT_accept_size)
