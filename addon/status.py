@@ -27,6 +27,8 @@ native_problem = ""
 """Why the native module cannot be used, as one sentence; empty if it can."""
 look_changed: list[Callable[[Any], object]] = []
 """Called with the context after range, colours or legend were changed."""
+map_changed: list[Callable[[Any], object]] = []
+"""Called with the context after a map was shown, hidden or brought up to date."""
 comfort_changed: list[Callable[[Any], object]] = []
 """Called with the context after the threshold of comfort was changed."""
 live_switched: list[Callable[[Any], object]] = []

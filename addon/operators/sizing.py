@@ -3,6 +3,7 @@
 import bpy
 
 from .. import workflow
+from ..hand_shape import framing
 from ..scene import sizes
 from . import polling, running
 
@@ -26,6 +27,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
         found = running.attempt(self, sizes.scale_product, context, settings.hand, parts, self.factor)
         if found is None:
             return {"CANCELLED"}
+        framing.frame(context, *parts)
         self.report({"INFO"}, str(found))
         running.redraw(context)
         return {"FINISHED"}

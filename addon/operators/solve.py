@@ -4,7 +4,7 @@ import bpy
 
 from .. import grades, workflow
 from ..scene import regions
-from . import computing, display, polling, running, selecting
+from . import computing, display, polling, preferred, running, selecting
 
 
 class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
@@ -15,9 +15,19 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     noun = "Solve"
 
+    show_map: bpy.props.BoolProperty(
+        name="Show Map", description="Show the pressure after the solve; the button takes this from the preferences"
+    )
+
     @classmethod
     def poll(cls, context):
         return polling.can_compute(cls, context)
+
+    def invoke(self, context, event):
+        """From a button, the preferences say whether the map comes on."""
+        if not self.properties.is_property_set("show_map"):
+            self.show_map = preferred.get(context, "map_after_solve", True)
+        return super().invoke(context, event)
 
     def steps(self, context):
         forget_refusal(context)
@@ -37,7 +47,12 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, result):
         """The last message is the one that is seen: the gravest."""
-        display.refresh(context)
+        if self.show_map and not context.scene.thenar.hand.thenar.shows_pressure:
+            display.show(context)
+            if bpy.ops.thenar.look.poll():
+                bpy.ops.thenar.look(kind="GLASS")
+        else:
+            display.refresh(context)
         for text in result.warnings:
             self.report({"WARNING"}, running.sentence(text.name))
         numbers = (

@@ -208,6 +208,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             depress=shown,
         )
         button.show = not shown
+        _draw_looks(layout)
         place = maps.setting(view, settings)
         if place is not None:
             line = layout.row(align=True)
@@ -223,6 +224,19 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             icon="LOOP_BACK" if kept else "RESTRICT_RENDER_OFF",
         )
         button.restore = kept
+
+
+def _draw_looks(layout):
+    """The view buttons, and the way back."""
+    flow = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for kind, title in LOOKS:
+        flow.operator("thenar.look", text=title).kind = kind
+    if bpy.ops.thenar.look_back.poll():
+        layout.operator("thenar.look_back", icon="LOOP_BACK")
+
+
+LOOKS = (("OPENED", "Hand Opened"), ("PALM", "Palm"), ("PRODUCT", "Product"), ("APART", "Apart"))
+"""The view buttons in their order."""
 
 
 class THENAR_PT_physics(Physics, bpy.types.Panel):

@@ -6,6 +6,8 @@ from ..scene import sizes
 from ..scene.parts import product_parts
 from . import text
 
+_LONGEST = 24
+"""Letters of a name on a button."""
 BIG = 1.5
 """Height of the button to press next."""
 
@@ -15,7 +17,7 @@ def draw_cards(layout, context):
     if text.progress(layout):
         return
     layout.use_property_split = False
-    text.faint(layout, context, "No hand is set. Begin with one of these:")
+    text.faint(layout, context, "No hand is set yet. Begin here:")
     _draw_sample(layout.box().column(), context)
     _draw_product(layout.box().column(), context)
     _draw_hand(layout.box().column(), context)
@@ -23,18 +25,21 @@ def draw_cards(layout, context):
 
 
 def draw_sizes(layout, context):
-    """The product's size, and the hand's; in place of a size that is not believed, the ways out."""
+    """The product's size, and the hand's; in place of a size that is not believed, the ways out.
+
+    Returns whether the size is believed.
+    """
     settings = context.scene.thenar
     parts = product_parts(settings)
     if not parts:
-        return
+        return True
     measured = sizes.glance(context.scene, settings.hand, parts)
     size = sizes.length(measured.product_mm)
     if not measured.factors:
         row = layout.row()
         row.active = False
         row.label(text=str(measured) if settings.hand is not None else f"Product {size}", icon="DRIVER_DISTANCE")
-        return
+        return True
     box = layout.box().column(align=True)
     if settings.hand is None:
         others = [sizes.length(factor * measured.product_mm) for factor in measured.factors]
@@ -45,6 +50,7 @@ def draw_sizes(layout, context):
         right = sizes.length(factor * measured.product_mm)
         box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {right}").factor = factor
     box.operator("thenar.accept_size", text=f"Keep size {size}")
+    return False
 
 
 def draw_add(layout):
@@ -56,7 +62,7 @@ def draw_add(layout):
 
 def _draw_sample(column, context):
     column.label(text="Try a sample", icon="SCENE_DATA")
-    text.faint(column, context, "A hand that holds a bar of 48 mm, ready to solve. It takes some seconds")
+    text.faint(column, context, "A hand on a bar, ready to solve")
     row = column.row()
     row.scale_y = BIG
     row.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "cylinder_48"
@@ -75,7 +81,8 @@ def _draw_product(column, context):
     row = column.row(align=True)
     row.label(text=chosen.name, icon="CHECKMARK")
     row.operator("thenar.add_product", text="", icon="IMPORT")
-    draw_sizes(column, context)
+    if not draw_sizes(column, context):
+        return
     row = column.row()
     row.scale_y = BIG
     row.operator("thenar.make_hand", text="Make Hand", icon="VIEW_PAN")
@@ -88,10 +95,10 @@ def _draw_hand(column, context):
         row = column.row()
         row.scale_y = BIG
         row.operator("thenar.pick", text="Use Selected Hand and Product", icon="RESTRICT_SELECT_OFF")
-    elif bpy.ops.thenar.pick_hand.poll():
+    elif bpy.ops.thenar.pick_hand.poll() and context.object not in product_parts(settings):
         row = column.row()
         row.scale_y = BIG
-        row.operator("thenar.pick_hand", text="Use Active Object", icon="RESTRICT_SELECT_OFF")
+        row.operator("thenar.pick_hand", text=f"Use '{context.object.name[:_LONGEST]}'", icon="RESTRICT_SELECT_OFF")
     else:
         text.faint(column, context, "Click its mesh in the 3D view, or choose it:")
     column.prop(settings, "hand", text="")

@@ -153,10 +153,15 @@ def test_the_cards_go_on_from_what_is_there():
     bpy.context.view_layer.update()
     drawn = draw()
     said = [words for words, _ in drawn["THENAR_PT_main"]]
-    assert "Scale by 0.001, to 30 mm" in said and "Keep size 30 m" in said and "Use Active Object" in said
+    assert "Scale by 0.001, to 30 mm" in said and "Keep size 30 m" in said
     assert " ".join(said).count("Is the product 30 m long?") == 1
-    assert "Make Hand" in said and "Add Product..." not in said
+    assert "Make Hand" not in said and "Use 'Plate'" not in said and "Add Product..." not in said
     assert not too_long(drawn)
+    bpy.ops.thenar.accept_size()
+    said = [words for words, _ in draw()["THENAR_PT_main"]]
+    assert "Make Hand" in said and "Product 30 m" in said
+    settings.product = None
+    assert "Use 'Plate'" in [words for words, _ in draw()["THENAR_PT_main"]]
     settings.product = None
     settings.hand = stage.pad()
     drawn = draw()
