@@ -13,7 +13,8 @@ KINDS = (
     (putting.APART, "Apart", "Hand and product next to each other, both with the side that was pressed", 4),
     (putting.GLASS, "Glass", "The product as glass; the view stays", 5),
 )
-_ROOM = 1.15
+_ROOM, _WIDE = 1.15, 1.3
+"""Distance of the view over the height of what is seen, and over its width: the sidebar covers a part."""
 _before = {}
 """Area -> the view before the first look, to give back."""
 
@@ -80,6 +81,7 @@ def _turn(context, view):
     asked = context.area
     areas = [asked] if asked is not None and asked.type == "VIEW_3D" else context.window.screen.areas
     low, high = view.points.min(axis=0), view.points.max(axis=0)
+    wide, tall = ((view.points @ axis).max() - (view.points @ axis).min() for axis in view.turn[:2])
     for area in areas:
         if area.type != "VIEW_3D":
             continue
@@ -90,7 +92,7 @@ def _turn(context, view):
             place.view_perspective = "PERSP"
         place.view_rotation = Matrix(view.turn.T.tolist()).to_quaternion()
         place.view_location = Vector((0.5 * (low + high)).tolist())
-        place.view_distance = _ROOM * float(max(high - low))
+        place.view_distance = _ROOM * float(max(_WIDE * wide, tall))
 
 
 def _views(context):

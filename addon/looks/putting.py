@@ -21,6 +21,7 @@ COLLECTION = "Thenar View"
 _MATERIAL = "Thenar Glass"
 _STATE = "thenar_look"
 _TINT = (0.75, 0.87, 0.95, 0.16)
+_STAYING = {"LIGHT", "LIGHT_PROBE", "SPEAKER"}
 _GAP = 0.12
 """Room between hand and product when they lie apart, as a share of the hand's width."""
 
@@ -189,7 +190,7 @@ def _put_away(context, kind, objects):
     hidden = [
         obj
         for obj in context.view_layer.objects
-        if obj.type not in {"CAMERA", "LIGHT", "EMPTY"} and obj not in stays and not obj.hide_get()
+        if obj.type not in _STAYING and obj not in stays and not obj.hide_get()
     ]
     for obj in hidden:
         obj.hide_set(True)

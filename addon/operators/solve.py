@@ -3,8 +3,9 @@
 import bpy
 
 from .. import grades, workflow
+from ..panels import preferences
 from ..scene import regions
-from . import computing, display, polling, preferred, running, selecting
+from . import computing, display, polling, running, selecting
 
 
 class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
@@ -16,7 +17,9 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
     noun = "Solve"
 
     show_map: bpy.props.BoolProperty(
-        name="Show Map", description="Show the pressure after the solve; the button takes this from the preferences"
+        name="Show Map",
+        description="Show the pressure after the solve; the button takes this from the preferences",
+        options={"SKIP_SAVE"},
     )
 
     @classmethod
@@ -26,7 +29,9 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
     def invoke(self, context, event):
         """From a button, the preferences say whether the map comes on."""
         if not self.properties.is_property_set("show_map"):
-            self.show_map = preferred.get(context, "map_after_solve", True)
+            self.show_map = preferences.get(context, "map_after_solve", True)
+        if not context.scene.thenar.result.is_valid:
+            preferences.fill(context, context.scene.thenar, {"palette": "palette", "range_kpa": "range_kpa"})
         return super().invoke(context, event)
 
     def steps(self, context):

@@ -157,17 +157,30 @@ def _draw_force(layout, settings):
 
 
 def _draw_next(layout, context):
-    """The buttons to press next: a grasp where the hand can take one and nothing is solved yet, and Solve."""
+    """The buttons to press next: a grasp while the hand is at rest, and Solve."""
     if text.progress(layout):
         return
-    is_solved = context.scene.thenar.result.is_valid
-    if not is_solved and not context.scene.thenar_grasps.found and bpy.ops.thenar.fit_grasp.poll():
+    settings = context.scene.thenar
+    if not settings.result.is_valid and not _is_posed(settings.hand) and bpy.ops.thenar.fit_grasp.poll():
         row = layout.row()
         row.scale_y = start.BIG
         row.operator("thenar.fit_grasp", text="Grasp the Product", icon="CON_ARMATURE").place = "LAY"
     row = layout.row()
     row.scale_y = start.BIG
     row.operator("thenar.solve", text="Solve", icon="PLAY")
+
+
+def _is_posed(hand):
+    """Whether a bone of the hand was turned or moved from its rest."""
+    rigs = [
+        modifier.object for modifier in hand.modifiers if modifier.type == "ARMATURE" and modifier.object is not None
+    ]
+    bones = [bone for rig in rigs if rig.pose is not None for bone in rig.pose.bones]
+    return any(bone.matrix_basis.to_quaternion().angle > AT_REST or bone.location.length > AT_REST for bone in bones)
+
+
+AT_REST = 1e-3
+"""Turn (rad) and move (units) of a bone up to which it rests."""
 
 
 def _draw_live(layout, context):
@@ -208,7 +221,6 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             depress=shown,
         )
         button.show = not shown
-        _draw_looks(layout)
         place = maps.setting(view, settings)
         if place is not None:
             line = layout.row(align=True)
@@ -226,7 +238,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         button.restore = kept
 
 
-def _draw_looks(layout):
+def draw_looks(layout):
     """The view buttons, and the way back."""
     flow = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for kind, title in LOOKS:

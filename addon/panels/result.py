@@ -5,7 +5,7 @@ import bpy
 from .. import grades, maps, status
 from . import text
 from .lists import SHARE, brief, columns
-from .main import Physics, Tab, has_result
+from .main import Physics, Tab, draw_looks, has_result
 
 
 class THENAR_PT_result(Tab, bpy.types.Panel):
@@ -21,6 +21,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
+        draw_looks(layout)
         if not result.is_valid:
             draw_maps(layout, context.scene.thenar)
             return

@@ -4,6 +4,7 @@ import bpy
 import product_files as files
 import pytest
 import stage
+from thenar_blender.panels import main
 
 
 def test_a_product_in_mm_gets_a_hand_and_keeps_its_place_in_the_settings(tmp_path):
@@ -30,6 +31,16 @@ def test_the_mesh_of_the_active_armature_is_the_hand():
     bpy.context.scene.thenar.product = plate
     assert bpy.ops.thenar.pick_hand() == {"FINISHED"}
     assert bpy.context.scene.thenar.hand == plate and bpy.context.scene.thenar.product is None
+
+
+def test_a_hand_that_was_posed_is_not_asked_to_grasp():
+    hand, _ = stage.scene()
+    stage.bend(hand)
+    assert main._is_posed(hand)
+    for bone in bpy.data.objects["Rig"].pose.bones:
+        bone.rotation_euler = (0.0, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    assert not main._is_posed(hand)
 
 
 @pytest.mark.parametrize("kind", ["EMPTY", "ARMATURE", None])
