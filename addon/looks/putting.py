@@ -85,7 +85,8 @@ def renew(context):
     kind, hand = kind_shown(context), context.scene.thenar.hand
     if not kind:
         return
-    if hand is not None and hand.thenar.shows_pressure and display.shown_objects(context):
+    is_live = context.scene.thenar.live  # then the hand itself moves, and stand-ins would lag behind
+    if hand is not None and not is_live and hand.thenar.shows_pressure and display.shown_objects(context):
         put(context, kind)
     else:
         take_back(context)

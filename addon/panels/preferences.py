@@ -62,9 +62,8 @@ class ThenarPreferences(bpy.types.AddonPreferences):
     )
     folder: StringProperty(
         name="Pictures",
-        description="Folder of pictures where the scene names none; // is the folder of the file",
+        description="Folder of pictures where the scene names none; empty: thenar_pictures next to the file",
         subtype="DIR_PATH",
-        default="//thenar_pictures/",
     )
     threads: IntProperty(
         name="Threads",
@@ -115,8 +114,9 @@ def fill(context, target, preferences):
     """Set properties of `target` that nobody set yet, {name: preference}; those without a preference stay."""
     addon = context.preferences.addons.get(ThenarPreferences.bl_idname)
     for name, preference in preferences.items() if addon is not None else ():
-        if not target.is_property_set(name) and hasattr(addon.preferences, preference):
-            setattr(target, name, getattr(addon.preferences, preference))
+        value = getattr(addon.preferences, preference, "")
+        if value != "" and not target.is_property_set(name):
+            setattr(target, name, value)
 
 
 def get(context, name, otherwise):
