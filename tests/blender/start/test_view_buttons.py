@@ -98,3 +98,15 @@ def test_solve_shows_the_map_where_it_is_asked_to_and_a_script_does_not():
     bpy.ops.thenar.look_back()
     bpy.ops.thenar.solve(show_map=True)
     assert "Plate (view)" not in bpy.data.objects, "a look that was ended does not come back"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_look_is_never_exported(kind, bent, tmp_path):
+    written = []
+    for name in ("before", "after"):
+        (tmp_path / name).mkdir()
+        for suffix in (".csv", ".glb"):
+            assert bpy.ops.thenar.export(filepath=str(tmp_path / name / f"hand{suffix}")) == {"FINISHED"}
+        written.append({path.name: path.read_bytes() for path in (tmp_path / name).iterdir()})
+        bpy.ops.thenar.look(kind=kind)
+    assert written[0].keys() == written[1].keys() and written[0] == written[1]
