@@ -1,11 +1,28 @@
 """Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
 
-from . import diagnosis, grasp, hand, hand_shape, handlers, live, operators, panels, picture_sets, recordings, settings
+from . import (
+    diagnosis,
+    grasp,
+    hand,
+    hand_shape,
+    handlers,
+    live,
+    looks,
+    operators,
+    panels,
+    picture_sets,
+    product_files,
+    recordings,
+    settings,
+    start,
+)
 from .views import viewport
 
 _MODULES = (
     settings,
     operators,
+    product_files,
+    start,
     panels,
     hand,
     grasp,
@@ -13,6 +30,7 @@ _MODULES = (
     picture_sets,
     recordings,
     diagnosis,
+    looks,
     viewport,
     handlers,
     live,

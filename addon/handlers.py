@@ -50,7 +50,10 @@ def _check():
     if screen is not None and screen.is_animation_playing:
         return
     was = status.is_stale(context.scene.name)
-    if workflow.is_out_of_date(context) != was:
+    is_old = workflow.is_out_of_date(context)
+    if is_old and bpy.ops.thenar.look_back.poll():
+        bpy.ops.thenar.look_back()  # it shows hand and product as they were solved
+    if is_old != was:
         running.redraw(context)
 
 

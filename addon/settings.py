@@ -237,6 +237,9 @@ class ThenarScene(bpy.types.PropertyGroup):
     accepted_mm: FloatProperty(
         name="Accepted Size (mm)", description="Longest side of a product whose size was accepted, mm", min=0.0
     )
+    added_mm: FloatProperty(
+        name="Size as Read (mm)", description="Longest side of the product as its file was read, mm", min=0.0
+    )
     live: BoolProperty(
         name="Live",
         description="Update the contact while hand, armature or product move; renders need a bake",

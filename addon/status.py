@@ -23,10 +23,14 @@ class Following:
 
 
 run = Run()
+last_error = ""
+"""The last sentence that a button reported as an error, for a bug report."""
 native_problem = ""
 """Why the native module cannot be used, as one sentence; empty if it can."""
 look_changed: list[Callable[[Any], object]] = []
 """Called with the context after range, colours or legend were changed."""
+map_changed: list[Callable[[Any], object]] = []
+"""Called with the context after a map was shown, hidden or brought up to date."""
 comfort_changed: list[Callable[[Any], object]] = []
 """Called with the context after the threshold of comfort was changed."""
 live_switched: list[Callable[[Any], object]] = []
@@ -45,6 +49,12 @@ def set_native_problem(text: str) -> None:
     """Remember why the native module cannot be used."""
     global native_problem
     native_problem = text
+
+
+def set_last_error(text: str) -> None:
+    """Remember what a button reported as an error."""
+    global last_error
+    last_error = text
 
 
 def set_stale(scene_name: str, stale: bool) -> None:

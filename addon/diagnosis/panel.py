@@ -46,7 +46,8 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        loaded = context.scene.thenar_recordings.items or context.scene.thenar_diagnosis.is_valid
+        return not status.native_problem and bool(loaded)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_diagnosis

@@ -6,6 +6,7 @@ from bpy.props import EnumProperty, FloatProperty
 from .. import status
 from ..hand_shape import framing
 from ..operators import polling, running
+from ..panels import preferences
 from . import build, posing
 from .poses import LABELS
 
@@ -29,6 +30,11 @@ class THENAR_OT_make_hand(bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         return can_make(cls, context)
+
+    def invoke(self, context, event):
+        """From a button, the preferences say which hand."""
+        preferences.fill(context, self.properties, {"sex": "sex", "side": "side", "percentile": "percentile"})
+        return self.execute(context)
 
     def execute(self, context):
         hand = running.attempt(self, self._make, context)

@@ -2,8 +2,7 @@
 
 import bpy
 
-from .. import status
-from ..panels.main import Tab
+from ..panels.main import Tab, has_hand
 from . import roles
 
 
@@ -16,7 +15,7 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return has_hand(context)
 
     def draw(self, context):
         layout = self.layout

@@ -1,20 +1,20 @@
-"""The 3D view turned to a hand that was just made."""
+"""The 3D view turned to what was just made or added."""
 
 import bpy
 import numpy as np
 from mathutils import Vector
 
 ROOM = 2.5
-"""Distance of the view over half the hand's longest side: all of it is seen at the lens of a new view."""
+"""Distance of the view over half the longest side: all of it is seen at the lens of a new view."""
 
 
-def frame(context, hand):
-    """Frame `hand` in the 3D view in which it was asked for, or in all of the window; nothing in background."""
+def frame(context, *objects):
+    """Frame `objects` in the 3D view in which it was asked for, or in all of the window; nothing in background."""
     if bpy.app.background or context.window is None:
         return
     asked = context.area
     areas = [asked] if asked is not None and asked.type == "VIEW_3D" else context.window.screen.areas
-    corners = np.array([hand.matrix_world @ Vector(corner) for corner in hand.bound_box])
+    corners = np.array([obj.matrix_world @ Vector(corner) for obj in objects for corner in obj.bound_box])
     low, high = corners.min(axis=0), corners.max(axis=0)
     for area in areas:
         if area.type == "VIEW_3D":

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import comfort, map_settings, maps, names, tissue, workflow
+from .. import comfort, map_settings, maps, names, status, tissue, workflow
 from ..scene import attributes, colors, copies, owned, shading
 from ..views import compositor
 from . import polling, running
@@ -40,6 +40,8 @@ def refresh(context):
         if obj.data.is_editable and obj.mode != "EDIT":
             colors.recolor(obj, look, colors.SKIN if is_skin else colors.BARE)
     compositor.update_legend(context.scene)
+    for follow in status.map_changed:
+        follow(context)
     running.redraw(context)
 
 

@@ -23,6 +23,8 @@ class THENAR_OT_export(bpy.types.Operator, ExportHelper):
         return polling.allows(cls, polling.no_result(context))
 
     def execute(self, context):
+        if bpy.ops.thenar.look_back.poll():
+            bpy.ops.thenar.look_back()  # exporters leave out what a look hides
         written = running.attempt(self, export.write, context, bpy.path.abspath(self.filepath))
         if written is None:
             return {"CANCELLED"}

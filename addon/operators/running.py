@@ -161,6 +161,7 @@ def attempt(operator, action, *arguments):
     try:
         return action(*arguments)
     except (Refusal, *native.error_types()) as error:
+        status.set_last_error(f"{operator.bl_idname}: {sentence(error)}")
         operator.report({"ERROR"}, sentence(error))
         refused = getattr(operator, "refused", None)
         if refused is not None:

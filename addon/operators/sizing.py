@@ -3,6 +3,7 @@
 import bpy
 
 from .. import workflow
+from ..hand_shape import framing
 from ..scene import sizes
 from . import polling, running
 
@@ -18,7 +19,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_both(cls, context)
+        return _can_scale(cls, context)
 
     def execute(self, context):
         settings = context.scene.thenar
@@ -26,6 +27,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
         found = running.attempt(self, sizes.scale_product, context, settings.hand, parts, self.factor)
         if found is None:
             return {"CANCELLED"}
+        framing.frame(context, *parts)
         self.report({"INFO"}, str(found))
         running.redraw(context)
         return {"FINISHED"}
@@ -40,7 +42,7 @@ class THENAR_OT_accept_size(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return _has_both(cls, context)
+        return _can_scale(cls, context)
 
     def execute(self, context):
         settings = context.scene.thenar
@@ -48,8 +50,8 @@ class THENAR_OT_accept_size(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _has_both(cls, context):
-    return polling.allows(cls, polling.no_hand(context), polling.no_product(context), polling.busy())
+def _can_scale(cls, context):
+    return polling.allows(cls, polling.no_product(context), polling.busy())
 
 
 CLASSES = (THENAR_OT_scale_product, THENAR_OT_accept_size)

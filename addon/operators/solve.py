@@ -3,6 +3,7 @@
 import bpy
 
 from .. import grades, workflow
+from ..panels import preferences
 from ..scene import regions
 from . import computing, display, polling, running, selecting
 
@@ -15,9 +16,23 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     noun = "Solve"
 
+    show_map: bpy.props.BoolProperty(
+        name="Show Map",
+        description="Show the pressure after the solve; the button takes this from the preferences",
+        options={"SKIP_SAVE"},
+    )
+
     @classmethod
     def poll(cls, context):
         return polling.can_compute(cls, context)
+
+    def invoke(self, context, event):
+        """From a button, the preferences say whether the map comes on."""
+        if not self.properties.is_property_set("show_map"):
+            self.show_map = preferences.get(context, "map_after_solve", True)
+        if not context.scene.thenar.result.is_valid:
+            preferences.fill(context, context.scene.thenar, {"palette": "palette", "range_kpa": "range_kpa"})
+        return super().invoke(context, event)
 
     def steps(self, context):
         forget_refusal(context)
@@ -37,7 +52,12 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, result):
         """The last message is the one that is seen: the gravest."""
-        display.refresh(context)
+        if self.show_map and not context.scene.thenar.hand.thenar.shows_pressure:
+            display.show(context)
+            if bpy.ops.thenar.look.poll():
+                bpy.ops.thenar.look(kind="GLASS")
+        else:
+            display.refresh(context)
         for text in result.warnings:
             self.report({"WARNING"}, running.sentence(text.name))
         numbers = (

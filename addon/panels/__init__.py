@@ -12,6 +12,7 @@ def register():
     for module in _MODULES:
         for cls in module.CLASSES:
             bpy.utils.register_class(cls)
+    preferences.apply_threads(bpy.context)
 
 
 def unregister():

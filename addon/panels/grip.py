@@ -2,11 +2,10 @@
 
 import bpy
 
-from .. import status
 from ..scene.parts import product_parts
 from ..soft_grip import settings as grip_settings
 from . import text
-from .main import Tab
+from .main import Tab, has_hand
 
 
 class THENAR_PT_grip(Tab, bpy.types.Panel):
@@ -19,7 +18,7 @@ class THENAR_PT_grip(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and bool(product_parts(context.scene.thenar))
+        return has_hand(context) and bool(product_parts(context.scene.thenar))
 
     def draw(self, context):
         layout = self.layout

@@ -3,10 +3,9 @@
 import bpy
 
 from .. import effect_settings, grades, maps, names, status
-from ..scene import sizes
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
-from . import text
+from . import start, text
 from .preferences import draw_state
 
 
@@ -18,6 +17,26 @@ class Tab:
     bl_category = "Thenar"
 
 
+def has_hand(context):
+    """Whether a hand is chosen that can be pressed."""
+    hand = context.scene.thenar.hand
+    return not status.native_problem and hand is not None and hand.type == "MESH"
+
+
+def has_result(context):
+    """Whether there is a result to read: of a solve, or of a bake that plays."""
+    hand = context.scene.thenar.hand
+    return context.scene.thenar.result.is_valid or (hand is not None and bool(hand.thenar.bake_path))
+
+
+def has_map(context):
+    """Whether the hand shows a map, or has one to show."""
+    if not has_hand(context):
+        return False
+    hand = context.scene.thenar.hand
+    return has_result(context) or hand.thenar.shows_pressure or names.PRESSURE_KPA in hand.data.attributes
+
+
 class OfHand(Tab):
     """A closed part of the tab that is there once a hand is chosen."""
 
@@ -26,8 +45,7 @@ class OfHand(Tab):
 
     @classmethod
     def poll(cls, context):
-        hand = context.scene.thenar.hand
-        return not status.native_problem and hand is not None and hand.type == "MESH"
+        return has_hand(context)
 
 
 class Physics:
@@ -54,30 +72,37 @@ class THENAR_PT_main(Tab, bpy.types.Panel):
             draw_state(layout, context)
             return
         settings = context.scene.thenar
+        if settings.hand is None:
+            start.draw_cards(layout, context)
+            return
         layout.use_property_split = True
         layout.use_property_decorate = False
         _draw_state(layout, context)
         column = layout.column()
         column.prop(settings, "hand")
-        column.prop(settings, "product")
+        row = column.row(align=True)
+        row.prop(settings, "product")
+        row.operator("thenar.add_product", text="", icon="IMPORT")
         column.prop(settings, "product_collection")
-        _draw_sizes(layout, context)
-        if settings.hand is None:
-            layout.operator("thenar.pick", icon="RESTRICT_SELECT_OFF")
+        start.draw_sizes(layout, context)
+        if not product_parts(settings):
+            start.draw_add(layout)
+            return
         layout.prop(settings, "model")
         _draw_force(layout, settings)
-        _draw_solve(layout)
+        _draw_next(layout, context)
         _draw_live(layout, context)
-        row = layout.row(align=True)
-        row.operator("thenar.clear", text="Clear", icon="TRASH")
-        row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
+        if bpy.ops.thenar.clear.poll():
+            row = layout.row(align=True)
+            row.operator("thenar.clear", text="Clear", icon="TRASH")
+            row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
 
 
 def _draw_state(layout, context):
     settings, column = context.scene.thenar, layout.column(align=True)
     hand = settings.hand
-    if hand is None or hand.type != "MESH":
-        column.label(text="Choose a hand and a product", icon="INFO")
+    if hand.type != "MESH":
+        column.label(text="Choose a mesh as the hand", icon="INFO")
         return
     count = sum(modifier.show_viewport for modifier in hand.modifiers)
     column.label(
@@ -106,26 +131,6 @@ def _draw_state(layout, context):
     _draw_refusal(layout, context, settings.refusal)
 
 
-def _draw_sizes(layout, context):
-    """Hand's and product's size; in place of the product's, if it is not believed, the ways out."""
-    settings = context.scene.thenar
-    parts = product_parts(settings)
-    if settings.hand is None or not parts:
-        return
-    measured = sizes.glance(context.scene, settings.hand, parts)
-    if not measured.factors:
-        row = layout.row()
-        row.active = False
-        row.label(text=str(measured), icon="DRIVER_DISTANCE")
-        return
-    box = layout.box().column(align=True)
-    text.alert(box, context, f"{measured}: read in the wrong unit?")
-    for factor in measured.factors:
-        size = sizes.length(factor * measured.product_mm)
-        box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {size}").factor = factor
-    box.operator("thenar.accept_size", text=f"Keep size {sizes.length(measured.product_mm)}")
-
-
 def _draw_refusal(layout, context, refusal):
     """Why the last press gave no result, with what mends it."""
     if not refusal.text:
@@ -151,12 +156,31 @@ def _draw_force(layout, settings):
             column.prop(settings, "direction", text=" ")
 
 
-def _draw_solve(layout):
+def _draw_next(layout, context):
+    """The buttons to press next: a grasp while the hand is at rest, and Solve."""
     if text.progress(layout):
         return
+    settings = context.scene.thenar
+    if not settings.result.is_valid and not _is_posed(settings.hand) and bpy.ops.thenar.fit_grasp.poll():
+        row = layout.row()
+        row.scale_y = start.BIG
+        row.operator("thenar.fit_grasp", text="Grasp the Product", icon="CON_ARMATURE").place = "LAY"
     row = layout.row()
-    row.scale_y = 1.6
+    row.scale_y = start.BIG
     row.operator("thenar.solve", text="Solve", icon="PLAY")
+
+
+def _is_posed(hand):
+    """Whether a bone of the hand was turned or moved from its rest."""
+    rigs = [
+        modifier.object for modifier in hand.modifiers if modifier.type == "ARMATURE" and modifier.object is not None
+    ]
+    bones = [bone for rig in rigs if rig.pose is not None for bone in rig.pose.bones]
+    return any(bone.matrix_basis.to_quaternion().angle > AT_REST or bone.location.length > AT_REST for bone in bones)
+
+
+AT_REST = 1e-3
+"""Turn (rad) and move (units) of a bone up to which it rests."""
 
 
 def _draw_live(layout, context):
@@ -182,7 +206,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return has_map(context)
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.thenar
@@ -214,6 +238,19 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         button.restore = kept
 
 
+def draw_looks(layout):
+    """The view buttons, and the way back."""
+    flow = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for kind, title in LOOKS:
+        flow.operator("thenar.look", text=title).kind = kind
+    if bpy.ops.thenar.look_back.poll():
+        layout.operator("thenar.look_back", icon="LOOP_BACK")
+
+
+LOOKS = (("OPENED", "Hand Opened"), ("PALM", "Palm"), ("PRODUCT", "Product"), ("APART", "Apart"))
+"""The view buttons in their order."""
+
+
 class THENAR_PT_physics(Physics, bpy.types.Panel):
     """The sidebar's main panel in the physics properties."""
 
@@ -229,6 +266,10 @@ class THENAR_PT_physics_display(Physics, bpy.types.Panel):
     bl_order = 2
     draw = THENAR_PT_display.draw
 
+    @classmethod
+    def poll(cls, context):
+        return Physics.poll(context) and has_map(context)
+
 
 class THENAR_PT_output(Tab, bpy.types.Panel):
     """Frames and files."""
@@ -240,7 +281,7 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return has_hand(context) and bool(product_parts(context.scene.thenar))
 
     def draw(self, context):
         layout, scene = self.layout, context.scene

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import material_settings
+from .. import maps, material_settings
 from . import text
 from .main import OfHand
 
@@ -28,6 +28,7 @@ class THENAR_PT_materials(OfHand, bpy.types.Panel):
             layout.label(text="The whole mesh is one region", icon="MESH_DATA")
             material = state.default_material
         layout.operator("thenar.assign_regions", icon="GROUP_VERTEX")
+        layout.operator("thenar.show_map", text="Show Thickness", icon="SHADING_RENDERED").kind = maps.THICKNESS
         _draw_material(layout, material, context)
 
 

@@ -5,7 +5,7 @@ import bpy
 from .. import grades, maps, status
 from . import text
 from .lists import SHARE, brief, columns
-from .main import Physics, Tab
+from .main import Physics, Tab, draw_looks, has_result
 
 
 class THENAR_PT_result(Tab, bpy.types.Panel):
@@ -17,13 +17,12 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return not status.native_problem and has_result(context)
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
+        draw_looks(layout)
         if not result.is_valid:
-            if not THENAR_PT_bake.poll(context):
-                layout.label(text="Solve to see forces and pressures", icon="INFO")
             draw_maps(layout, context.scene.thenar)
             return
         _draw_grade(layout, context, result)
@@ -88,6 +87,10 @@ class THENAR_PT_physics_result(Physics, bpy.types.Panel):
     bl_parent_id = "THENAR_PT_physics"
     bl_order = 1
     draw = THENAR_PT_result.draw
+
+    @classmethod
+    def poll(cls, context):
+        return Physics.poll(context) and THENAR_PT_result.poll(context)
 
 
 class OfResult(Tab):

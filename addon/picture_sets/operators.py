@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from .. import status
 from ..operators import computing, polling
+from ..panels import preferences
 from ..scene.checks import Refusal
 from . import order as orders
 from . import process
@@ -51,6 +52,11 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
             polling.busy(),
         )
         return polling.allows(cls, *problems, polling.live(context), polling.wrong_mode(context))
+
+    def invoke(self, context, event):
+        """From a button, the preferences name the folder where the scene names none."""
+        preferences.fill(context, context.scene.thenar_pictures, {"folder": "folder"})
+        return super().invoke(context, event)
 
     def steps(self, context):
         chosen = context.scene.thenar_pictures

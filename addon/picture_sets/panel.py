@@ -19,7 +19,7 @@ class THENAR_PT_pictures(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return not status.native_problem and context.scene.thenar.result.is_valid
 
     def draw(self, context):
         layout, chosen = self.layout, context.scene.thenar_pictures

@@ -14,7 +14,8 @@ from ..operators import display
 from ..scene import mesh, own, shading, units
 from ..scene.checks import Refusal
 
-_SOLID = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+"""Types of objects that have a surface."""
 _OURS = {names.LIVE_MODIFIER, names.SHOWN_MODIFIER, names.BAKE_MODIFIER}
 
 
@@ -86,25 +87,25 @@ def gather(context):
     product = [_product(context, obj) for obj, is_skin in carriers.items() if not is_skin]
     copied = {obj.thenar.copy_of for obj in carriers}
     plain = [part for part in display.workflow.product_parts(settings) if part not in carriers]
-    product += [_still(context, part, "product", False) for part in plain if part.name not in copied]
+    product += [still(context, part, "product", False) for part in plain if part.name not in copied]
     tops = {_top(obj) for obj in (hand, *display.workflow.product_parts(settings))}
     taken = {hand, *carriers, *display.workflow.product_parts(settings)}
     others = [
-        _still(context, obj, "other", False)
+        still(context, obj, "other", False)
         for obj in context.scene.objects
-        if obj.type in _SOLID and obj not in taken and _top(obj) in tops and not obj.hide_render and obj.visible_get()
+        if obj.type in SURFACES and obj not in taken and _top(obj) in tops and not obj.hide_render and obj.visible_get()
     ]
-    posed = _still(context, hand, "hand", True)
-    return Subject(posed, _opened(context, hand), product, others, units.mm_per_unit(context.scene))
+    posed = still(context, hand, "hand", True)
+    return Subject(posed, opened(context, hand), product, others, units.mm_per_unit(context.scene))
 
 
 def _product(context, obj):
     if not obj.thenar.copy_of:
-        return _still(context, obj, "product", True)
+        return still(context, obj, "product", True)
     return Solid(obj.data.copy(), np.array(obj.matrix_world, float), "product", True)
 
 
-def _still(context, obj, kind, has_map):
+def still(context, obj, kind, has_map):
     """The object as it is evaluated now."""
     graph = context.evaluated_depsgraph_get()
     made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), preserve_all_data_layers=True, depsgraph=graph)
@@ -112,7 +113,7 @@ def _still(context, obj, kind, has_map):
     return Solid(made, np.array(obj.matrix_world, float), kind, has_map)
 
 
-def _opened(context, hand):
+def opened(context, hand):
     """The hand in its rest pose, without the contact's shape."""
     copy = hand.copy()
     copy.data = hand.data.copy()
@@ -125,7 +126,7 @@ def _opened(context, hand):
         if key is not None:
             key.mute = True
         context.view_layer.update()
-        return _still(context, copy, "hand", True)
+        return still(context, copy, "hand", True)
     finally:
         data = copy.data
         bpy.data.objects.remove(copy)

@@ -4,7 +4,7 @@ import bpy
 
 from .. import status
 from ..panels import text
-from ..panels.main import Tab
+from ..panels.main import Tab, has_hand
 from . import settings
 
 SHARE, PLACE_SHARE = 0.5, 0.45
@@ -31,7 +31,7 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem
+        return has_hand(context) or (not status.native_problem and bool(context.scene.thenar_recordings.items))
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings

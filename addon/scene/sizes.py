@@ -21,6 +21,8 @@ SHORT = 1.0 / 50.0
 """Products shorter than this share of the hand are asked about: 4 mm for a whole hand, less for a patch of skin."""
 USUAL_MM = (10.0, 1000.0)
 """Longest side of what a hand holds or presses, to which a factor must bring it."""
+HAND_MM = 190.0
+"""Length of a hand where none is chosen yet: an adult's."""
 FEW = 16
 """Parts that are measured at every redraw."""
 _KEPT = 20.0
@@ -29,7 +31,10 @@ _KEPT = 20.0
 
 @dataclass(frozen=True)
 class Sizes:
-    """Longest sides, mm; `factors` bring a product that is not believed to a usual size, the likeliest first."""
+    """Longest sides, mm; `factors` bring a product that is not believed to a usual size, the likeliest first.
+
+    A product that was just read from a file is believed between 10 mm and 1 m; others, from 1/50 of the hand to 8 m.
+    """
 
     hand_mm: float
     product_mm: float
@@ -42,19 +47,19 @@ class Sizes:
 _kept: dict[str, tuple[float, tuple[str, int, str], Sizes]] = {}
 
 
-def measure(scene: Scene, hand: Object, parts: Sequence[Object]) -> Sizes:
+def measure(scene: Scene, hand: Object | None, parts: Sequence[Object]) -> Sizes:
     """Sizes by the bounding boxes as last evaluated, and factors where the product's is not believed."""
     sizes = _measured(scene, hand, parts)
     return _measured(scene, hand, parts, without_loose=True) if sizes.factors else sizes
 
 
-def glance(scene: Scene, hand: Object, parts: Sequence[Object]) -> Sizes:
+def glance(scene: Scene, hand: Object | None, parts: Sequence[Object]) -> Sizes:
     """The same for a panel: kept a moment where there are many parts."""
     if len(parts) <= FEW:
         return measure(scene, hand, parts)
     kept = _kept.get(scene.name)
     began = time.monotonic()
-    wanted = hand.name, len(parts), parts[0].name
+    wanted = hand.name if hand is not None else "", len(parts), parts[0].name
     if kept is not None and began < kept[0] and kept[1] == wanted:
         return kept[2]
     sizes = measure(scene, hand, parts)
@@ -76,12 +81,12 @@ def check_product_size(context: Context, hand: Object, parts: Sequence[Object]) 
     )
 
 
-def accept(scene: Scene, hand: Object, parts: Sequence[Object]) -> None:
+def accept(scene: Scene, hand: Object | None, parts: Sequence[Object]) -> None:
     """Believe the product's size from now on, as long as it stays so."""
     scene.thenar.accepted_mm = measure(scene, hand, parts).product_mm
 
 
-def scale_product(context: Context, hand: Object, parts: Sequence[Object], factor: float) -> Sizes:
+def scale_product(context: Context, hand: Object | None, parts: Sequence[Object], factor: float) -> Sizes:
     """Scale the whole product by `factor`; the parts keep their places to each other.
 
     One object is scaled about its own origin, several about the world's, as their importer would have. Returns the new
@@ -100,7 +105,7 @@ def scale_product(context: Context, hand: Object, parts: Sequence[Object], facto
     context.view_layer.update()
     after = measure(context.scene, hand, parts)
     problem = ""
-    if abs(after.hand_mm - before.hand_mm) > 1e-3 * before.hand_mm:
+    if hand is not None and abs(after.hand_mm - before.hand_mm) > 1e-3 * before.hand_mm:
         problem = f"the hand '{hand.name}' hangs on the product and would be scaled too; clear its parent first"
     elif abs(after.product_mm - factor * before.product_mm) > 1e-3 * factor * before.product_mm:
         held = ", ".join(f"'{part.name}'" for part in roots)
@@ -118,16 +123,20 @@ def length(mm: float) -> str:
     return f"{mm / 1000:.4g} m" if mm >= 1000.0 else f"{mm:.3g} mm"
 
 
-def _measured(scene: Scene, hand: Object, parts: Sequence[Object], without_loose: bool = False) -> Sizes:
+def _measured(scene: Scene, hand: Object | None, parts: Sequence[Object], without_loose: bool = False) -> Sizes:
     """By boxes, or by the vertices of faces where a mesh has others: they take longer, and change the size rarely."""
     scale = units.mm_per_unit(scene)
     sides = np.sort(np.ptp(_corners(parts, without_loose), axis=0)) * scale
-    hand_mm = float(np.ptp(_corners([hand], without_loose), axis=0).max() * scale)
+    hand_mm = HAND_MM
+    if hand is not None:
+        hand_mm = float(np.ptp(_corners([hand], without_loose), axis=0).max() * scale)
     product_mm = float(sides[-1])
     too_long = product_mm > LONG_MM and sides[0] > THICK_MM
-    is_doubtful = (too_long or product_mm < SHORT * hand_mm) and not _is_accepted(scene, product_mm)
-    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault: reported later
     low, high = USUAL_MM
+    is_unusual = _is_near(product_mm, scene.thenar.added_mm) and not low <= product_mm <= high
+    is_doubtful = too_long or product_mm < SHORT * hand_mm or is_unusual
+    is_doubtful &= not _is_near(product_mm, scene.thenar.accepted_mm)
+    is_doubtful &= checks.HAND_MM[0] <= hand_mm <= checks.HAND_MM[1]  # else the hand is at fault: reported later
     usual = [factor for factor in FACTORS if low <= factor * product_mm <= high] if is_doubtful else []
     nearness = sorted(usual, key=lambda factor: abs(np.log(factor * product_mm / 150.0)))
     return Sizes(hand_mm, product_mm, tuple(nearness))
@@ -143,8 +152,8 @@ def _scaled(part: Object, roots: Sequence[Object], factor: float) -> Matrix:
     return matrix
 
 
-def _is_accepted(scene: Scene, product_mm: float) -> bool:
-    return bool(abs(product_mm - scene.thenar.accepted_mm) < 0.01 * product_mm)
+def _is_near(product_mm: float, remembered_mm: float) -> bool:
+    return bool(abs(product_mm - remembered_mm) < 0.01 * product_mm)
 
 
 def _corners(objects: Iterable[Object], without_loose: bool = False) -> Floats:

@@ -135,9 +135,39 @@ def too_long(drawn):
     ]
 
 
-def test_an_empty_scene_is_drawn():
+def test_an_empty_scene_shows_three_cards_and_nothing_that_cannot_act():
     drawn = draw()
-    assert {"THENAR_PT_main", "THENAR_PT_recordings", "THENAR_PT_diagnosis"} <= set(drawn)
+    assert set(drawn) == {"THENAR_PT_main"}
+    said = [words for words, _ in drawn["THENAR_PT_main"]]
+    cards = ["Try a sample", "I have a product: make me a hand", "I have a hand: pick it"]
+    assert [words for words in said if words in cards] == cards
+    assert "Add Product..." in said and "Solve" not in said and "Make Hand" not in said
+    assert not too_long(drawn)
+
+
+def test_the_cards_go_on_from_what_is_there():
+    product = stage.plate()
+    settings = bpy.context.scene.thenar
+    settings.product, settings.added_mm = product, 30e3
+    product.scale = (1000, 1000, 1000)
+    bpy.context.view_layer.update()
+    drawn = draw()
+    said = [words for words, _ in drawn["THENAR_PT_main"]]
+    assert "Scale by 0.001, to 30 mm" in said and "Keep size 30 m" in said
+    assert " ".join(said).count("Is the product 30 m long?") == 1
+    assert "Make Hand" not in said and "Use 'Plate'" not in said and "Add Product..." not in said
+    assert not too_long(drawn)
+    bpy.ops.thenar.accept_size()
+    said = [words for words, _ in draw()["THENAR_PT_main"]]
+    assert "Make Hand" in said and "Product 30 m" in said
+    settings.product = None
+    assert "Use 'Plate'" in [words for words, _ in draw()["THENAR_PT_main"]]
+    settings.product = None
+    settings.hand = stage.pad()
+    drawn = draw()
+    said = [words for words, _ in drawn["THENAR_PT_main"]]
+    assert "Add Product..." in said and "Solve" not in said and "Try a sample" not in said
+    assert not {"THENAR_PT_result", "THENAR_PT_display", "THENAR_PT_output", "THENAR_PT_diagnosis"} & set(drawn)
     assert not too_long(drawn)
 
 

@@ -1,0 +1,104 @@
+"""The three cards that stand in the main panel while no hand is set: each button does the whole step."""
+
+import bpy
+
+from ..scene import sizes
+from ..scene.parts import product_parts
+from . import text
+
+_LONGEST = 24
+"""Letters of a name on a button."""
+BIG = 1.5
+"""Height of the button to press next."""
+
+
+def draw_cards(layout, context):
+    """Sample, product without a hand, hand that is there; below them what needs no hand."""
+    if text.progress(layout):
+        return
+    layout.use_property_split = False
+    text.faint(layout, context, "No hand is set yet. Begin here:")
+    _draw_sample(layout.box().column(), context)
+    _draw_product(layout.box().column(), context)
+    _draw_hand(layout.box().column(), context)
+    layout.operator("thenar.load_recording", text="Load Recording or Study...", icon="MESH_GRID")
+
+
+def draw_sizes(layout, context):
+    """The product's size, and the hand's; in place of a size that is not believed, the ways out.
+
+    Returns whether the size is believed.
+    """
+    settings = context.scene.thenar
+    parts = product_parts(settings)
+    if not parts:
+        return True
+    measured = sizes.glance(context.scene, settings.hand, parts)
+    size = sizes.length(measured.product_mm)
+    if not measured.factors:
+        row = layout.row()
+        row.active = False
+        row.label(text=str(measured) if settings.hand is not None else f"Product {size}", icon="DRIVER_DISTANCE")
+        return True
+    box = layout.box().column(align=True)
+    if settings.hand is None:
+        others = [sizes.length(factor * measured.product_mm) for factor in measured.factors]
+        text.alert(box, context, f"Is the product {size} long" + (f", or {others[0]}?" if len(others) == 1 else "?"))
+    else:
+        text.alert(box, context, f"{measured}: read in the wrong unit?")
+    for factor in measured.factors:
+        right = sizes.length(factor * measured.product_mm)
+        box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {right}").factor = factor
+    box.operator("thenar.accept_size", text=f"Keep size {size}")
+    return False
+
+
+def draw_add(layout):
+    """The button that reads the product's file, to press next."""
+    row = layout.row()
+    row.scale_y = BIG
+    row.operator("thenar.add_product", text="Add Product...", icon="IMPORT")
+
+
+def _draw_sample(column, context):
+    column.label(text="Try a sample", icon="SCENE_DATA")
+    text.faint(column, context, "A hand on a bar, ready to solve")
+    row = column.row()
+    row.scale_y = BIG
+    row.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "cylinder_48"
+    column.operator_menu_enum("thenar.add_sample", "kind", text="Other Samples")
+
+
+def _draw_product(column, context):
+    settings = context.scene.thenar
+    column.label(text="I have a product: make me a hand", icon="MESH_CYLINDER")
+    if not product_parts(settings):
+        draw_add(column)
+        text.faint(column, context, "STL, OBJ, PLY, GLB, USD, FBX; or choose an object of the scene:")
+        column.prop(settings, "product", text="")
+        return
+    chosen = settings.product_collection if settings.product is None else settings.product
+    row = column.row(align=True)
+    row.label(text=chosen.name, icon="CHECKMARK")
+    row.operator("thenar.add_product", text="", icon="IMPORT")
+    if not draw_sizes(column, context):
+        return
+    row = column.row()
+    row.scale_y = BIG
+    row.operator("thenar.make_hand", text="Make Hand", icon="VIEW_PAN")
+
+
+def _draw_hand(column, context):
+    settings = context.scene.thenar
+    column.label(text="I have a hand: pick it", icon="VIEW_PAN")
+    if bpy.ops.thenar.pick.poll():
+        row = column.row()
+        row.scale_y = BIG
+        row.operator("thenar.pick", text="Use Selected Hand and Product", icon="RESTRICT_SELECT_OFF")
+    elif bpy.ops.thenar.pick_hand.poll() and context.object not in product_parts(settings):
+        row = column.row()
+        row.scale_y = BIG
+        row.operator("thenar.pick_hand", text=f"Use '{context.object.name[:_LONGEST]}'", icon="RESTRICT_SELECT_OFF")
+    else:
+        text.faint(column, context, "Click its mesh in the 3D view, or choose it:")
+    column.prop(settings, "hand", text="")
