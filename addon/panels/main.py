@@ -5,7 +5,7 @@ import bpy
 from .. import effect_settings, grades, maps, names, status
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
-from . import start, text
+from . import manual, start, text
 from .preferences import draw_state
 
 
@@ -15,6 +15,10 @@ class Tab:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Thenar"
+
+    def draw_header_preset(self, context):
+        """A question mark that opens the panel's own heading of the guide."""
+        manual.draw(self.layout, f"guide.html#{manual.heading_of(self.bl_label)}")
 
 
 def has_hand(context):
@@ -137,10 +141,19 @@ def _draw_refusal(layout, context, refusal):
         return
     box = layout.box()
     text.alert(box, context, refusal.text)
+    _draw_explained(box, refusal.text)
     row = box.row(align=True)
     row.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
     if bpy.ops.thenar.fit_grasp.poll():
         row.operator("thenar.grasp_lighter", text="Lighter Grasp", icon="HAND")
+
+
+def _draw_explained(layout, message):
+    """A button that opens the entry of Troubleshooting on a message, where there is one."""
+    page = manual.page_of_message(message)
+    if page:
+        button = layout.operator("wm.url_open", text="Why, and What to Do", icon="HELP")
+        button.url = manual.address(page)
 
 
 def _draw_force(layout, settings):

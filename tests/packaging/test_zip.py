@@ -1,5 +1,6 @@
 """The extension zip: holds the add-on, the wheel and the license, nothing else, and Blender accepts it."""
 
+import html.parser
 import tomllib
 import zipfile
 
@@ -32,7 +33,39 @@ def test_zip_holds_the_add_on_and_nothing_else(names):
         if path.is_file() and not NOT_SHIPPED & set(path.parts) and not path.name.startswith(".")
     }
     expected = sources | {"LICENSE", f"wheels/{products.WHEEL.name}"}
-    assert {name for name in names if not name.endswith("/")} == expected
+    assert {name for name in names if not name.endswith("/") and not name.startswith("manual/")} == expected
+
+
+def test_manual_has_every_page_and_no_link_leads_nowhere(names):
+    """Read by the standard library's HTML parser: pages, anchors and pictures that are linked are in the zip."""
+    pages = {}
+    with zipfile.ZipFile(products.ZIP) as archive:
+        for name in sorted(names):
+            if name.startswith("manual/") and name.endswith(".html"):
+                pages[name.removeprefix("manual/")] = Links(archive.read(name).decode("utf-8"))
+    assert set(pages) == {f"{path.stem}.html" for path in (ADDON / "docs").glob("*.md")}
+    for name, page in pages.items():
+        assert len(page.anchors) > 2, name
+        for link in page.links:
+            if link.startswith("https://"):
+                continue
+            file, _, anchor = link.partition("#")
+            assert f"manual/{file or name}" in names, (name, link)
+            assert not anchor or anchor in pages[file or name].anchors, (name, link)
+
+
+class Links(html.parser.HTMLParser):
+    """`links` and `anchors` of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.links, self.anchors = [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        self.anchors.update(filter(None, [values.get("id")]))
+        self.links.extend(filter(None, [values.get("href"), values.get("src")]))
 
 
 def test_zip_holds_no_tests_caches_or_sources(names):

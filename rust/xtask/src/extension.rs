@@ -1,5 +1,6 @@
 //! The extension zip: staged from `addon`, built and validated by Blender's own script, installed.
 
+use crate::manual;
 use crate::places::{Places, shown};
 use crate::process;
 use crate::python::BLENDER_50;
@@ -38,6 +39,7 @@ pub fn build(places: &Places, wheel: &Path) -> Result<PathBuf> {
         .files(&places.root.join("addon"))?
         .files(&places.root.join("LICENSE"))?
         .files(wheel)?
+        .files(&places.root.join("rust/xtask/src/manual.rs"))?
         .finish();
     let ready = dist.join(".ready");
     if zip.is_file() && stamp::is_current(&ready, &key) {
@@ -132,7 +134,7 @@ pub fn bundle_command(places: &Places, wheels: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Copies the add-on, the license and the wheels, and writes the manifest that names them.
+/// Copies the add-on, the license and the wheels, makes the manual, and writes the manifest that names them.
 fn stage(places: &Places, wheels: &[PathBuf]) -> Result<PathBuf> {
     let stage = places.target.join("stage");
     clear(&stage)?;
@@ -146,6 +148,7 @@ fn stage(places: &Places, wheels: &[PathBuf]) -> Result<PathBuf> {
         }
     }
     copy(&places.root.join("LICENSE"), &stage.join("LICENSE"))?;
+    manual::write(&addon.join("docs"), &stage.join("manual"))?;
     let mut names = Vec::new();
     for wheel in wheels {
         let name = wheel

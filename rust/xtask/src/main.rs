@@ -6,6 +6,7 @@ mod stamp;
 mod python;
 mod wheel;
 mod extension;
+mod manual;
 mod setup;
 mod testing;
 mod tally;
