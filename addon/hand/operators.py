@@ -67,7 +67,7 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
 
 class THENAR_OT_guess_bones(bpy.types.Operator):
-    """Assign the bones by their names and their order"""
+    """Find the hand's bones by hierarchy and shape, whatever their names"""
 
     bl_idname = "thenar.guess_bones"
     bl_label = "Detect Bones"
@@ -81,7 +81,8 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
         found = running.attempt(self, posing.guess_bones, context, context.scene.thenar.hand)
         if found is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{found} bones found")
+        count, remarks = found
+        self.report({"WARNING" if remarks else "INFO"}, f"{count} bones found" + (f"; {remarks}" if remarks else ""))
         return {"FINISHED"}
 
 

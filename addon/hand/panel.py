@@ -44,6 +44,7 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         layout.use_property_decorate = False
         armature = armature_of(context)
         layout.operator("thenar.guess_bones", icon="VIEWZOOM")
+        layout.prop(armature.thenar_bones, "side")
         layout.prop(armature.thenar_bones, "axis")
         rows = layout.column()
         rows.use_property_split = False

@@ -1,0 +1,1 @@
+"""Hands that others rigged: bones recognised, shown and corrected, regions and poses read. Registration only."""
