@@ -1,6 +1,19 @@
 """Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
 
-from . import diagnosis, grasp, hand, hand_shape, handlers, live, operators, panels, picture_sets, recordings, settings
+from . import (
+    diagnosis,
+    grasp,
+    hand,
+    hand_shape,
+    handlers,
+    live,
+    operators,
+    panels,
+    picture_sets,
+    recordings,
+    rigging,
+    settings,
+)
 from .views import viewport
 
 _MODULES = (
@@ -8,6 +21,7 @@ _MODULES = (
     operators,
     panels,
     hand,
+    rigging,
     grasp,
     hand_shape,
     picture_sets,

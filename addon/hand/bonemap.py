@@ -1,7 +1,7 @@
 """Which bone of an armature plays which part: the settings on the armature object, filled by guess or by hand."""
 
 import bpy
-from bpy.props import EnumProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
 
 from . import roles
 
@@ -30,6 +30,9 @@ def _properties():
     out["axis"] = EnumProperty(name="Flexion axis", description="Axis about which the bones flex", items=AXES)
     out["side"] = EnumProperty(
         name="Side", description="Which hand of a body is meant; detect bones after a change", items=SIDES
+    )
+    out["show_digits"] = BoolProperty(
+        name="Show Digits", description="Draw the assigned digits as colored lines in the 3D view"
     )
     return out
 

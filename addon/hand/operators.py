@@ -8,6 +8,7 @@ from ..hand_shape import framing
 from ..operators import polling, running
 from . import build, posing
 from .poses import LABELS
+from .reading import armature_of
 
 
 class THENAR_OT_make_hand(bpy.types.Operator):
@@ -63,6 +64,8 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
     def execute(self, context):
         done = running.attempt(self, posing.apply_pose, context, context.scene.thenar.hand, self.name)
+        if not done:
+            _open_bones()
         return {"FINISHED"} if done else {"CANCELLED"}
 
 
@@ -80,10 +83,18 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
     def execute(self, context):
         found = running.attempt(self, posing.guess_bones, context, context.scene.thenar.hand)
         if found is None:
+            _open_bones()
             return {"CANCELLED"}
         count, remarks = found
+        armature_of(context.scene.thenar.hand).thenar_bones.show_digits = True
         self.report({"WARNING" if remarks else "INFO"}, f"{count} bones found" + (f"; {remarks}" if remarks else ""))
         return {"FINISHED"}
+
+
+def _open_bones():
+    """Show the *Bones* panel at the mouse, where what the message asks for can be done."""
+    if not bpy.app.background and bpy.context.window is not None:
+        bpy.ops.wm.call_panel("INVOKE_DEFAULT", name="THENAR_PT_bones", keep_open=True)
 
 
 def can_make(cls, context):

@@ -44,6 +44,11 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         layout.use_property_decorate = False
         armature = armature_of(context)
         layout.operator("thenar.guess_bones", icon="VIEWZOOM")
+        layout.operator("thenar.pick_digits", icon="RESTRICT_SELECT_OFF")
+        selected = layout.row(align=True)
+        for digit in ("thumb", *roles.FINGERS):
+            selected.operator("thenar.assign_digit", text=digit.capitalize()).digit = digit
+        layout.prop(armature.thenar_bones, "show_digits")
         layout.prop(armature.thenar_bones, "side")
         layout.prop(armature.thenar_bones, "axis")
         rows = layout.column()

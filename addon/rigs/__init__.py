@@ -1,1 +1,1 @@
-"""Hands that others rigged: bones recognised, shown and corrected, regions and poses read. Registration only."""
+"""Which bones are a hand, found by hierarchy and shape. Knows nothing of Blender."""

@@ -38,7 +38,7 @@ class Digits:
 
 def measure(skeleton, root, chains, thumb=None):
     """`Digits` of the fan `chains` on `root`; `thumb` says which digit is the thumb, else the geometry does."""
-    bones = _without_leaves(skeleton, root, chains)
+    bones = without_leaves(skeleton, root, chains)
     bases = np.array([skeleton.heads[chain[-3:][0]] for chain in bones])
     tips = np.array([_tip(skeleton, chain) for chain in bones])
     lengths = np.linalg.norm(tips - bases, axis=1)
@@ -62,7 +62,7 @@ def measure(skeleton, root, chains, thumb=None):
     return Digits(bones, found, tuple(row), bend, is_unclear, trouble)
 
 
-def _without_leaves(skeleton, root, chains):
+def without_leaves(skeleton, root, chains):
     """Bones per digit without the leaf bone that some exporters add behind the fingertip.
 
     Of four bones the first is a metacarpal if it is longer than its way from the wrist; else the last is a leaf.

@@ -293,9 +293,8 @@ def character_creator():
     for side, hand in hands.items():
         mark = side[0].upper()
         for number, at in ((1, 3), (2, 4)):
-            made.builder.add(
-                f"CC_Base_{mark}_ForearmTwist0{number}", f"CC_Base_{mark}_Forearm", bodies.arm(_sign(side))[at]
-            )
+            twist = f"CC_Base_{mark}_ForearmTwist0{number}"
+            made.builder.add(twist, f"CC_Base_{mark}_Forearm", bodies.arm(_sign(side))[at])
         fingers(made, side, hand, lambda d, k, m=mark: f"CC_Base_{m}_{word[d]}{k}")
     return made
 
@@ -376,27 +375,17 @@ def _sign(side):
     return dict(bodies.sides())[side]
 
 
-KINDS = {
-    function.__name__: function
-    for function in (
-        makehuman,
-        unreal4,
-        unreal5,
-        mixamo,
-        mixamo_with_tip_weights,
-        rigify_metarig,
-        rigify_deform,
-        auto_rig_pro,
-        openxr,
-        openxr_with_tip_weights,
-        openxr_flat,
-        vroid,
-        daz8,
-        daz9,
-        character_creator,
-        unity,
-        smplx,
-        biped,
-        bvh,
-    )
-}
+_ALL = (makehuman, unreal4, unreal5, mixamo, mixamo_with_tip_weights, rigify_metarig, rigify_deform, auto_rig_pro) + (
+    openxr,
+    openxr_with_tip_weights,
+    openxr_flat,
+    vroid,
+    daz8,
+    daz9,
+    character_creator,
+    unity,
+    smplx,
+    biped,
+    bvh,
+)
+KINDS = {function.__name__: function for function in _ALL}
