@@ -1,7 +1,7 @@
 """Operators of the hand: make it, pose it, name its bones."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import status
 from ..hand_shape import framing
@@ -76,6 +76,10 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
     bl_label = "Detect Bones"
     bl_options = {"REGISTER", "UNDO"}
 
+    with_regions: BoolProperty(
+        name="Regions", description="Paint the skin's regions too, if the hand lists none", default=True
+    )
+
     @classmethod
     def poll(cls, context):
         return can_pose(cls, context)
@@ -86,9 +90,25 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
             _open_bones()
             return {"CANCELLED"}
         count, remarks = found
-        armature_of(context.scene.thenar.hand).thenar_bones.show_digits = True
+        hand = context.scene.thenar.hand
+        armature_of(hand).thenar_bones.show_digits = True
         self.report({"WARNING" if remarks else "INFO"}, f"{count} bones found" + (f"; {remarks}" if remarks else ""))
+        if self.with_regions and _has_bone_groups_only(hand) and bpy.ops.thenar.regions_from_bones.poll():
+            _try_regions(self)
         return {"FINISHED"}
+
+
+def _has_bone_groups_only(hand):
+    """Whether no region is listed and every vertex group is a bone's: groups of one's own may be regions already."""
+    return not hand.thenar.materials and set(hand.vertex_groups.keys()) <= set(armature_of(hand).data.bones.keys())
+
+
+def _try_regions(operator):
+    """Regions as well; where they cannot be cut the bones stay, and the reason is shown as a warning."""
+    try:
+        bpy.ops.thenar.regions_from_bones()
+    except RuntimeError as error:
+        operator.report({"WARNING"}, str(error).removeprefix("Error: ").strip())
 
 
 def _open_bones():

@@ -45,9 +45,11 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         armature = armature_of(context)
         layout.operator("thenar.guess_bones", icon="VIEWZOOM")
         layout.operator("thenar.pick_digits", icon="RESTRICT_SELECT_OFF")
-        selected = layout.row(align=True)
+        layout.label(text="Selected bones are the")
+        selected = layout.grid_flow(row_major=True, columns=3, align=True)
         for digit in ("thumb", *roles.FINGERS):
             selected.operator("thenar.assign_digit", text=digit.capitalize()).digit = digit
+        layout.operator("thenar.regions_from_bones", icon="GROUP_VERTEX")
         layout.prop(armature.thenar_bones, "show_digits")
         layout.prop(armature.thenar_bones, "side")
         layout.prop(armature.thenar_bones, "axis")

@@ -2,12 +2,14 @@
 
 import bpy
 
-from . import operators, overlay
+from . import operators, overlay, regions
+
+CLASSES = (*operators.CLASSES, *regions.CLASSES)
 
 
 def register():
     """Register the operators and the drawing of recognised digits; the hand's module must be registered."""
-    for cls in operators.CLASSES:
+    for cls in CLASSES:
         bpy.utils.register_class(cls)
     overlay.register()
 
@@ -15,5 +17,5 @@ def register():
 def unregister():
     """Unregister them again."""
     overlay.unregister()
-    for cls in reversed(operators.CLASSES):
+    for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -46,7 +46,7 @@ def lines(armature):
     out = {}
     for digit in DIGITS:
         names = [known.get(f"{digit}_{segment}") for segment in digits.segments_of(digit)]
-        heads = [bones[name].head.copy() for name in names if name in bones]
+        heads = [bones[name].head.copy() for name in names if name and name in bones]
         if len(heads) > 1:
             heads.append(heads[-1] + 0.8 * (heads[-1] - heads[-2]))
             out[digit] = [armature.matrix_world @ head for head in heads]

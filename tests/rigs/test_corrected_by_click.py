@@ -84,6 +84,14 @@ def test_the_lines_follow_the_posed_joints(blender):
     assert overlay.shown() == {}
 
 
+def test_lines_of_a_rig_without_metacarpals_and_with_one_digit(blender):
+    body, rig, truth = scrambled(blender, "mixamo")
+    rig.thenar_bones.show_digits = True
+    assert overlay.shown() == {}
+    assigning.assign(bpy.context, body, "ring", [truth["ring_middle"]])
+    assert {digit: len(points) for digit, points in overlay.shown().items()} == {"ring": 4}
+
+
 def test_the_bone_under_the_mouse(blender):
     """Seen from above, one unit is 1000 pixels: a click beside a phalanx takes it, a click far off takes none."""
     body, rig, truth = scrambled(blender, "mixamo")
