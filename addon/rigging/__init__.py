@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import operators, overlay, regions
+from . import operators, overlay, region_map, regions
 
-CLASSES = (*operators.CLASSES, *regions.CLASSES)
+CLASSES = (*operators.CLASSES, *regions.CLASSES, *region_map.CLASSES)
 
 
 def register():
@@ -12,10 +12,12 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     overlay.register()
+    region_map.register()
 
 
 def unregister():
     """Unregister them again."""
+    region_map.unregister()
     overlay.unregister()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

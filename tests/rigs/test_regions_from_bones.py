@@ -7,7 +7,7 @@ import pytest
 from kinds import Made, fingers
 from rig_scenes import into_scene
 from thenar_blender.hand import bonemap, build, reading, roles
-from thenar_blender.rigging import regions
+from thenar_blender.rigging import region_map, regions
 from thenar_blender.rigs import skin_regions
 from thenar_blender.scene.checks import Refusal
 
@@ -131,6 +131,29 @@ def tube_scene(made, segments):
         hand.vertex_groups.new(name=name).add(rows, 1.0, "REPLACE")
     bpy.context.view_layer.update()
     return hand
+
+
+def test_the_map_colors_the_triangles_inside_regions_where_they_are(blender):
+    """Every triangle drawn has its three corners in regions, lies on the posed skin, and has its region's color."""
+    made = thenar.hand()
+    hand, rig = stripped(bpy.context, made)
+    bpy.ops.thenar.guess_bones()
+    rig.location = (0.5, 0.0, 0.2)
+    bpy.context.view_layer.update()
+    assert region_map.painted(bpy.context) is None
+    assert bpy.ops.thenar.show_regions() == {"FINISHED"}
+    corners, tints = region_map.painted(bpy.context)
+    numbers = regions.region_numbers(bpy.context, hand)
+    triangles = np.asarray(made["triangles"])
+    inside = triangles[(numbers[triangles] >= 0).all(axis=1)]
+    assert len(corners) == inside.size == len(tints)
+    want = np.asarray(made["vertices_mm"])[inside.ravel()] * 0.001 + [0.5, 0.0, 0.2]
+    assert np.abs(corners - want).max() < 0.002
+    table = region_map.colors(len(skin_regions.NAMES))
+    assert len({tuple(color) for color in table}) == len(skin_regions.NAMES)
+    assert np.array_equal(tints, table[numbers[inside.ravel()]])
+    bpy.ops.thenar.show_regions()
+    assert region_map.painted(bpy.context) is None
 
 
 def test_one_finger_gives_no_regions(blender):
