@@ -49,6 +49,7 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         selected = layout.grid_flow(row_major=True, columns=3, align=True)
         for digit in ("thumb", *roles.FINGERS):
             selected.operator("thenar.assign_digit", text=digit.capitalize()).digit = digit
+        layout.operator("thenar.join_bones", icon="CONSTRAINT_BONE")
         region_row = layout.row(align=True)
         region_row.operator("thenar.regions_from_bones", icon="GROUP_VERTEX")
         region_row.operator("thenar.show_regions", text="", icon="HIDE_OFF")

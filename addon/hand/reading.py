@@ -126,8 +126,8 @@ def _check_joined(rig, stored):
         before = roles.before_of(role, stored)
         if before in rig.names and name in rig.names and not below[rig.names.index(before), rig.names.index(name)]:
             raise RigError(
-                f"bone {name!r} does not hang on {before!r}, so a turn of one leaves the other behind; parent the "
-                "bones of each digit to each other in Edit Mode (Ctrl+P, Keep Offset)"
+                f"bone {name!r} does not hang on {before!r}, so a turn of one leaves the other behind; press "
+                "Join Loose Bones under Bones"
             )
 
 

@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import operators, overlay, region_map, regions
+from . import joining, operators, overlay, region_map, regions
 
-CLASSES = (*operators.CLASSES, *regions.CLASSES, *region_map.CLASSES)
+CLASSES = (*operators.CLASSES, *joining.CLASSES, *regions.CLASSES, *region_map.CLASSES)
 
 
 def register():

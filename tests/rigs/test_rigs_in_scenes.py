@@ -58,7 +58,7 @@ def test_what_was_assigned_stays_if_nothing_is_found(blender):
     assert bonemap.get_map(rig) == {"index_distal": "toe2-3.R"}
 
 
-def test_loose_bones_are_recognised_but_not_posed(blender):
+def test_loose_bones_are_posed_once_they_are_joined(blender):
     """The WebXR profile's file has no hierarchy: a turned knuckle would leave the fingertip behind."""
     made = KINDS["openxr_flat"]()
     body, rig = into_scene(made)
@@ -66,6 +66,14 @@ def test_loose_bones_are_recognised_but_not_posed(blender):
     assert bonemap.get_map(rig) == made.truth["right"]
     with pytest.raises(RigError, match="does not hang on 'right-index-finger-"):
         posing.apply_pose(bpy.context, body, "power_48")
+    places = {bone.name: bone.head_local.copy() for bone in rig.data.bones}
+    assert bpy.ops.thenar.join_bones() == {"FINISHED"}
+    assert all((rig.data.bones[name].head_local - place).length < 1e-6 for name, place in places.items())
+    posing.apply_pose(bpy.context, body, "power_48")
+    for finger in roles.FINGERS:
+        knuckle, tip = (rig.pose.bones[made.truth["right"][f"{finger}_{part}"]] for part in ("proximal", "distal"))
+        assert tip.head.z < knuckle.head.z - 0.01, finger
+    assert posing.guess_bones(bpy.context, body)[0] == 20
 
 
 @pytest.mark.parametrize("is_generated", [False, True])
