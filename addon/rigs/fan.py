@@ -9,9 +9,10 @@ import numpy as np
 
 LEAST_THUMB = 0.6
 """Score of a digit that stands apart: its angle to the others over 45 degrees plus what it starts nearer to the wrist.
-Thumbs of 20 public rigs reach 0.9 to 2.3; toes stay below 0.5."""
+Thumbs of MPFB's and Rigify's rigs score 1.19 to 1.71, toes at most 0.44."""
 LEAST_REACH = 0.45
-"""Length of a finger over the distance from the wrist to its knuckle: hands 0.7 to 1.5, feet from the ankle 0.2."""
+"""Length of a finger over the distance from the wrist to its knuckle: MPFB's and Rigify's hands 0.75
+and 0.92, feet from the ankle 0.30."""
 MOST_TURN_DEG = 60.0
 """Fingers at rest differ less from their mean direction; strands of hair and a skirt's chains go all around."""
 LEAST_MARGIN = 0.15
@@ -24,8 +25,8 @@ class Digits:
 
     `chains`: bones per digit, leaf bones taken off. `thumb`: its number, or None. `row`: numbers of the other digits
     from the thumb's side on. `bend`: above 0 on a right hand, below 0 on a left one, near 0 if the rest pose is flat.
-    `is_unclear`: no digit
-    is set apart like a thumb, so that only a name can say which it is. `trouble`: why it is no hand, or empty.
+    `is_unclear`: no digit is set apart like a thumb, so that only a name can say which it is. `trouble`: why it is no
+    hand, or empty.
     """
 
     chains: tuple
