@@ -13,6 +13,7 @@ from . import (
     picture_sets,
     product_files,
     recordings,
+    rigging,
     settings,
     start,
 )
@@ -25,6 +26,7 @@ _MODULES = (
     start,
     panels,
     hand,
+    rigging,
     grasp,
     hand_shape,
     picture_sets,

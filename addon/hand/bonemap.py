@@ -1,7 +1,7 @@
 """Which bone of an armature plays which part: the settings on the armature object, filled by guess or by hand."""
 
 import bpy
-from bpy.props import EnumProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
 
 from . import roles
 
@@ -13,6 +13,12 @@ AXES = (
     ("NEG_Z", "-Z", "Bones bend about their own -Z", 4),
 )
 
+SIDES = (
+    ("AUTO", "Automatic", "The hand that carries most of the mesh; of two alike the right one", 0),
+    ("LEFT", "Left", "The left hand of a body", 1),
+    ("RIGHT", "Right", "The right hand of a body", 2),
+)
+
 
 def _properties():
     out = {
@@ -22,6 +28,12 @@ def _properties():
         for role in roles.ROLES
     }
     out["axis"] = EnumProperty(name="Flexion axis", description="Axis about which the bones flex", items=AXES)
+    out["side"] = EnumProperty(
+        name="Side", description="Which hand of a body is meant; detect bones after a change", items=SIDES
+    )
+    out["show_digits"] = BoolProperty(
+        name="Show Digits", description="Draw the assigned digits as colored lines in the 3D view"
+    )
     return out
 
 
@@ -35,6 +47,11 @@ def get_map(armature):
     """Role -> bone name of the roles that are filled in."""
     stored = armature.thenar_bones
     return {role: getattr(stored, role) for role in roles.ROLES if getattr(stored, role)}
+
+
+def side_of(armature):
+    """`left`, `right`, or None for the automatic choice."""
+    return {"LEFT": "left", "RIGHT": "right"}.get(armature.thenar_bones.side)
 
 
 def set_map(armature, names, axis="AUTO"):

@@ -1,7 +1,7 @@
 """Operators of the hand: make it, pose it, name its bones."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import status
 from ..hand_shape import framing
@@ -9,6 +9,7 @@ from ..operators import polling, running
 from ..panels import preferences
 from . import build, posing
 from .poses import LABELS
+from .reading import armature_of
 
 
 class THENAR_OT_make_hand(bpy.types.Operator):
@@ -69,15 +70,21 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
 
     def execute(self, context):
         done = running.attempt(self, posing.apply_pose, context, context.scene.thenar.hand, self.name)
+        if not done:
+            _open_bones()
         return {"FINISHED"} if done else {"CANCELLED"}
 
 
 class THENAR_OT_guess_bones(bpy.types.Operator):
-    """Assign the bones by their names and their order"""
+    """Find the hand's bones by hierarchy and shape, whatever their names"""
 
     bl_idname = "thenar.guess_bones"
     bl_label = "Detect Bones"
     bl_options = {"REGISTER", "UNDO"}
+
+    with_regions: BoolProperty(
+        name="Regions", description="Paint the skin's regions too, if the hand lists none", default=True
+    )
 
     @classmethod
     def poll(cls, context):
@@ -86,9 +93,34 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
     def execute(self, context):
         found = running.attempt(self, posing.guess_bones, context, context.scene.thenar.hand)
         if found is None:
+            _open_bones()
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{found} bones found")
+        count, remarks = found
+        hand = context.scene.thenar.hand
+        armature_of(hand).thenar_bones.show_digits = True
+        self.report({"WARNING" if remarks else "INFO"}, f"{count} bones found" + (f"; {remarks}" if remarks else ""))
+        if self.with_regions and _has_bone_groups_only(hand) and bpy.ops.thenar.regions_from_bones.poll():
+            _try_regions(self)
         return {"FINISHED"}
+
+
+def _has_bone_groups_only(hand):
+    """Whether no region is listed and every vertex group is a bone's: groups of one's own may be regions already."""
+    return not hand.thenar.materials and set(hand.vertex_groups.keys()) <= set(armature_of(hand).data.bones.keys())
+
+
+def _try_regions(operator):
+    """Regions as well; where they cannot be cut the bones stay, and the reason is shown as a warning."""
+    try:
+        bpy.ops.thenar.regions_from_bones()
+    except RuntimeError as error:
+        operator.report({"WARNING"}, str(error).removeprefix("Error: ").strip())
+
+
+def _open_bones():
+    """Show the *Bones* panel at the mouse, where what the message asks for can be done."""
+    if not bpy.app.background and bpy.context.window is not None:
+        bpy.ops.wm.call_panel("INVOKE_DEFAULT", name="THENAR_PT_bones", keep_open=True)
 
 
 def can_make(cls, context):

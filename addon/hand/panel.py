@@ -43,6 +43,17 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         layout.use_property_decorate = False
         armature = armature_of(context)
         layout.operator("thenar.guess_bones", icon="VIEWZOOM")
+        layout.operator("thenar.pick_digits", icon="RESTRICT_SELECT_OFF")
+        layout.label(text="Selected bones are the")
+        selected = layout.grid_flow(row_major=True, columns=3, align=True)
+        for digit in ("thumb", *roles.FINGERS):
+            selected.operator("thenar.assign_digit", text=digit.capitalize()).digit = digit
+        layout.operator("thenar.join_bones", icon="CONSTRAINT_BONE")
+        region_row = layout.row(align=True)
+        region_row.operator("thenar.regions_from_bones", icon="GROUP_VERTEX")
+        region_row.operator("thenar.show_regions", text="", icon="HIDE_OFF")
+        layout.prop(armature.thenar_bones, "show_digits")
+        layout.prop(armature.thenar_bones, "side")
         layout.prop(armature.thenar_bones, "axis")
         rows = layout.column()
         rows.use_property_split = False

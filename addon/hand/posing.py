@@ -1,6 +1,7 @@
 """Library poses and bone names put onto the armature of a hand in a scene."""
 
 from ..scene import checks
+from ..scene.checks import Refusal
 from . import bonemap, reading, roles
 from .poses import POSES
 
@@ -20,13 +21,25 @@ def apply_pose(context, hand, name):
 
 
 def guess_bones(context, hand):
-    """Fill the bone map of `hand`'s armature from names and order; returns how many parts were found.
+    """Fill the bone map of `hand`'s armature; returns how many parts were found, and remarks in words or "".
 
-    Raises `Refusal` if no finger was found.
+    What was assigned before stays if nothing is found. Raises `Refusal` with what was found and what is missing.
     """
     armature = reading.armature_of(hand)
-    bonemap.set_map(armature, {}, armature.thenar_bones.axis)
-    rig, found = reading.read_rig(context, hand)
-    roles.resolve(rig, found)
-    bonemap.set_map(armature, found, armature.thenar_bones.axis)
-    return len(found)
+    axis, old = armature.thenar_bones.axis, bonemap.get_map(armature)
+    bonemap.set_map(armature, {}, axis)
+    try:
+        rig, found = reading.read_rig(context, hand)
+        roles.resolve(rig, found)
+    except Refusal:
+        bonemap.set_map(armature, old, axis)
+        raise
+    bonemap.set_map(armature, found, axis)
+    return len(found), _remarks(context, hand)
+
+
+def _remarks(context, hand):
+    try:
+        return reading.find_bones(context, hand).sentence()
+    except Refusal:
+        return "named by the words in their names only; check them"

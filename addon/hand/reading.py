@@ -5,11 +5,13 @@ import numpy as np
 from mathutils import Matrix
 
 from .. import names
+from ..rigs.chains import Skeleton
+from ..rigs.recognise import recognise
 from ..scene import mesh, units
 from ..scene.regions import group_weights
 from . import bonemap, rig_axes, roles
 from .rig_axes import RigError
-from .skinning import Rig, local_rotations
+from .skinning import Rig, descendants, local_rotations
 
 FREE_CONSTRAINTS = {"LIMIT_ROTATION", "LIMIT_LOCATION", "LIMIT_SCALE", "LIMIT_DISTANCE"}
 """Constraints that may stand on a bone the fitter turns; any other would overrule it."""
@@ -38,8 +40,10 @@ def read_rig(context, hand):
     bone_names = tuple(bone.name for bone in bones)
     parents = np.array([bone_names.index(bone.parent.name) if bone.parent else -1 for bone in bones])
     weights = _weights(context, hand, bones)
-    stored = bonemap.get_map(armature) or roles.guess(bone_names, parents, weights.any(axis=0))
     rest = np.array([bone.matrix_local for bone in bones], dtype=np.float64)
+    stored = bonemap.get_map(armature)
+    if not stored:
+        stored = _recognised(armature, Skeleton(bone_names, parents, rest[:, :3, 3], weights.sum(axis=0)))
     context.view_layer.update()
     into_rig = np.linalg.inv(np.array(armature.matrix_world)) @ np.array(hand.matrix_world)
     scale = units.mm_per_unit(context.scene)
@@ -54,9 +58,57 @@ def read_rig(context, hand):
     return rig_axes.with_axes(rig, stored, armature.thenar_bones.axis), stored
 
 
+def skeleton_of(context, hand):
+    """The bones of `hand`'s armature as a `chains.Skeleton`, in the armature's space.
+
+    Raises `RigError` if the mesh has no armature or no vertex group of a bone.
+    """
+    bones = _ordered(armature_of(hand))
+    bone_names = tuple(bone.name for bone in bones)
+    parents = np.array([bone_names.index(bone.parent.name) if bone.parent else -1 for bone in bones])
+    heads = np.array([bone.head_local for bone in bones], dtype=np.float64)
+    return Skeleton(bone_names, parents, heads, _weights(context, hand, bones).sum(axis=0))
+
+
+def find_bones(context, hand):
+    """The `recognise.Found` hands among the bones of `hand`'s armature, the side asked for chosen.
+
+    Raises `RigError` as `skeleton_of`, and with what was found and what to do if no hand is among them.
+    """
+    armature = armature_of(hand)
+    return _found(armature, skeleton_of(context, hand))
+
+
+def _found(armature, skeleton):
+    side = bonemap.side_of(armature)
+    found = recognise(skeleton, side)
+    if found.chosen is None and found.hands:
+        there = " and ".join(str(hand.side) for hand in found.hands)
+        raise RigError(f"no {side} hand among the bones of {armature.name!r}, only: {there}; change Side under Bones")
+    if found.chosen is None:
+        raise RigError(
+            f"no hand found among the bones of {armature.name!r}: {found.missing()}; under Bones, select the bones of "
+            "each digit in Pose Mode and press its name"
+        )
+    return found
+
+
+def _recognised(armature, skeleton):
+    """Role -> bone name by shape, or by the names alone where no shape of a hand is found."""
+    try:
+        return _found(armature, skeleton).chosen.roles
+    except RigError:
+        named = roles.guess(skeleton.names, skeleton.parents, skeleton.skin > 0.0)
+        fingers = [f for f in roles.FINGERS if all(f"{f}_{segment}" in named for segment in roles.SEGMENTS[1:])]
+        if len(fingers) < 2 or bonemap.side_of(armature):
+            raise
+        return named
+
+
 def read_free_rig(context, hand):
     """`read_rig` of a hand whose bones are to be turned; raises `RigError` where a constraint would overrule that."""
     rig, stored = read_rig(context, hand)
+    _check_joined(rig, stored)
     bones = armature_of(hand).pose.bones
     for name in filter(rig.names.__contains__, stored.values()):
         for constraint in bones[name].constraints:
@@ -65,6 +117,18 @@ def read_free_rig(context, hand):
                     f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
                 )
     return rig, stored
+
+
+def _check_joined(rig, stored):
+    """Raises `RigError` where the next bone of a digit does not hang on the one before it."""
+    below = descendants(rig.parents)
+    for role, name in stored.items():
+        before = roles.before_of(role, stored)
+        if before in rig.names and name in rig.names and not below[rig.names.index(before), rig.names.index(name)]:
+            raise RigError(
+                f"bone {name!r} does not hang on {before!r}, so a turn of one leaves the other behind; press "
+                "Join Loose Bones under Bones"
+            )
 
 
 def own_limits(armature, rig):

@@ -99,9 +99,13 @@ def _knuckle_axes(rig, index, along):
 
 
 def _bend_sign(rig, index, along, across):
+    """+1 or -1, so that the rest bend is flexion: of the middle phalanges, which joints alone say, else of the last."""
     present = [f for f in roles.FINGERS if f"{f}_proximal" in index]
-    bent = [f for f in present if f"{f}_distal" in index]
-    bend = sum(across @ np.cross(along[f"{f}_proximal"], along[f"{f}_distal"]) for f in bent)
+    bend = 0.0
+    for segment in ("middle", "distal"):
+        bent = [f for f in present if f"{f}_{segment}" in index]
+        if abs(bend) < 0.05:
+            bend = sum(across @ np.cross(along[f"{f}_proximal"], along[f"{f}_{segment}"]) for f in bent)
     if abs(bend) < 0.05 and "thumb_distal" in index:
         tip = rig.rest[index["thumb_distal"], :3, 3] - rig.rest[index[f"{present[0]}_proximal"], :3, 3]
         bend = np.cross(across, along[f"{present[0]}_proximal"]) @ tip

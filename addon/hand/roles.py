@@ -169,7 +169,7 @@ def _rest_flexion(rig, bones):
         digit, _, segment = role.partition("_")
         if segment in ("", "metacarpal"):
             continue
-        before = _before(role, bones)
+        before = before_of(role, bones)
         if before is None:
             continue
         axis = flexion_axis(rig, bone)
@@ -179,10 +179,11 @@ def _rest_flexion(rig, bones):
     return out
 
 
-def _before(role, bones):
+def before_of(role, bones):
+    """What `bones` (by role) holds for the segment before `role` on its digit; None for a digit's first and others."""
     digit, _, segment = role.partition("_")
     chain = SEGMENTS if digit != "thumb" else ("metacarpal", "proximal", "distal")
-    return bones.get(f"{digit}_{chain[chain.index(segment) - 1]}")
+    return bones.get(f"{digit}_{chain[chain.index(segment) - 1]}") if segment in chain[1:] else None
 
 
 def limits_of(role):

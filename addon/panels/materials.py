@@ -27,6 +27,7 @@ class THENAR_PT_materials(OfHand, bpy.types.Panel):
         else:
             layout.label(text="The whole mesh is one region", icon="MESH_DATA")
             material = state.default_material
+            layout.operator("thenar.regions_from_bones", icon="ARMATURE_DATA")
         layout.operator("thenar.assign_regions", icon="GROUP_VERTEX")
         layout.operator("thenar.show_map", text="Show Thickness", icon="SHADING_RENDERED").kind = maps.THICKNESS
         _draw_material(layout, material, context)

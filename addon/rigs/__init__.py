@@ -1,0 +1,1 @@
+"""Which bones are a hand, found by hierarchy and shape. Knows nothing of Blender."""
