@@ -33,7 +33,7 @@ pub fn write(docs: &Path, to: &Path) -> Result<()> {
         let text = std::fs::read_to_string(&source)
             .with_context(|| format!("cannot read {}", source.display()))?;
         for picture in pictures(&text) {
-            let (from, target) = (docs.join(&picture), to.join(&picture));
+            let (from, target) = (docs.join(&picture), to.join(beside(&picture)));
             std::fs::copy(&from, &target)
                 .with_context(|| format!("cannot copy {}", from.display()))?;
         }
@@ -91,6 +91,10 @@ fn events(markdown: &str) -> Vec<Event<'_>> {
             *dest_url = CowStr::from(linked(dest_url));
             !is_outside
         }
+        Event::Start(Tag::Image { dest_url, .. }) => {
+            *dest_url = CowStr::from(beside(dest_url));
+            true
+        }
         Event::End(TagEnd::Link) => !leaves.pop().unwrap_or(false),
         _ => true,
     });
@@ -116,6 +120,12 @@ fn linked(to: &str) -> String {
         }
         _ => to.to_string(),
     }
+}
+
+/// Where the manual holds a picture, relative to its pages.
+fn beside(picture: &str) -> String {
+    let name = picture.rsplit('/').next().unwrap_or(picture);
+    format!("pictures/{name}")
 }
 
 /// Pictures that a page shows, relative to it.
@@ -151,10 +161,11 @@ mod tests {
     #[test]
     fn links_lead_to_pages_and_none_leaves_the_manual() {
         let made = page(
-            "[a](effects.md#bone) [b](guide.md) [c](../../tests/X.md) <https://a.b>",
+            "[a](effects.md#bone) [b](guide.md) [c](../../tests/X.md) <https://a.b> ![p](../x/p.png)",
             "T",
         );
         assert!(made.contains("effects.html#bone") && made.contains("href=\"guide.html\""));
+        assert!(made.contains("src=\"pictures/p.png\""));
         assert!(made.contains('c') && !made.contains("../") && made.contains("https://a.b"));
     }
 }
