@@ -1,9 +1,15 @@
 """The operators of the view buttons; they leave no undo step, for they change nothing but what is looked at."""
 
-import bpy
-from mathutils import Matrix, Vector
+from dataclasses import dataclass
 
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+from mathutils.bvhtree import BVHTree
+
+from .. import names
 from ..operators import display, polling, running
+from ..scene import attributes, mesh
 from . import putting
 
 KINDS = (
@@ -11,10 +17,14 @@ KINDS = (
     (putting.PALM, "Palm", "The gripping hand seen from its palm, through the product as glass", 2),
     (putting.PRODUCT, "Product", "The product alone with its map, from the side of the hand", 3),
     (putting.APART, "Apart", "Hand and product next to each other, both with the side that was pressed", 4),
-    (putting.GLASS, "Glass", "The product as glass; the view stays", 5),
+    (putting.GLASS, "Glass", "The product as glass; the view turns to the palm where it sees nothing of the print", 5),
 )
 _ROOM, _WIDE = 1.15, 1.3
 """Distance of the view over the height of what is seen, and over its width: the sidebar covers a part."""
+SEEN, FACED = 0.1, 0.2
+"""Least share of the pressed skin that a view shall see, and from which cosine skin faces it."""
+RAYS, OFF = 600, 2e-3
+"""How many vertices are looked at, and how far off the skin a line of sight begins, as a share of its length."""
 _before = {}
 """Area -> the view before the first look, to give back."""
 
@@ -42,7 +52,7 @@ class THENAR_OT_look(bpy.types.Operator):
         if not context.scene.thenar.hand.thenar.shows_pressure:
             display.show(context)
         view = running.attempt(self, putting.put, context, self.kind)
-        if view is not None:
+        if view is not None and not (self.kind == putting.GLASS and is_print_seen(context)):
             _turn(context, view)
         running.redraw(context)
         return {"FINISHED"}
@@ -72,6 +82,47 @@ class THENAR_OT_look_back(bpy.types.Operator):
 def no_map(context):
     """Nothing carries pressure."""
     return "" if display.shown_objects(context) else "there is no pressure yet; press Solve first"
+
+
+def is_print_seen(context):
+    """Whether a 3D view sees at least `SEEN` of the pressed skin, by pressure; true where there is no window."""
+    if bpy.app.background or context.window is None:
+        return True
+    hand = context.scene.thenar.hand
+    with mesh.evaluated_mesh(hand, context.evaluated_depsgraph_get()) as shown:
+        skin = Skin(mesh.positions(shown), np.empty((len(shown.vertices), 3), np.float32), mesh.triangles(shown))
+        shown.vertex_normals.foreach_get("vector", skin.normals.reshape(-1))
+        pressed = attributes.read(shown, names.PRESSURE_KPA)
+    if pressed is None or len(pressed) != len(skin.points):
+        return True
+    into = np.array(hand.matrix_world)[:3, :3]
+    places = [area.spaces.active.region_3d for area in context.window.screen.areas if area.type == "VIEW_3D"]
+    return any(seen_share(skin, pressed, np.array(place.view_matrix)[2, :3] @ into) >= SEEN for place in places)
+
+
+@dataclass(frozen=True)
+class Skin:
+    """Points (n, 3), vertex normals (n, 3) and triangles (m, 3) of a surface."""
+
+    points: np.ndarray
+    normals: np.ndarray
+    triangles: np.ndarray
+
+
+def seen_share(skin, pressure, away):
+    """Share, by pressure (n,), of a `Skin` that an eye sees which is far off in the direction `away` (3): it faces the
+    eye, and no other skin is in between. At most `RAYS` vertices are looked at."""
+    tree = BVHTree.FromPolygons(skin.points.tolist(), skin.triangles.tolist())
+    used = np.flatnonzero(pressure > 0.0)
+    used = used[:: max(len(used) // RAYS, 1)]
+    away = away / max(np.linalg.norm(away), 1e-12)
+    off = OFF * float(np.ptp(skin.points, axis=0).max())
+    seen = [
+        bool(skin.normals[k] @ away > FACED)
+        and tree.ray_cast(Vector((skin.points[k] + off * skin.normals[k]).tolist()), Vector(away.tolist()))[0] is None
+        for k in used
+    ]
+    return float(pressure[used][seen].sum() / max(pressure[used].sum(), 1e-12))
 
 
 def _turn(context, view):

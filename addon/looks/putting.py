@@ -41,7 +41,7 @@ def kind_shown(context):
 
 
 def put(context, kind):
-    """Show the look `kind` instead of the one before. Returns the `View` to turn to, None for `GLASS`.
+    """Show the look `kind` instead of the one before. Returns the `View` to turn to; of `GLASS` the one from the palm.
 
     Raises `Refusal` where there is no pressure to look at.
     """
@@ -54,7 +54,7 @@ def put(context, kind):
         hidden, boxed = _put_away(context, kind, [hand, *parts])
         home[_STATE] = json.dumps({"kind": kind, "hidden": hidden, "boxed": boxed})
         shown = _stand_ins(context, kind, (hand, parts, found), home)
-        return None if kind == GLASS else View(found.turn(kind), shown)
+        return View(found.turn(kind), shown)
     finally:
         found.forget()
         context.view_layer.update()

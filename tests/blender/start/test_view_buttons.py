@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
+from thenar_blender.looks import operators as looks
 
 KINDS = ("OPENED", "PALM", "PRODUCT", "APART", "GLASS")
 
@@ -110,3 +111,26 @@ def test_a_look_is_never_exported(kind, bent, tmp_path):
         written.append({path.name: path.read_bytes() for path in (tmp_path / name).iterdir()})
         bpy.ops.thenar.look(kind=kind)
     assert written[0].keys() == written[1].keys() and written[0] == written[1]
+
+
+def test_print_on_the_far_side_is_not_seen():
+    """A ball pressed from below by as much as skin faces down: an eye above sees none, one below all but 4 %, where it
+    is aslant; a plate below the ball hides all of it from there."""
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=64)
+    ball = bpy.context.object.data
+    points = np.array([vertex.co for vertex in ball.vertices])
+    ball.calc_loop_triangles()
+    triangles = np.array([tuple(face.vertices) for face in ball.loop_triangles])
+    # Rings of equal angle crowd at the poles: weighed by the area that a vertex stands for.
+    area = np.sqrt(1.0 - np.minimum(points[:, 2] ** 2, 1.0))
+    pressure = np.maximum(-points[:, 2], 0.0) * area
+    plate = np.array([(-2.0, -2.0, -1.5), (2.0, -2.0, -1.5), (2.0, 2.0, -1.5), (-2.0, 2.0, -1.5)])
+    hidden = looks.Skin(
+        np.vstack([points, plate]),
+        np.vstack([points, 4 * [[0.0, 0.0, 1.0]]]),
+        np.vstack([triangles, len(points) + np.array([(0, 1, 2), (0, 2, 3)])]),
+    )
+    ball, down = looks.Skin(points, points, triangles), np.array([0.0, 0.0, -1.0])
+    assert looks.seen_share(ball, pressure, -down) == 0.0
+    assert looks.seen_share(ball, pressure, down) == pytest.approx(1.0 - looks.FACED**2, abs=0.03)
+    assert looks.seen_share(hidden, np.append(pressure, np.zeros(4)), down) == 0.0
