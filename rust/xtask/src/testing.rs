@@ -244,7 +244,9 @@ fn run_in_lanes(steps: Vec<Step>) -> Vec<Done> {
                     let next = locked(&waiting).next();
                     let Some((place, step)) = next else { break };
                     println!("\n== {} begins", step.name);
-                    locked(&done).push((place, run_step(step, Output::AtTheEnd)));
+                    // Not while the list is locked, or no two steps would run at a time.
+                    let ended = run_step(step, Output::AtTheEnd);
+                    locked(&done).push((place, ended));
                 }
             });
         }
@@ -327,5 +329,33 @@ fn report(done: &[Done]) -> ExitCode {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two steps of which each waits for the other's file: one after the other neither would end well.
+    #[test]
+    fn lanes_run_two_steps_at_a_time_and_keep_their_order() {
+        let folder = std::env::temp_dir().join(format!("thenar-lanes-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let meets = |own: &str, other: &str| {
+            let wait = format!(
+                "touch {own}; for k in $(seq 100); do [ -e {other} ] && exit 0; sleep 0.1; done; exit 1"
+            );
+            let mut command = Command::new("sh");
+            command.current_dir(&folder).args(["-c", &wait]);
+            step(own, command, Counted::AsOne)
+        };
+        let done = run_in_lanes(vec![meets("a", "b"), meets("b", "a"), meets("c", "a")]);
+        std::fs::remove_dir_all(&folder).ok();
+        let names: Vec<&str> = done.iter().map(|d| d.name.as_str()).collect();
+        assert_eq!(names, ["a", "b", "c"]);
+        assert!(
+            done.iter()
+                .all(|d| d.tally.passed == 1 && d.tally.failed == 0)
+        );
     }
 }
