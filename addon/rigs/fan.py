@@ -114,12 +114,12 @@ def _trouble(along, lengths, others, reach):
     return ""
 
 
-def _row(bases, others, beside):
+def _row(bases, others, thumb):
     """The digits `others` in the order of their knuckles, from the one at the thumb's side on."""
     centered = bases[others] - bases[others].mean(axis=0)
     line = np.linalg.svd(centered)[2][0]
     places = centered @ line
-    if (beside - bases[others].mean(axis=0)) @ line < 0.0:
+    if (thumb - bases[others].mean(axis=0)) @ line < 0.0:
         places = -places
     return [others[k] for k in np.argsort(-places)]
 

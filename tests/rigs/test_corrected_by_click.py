@@ -93,7 +93,7 @@ def test_lines_of_a_rig_without_metacarpals_and_with_one_digit(blender):
 
 
 def test_the_bone_under_the_mouse(blender):
-    """Seen from above, one unit is 1000 pixels: a click beside a phalanx takes it, a click far off takes none."""
+    """Seen from above, one unit is 1000 pixels: a click near a phalanx takes it, a click far off takes none."""
     body, rig, truth = scrambled(blender, "mixamo")
     seen = assigning.screen_bones(rig, set(truth.values()), lambda point: Vector((1000 * point.x, 1000 * point.y)))
     one, two = (rig.pose.bones[truth[f"ring_{part}"]].head for part in ("proximal", "middle"))

@@ -33,7 +33,7 @@ pub fn write(docs: &Path, to: &Path) -> Result<()> {
         let text = std::fs::read_to_string(&source)
             .with_context(|| format!("cannot read {}", source.display()))?;
         for picture in pictures(&text) {
-            let (from, target) = (docs.join(&picture), to.join(beside(&picture)));
+            let (from, target) = (docs.join(&picture), to.join(place_of(&picture)));
             std::fs::copy(&from, &target)
                 .with_context(|| format!("cannot copy {}", from.display()))?;
         }
@@ -92,7 +92,7 @@ fn events(markdown: &str) -> Vec<Event<'_>> {
             !is_outside
         }
         Event::Start(Tag::Image { dest_url, .. }) => {
-            *dest_url = CowStr::from(beside(dest_url));
+            *dest_url = CowStr::from(place_of(dest_url));
             true
         }
         Event::End(TagEnd::Link) => !leaves.pop().unwrap_or(false),
@@ -123,7 +123,7 @@ fn linked(to: &str) -> String {
 }
 
 /// Where the manual holds a picture, relative to its pages.
-fn beside(picture: &str) -> String {
+fn place_of(picture: &str) -> String {
     let name = picture.rsplit('/').next().unwrap_or(picture);
     format!("pictures/{name}")
 }

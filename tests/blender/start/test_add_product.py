@@ -25,10 +25,10 @@ def blocks():
     scene = bpy.context.scene
     kinds = {name for name in dir(bpy.data) if isinstance(getattr(bpy.data, name), bpy.types.bpy_prop_collection)}
     counts = {name: len(getattr(bpy.data, name)) for name in kinds}
-    told = (scene.frame_start, scene.frame_end, scene.render.fps, scene.camera, scene.world, scene.frame_current)
+    timing = (scene.frame_start, scene.frame_end, scene.render.fps, scene.camera, scene.world, scene.frame_current)
     chosen = (scene.thenar.product, scene.thenar.product_collection, scene.thenar.accepted_mm, scene.thenar.added_mm)
     selected = sorted(obj.name for obj in bpy.context.selected_objects)
-    return counts, told, chosen, selected, bpy.context.view_layer.objects.active
+    return counts, timing, chosen, selected, bpy.context.view_layer.objects.active
 
 
 @pytest.mark.parametrize("name", files.WRITERS)

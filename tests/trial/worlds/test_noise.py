@@ -69,8 +69,19 @@ def test_wander_of_the_zero_is_shown_to_the_user(tmp_path):
         closed_forms.draw(seed, "nothing", "wander").write(tmp_path / str(seed))
         said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / str(seed))).to_json())
         (note,) = [note for note in said["notes"] if "zero of the force wanders" in note]
-        found.append([float(part.split(" mN")[0]) for part in (note.split("by ")[1], note.split("beside ")[1])])
+        found.append([float(part.split(" mN")[0]) for part in (note.split("by ")[1], note.split("in addition to ")[1])])
     np.testing.assert_allclose(np.mean(found, axis=0), [2.53, 3.0], rtol=0.2)
     closed_forms.draw(22, "nothing", "white").write(tmp_path / "white")
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / "white")).to_json())
     assert not any("wanders" in note for note in said["notes"])
+
+
+@pytest.mark.parametrize("seed", [401, 402])
+def test_a_drift_is_named_although_the_zero_wanders(seed, tmp_path):
+    """10 mN/s in every recording, as no wander of 2.5 mN in a second goes on alike."""
+    case = closed_forms.draw(seed, "nothing", "wander")
+    for one in case.recordings:
+        one.table[:, 2] += 0.01 * one.table[:, 0]
+    case.write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == ["drift"]

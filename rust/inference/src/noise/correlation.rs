@@ -31,7 +31,7 @@ impl Correlation {
         }
     }
 
-    /// Standard deviation of a sample over that of one of profile 1. `profile` is what noise of one kind alone would have there; beside
+    /// Standard deviation of a sample over that of one of profile 1. `profile` is what noise of one kind alone would have there; next to
     /// a part with memory only the white part follows it: a mean of many readings is no surer of where the zero has wandered to.
     pub fn deviation(self, profile: f64) -> f64 {
         match self.white > 0.0 {

@@ -111,7 +111,7 @@ impl Noise {
         let left = forgotten(WANDER_S, correlation.memory_s);
         let wander = size * (2.0 * (1.0 - correlation.white) * (1.0 - left)).sqrt();
         Some(format!(
-            "the zero of the force wanders, in repeats of one protocol by {} mN in {WANDER_S} s, beside {} mN of noise in each reading; \
+            "the zero of the force wanders, in repeats of one protocol by {} mN in {WANDER_S} s, in addition to {} mN of noise in each reading; \
              what wanders no further is not taken for an effect",
             number(1000.0 * wander),
             number(1000.0 * size * correlation.white.sqrt())

@@ -90,7 +90,7 @@ fn weights(weighted: &[Deviations], kept: &[Vec<usize>]) -> f64 {
     weighted.iter().zip(kept).map(size).sum()
 }
 
-/// Whether even noise with a white part beside a memory explains what a shape seemed to.
+/// Whether even noise with a white part and a memory explains what a shape seemed to.
 fn is_mixed_instead(all: &[Deviations], shape: NoiseShape) -> bool {
     let (even, kept) = correlation_and_inliers(all, likeliest_mixture);
     if even.white == 0.0 {

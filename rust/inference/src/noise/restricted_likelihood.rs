@@ -20,7 +20,7 @@ const BELIEVED: f64 = 2.0;
 /// Memories and white parts that are tried together, and the logarithm of the white part's odds at the ends.
 const MIXED: (usize, usize) = (9, 7);
 const WIDEST: f64 = 4.0;
-/// How much likelier a white part beside a memory must be than a memory alone, nats: a number more, and some that are tried.
+/// How much likelier a white part with a memory must be than a memory alone, nats: a number more, and some that are tried.
 const CLEARLY_MIXED: f64 = 5.0;
 
 /// The likeliest correlation by `search` of deviations as they are weighted, and by group the samples that are no outliers.
@@ -107,7 +107,7 @@ pub(crate) fn likeliest_memory(all: &[Deviations], kept: &[Vec<usize>]) -> Corre
     }
 }
 
-/// As [`likeliest_memory`], or with a white part beside a memory of up to twice the longest recording's time, where that is clearly
+/// As [`likeliest_memory`], or with a white part and a memory of up to twice the longest recording's time, where that is clearly
 /// likelier; the part with memory may begin with nothing.
 pub(crate) fn likeliest_mixture(all: &[Deviations], kept: &[Vec<usize>]) -> Correlation {
     let plain = likeliest_memory(all, kept);
