@@ -138,6 +138,7 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
         Law::Softening {
             travel_mm,
             recovery_s,
+            ..
         } => {
             let shares = interval(free, &|x| x.clamp(0.0, 0.95));
             let shape = vec![

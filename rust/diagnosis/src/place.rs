@@ -1,7 +1,7 @@
 //! Localized findings of maps: a place that stays with the skin (inclusion) or with the sensor.
 
-use thenar_recordings::Study;
 use thenar_recordings::study::Data;
+use thenar_recordings::{PressureMap, Study};
 
 use crate::findings::{Diagnosis, Finding, Verdict, When, Where};
 use thenar_comparison::Comparison;
@@ -48,25 +48,36 @@ pub fn add_place(study: &Study, found: &mut Diagnosis) {
     found.notes.push(mismatch.sentence);
 }
 
-/// Part of the largest reading by which a place must differ where other physics is missing too: stiff and soft spots change the
-/// pressure over them by 20 to 95 % of it (`tests/trial/studies.py`), what else is missing by less.
+/// Part of a frame's largest reading by which a place must differ, in the mean over frames, where other physics is missing too: stiff and
+/// soft spots change the pressure over them by 20 to 95 % of it (`tests/trial/studies.py`), what else is missing by less.
 const SPOT: f64 = 0.2;
 
 /// Whether a place that stays with the skin stands out as far as a stiff or soft spot does.
 fn is_spot(study: &Study, mismatch: &Mismatch) -> bool {
-    let maps = study.recordings.iter().filter_map(|r| match &r.data {
-        Data::PressureMap { map, .. } => Some(&map.values),
+    let is_shown = |name: &String| mismatch.when.recordings.contains(name);
+    let shown = study.recordings.iter().filter(|r| is_shown(&r.name));
+    let maps = shown.filter_map(|r| match &r.data {
+        Data::PressureMap { map, .. } => Some(&**map),
         _ => None,
     });
-    let largest = maps
-        .flatten()
-        .filter(|v| v.is_finite())
-        .fold(0.0, |most, v| f64::max(most, *v));
+    let largest: Vec<f64> = maps.flat_map(largest_by_frame).collect();
+    let mean = largest.iter().sum::<f64>() / largest.len().max(1) as f64;
     let stays = mismatch
         .place
         .as_ref()
         .is_some_and(|p| p.carrier == Carrier::Skin);
-    stays && mismatch.shown == Shown::Pressure && mismatch.size.abs() > SPOT * largest
+    stays && mismatch.shown == Shown::Pressure && mismatch.size.abs() > SPOT * mean
+}
+
+/// Largest reading of each frame that holds one above 0, in the map's unit. A mismatch's size is a mean over frames, shallow ones too, so
+/// that the study's largest reading is no measure for it.
+fn largest_by_frame(map: &PressureMap) -> impl Iterator<Item = f64> {
+    let frames = map.values.chunks(map.sensels.len().max(1));
+    let largest = |frame: &[f64]| {
+        let known = frame.iter().filter(|v| v.is_finite());
+        known.fold(0.0, |most, v| f64::max(most, *v))
+    };
+    frames.map(largest).filter(|most| *most > 0.0)
 }
 
 /// The strongest mismatch with a place.

@@ -40,7 +40,7 @@ def answer(case):
 def is_wrong(truth, verdict, names):
     """Whether something is named that is not there, or, where nothing is missing, something is accused at all."""
     accused = verdict in ("fault", "unlisted", "cannot_tell", "missing_physics", "instrument")
-    return any(name != truth for name in names) or verdict == "fault" or (truth == "nothing" and accused)
+    return any(name != truth for name in names) or verdict == "fault" or (truth.startswith("nothing") and accused)
 
 
 def bounds(count, of):

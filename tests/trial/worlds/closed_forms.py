@@ -8,7 +8,10 @@ the truth is its own fault. Noise and habits of recording are drawn apart, by fa
 Truths: `nothing` (a rigid sphere in an incompressible half-space: Sneddon 1965, International Journal of Engineering
 Science 3:47, of which Hertz is the limit at small depth) and `relaxation` (the same with a modulus that fades in two
 terms; Lee and Radok 1960, Journal of Applied Mechanics 27:438, valid while the contact does not shrink, so that these
-recordings end with their hold).
+recordings end with their hold), `cycle_softening` (the modulus loses a share of up to 15 to 40 % as work is done on the tissue: damage
+D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session) and `nothing_in_cycles` (the sessions of
+`cycle_softening`, and nothing missing). Such a session begins with four cycles, and states the order of its recordings and no rest.
+Either each recording takes up the tissue as the last one left it, or each repeat begins as the first of its protocol did.
 
 Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
 
@@ -45,7 +48,7 @@ NOISES = (
     "stray",
     "mixture",
 )
-TRUTHS = ("nothing", "relaxation")
+TRUTHS = ("nothing", "relaxation", "cycle_softening", "nothing_in_cycles")
 MODULUS_MPA = (0.006, 0.02)
 RADIUS_MM = (4.0, 9.0)
 DEEPEST_MM = (0.8, 1.6)
@@ -68,6 +71,7 @@ class Case:
     radii: dict
     recordings: list
     deepest_mm: float
+    rest_s: float | None = 120.0
 
     def write(self, folder):
         """Writes `study.toml`, `skin.ply` and the recordings."""
@@ -85,7 +89,8 @@ class Case:
             (folder / f"r{number:02d}.csv").write_text("time_s,depth_mm,force_n\n" + buffer.getvalue())
             text += f'[[recordings]]\nname = "{one.protocol}, {one.tool}, number {number}"\nkind = "indentation"\n'
             text += f'file = "r{number:02d}.csv"\nindenter = "{one.tool}"\nsite = "middle"\n'
-            text += f'protocol = "{one.protocol} {one.tool}"\norder = {number}\nrest_s = 120.0\n'
+            text += f'protocol = "{one.protocol} {one.tool}"\norder = {number}\n'
+            text += "" if self.rest_s is None else f"rest_s = {self.rest_s}\n"
         (folder / "study.toml").write_text(text)
 
 
@@ -108,6 +113,10 @@ def draw(seed, truth, noise):
             (random.uniform(0.1, 0.2), random.uniform(2.0, 5.0)),
         ]
     reader = _Reader(noise, random)
+    if truth in ("cycle_softening", "nothing_in_cycles"):
+        session = _Session(truth, modulus, random)
+        protocols = [(tool, speed, has_hold) for tool in radii for speed in speeds]
+        return Case(radii, session.recordings((radii, deepest), protocols, (reader, repeats, samples)), deepest, None)
     recordings = []
     for tool, radius in radii.items():
         for speed in speeds:
@@ -117,6 +126,48 @@ def draw(seed, truth, noise):
                 force = modulus * _faded(at, true, radius, fading)
                 recordings.append(Recording(f"{speed:g} mm/s", tool, reader.read(at, true, force)))
     return Case(radii, recordings, deepest)
+
+
+class _Session:
+    """A session without rest on tissue that use softens; of `nothing_in_cycles`, by nothing."""
+
+    def __init__(self, truth, modulus, random):
+        self.modulus = modulus
+        self.share = random.uniform(0.15, 0.4)
+        self.work = random.uniform(0.5, 3.0)
+        self.begins_alike = random.random() < 0.5
+        if truth == "nothing_in_cycles":
+            self.share = 0.0
+
+    def recordings(self, tools, protocols, readings):
+        """All recordings; `tools` radii and the largest depth (mm), `readings` the reader, repeats and samples."""
+        (radii, deepest), (reader, repeats, samples) = tools, readings
+        cycles = (next(iter(radii)), 1.0, False)
+        damage, found = 0.0, []
+        for tool, speed, has_hold in [cycles, *protocols]:
+            is_cycled = not found
+            time, depth = _motion(deepest, speed, has_hold, samples, unloads=True)
+            if is_cycled:
+                step = time[-1] + time[1]
+                time = np.concatenate([time + k * step for k in range(4)])
+                depth = np.tile(depth, 4)
+            start = damage
+            for _ in range(2 if is_cycled else repeats):
+                before = start if self.begins_alike else damage
+                at, true = reader.clocked(time, depth)
+                elastic = self.modulus * pressed(true, radii[tool])
+                course = self.damage(true, elastic, before)
+                damage = course[-1]
+                name = "four cycles" if is_cycled else f"{speed:g} mm/s"
+                found.append(Recording(name, tool, reader.read(at, true, elastic * (1.0 - self.share * course))))
+        return found
+
+    def damage(self, depth, elastic, before):
+        """D at each moment: the scale of work is that of one press to this depth."""
+        rises = np.maximum(np.diff(np.maximum(depth, 0.0), prepend=depth[0]), 0.0)
+        work = np.cumsum(elastic * rises)
+        one = np.max(elastic) * np.max(depth) * 0.4
+        return 1.0 - (1.0 - before) * np.exp(-work / (self.work * one))
 
 
 def _motion(deepest, speed, has_hold, samples, unloads):

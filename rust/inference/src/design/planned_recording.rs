@@ -127,6 +127,7 @@ pub fn course(press: &Press, number: usize) -> ForceRecording {
         protocol: String::new(),
         place: press.place,
         order: number,
+        travel_before_mm: [0.0; 2],
         rows,
         samples: (0, 0),
     }

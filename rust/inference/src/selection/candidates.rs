@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use crate::forward::surrogate::mechanism::{
-    Clock, DeformationMeasure, Growth, Law, Mechanism, Scales, Stage, WIDTHS,
+    Clock, DeformationMeasure, Growth, Law, Mechanism, Scales, Stage, UseAtStart, WIDTHS,
 };
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
 use crate::forward::tables::stiff_skin::THICKNESSES_MM;
@@ -30,15 +30,7 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
     all.push(fades(Effect::Drainage, clock, area));
     let travels = Spectrum::Free(TRAVELS.map(|t| t * deepest).to_vec());
     all.push(fades(Effect::RateIndependentLoss, Clock::Travel, travels));
-    for travel in [0.25, 0.8, 2.5] {
-        all.push(Mechanism {
-            effect: Effect::CycleSoftening,
-            law: Law::Softening {
-                travel_mm: travel * deepest,
-                recovery_s: 60.0,
-            },
-        });
-    }
+    all.extend(softening(scales));
     let one = |effect, law| Mechanism { effect, law };
     all.extend(LETS_GO.map(|lets_go| one(Effect::Adhesion, Law::Adhesion { lets_go })));
     if scales.has_bone {
@@ -53,6 +45,32 @@ pub fn singles(scales: Scales) -> Vec<Mechanism> {
         all.push(grows(DeformationMeasure::Depth));
     }
     all
+}
+
+/// Softening by use; where no rest is stated between recordings, also of tissue that does not recover between them.
+fn softening(scales: Scales) -> impl Iterator<Item = Mechanism> {
+    let starts: &[UseAtStart] = match scales.carries_use {
+        true => &[
+            UseAtStart::Rested,
+            UseAtStart::AfterProtocols,
+            UseAtStart::AfterRecordings,
+        ],
+        false => &[UseAtStart::Rested],
+    };
+    let one = move |start: &UseAtStart, travel: f64| Mechanism {
+        effect: Effect::CycleSoftening,
+        law: Law::Softening {
+            travel_mm: travel * scales.deepest,
+            recovery_s: match start {
+                UseAtStart::Rested => 60.0,
+                _ => 1000.0,
+            },
+            start: *start,
+        },
+    };
+    starts
+        .iter()
+        .flat_map(move |start| [0.25, 0.8, 2.5].map(|travel| one(start, travel)))
 }
 
 fn instrument() -> Vec<Mechanism> {

@@ -16,6 +16,7 @@ pub fn scored(effects: &[Effect], qaic_gain: f64) -> Scored {
         forces: (1.0, 1.0),
         has_bone: true,
         has_strain: true,
+        carries_use: false,
     });
     let one = |effect: &Effect| -> Mechanism {
         tried.iter().find(|m| m.effect == *effect).unwrap().clone()

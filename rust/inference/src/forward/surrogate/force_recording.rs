@@ -2,6 +2,7 @@
 
 use thenar_recordings::Study;
 
+use crate::forward::surrogate::mechanism::UseAtStart;
 use crate::observe::measured::{Censoring, Measured, Phase, Quantity};
 
 /// One moment of a protocol.
@@ -34,6 +35,8 @@ pub struct ForceRecording {
     pub place: usize,
     /// Place in the session, from 0: as the study orders its recordings, or else as they stand.
     pub order: usize,
+    /// Loading travel of the protocols before it, and of all recordings before it, that no stated rest has undone, mm.
+    pub travel_before_mm: [f64; 2],
     /// Moments.
     pub rows: Vec<Row>,
     /// First sample of the recording among all samples, and number of its samples.
@@ -53,6 +56,30 @@ impl ForceRecording {
         self.rows
             .iter()
             .fold(0.0, |most, row| f64::max(most, row.depth_mm))
+    }
+
+    /// Loading travel before it, as the tissue's use at the start is taken, mm.
+    pub fn travel_before(&self, start: UseAtStart) -> f64 {
+        match start {
+            UseAtStart::Rested => 0.0,
+            UseAtStart::AfterProtocols => self.travel_before_mm[0],
+            UseAtStart::AfterRecordings => self.travel_before_mm[1],
+        }
+    }
+
+    /// Depth gained in contact over all loadings, mm: from the least depth of each to its largest, so that jitter does not count.
+    pub fn loading_travel(&self) -> f64 {
+        let last = self.rows.last().map_or(0, |row| row.cycle);
+        let of = |cycle: u32| {
+            let rows = self.rows.iter().filter(move |r| r.cycle == cycle);
+            let loading = rows.filter(|r| matches!(r.phase, Phase::Load | Phase::Hold));
+            let depths = loading.map(|r| r.depth_mm.max(0.0));
+            let (low, high) = depths.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), d| {
+                (low.min(d), high.max(d))
+            });
+            (high - low).max(0.0)
+        };
+        (0..=last).map(of).sum()
     }
 
     /// Longest time at one depth in contact, s.
@@ -141,6 +168,7 @@ pub(crate) fn force_recordings(
             protocol: one.protocol.clone(),
             place: place_of[recording],
             order: 0,
+            travel_before_mm: [0.0; 2],
             rows,
             samples: (start, one.samples.len()),
         });
@@ -152,10 +180,46 @@ pub(crate) fn force_recordings(
     };
     let mut by_order: Vec<usize> = (0..found.len()).collect();
     by_order.sort_by(|a, b| stated(&found[*a]).total_cmp(&stated(&found[*b])));
-    for (order, course) in by_order.into_iter().enumerate() {
-        found[course].order = order;
+    for (order, course) in by_order.iter().enumerate() {
+        found[*course].order = order;
+    }
+    let is_in_order =
+        |c: &ForceRecording| study.recordings[c.recording].order.is_some() && is_unrested(study, c);
+    if found.iter().all(is_in_order) {
+        carry_use(&mut found, &by_order);
     }
     found
+}
+
+/// Whether nothing states that the tissue rested before a recording.
+fn is_unrested(study: &Study, course: &ForceRecording) -> bool {
+    study.recordings[course.recording].rest_s.is_none()
+}
+
+/// Adds up what was traveled before each recording, in the session's order. What the first repeat of a protocol finds, its other repeats
+/// find, where repeats begin alike.
+pub(crate) fn carry_use(courses: &mut [ForceRecording], by_order: &[usize]) {
+    let (mut protocols, mut recordings) = (0.0, 0.0);
+    let mut begun: Vec<(String, f64)> = Vec::new();
+    for course in by_order {
+        let one = &mut courses[*course];
+        let travel = one.loading_travel();
+        let known = begun.iter().find(|(name, _)| *name == one.protocol);
+        let before = known.map(|(_, before)| *before);
+        one.travel_before_mm = [before.unwrap_or(protocols), recordings];
+        if before.is_none() {
+            begun.push((one.protocol.clone(), protocols));
+            protocols += travel;
+        }
+        recordings += travel;
+    }
+}
+
+/// Whether use can be carried from recording to recording, and be known by it: the order is stated, no rest is, and cycles show
+/// whether use softens.
+pub(crate) fn carries_use(courses: &[ForceRecording]) -> bool {
+    let cycles = |c: &ForceRecording| c.rows.iter().any(|row| row.cycle > 0);
+    courses.iter().any(|c| c.travel_before_mm[1] > 0.0) && courses.iter().any(cycles)
 }
 
 fn rows(measured: &Measured, start: usize) -> Vec<Row> {
@@ -176,4 +240,124 @@ fn rows(measured: &Measured, start: usize) -> Vec<Row> {
         }
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::candidate_model::Model;
+    use crate::forward::surrogate::mechanism::Law;
+    use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+    use crate::least_squares::surrogate_fit::refit;
+    use crate::selection::candidates::singles;
+    use thenar_contact::effects::Effect;
+
+    /// `cycles` triangles of 2 mm at 1 mm/s, without forces.
+    fn triangles(cycles: u32) -> Vec<Reading> {
+        let row = |k: u32| {
+            let time = f64::from(k) / 20.0;
+            let way = time % 4.0;
+            let phase = if way < 2.0 {
+                Phase::Load
+            } else {
+                Phase::Unload
+            };
+            (time, 2.0 - (way - 2.0).abs(), phase, 0.0)
+        };
+        (0..=80 * cycles).map(row).collect()
+    }
+
+    /// Recordings of these numbers of cycles and protocols, in this order.
+    fn recordings(of: &[(u32, &str)]) -> Vec<ForceRecording> {
+        let all: Vec<_> = of
+            .iter()
+            .map(|(cycles, _)| (0, triangles(*cycles)))
+            .collect();
+        let mut courses = ready(vec![tool(2.0, |d| d, |_| 1.0)], &all, 0.1).0.courses;
+        for (course, (_, protocol)) in courses.iter_mut().zip(of) {
+            course.protocol = (*protocol).to_owned();
+            for row in &mut course.rows {
+                row.cycle = (row.time_s / 4.0) as u32;
+            }
+        }
+        courses
+    }
+
+    #[test]
+    fn loading_travel_adds_up_over_recordings_and_protocols_in_session_order() {
+        // Taken in the order 2, 0, 1, 3: three cycles, two repeats of a press, one cycle.
+        let mut courses = recordings(&[(1, "press"), (1, "press"), (3, "cycles"), (1, "last")]);
+        carry_use(&mut courses, &[2, 0, 1, 3]);
+        let wanted = [[6.0, 6.0], [6.0, 8.0], [0.0, 0.0], [8.0, 10.0]];
+        for (course, wanted) in courses.iter().zip(wanted) {
+            for (found, wanted) in course.travel_before_mm.iter().zip(wanted) {
+                // The last step of a loading, 0.05 mm, ends where unloading begins.
+                let short = wanted - found;
+                assert!(
+                    (-1e-9..0.026 * wanted + 1e-9).contains(&short),
+                    "{found} {wanted}"
+                );
+            }
+        }
+        assert!(carries_use(&courses));
+        courses
+            .iter_mut()
+            .for_each(|c| c.travel_before_mm = [0.0; 2]);
+        assert!(!carries_use(&courses), "the tissue has rested");
+    }
+
+    /// Forces of a closed form in which damage never heals: the carried laws find its share, the rested one cannot.
+    #[test]
+    fn softening_carried_over_a_session_is_found_in_its_own_form() {
+        let (share, travel) = (0.3, 5.0);
+        let mut courses = recordings(&[(4, "cycles"), (1, "press"), (1, "press")]);
+        let mut gone: f64 = 0.0;
+        let mut all = Vec::new();
+        for course in &mut courses {
+            let mut last = 0.0;
+            let read = |row: &Row| {
+                gone += (row.depth_mm - last).max(0.0);
+                last = row.depth_mm;
+                let left = 1.0 - share * (1.0 - libm::exp(-gone / travel));
+                (
+                    row.time_s,
+                    row.depth_mm,
+                    row.phase,
+                    10.0 * row.depth_mm * left,
+                )
+            };
+            all.push((0, course.rows.iter().map(read).collect::<Vec<Reading>>()));
+        }
+        let (mut ready, _) = ready(vec![tool(2.0, |d| 10.0 * d, |_| 1.0)], &all, 0.02);
+        for (course, of) in ready.courses.iter_mut().zip(&courses) {
+            course.protocol.clone_from(&of.protocol);
+            for (row, cycle) in course.rows.iter_mut().zip(&of.rows) {
+                row.cycle = cycle.cycle;
+            }
+        }
+        carry_use(&mut ready.courses, &[0, 1, 2]);
+        ready.scales.carries_use = carries_use(&ready.courses);
+        let tried = singles(ready.scales);
+        let surrogate = ready.surrogate();
+        let mut best = [f64::INFINITY; 2];
+        let mut found = 0.0;
+        for mechanism in tried.iter().filter(|m| m.effect == Effect::CycleSoftening) {
+            let Law::Softening { start, .. } = mechanism.law else {
+                unreachable!("softening by use")
+            };
+            let one = [mechanism.clone()];
+            let fit = refit(&surrogate, &Model::new(&surrogate, &one), &[]);
+            let rested = usize::from(start == UseAtStart::Rested);
+            if fit.deviance < best[rested] {
+                best[rested] = fit.deviance;
+                found = if rested == 0 {
+                    *fit.at.last().unwrap()
+                } else {
+                    found
+                };
+            }
+        }
+        assert!(best[0] < 0.2 * best[1], "{best:?}");
+        assert!((found / share - 1.0).abs() < 0.15, "{found}");
+    }
 }

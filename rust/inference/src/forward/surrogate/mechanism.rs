@@ -29,6 +29,8 @@ pub enum Law {
         travel_mm: f64,
         /// Time without load after which 63 % has come back, s.
         recovery_s: f64,
+        /// What a recording begins with.
+        start: UseAtStart,
     },
     /// Skin that clings takes off a force in proportion to the area that was touched, as gaps open where it touched, and until it lets
     /// go; the force on the largest contact is free, over the study's largest force, and the logarithm of the grip's range over the
@@ -94,6 +96,17 @@ pub enum Clock {
     },
     /// Travel, mm.
     Travel,
+}
+
+/// What use has left behind where a recording begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UseAtStart {
+    /// Nothing: the tissue has rested.
+    Rested,
+    /// The loading travel of the protocols before; repeats of a protocol begin alike.
+    AfterProtocols,
+    /// The loading travel of all recordings before.
+    AfterRecordings,
 }
 
 /// With what a modulus grows.
@@ -227,6 +240,8 @@ pub struct Scales {
     pub has_bone: bool,
     /// Whether some tools are spheres, so that strain means something.
     pub has_strain: bool,
+    /// Whether use may be carried from recording to recording (`force_recording::carries_use`).
+    pub carries_use: bool,
 }
 
 /// Smallest and largest median period of a spectrum in time, s: what recordings show, and a little beyond.
@@ -284,6 +299,7 @@ mod tests {
             forces: (1.0, 1.0),
             has_bone: true,
             has_strain: true,
+            carries_use: true,
         });
         for mechanism in &tried {
             let count = mechanism.count();

@@ -7,7 +7,7 @@ use thenar_recordings::Study;
 use thenar_recordings::study::Shape;
 
 use crate::errors::InferenceError;
-use crate::forward::surrogate::force_recording::{ForceRecording, force_recordings};
+use crate::forward::surrogate::force_recording::{ForceRecording, carries_use, force_recordings};
 use crate::forward::surrogate::mechanism::Scales;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic::Elastic;
@@ -216,6 +216,7 @@ fn scales(study: &Study, courses: &[ForceRecording], elastic: &Elastic) -> Scale
             .variant(thenar_contact::effects::Effect::Bone, 0)
             .is_some(),
         has_strain,
+        carries_use: carries_use(courses),
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use thenar_contact::Material;
 
 use crate::forward::mesh::press_table::PressTable;
-use crate::forward::surrogate::force_recording::{ForceRecording, Row};
+use crate::forward::surrogate::force_recording::{ForceRecording, Row, carries_use};
 use crate::forward::surrogate::mechanism::Scales;
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::tables::elastic::Elastic;
@@ -109,6 +109,7 @@ fn scales(courses: &[ForceRecording]) -> Scales {
         ),
         has_bone: false,
         has_strain: false,
+        carries_use: carries_use(courses),
     }
 }
 
@@ -130,6 +131,7 @@ fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<ForceRecording> {
             protocol: String::new(),
             place: *place,
             order: number,
+            travel_before_mm: [0.0; 2],
             rows: readings.iter().enumerate().map(row).collect(),
             samples: (first, readings.len()),
         });

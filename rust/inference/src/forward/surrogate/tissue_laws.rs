@@ -141,12 +141,14 @@ impl Surrogate<'_> {
             let Law::Softening {
                 travel_mm,
                 recovery_s,
+                start,
             } = mechanism.law
             else {
                 continue;
             };
             let share = set.of[number][0];
-            let (mut used, mut last, mut time) = (0.0, 0.0, one.rows[0].time_s);
+            let before = 1.0 - libm::exp(-one.travel_before(start) / travel_mm);
+            let (mut used, mut last, mut time) = (before, 0.0, one.rows[0].time_s);
             for (n, force) in forces.iter_mut().enumerate() {
                 let depth = depths[n].max(0.0);
                 if depth <= 0.0 {
