@@ -41,7 +41,6 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
 
     bl_label = "Diagnosis"
     bl_parent_id = "THENAR_PT_main"
-    bl_options = {"DEFAULT_CLOSED"}
     bl_order = 7
 
     @classmethod
@@ -54,6 +53,7 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
         item = recordings.chosen(context)
         if item is None or item.kind != recordings.STUDY:
             text.paragraph(layout, context, "Load a study under Recordings, and select it", "INFO")
+            layout.operator("thenar.new_study", text="New Study from Files...", icon="FILE_NEW")
         else:
             text.faint(layout, context, f"{item.name}: {item.about}")
         _draw_button(layout)

@@ -17,11 +17,24 @@ def draw_cards(layout, context):
     if text.progress(layout):
         return
     layout.use_property_split = False
-    text.faint(layout, context, "No hand is set yet. Begin here:")
+    if context.scene.thenar_new_study.is_open:
+        text.faint(layout, context, "Answer what New Study asks below; a hand, product or sample may follow later")
+        return
+    is_loaded = bool(context.scene.thenar_recordings.items)
+    words = "Recordings are loaded: see below. A hand begins here:" if is_loaded else "No hand is set yet. Begin here:"
+    text.faint(layout, context, words)
     _draw_sample(layout.box().column(), context)
     _draw_product(layout.box().column(), context)
     _draw_hand(layout.box().column(), context)
-    layout.operator("thenar.load_recording", text="Load Recording or Study...", icon="MESH_GRID")
+    draw_studies(layout.box().column())
+
+
+def draw_studies(column):
+    """The ways to a study, which needs no hand: from recordings, from a folder, a sample."""
+    column.label(text="I have recordings: diagnose them", icon="VIEWZOOM")
+    column.operator("thenar.new_study", text="New Study from Files...", icon="FILE_NEW")
+    column.operator("thenar.load_recording", text="Load Recording or Study...", icon="MESH_GRID")
+    column.operator_menu_enum("thenar.sample_study", "kind", text="Sample Study")
 
 
 def draw_sizes(layout, context):

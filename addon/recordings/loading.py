@@ -49,8 +49,8 @@ def _maps(file):
     read = native.module.read_recording(file)
     if not read.maps:
         raise Refusal(
-            f"'{file.name}' holds {len(read.curves)} indentations and no pressure map; describe what they were "
-            f"taken from in a {_STUDY_FILE} beside it, and load that"
+            f"'{file.name}' holds {len(read.curves)} indentations and no pressure map; "
+            "press New Study from Files to say what they were taken from"
         )
     rows = []
     for found in read.maps:

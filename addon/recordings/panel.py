@@ -3,7 +3,7 @@
 import bpy
 
 from .. import status
-from ..panels import text
+from ..panels import start, text
 from ..panels.main import Tab, has_hand
 from . import settings
 
@@ -39,10 +39,12 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         row.template_list("THENAR_UL_recordings", "", state, "items", state, "index", rows=2)
         side = row.column(align=True)
         side.operator("thenar.load_recording", text="", icon="ADD")
+        side.operator("thenar.new_study", text="", icon="FILE_NEW")
         side.operator("thenar.remove_recording", text="", icon="REMOVE")
         item = settings.chosen(context)
         if item is None:
             layout.label(text="Load a study, a mat or a print", icon="INFO")
+            start.draw_studies(layout.column())
             return
         text.faint(layout, context, item.about)
         if item.kind != settings.STUDY:

@@ -238,7 +238,7 @@ def test_what_cannot_be_done_says_why(tmp_path):
         bpy.ops.thenar.load_recording(filepath=str(tmp_path / "none.asf"))
     curve = tmp_path / "curve.csv"
     curve.write_text("time_s,depth_mm,force_n\n0.1,0.1,0.1\n0.2,0.2,0.3\n0.3,0.3,0.5\n")
-    with pytest.raises(RuntimeError, match="study.toml"):
+    with pytest.raises(RuntimeError, match="press New Study from Files"):
         bpy.ops.thenar.load_recording(filepath=str(curve))
     assert len(bpy.context.scene.thenar_recordings.items) == 0
     bpy.ops.thenar.load_recording(filepath=write_asf(tmp_path / "mat.asf", np.ones((2, 3, 3))))

@@ -1,0 +1,153 @@
+"""The study that is being made: filled from files, kept in step with the user's answers, and what is still open."""
+
+from pathlib import Path
+
+from ..scene.checks import Refusal
+from . import looking, repeats, settings
+
+DIAMETER_MM = 0.0
+"""A tool's size is never guessed."""
+
+
+def begin(context, folder, names):
+    """Look at the files and open the proposal. Returns its recordings' count. Raises `Refusal`, the scene as it was."""
+    if not names:
+        raise Refusal("no file is chosen; choose the files of the recordings, with Ctrl or Shift for several")
+    paths = [Path(folder) / name for name in sorted(names, key=_natural)]
+    found = [each for path in paths for each in looking.look(path)]
+    state, hand = context.scene.thenar_new_study, context.scene.thenar.hand
+    with settings.filling():
+        discard(state)
+        state.is_open, state.folder, state.title = True, str(folder), Path(folder).name or "Study"
+        state.skin = settings.FLAT if hand is None else settings.HAND
+        several = {each.path for each in found if each.run}
+        for each in found:
+            item = state.files.add()
+            item.path, item.run = each.path, each.run
+            item.name = Path(each.path).name + (f", {each.run}" if each.path in several else "")
+            item.head = _columns(state, each).name if each.headers else ""
+    refresh(context)
+    return len(state.files)
+
+
+def discard(state):
+    """Close the proposal; files on disk stay."""
+    for name in ("files", "columns", "protocols"):
+        getattr(state, name).clear()
+    for name in ("is_open", "is_own_grouping", "replaces", "site_vertex", "site_region"):
+        state.property_unset(name)
+
+
+def refresh(context):
+    """Read every file under the answers so far, and group repeats until the user groups by hand."""
+    state = context.scene.thenar_new_study
+    with settings.filling():
+        tracks = [_read(state, item) for item in state.files]
+        if not state.is_own_grouping:
+            for item, number in zip(state.files, repeats.groups(tracks), strict=True):
+                item.protocol = number + 1
+        _fit_protocols(state, tracks)
+
+
+def _read(state, item):
+    try:
+        track = looking.track(item.path, item.run, columns_of(state, item))
+    except Refusal as refusal:
+        item.problem, item.about, item.reach_mm = str(refusal), "", 0.0
+        return None
+    item.problem, item.reach_mm = "", repeats.reach_mm(track)
+    item.about = repeats.describe(track)
+    if not item.about:
+        item.problem = f"'{item.name}' shows no press: no force above zero; check columns and signs"
+    return track
+
+
+def _fit_protocols(state, tracks):
+    """A protocol for each number that a file has; new ones take the first one's tool."""
+    while len(state.protocols) < max((item.protocol for item in state.files), default=0):
+        new, first = state.protocols.add(), state.protocols[0]
+        new.shape, new.diameter_mm, new.turn_deg = first.shape, first.diameter_mm, first.turn_deg
+    while len(state.protocols) > max((item.protocol for item in state.files), default=0):
+        state.protocols.remove(len(state.protocols) - 1)
+    words = [repeats.describe(track) for track in tracks]
+    taken = set()
+    for number, protocol in enumerate(state.protocols, 1):
+        of_it = [text for item, text in zip(state.files, words, strict=True) if item.protocol == number and text]
+        name = of_it[0] if of_it else f"protocol {number}"
+        protocol.name = name if name not in taken else f"{name} ({number})"
+        taken.add(protocol.name)
+
+
+def columns_of(state, item):
+    """(key, header) pairs for `[recordings.columns]`; empty where the file itself says all."""
+    head = state.columns.get(item.head) if item.head else None
+    if head is None:
+        return []
+    pairs = []
+    for role in head.asks.split():
+        header = getattr(head, role)
+        if not header:
+            continue
+        is_reversed = getattr(head, f"{role}_reversed", False)
+        unit = getattr(head, f"{role}_unit")
+        key = "travel" if role == "depth" and head.depth_zero == "ANY" else role
+        unit = "" if unit == settings.STATED else f"_{unit.lower()}"
+        pairs.append((key + unit, f"-{header}" if is_reversed else header))
+    return pairs
+
+
+def _columns(state, found):
+    """The row of questions of a head; files of the same head and questions share it."""
+    key = "\t".join((*found.headers, " ".join(found.asks)))
+    head = state.columns.get(key)
+    if head is not None:
+        return head
+    head = state.columns.add()
+    head.name, head.asks = key, " ".join(found.asks)
+    for header in found.headers:
+        head.headers.add().name = header
+    for role, header in looking.propose(found.headers, found.asks).items():
+        setattr(head, role, header)
+    head.depth_reversed, head.force_reversed = found.is_depth_reversed, found.is_force_reversed
+    head.depth_zero = "TOUCH" if looking.TOUCHED.search(head.depth) else "ANY"
+    return head
+
+
+def problem(context):
+    """What must be answered before the study can be written, as one sentence; empty if nothing."""
+    state = context.scene.thenar_new_study
+    if not state.is_open:
+        return "no study is being made; press New Study from Files first"
+    for item in state.files:
+        if item.problem:
+            return item.problem
+    for number, protocol in enumerate(state.protocols, 1):
+        is_used = any(item.protocol == number for item in state.files)
+        if is_used and protocol.shape != "PLANE" and protocol.diameter_mm <= 0.0:
+            return f"the tool's diameter of protocol {number} is not given; measure it and enter it in mm"
+        if is_used and state.skin == settings.FLAT and protocol.shape in {"PLANE", "CYLINDER"}:
+            return (
+                "a flat plate or a cylinder touches flat skin up to its edges, which the study does not know; "
+                "choose a sphere or a flat rod, or a hand under Pressed"
+            )
+    return _skin_problem(context, state)
+
+
+def _skin_problem(context, state):
+    if state.skin == settings.FLAT:
+        return ""
+    hand = context.scene.thenar.hand
+    if hand is None or hand.type != "MESH":
+        return "there is no hand yet; press Make Hand, or choose Flat Skin under Pressed"
+    if state.site_vertex >= len(hand.data.vertices):
+        return f"'{hand.name}' was changed since the place was clicked; click it again"
+    if state.site_vertex < 0 and state.site_region not in hand.thenar.materials:
+        return "where on the hand did the tool press? Press Pick Site and click the skin, or choose a region"
+    return ""
+
+
+def _natural(name):
+    """Sorts `press 2` before `press 10`."""
+    digits = "".join(letter if letter.isdigit() else " " for letter in name).split()
+    words = "".join(" " if letter.isdigit() else letter for letter in name.lower())
+    return (" ".join(words.split()), [int(number) for number in digits], name)

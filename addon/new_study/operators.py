@@ -1,0 +1,190 @@
+"""Operators of a new study: choose its files, pick its place, write it, give it up; open a sample."""
+
+from pathlib import Path
+
+import bpy
+from bpy_extras.io_utils import ImportHelper
+from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
+
+from ..operators import polling, running
+from ..recordings import loading
+from ..scene.checks import Refusal
+from . import drafting, making, settings, skins
+
+SAMPLES = Path(__file__).resolve().parents[1] / "sample_studies"
+KINDS = (
+    ("nothing_missing", "Nothing Missing", "Balls pressed on gel, as Hertz and Sneddon say, with a laboratory's noise"),
+    ("concealed_effect", "Something Missing", "The same, with one effect that the model does not have: which?"),
+)
+
+
+class THENAR_OT_new_study(bpy.types.Operator, ImportHelper):
+    """Choose recordings of a tool pressed on skin (CSV, text, workbook, JPK, Mach-1 ...): Thenar proposes the study \
+to diagnose, and asks what the files do not state"""
+
+    bl_idname = "thenar.new_study"
+    bl_label = "New Study from Files"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filter_glob: bpy.props.StringProperty(
+        default="*.csv;*.txt;*.tsv;*.asc;*.dat;*.ddf;*.xlsx;*.xls;*.jpk-*", options={"HIDDEN"}
+    )
+    directory: bpy.props.StringProperty(name="Folder", description="Folder of the recordings", subtype="DIR_PATH")
+    files: bpy.props.CollectionProperty(
+        name="Files",
+        description="Names of the recordings in the folder",
+        type=bpy.types.OperatorFileListElement,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_module(), polling.busy())
+
+    def execute(self, context):
+        names = [each.name for each in self.files if each.name]
+        folder = bpy.path.abspath(self.directory)
+        count = running.attempt(self, drafting.begin, context, folder, names)
+        if count is None:
+            return {"CANCELLED"}
+        running.redraw(context)
+        self.report({"INFO"}, f"{count} recording{'' if count == 1 else 's'}; answer what New Study asks")
+        return {"FINISHED"}
+
+
+class _OfStudy:
+    """An operator on the study that is being made."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        is_open = context.scene.thenar_new_study.is_open
+        problem = "" if is_open else "no study is being made; press New Study from Files first"
+        return polling.allows(cls, polling.no_module(), problem, polling.busy())
+
+
+class THENAR_OT_write_study(_OfStudy, bpy.types.Operator):
+    """Write study.toml and its skin next to the recordings, and load the study; then press Diagnose"""
+
+    bl_idname = "thenar.write_study"
+    bl_label = "Write Study"
+
+    @classmethod
+    def poll(cls, context):
+        problems = (polling.no_module(), drafting.problem(context), polling.busy())
+        return polling.allows(cls, *problems)
+
+    def execute(self, context):
+        title = running.attempt(self, making.make, context)
+        if title is None:
+            return {"CANCELLED"}
+        running.redraw(context)
+        self.report({"INFO"}, f"Study '{title}' is written and loaded; press Diagnose")
+        return {"FINISHED"}
+
+
+class THENAR_OT_discard_study(_OfStudy, bpy.types.Operator):
+    """Close the proposal without writing a study; the recordings stay"""
+
+    bl_idname = "thenar.discard_study"
+    bl_label = "Discard"
+
+    def execute(self, context):
+        drafting.discard(context.scene.thenar_new_study)
+        running.redraw(context)
+        return {"FINISHED"}
+
+
+class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
+    """Click the place on the hand's skin where the tool pressed. Esc cancels"""
+
+    bl_idname = "thenar.pick_site"
+    bl_label = "Pick Site"
+
+    @classmethod
+    def poll(cls, context):
+        is_open = context.scene.thenar_new_study.is_open
+        problem = "" if is_open else "no study is being made; press New Study from Files first"
+        return polling.allows(cls, problem, polling.no_hand(context), polling.wrong_mode(context), polling.busy())
+
+    def invoke(self, context, event):
+        if context.area is None or context.area.type != "VIEW_3D":
+            self.report({"ERROR"}, "The site is picked in a 3D view; press this in its sidebar")
+            return {"CANCELLED"}
+        context.workspace.status_text_set("Click the skin where the tool pressed    Esc: cancel")
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            return self._end(context, {"CANCELLED"})
+        region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
+        inside = region is not None and 0 <= event.mouse_x - region.x < region.width
+        inside = inside and 0 <= event.mouse_y - region.y < region.height
+        if event.type != "LEFTMOUSE" or event.value != "PRESS" or not inside or _covers(context, event):
+            return {"PASS_THROUGH"}
+        place = (event.mouse_x - region.x, event.mouse_y - region.y)
+        view = context.space_data.region_3d
+        eye, ray = region_2d_to_origin_3d(region, view, place), region_2d_to_vector_3d(region, view, place)
+        if running.attempt(self, take_site, context, eye, ray) is None:
+            return {"RUNNING_MODAL"}
+        return self._end(context, {"FINISHED"})
+
+    def _end(self, context, result):
+        context.workspace.status_text_set(None)
+        context.area.tag_redraw()
+        return result
+
+
+def take_site(context, eye, ray):
+    """The site where a ray (world, Blender's units) meets the hand. Returns its place there. Raises `Refusal`."""
+    hand, state = context.scene.thenar.hand, context.scene.thenar_new_study
+    depsgraph = context.evaluated_depsgraph_get()
+    into = hand.matrix_world.inverted_safe()
+    is_hit, place, _, _ = hand.evaluated_get(depsgraph).ray_cast(into @ eye, into.to_3x3() @ ray)
+    if not is_hit:
+        raise Refusal(f"that is not on '{hand.name}'; click its skin")
+    state.site_vertex, state.skin = skins.nearest_vertex(context, hand, hand.matrix_world @ place), settings.HAND
+    return place
+
+
+def _covers(context, event):
+    """Whether the sidebar or another region lies over the view at the mouse."""
+    return any(
+        each.type != "WINDOW"
+        and each.x <= event.mouse_x < each.x + each.width
+        and each.y <= event.mouse_y < each.y + each.height
+        for each in context.area.regions
+    )
+
+
+class THENAR_OT_sample_study(bpy.types.Operator):
+    """Open a small study to diagnose: its recordings follow closed forms, not Thenar's model"""
+
+    bl_idname = "thenar.sample_study"
+    bl_label = "Sample Study"
+    bl_options = {"REGISTER", "UNDO"}
+
+    kind: bpy.props.EnumProperty(name="Study", description="Which sample", items=KINDS)
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_module(), polling.busy())
+
+    def execute(self, context):
+        added = running.attempt(self, loading.load, context, str(SAMPLES / self.kind))
+        if added is None:
+            return {"CANCELLED"}
+        running.redraw(context)
+        self.report({"INFO"}, f"Loaded {', '.join(added)}; press Diagnose")
+        return {"FINISHED"}
+
+
+CLASSES = (
+    THENAR_OT_new_study,
+    THENAR_OT_write_study,
+    THENAR_OT_discard_study,
+    THENAR_OT_pick_site,
+    THENAR_OT_sample_study,
+)
