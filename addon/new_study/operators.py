@@ -145,7 +145,7 @@ def take_site(context, eye, ray):
     is_hit, place, _, _ = hand.evaluated_get(depsgraph).ray_cast(into @ eye, into.to_3x3() @ ray)
     if not is_hit:
         raise Refusal(f"that is not on '{hand.name}'; click its skin")
-    state.site_vertex, state.skin = skins.nearest_vertex(context, hand, hand.matrix_world @ place), settings.HAND
+    state.site_vertex, state.skin = skins.picked(context, hand, hand.matrix_world @ place), settings.HAND
     return place
 
 

@@ -71,6 +71,7 @@ def of_hand(context, hand, vertex, region):
     sorted_in = regions.vertex_regions(context, hand, listed)
     if vertex < 0:
         vertex = _middle(positions, normals, np.flatnonzero(sorted_in == listed.index(region)), region)
+    _check_is_skin(hand, listed, sorted_in[vertex])
     kept = _piece(positions, triangles, vertex)
     near = np.linalg.norm(positions - positions[vertex], axis=1) <= NORMAL_MM
     outward = normals[near & kept].sum(axis=0)
@@ -83,16 +84,30 @@ def of_hand(context, hand, vertex, region):
     of_vertex = tuple(listed[k] if k >= 0 else "" for k in sorted_in[used]) if listed else None
     held = {name: numbers[name] for name in (sorted(set(of_vertex) - {""}) if listed else numbers)}
     materials = {name: {key: each[key] for key in _FIT_STARTS} for name, each in held.items()}
-    site = listed[sorted_in[vertex]] if listed and sorted_in[vertex] >= 0 else names.WHOLE_SKIN
+    site = listed[sorted_in[vertex]] if listed else names.WHOLE_SKIN
     return Skin(positions[used], new[triangles[whole]], of_vertex, materials, positions[vertex], -outward, site)
 
 
-def nearest_vertex(context, hand, place_world):
-    """The hand's vertex nearest to a place (3) on its shown, posed skin, in Blender's units."""
+def picked(context, hand, place_world):
+    """The hand's vertex nearest to a place (3) on its shown, posed skin, in Blender's units.
+
+    Raises `Refusal` where no region lies there, which the model takes for no skin.
+    """
     posed = mesh.evaluated_positions(hand, context.evaluated_depsgraph_get(), len(hand.data.vertices))
     matrix = units.world_from_local(hand)
     world = posed @ matrix[:3, :3].T + matrix[:3, 3]
-    return int(np.linalg.norm(world - np.asarray(place_world), axis=1).argmin())
+    vertex = int(np.linalg.norm(world - np.asarray(place_world), axis=1).argmin())
+    listed = tuple(material.name for material in hand.thenar.materials)
+    _check_is_skin(hand, listed, regions.vertex_regions(context, hand, listed)[vertex])
+    return vertex
+
+
+def _check_is_skin(hand, listed, number):
+    if listed and number < 0:
+        raise Refusal(
+            f"this place of '{hand.name}' belongs to no region, so no tissue is known there; "
+            "click a pad or the palm, or add the region under Materials"
+        )
 
 
 def _middle(positions, normals, of_region, region):

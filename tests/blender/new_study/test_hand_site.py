@@ -115,6 +115,25 @@ def test_plate_and_cylinder_press_a_hand(draft, tmp_path, shape):
         assert tool == {"shape": "plane"}
 
 
+def test_skin_of_no_region_has_no_tissue_and_is_refused(draft, tmp_path):
+    """The nail's side is in no region: neither a click nor a number takes it for the site."""
+    bare = next(v for v in hand().data.vertices if all(g.weight < 1e-4 for g in regions_of(v)))
+    place, outward = hand().matrix_world @ bare.co, hand().matrix_world.to_3x3() @ bare.normal
+    with pytest.raises(Refusal, match="belongs to no region"):
+        operators.take_site(bpy.context, place + 0.002 * outward, -outward)
+    assert draft.site_vertex == -1
+    draft.site_vertex = bare.index
+    with pytest.raises(RuntimeError, match="belongs to no region"):
+        bpy.ops.thenar.write_study()
+    assert not (tmp_path / "study.toml").exists()
+
+
+def regions_of(vertex):
+    """The vertex's groups that are regions."""
+    listed = {hand().vertex_groups[each.name].index for each in hand().thenar.materials}
+    return [each for each in vertex.groups if each.group in listed]
+
+
 def test_a_click_off_the_hand_and_a_hand_that_changed_are_refused(draft):
     with pytest.raises(Refusal, match="that is not on"):
         operators.take_site(bpy.context, Vector((9.0, 9.0, 9.0)), Vector((0.0, 0.0, 1.0)))
