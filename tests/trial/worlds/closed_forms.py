@@ -8,10 +8,11 @@ the truth is its own fault. Noise and habits of recording are drawn apart, by fa
 Truths: `nothing` (a rigid sphere in an incompressible half-space: Sneddon 1965, International Journal of Engineering
 Science 3:47, of which Hertz is the limit at small depth) and `relaxation` (the same with a modulus that fades in two
 terms; Lee and Radok 1960, Journal of Applied Mechanics 27:438, valid while the contact does not shrink, so that these
-recordings end with their hold), `cycle_softening` (the modulus loses a share of up to 15 to 40 % as work is done on the tissue: damage
-D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session) and `nothing_in_cycles` (the sessions of
-`cycle_softening`, and nothing missing). Such a session begins with four cycles, and states the order of its recordings and no rest.
-Either each recording takes up the tissue as the last one left it, or each repeat begins as the first of its protocol did.
+recordings end with their hold), `cycle_softening` (the modulus loses a share of up to 15 to 40 % as work is done on the
+tissue: damage D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session) and `nothing_in_cycles`
+(the sessions of `cycle_softening`, and nothing missing). Such a session begins with four cycles, and states the order
+of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each repeat begins
+as the first of its protocol did.
 
 Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
 
