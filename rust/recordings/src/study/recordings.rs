@@ -16,6 +16,7 @@ use crate::handprint::Handprint;
 use crate::meshes::{self, MeshFile};
 use crate::pressure_map::{PressureMap, PressureUnit};
 use crate::recording_file::ReadOptions;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// A recording and its setting.
@@ -109,11 +110,11 @@ pub(super) fn read(
     folder: &Folder,
 ) -> Result<Vec<StudyRecording>, RecordingError> {
     let here = |fault: Fault| folder.fault(fault);
-    let mut recordings = Vec::<StudyRecording>::new();
+    let (mut recordings, mut names) = (Vec::new(), HashSet::new());
     for mut section in root.list("recordings").map_err(here)? {
         let name = needed(&mut section, "name").map_err(here)?;
         section.name = format!("recording {}", shown(name.as_bytes()));
-        if recordings.iter().any(|other| other.name == name) {
+        if !names.insert(name.clone()) {
             let problem = format!("{} stands twice", section.name);
             return Err(here(
                 section.fault(problem, "give each recording a name of its own"),

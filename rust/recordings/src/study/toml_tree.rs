@@ -10,14 +10,16 @@ const ROOT: &str = "the file";
 
 /// A parsed text.
 pub(super) struct Document<'t> {
-    text: &'t str,
+    /// Where its lines end, bytes, rising.
+    line_ends: Vec<usize>,
     root: Spanned<DeTable<'t>>,
 }
 
 impl<'t> Document<'t> {
     pub fn parse(text: &'t str) -> Result<Document<'t>, Fault> {
+        let line_ends: Vec<usize> = memchr::memchr_iter(b'\n', text.as_bytes()).collect();
         let root = DeTable::parse(text).map_err(|error| {
-            let line = line_of(text, error.span().unwrap_or(0..0));
+            let line = line_of(&line_ends, error.span().unwrap_or(0..0));
             let message = error
                 .message()
                 .split('\n')
@@ -27,14 +29,14 @@ impl<'t> Document<'t> {
                 .to_string();
             Fault::line(line, message, "correct the TOML")
         })?;
-        Ok(Document { text, root })
+        Ok(Document { line_ends, root })
     }
 
     pub fn root(&self) -> Section<'_> {
         Section {
             name: ROOT.into(),
             line: 1,
-            text: self.text,
+            line_ends: &self.line_ends,
             table: self.root.get_ref(),
             known: Vec::new(),
         }
@@ -46,7 +48,7 @@ pub(super) struct Section<'d> {
     /// As messages name it: `[sites.pad]`.
     pub name: String,
     pub line: usize,
-    text: &'d str,
+    line_ends: &'d [usize],
     table: &'d DeTable<'d>,
     known: Vec<&'static str>,
 }
@@ -64,7 +66,7 @@ impl<'d> Section<'d> {
         self.known.push(key);
         let value = self.table.get(key)?;
         Some(Entry {
-            line: line_of(self.text, value.span()),
+            line: line_of(self.line_ends, value.span()),
             name: key.to_string(),
             value: value.get_ref(),
         })
@@ -124,7 +126,7 @@ impl<'d> Section<'d> {
                 Ok(Some(Section {
                     name,
                     line,
-                    text: self.text,
+                    line_ends: self.line_ends,
                     table,
                     known: Vec::new(),
                 }))
@@ -140,7 +142,7 @@ impl<'d> Section<'d> {
     pub fn pairs(self) -> Vec<(String, Entry<'d>)> {
         let pairs = self.table.iter().map(|(key, value)| {
             let entry = Entry {
-                line: line_of(self.text, value.span()),
+                line: line_of(self.line_ends, value.span()),
                 name: key.get_ref().to_string(),
                 value: value.get_ref(),
             };
@@ -153,7 +155,7 @@ impl<'d> Section<'d> {
     pub fn sections(&self) -> Result<Vec<(String, Section<'d>)>, Fault> {
         let mut all = Vec::new();
         for (key, value) in self.table {
-            let line = line_of(self.text, key.span());
+            let line = line_of(self.line_ends, key.span());
             let DeValue::Table(table) = value.get_ref() else {
                 let problem = format!("{} is no table", shown(key.get_ref().as_bytes()));
                 return Err(Fault::line(
@@ -166,7 +168,7 @@ impl<'d> Section<'d> {
             let section = Section {
                 name,
                 line,
-                text: self.text,
+                line_ends: self.line_ends,
                 table,
                 known: Vec::new(),
             };
@@ -194,11 +196,11 @@ impl<'d> Section<'d> {
             .iter()
             .map(|item| match item.get_ref() {
                 DeValue::Table(table) => {
-                    let line = line_of(self.text, item.span());
+                    let line = line_of(self.line_ends, item.span());
                     Ok(Section {
                         name: format!("[[{key}]]"),
                         line,
-                        text: self.text,
+                        line_ends: self.line_ends,
                         table,
                         known: Vec::new(),
                     })
@@ -226,7 +228,7 @@ impl<'d> Section<'d> {
         let Some((key, _)) = unknown.min_by_key(|(key, _)| key.span().start) else {
             return Ok(());
         };
-        let line = line_of(self.text, key.span());
+        let line = line_of(self.line_ends, key.span());
         let problem = format!(
             "{} is no key of {}",
             shown(key.get_ref().as_bytes()),
@@ -371,10 +373,7 @@ pub(super) fn nearest(word: &str, known: &[&str]) -> String {
     }
 }
 
-fn line_of(text: &str, span: Range<usize>) -> usize {
-    let end = span.start.min(text.len());
-    1 + text.as_bytes()[..end]
-        .iter()
-        .filter(|byte| **byte == b'\n')
-        .count()
+/// The line on which a span begins, from 1; a search, since a study asks once for every key.
+fn line_of(line_ends: &[usize], span: Range<usize>) -> usize {
+    1 + line_ends.partition_point(|end| *end < span.start)
 }
