@@ -1,8 +1,9 @@
 //! Which maker's format a file has, from its first bytes.
 
 use crate::fault::Fault;
+use crate::fields::{Separator, value};
 use crate::lines::{Line, Lines};
-use crate::tables::head::{Found, Search};
+use crate::tables::head::{Found, Search, question};
 use crate::tables::mapping::Columns;
 
 /// Bytes that are looked at.
@@ -107,9 +108,38 @@ pub(crate) fn kind_of(head: &[u8], named: &Columns) -> Result<Kind, Fault> {
         .or_else(|| table_format(&lines, named))
         .map(Kind::Text)
         .ok_or_else(|| match named.is_empty() {
-            true => not_known(),
+            true => statistics(&lines)
+                .or_else(|| question(&lines))
+                .or_else(|| bare_numbers(&lines))
+                .unwrap_or_else(not_known),
             false => not_named(named),
         })
+}
+
+/// XSENSOR's table with a row for each frame, which holds no pressures.
+fn statistics(lines: &[String]) -> Option<Fault> {
+    let is_head = |line: &&String| line.starts_with("Frame,") && line.contains("Est. Load");
+    lines.iter().find(is_head)?;
+    let problem = "this is XSENSOR's table of statistics, a row for each frame, without the pressures of the cells";
+    Some(Fault::file(
+        problem.into(),
+        "export the frames with their sensels as CSV",
+    ))
+}
+
+/// Rows of numbers that nothing names.
+fn bare_numbers(lines: &[String]) -> Option<Fault> {
+    let is_row = |text: &String| {
+        let mut fields = Separator::of(text).split(text).filter(|f| !f.is_empty());
+        let is_number = |field: &str| value(field).is_ok();
+        fields.next().is_some_and(is_number) && fields.next().is_some() && fields.all(is_number)
+    };
+    if lines.len() < 3 || !lines.iter().all(is_row) {
+        return None;
+    }
+    let problem = "its rows hold numbers, and no line names the columns and their units";
+    let remedy = "put a line of names before them, such as time_s,travel_mm,force_n";
+    Some(Fault::line(1, problem.into(), remedy))
 }
 
 fn not_known() -> Fault {

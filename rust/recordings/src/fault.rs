@@ -7,6 +7,9 @@ use std::path::Path;
 /// Largest number that is taken for a measurement in any unit; some programs write 1e300 for "no value".
 pub(crate) const LARGEST: f64 = 1e30;
 
+/// Longest problem that a message states, letters; some libraries quote the file in theirs.
+const LONGEST_PROBLEM: usize = 600;
+
 /// Where in a file a fault lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
@@ -33,10 +36,14 @@ impl Fault {
     }
 
     pub fn at(place: Place, problem: String, remedy: impl Into<Cow<'static, str>>) -> Fault {
+        let mut remedy = remedy.into();
+        if remedy.contains(char::is_control) {
+            remedy = printable(&remedy).into();
+        }
         Fault {
             place,
-            problem,
-            remedy: remedy.into(),
+            problem: printable(&problem),
+            remedy,
         }
     }
 
@@ -76,6 +83,15 @@ impl Fault {
                 remedy,
             },
         }
+    }
+}
+
+/// A text without letters that steer a terminal, and of one line: what a file or a library says in it may be anything.
+fn printable(text: &str) -> String {
+    let seen = |c: char| if c.is_control() { '?' } else { c };
+    match text.char_indices().nth(LONGEST_PROBLEM) {
+        Some((end, _)) => text[..end].chars().map(seen).chain("...".chars()).collect(),
+        None => text.chars().map(seen).collect(),
     }
 }
 

@@ -315,3 +315,33 @@ fn indenter_faults_are_placed() {
         "a.txt, line 1: 'hat' is not a unit of pressure; name the column pressure_kpa",
     );
 }
+
+/// Found by damaged files at random: names and texts of a file stood in messages as they were.
+#[test]
+fn messages_are_one_line_without_escape_codes_whatever_the_file_says() {
+    let xsensor = XSENSOR.replace("Contact Area (cm²),8", "Contact Area (cm\u{1b}[31m²),");
+    let message = export(xsensor.as_bytes()).unwrap_err();
+    assert!(
+        message.contains("Contact Area (cm?[31m²)") && !message.contains('\u{1b}'),
+        "{message}"
+    );
+    let theme = format!("<a:b>\n{}</a:\u{1b}c>", "<a:d>\n".repeat(2_000));
+    let book = zipped(&[
+        ("xl/workbook.xml", theme.as_bytes()),
+        ("xl/_rels/workbook.xml.rels", theme.as_bytes()),
+    ]);
+    let message = export(&book).unwrap_err();
+    assert!(
+        message.len() < 1_000 && !message.contains(char::is_control),
+        "{message}"
+    );
+}
+
+#[test]
+fn insole_loggers_without_a_column_of_pressures_are_refused() {
+    let text = LOGGER.replace("accel_x,pressure_01,pressure_02", "accel_x,x pressure_,y");
+    assert_eq!(
+        export(text.as_bytes()).unwrap_err(),
+        "a.txt, line 1: no column is called 'pressure_01'; export the pressures of the insole too"
+    );
+}

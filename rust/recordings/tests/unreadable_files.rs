@@ -57,6 +57,11 @@ fn what_is_no_recording_is_refused_at_once() {
     let unknown = "a.txt, line 1: this is no recording format that is known";
     assert!(export(b"\n\n\n").unwrap_err().starts_with(unknown));
     assert!(export(b"hello\nworld\n").unwrap_err().starts_with(unknown));
+    assert_eq!(
+        export(b"0.1,2.5,3\n0.2,2.6,4\n0.3,2.7,5\n").unwrap_err(),
+        "a.txt, line 1: its rows hold numbers, and no line names the columns and their units; \
+         put a line of names before them, such as time_s,travel_mm,force_n"
+    );
     assert!(
         export(b"\xFF\xFEt\0i\0")
             .unwrap_err()

@@ -74,9 +74,15 @@ impl Columns {
         let Some(timestamp) = names.iter().position(|name| *name == "timestamp") else {
             return Err(line.fault("there is no column 'timestamp'".into(), DAMAGED));
         };
-        let pressures = (0..names.len())
+        let pressures: Vec<usize> = (0..names.len())
             .filter(|k| names[*k].starts_with("pressure_"))
             .collect();
+        if pressures.is_empty() {
+            return Err(line.fault(
+                "no column is called 'pressure_01'".into(),
+                "export the pressures of the insole too",
+            ));
+        }
         Ok(Columns {
             count: names.len(),
             timestamp,

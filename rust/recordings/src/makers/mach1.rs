@@ -35,7 +35,7 @@ pub(crate) fn read(lines: &mut Lines, named: &Columns) -> Result<RecordingFile, 
         {
             command = tag.to_string();
         } else if tag == "DATA" {
-            let mut run = read_block(lines, named, &mut held)?;
+            let (mut run, is_closed) = read_block(lines, named, &mut held)?;
             if run.samples() == 0 {
                 continue;
             }
@@ -44,6 +44,12 @@ pub(crate) fn read(lines: &mut Lines, named: &Columns) -> Result<RecordingFile, 
             curve.unknown.push(
                 "the time between the blocks of the file: each counts from its own start".into(),
             );
+            if !is_closed {
+                curve.warnings.push(format!(
+                    "the file ends at line {} without <END DATA>: more samples may have followed",
+                    lines.number()
+                ));
+            }
             curves.push(curve);
         }
     }
@@ -53,8 +59,8 @@ pub(crate) fn read(lines: &mut Lines, named: &Columns) -> Result<RecordingFile, 
     Ok(RecordingFile::of_curves(Format::Mach1, curves))
 }
 
-/// The samples up to `<END DATA>`.
-fn read_block(lines: &mut Lines, named: &Columns, held: &mut usize) -> Result<Run, Fault> {
+/// The samples up to `<END DATA>`, and whether it was there: files of tests that were stopped lack it.
+fn read_block(lines: &mut Lines, named: &Columns, held: &mut usize) -> Result<(Run, bool), Fault> {
     let Some(line) = lines.next_filled(&[])? else {
         return Err(lines.ended("the line of column names"));
     };
@@ -85,10 +91,10 @@ fn read_block(lines: &mut Lines, named: &Columns, held: &mut usize) -> Result<Ru
     };
     loop {
         let Some(line) = lines.next_filled(&[])? else {
-            return Err(lines.ended("<END DATA>"));
+            return Ok((run, false));
         };
         if line.text.trim() == "<END DATA>" {
-            return Ok(run);
+            return Ok((run, true));
         }
         take(&mut run, &line, width)?;
         *held += width;

@@ -1,14 +1,16 @@
 //! The head of a table: names with their units in one row, or names in one and units in the next, behind free lines.
 
-use super::columns::{Column, bare_unit, fields, is_curve, is_map};
+use super::columns::{Column, bare_unit, fields, is_curve, is_map, names};
 use super::mapping::Columns;
-use crate::fault::Fault;
+use crate::fault::{Fault, shown};
 use crate::fields::{Separator, value};
 use crate::lines::Line;
 use crate::units::{Quantity, unit};
 
 /// Longest line that may be a head, bytes.
 const LONGEST: usize = 1 << 14;
+/// Most columns that a question names.
+const MOST_ASKED: usize = 8;
 /// Quantities that make a curve.
 const OF_CURVES: [Quantity; 3] = [Quantity::Time, Quantity::Force, Quantity::Length];
 
@@ -40,6 +42,8 @@ pub(crate) struct Search<'m> {
     previous: Vec<String>,
     /// Names of a curve that lack units, and their fault if no units follow.
     open: Option<Fault>,
+    /// Cells stand to the right of the table.
+    has_more: bool,
 }
 
 impl<'m> Search<'m> {
@@ -49,6 +53,7 @@ impl<'m> Search<'m> {
             above: Vec::new(),
             previous: Vec::new(),
             open: None,
+            has_more: false,
         }
     }
 
@@ -81,12 +86,15 @@ impl<'m> Search<'m> {
 
     /// The columns, if `row` ends a head.
     fn look(&mut self, row: &[String], line: &Line) -> Result<Option<Vec<Column>>, Fault> {
-        if is_units(row) && !self.previous.is_empty() {
+        let under_names = before_notes(row);
+        if is_units(under_names) && !self.previous.is_empty() {
+            let (row, full) = (under_names, row.len());
             let mut columns: Vec<Column> = (0..row.len())
                 .map(|k| with_unit(self.previous.get(k).map_or("", String::as_str), &row[k]))
                 .collect();
             if self.named.apply(&mut columns) && holds_curve(&columns, self.named) {
                 self.open = None;
+                self.has_more = under_names.len() < full;
                 // The names stand one row higher.
                 std::mem::swap(&mut self.above, &mut self.previous);
                 return sound(columns, line.number).map(Some);
@@ -99,7 +107,9 @@ impl<'m> Search<'m> {
         if !self.named.apply(&mut columns) {
             return Ok(None);
         }
-        let is_head = is_curve(&columns) || (!self.named.is_empty() && known(&columns) >= 2);
+        let is_head = is_curve(&columns)
+            || is_one_time_and_force(&columns)
+            || (!self.named.is_empty() && known(&columns) >= 2);
         if !is_head || row.iter().filter(|text| value(text).is_ok()).count() > row.len() / 2 {
             return Ok(None);
         }
@@ -119,6 +129,12 @@ impl<'m> Search<'m> {
 
     fn head(&mut self, mut columns: Vec<Column>, separator: Separator) -> Head {
         let mut notes = Vec::new();
+        if let (true, Some(last)) = (self.has_more, columns.last()) {
+            notes.push(format!(
+                "cells to the right of column '{}' stand under no unit and are not read",
+                last.header
+            ));
+        }
         for (what, quantity) in [("time", Quantity::Time), ("force", Quantity::Force)] {
             let of_kind =
                 |column: &&mut Column| column.unit.is_some_and(|unit| unit.quantity == quantity);
@@ -140,6 +156,15 @@ impl<'m> Search<'m> {
             notes,
         }
     }
+}
+
+/// A row of units without what stands from its first number on: notes that people keep to the right of a table.
+fn before_notes(row: &[String]) -> &[String] {
+    let Some(notes) = row.iter().position(|text| value(text).is_ok()) else {
+        return row;
+    };
+    let last = row[..notes].iter().rposition(|text| !text.is_empty());
+    &row[..last.map_or(0, |last| last + 1)]
 }
 
 /// Whether a row holds units and no number.
@@ -175,15 +200,56 @@ fn holds_curve(columns: &[Column], named: &Columns) -> bool {
             !column.base.is_empty() && column.unit.is_some_and(|unit| unit.quantity == quantity)
         })
     };
-    let only = |quantity: Quantity| {
-        let of_kind = |column: &&Column| column.unit.is_some_and(|unit| unit.quantity == quantity);
-        columns.iter().filter(of_kind).count() == 1
-    };
     let quantities = OF_CURVES.iter().filter(|quantity| has(**quantity)).count();
     is_curve(columns)
         || (known(columns) >= 1 && quantities >= 2)
-        || (only(Quantity::Time) && only(Quantity::Force))
+        || is_one_time_and_force(columns)
         || (!named.is_empty() && known(columns) >= 2)
+}
+
+/// Whether one column is in a unit of time and one in a unit of force, whatever they are called.
+fn is_one_time_and_force(columns: &[Column]) -> bool {
+    [Quantity::Time, Quantity::Force].iter().all(|quantity| {
+        let of_kind = |column: &&Column| column.unit.is_some_and(|unit| unit.quantity == *quantity);
+        columns.iter().filter(of_kind).count() == 1
+    })
+}
+
+/// The question which columns are meant, where names in units of force and length are not known, and nothing else is.
+pub(crate) fn question(lines: &[String]) -> Option<Fault> {
+    let has = |columns: &[Column], quantity: Quantity| {
+        let found = columns
+            .iter()
+            .find(|column| column.unit.is_some_and(|unit| unit.quantity == quantity));
+        found.map(|column| column.header.clone())
+    };
+    let (columns, force, length) = lines.iter().find_map(|text| {
+        let columns = names(text, Separator::of(text));
+        let force = has(&columns, Quantity::Force)?;
+        let length = has(&columns, Quantity::Length)?;
+        Some((columns, force, length))
+    })?;
+    let headers: Vec<String> = columns
+        .iter()
+        .take(MOST_ASKED)
+        .map(|column| shown(column.header.as_bytes()))
+        .collect();
+    let problem = format!(
+        "which of its columns {} is the force, and which the depth or travel?",
+        headers.join(", ")
+    );
+    let remedy = format!(
+        "name them: force = \"{0}\" and travel = \"{1}\" under [recordings.columns] in study.toml, or --column \"force={0}\" --column \"travel={1}\"",
+        plain(&force),
+        plain(&length)
+    );
+    Some(Fault::file(problem, remedy))
+}
+
+/// A column's name without its unit, as a user writes it.
+fn plain(header: &str) -> String {
+    let name = header.split(['(', '[']).next().unwrap_or(header).trim();
+    shown(name.as_bytes()).trim_matches('\'').to_string()
 }
 
 /// The columns, if every known quantity has a unit of its kind; the sensor's volts next to a depth in nm are kept under a name of their own.
@@ -194,7 +260,9 @@ fn sound(mut columns: Vec<Column>, line: usize) -> Result<Vec<Column>, Fault> {
         .map(|column| column.base.clone())
         .collect();
     for column in &mut columns {
-        if !column.is_sound() && known.contains(&column.base) && !column.unit_text.is_empty() {
+        // An elongation may be a strain in %: it is kept, and no depth.
+        let is_spare = known.contains(&column.base) || column.base == "elongation";
+        if !column.is_sound() && is_spare && !column.unit_text.is_empty() {
             column.base = format!("{}_as_{}", column.base, column.unit_text);
         }
     }

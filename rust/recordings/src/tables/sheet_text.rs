@@ -15,6 +15,8 @@ const LARGEST_TEXTS: u64 = 64 << 20;
 const MOST_CELLS: usize = 1 << 24;
 /// Most bytes of one sheet as text.
 const LARGEST_SHEET: usize = 256 << 20;
+/// Rows of a sheet, as the formats of workbooks bound them.
+const MOST_ROWS: usize = 1 << 20;
 /// Columns of a sheet that are read.
 const MOST_COLUMNS: usize = 512;
 
@@ -123,6 +125,14 @@ impl<'b> Text<'b> {
     fn push(&mut self, [row, column]: [usize; 2], cell: &DataRef) -> Result<(), Fault> {
         if column >= MOST_COLUMNS || row < self.at[0] {
             return Ok(());
+        }
+        if row >= MOST_ROWS {
+            let problem = format!(
+                "sheet {}: a cell claims row {}, and a sheet has {MOST_ROWS}",
+                shown(self.name.as_bytes()),
+                row + 1
+            );
+            return Err(Fault::file(problem, REMEDY));
         }
         *self.held += 1;
         if *self.held > MOST_CELLS || self.written.len() > LARGEST_SHEET {

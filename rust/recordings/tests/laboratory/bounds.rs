@@ -34,6 +34,32 @@ fn archives_that_grow_beyond_all_bounds_are_refused_in_time() {
     assert!(started.elapsed().as_secs() < 60);
 }
 
+/// Found by damaged files at random: the rows up to the claimed one were written as 4 GiB of line ends.
+#[test]
+fn a_cell_that_claims_a_row_beyond_all_sheets_is_refused_at_once() {
+    let sheets = [(
+        "Probe 1",
+        crate::tables::under(&[&["time_s", "force_n", "travel_mm", "x_mm"]]),
+    )];
+    let mut members = Vec::new();
+    let mut archive =
+        zip::ZipArchive::new(std::io::Cursor::new(crate::sheets::workbook(&sheets))).unwrap();
+    for k in 0..archive.len() {
+        let mut member = archive.by_index(k).unwrap();
+        let mut text = String::new();
+        std::io::Read::read_to_string(&mut member, &mut text).unwrap();
+        let text = text.replace("\"B4\"", "\"B4294967295\"");
+        members.push((member.name().unwrap().to_string(), text));
+    }
+    let started = std::time::Instant::now();
+    let message = refused(&crate::sheets::zipped(&members));
+    assert!(
+        message.contains("sheet 'Probe 1': a cell claims row 4294967295, and a sheet has 1048576"),
+        "{message}"
+    );
+    assert!(started.elapsed().as_secs_f64() < 1.0);
+}
+
 #[cfg(unix)]
 #[test]
 fn pipes_devices_and_links_out_of_the_folder_are_refused_at_once() {

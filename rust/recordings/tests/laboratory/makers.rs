@@ -188,10 +188,31 @@ fn mach1_blocks_are_runs_with_clocks_of_their_own() {
         named.curves[0].channel("travel_mm").unwrap(),
         [2.0, 3.0, 3.0]
     );
-    let cut = &MACH1[..MACH1.len() - 20];
+    // Files of tests that were stopped end behind a whole row; what is cut within one is damaged.
+    let stopped = read(&MACH1.as_bytes()[..MACH1.len() - "<END DATA>\n".len()]);
+    let last = &stopped.curves[1];
+    assert_eq!(last.channel("time_s").unwrap(), [0.0, 1.0, 2.0]);
     assert!(
-        refused(cut.as_bytes()).contains("the file ends where <END DATA> should follow"),
-        "{}",
-        refused(cut.as_bytes())
+        last.warnings.iter().any(|text| text
+            == "the file ends at line 19 without <END DATA>: more samples may have followed"),
+        "{:?}",
+        last.warnings
+    );
+    assert!(stopped.curves[0].warnings.is_empty());
+    let cut = refused(&MACH1.as_bytes()[..MACH1.len() - "\t15\n<END DATA>\n".len()]);
+    assert!(
+        cut.contains("line 19: the row holds 2 values, expected 3"),
+        "{cut}"
+    );
+}
+
+#[test]
+fn a_table_of_statistics_is_called_so() {
+    let table = "File:,\"C:\\a.XSN\"\nFrame,Date,Time,Units,Threshold,Sensor,Rows,Columns,Average Pressure,Peak Pressure,Contact Area (cm²),Est. Load (N)\n\
+        1,\"2024 Nov 19\",\"12:39:04\",mmHg,\"5,0\",\"LX\",36,36,\"55,53\",\"256,0\",\"1962,9\",\"1453,28\"\n";
+    assert_eq!(
+        refused(table.as_bytes()),
+        "a: this is XSENSOR's table of statistics, a row for each frame, without the pressures of the cells; \
+         export the frames with their sensels as CSV"
     );
 }

@@ -246,3 +246,60 @@ fn a_table_of_sensels_stays_a_map_with_times_and_depths_in_it() {
     assert!(file.curves.is_empty());
     assert_eq!(file.maps.len(), 1);
 }
+
+#[test]
+fn one_time_and_one_force_make_a_curve_whatever_they_are_called() {
+    let head: &[&[&str]] = &[&[
+        "Zeit 1 - Messrate [s]",
+        "Kraftaufnehmer 2 [N]",
+        "Wegaufnehmer [mm]",
+        "Geber [V]",
+    ]];
+    let curve = &read(text(&under(head), "\t", false).as_bytes()).curves[0];
+    span(curve, "time_s", 0.0, 1.9);
+    span(curve, "force_n", 0.0, 0.95);
+    assert_eq!(
+        curve.warnings,
+        [
+            "column 'Zeit 1 - Messrate [s]' is taken as the time: no other is in s",
+            "column 'Kraftaufnehmer 2 [N]' is taken as the force: no other is in N"
+        ]
+    );
+}
+
+#[test]
+fn columns_of_force_and_length_under_other_names_are_asked_for() {
+    let table = "Force-Distance Curve\nX, um:\t25\n\nExtend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)\n\
+        4129,0.5,5345,0.7\n4130,0.6,5344,0.6\n4131,0.8,5343,0.5\n";
+    assert_eq!(
+        refused(table.as_bytes()),
+        "a.csv: which of its columns 'Extend Z-Sense(nm)', 'Extend Force(nN)', 'Retract Z-Sense(nm)', 'Retract Force(nN)' is the force, and which the depth or travel?; \
+         name them: force = \"Extend Force\" and travel = \"Extend Z-Sense\" under [recordings.columns] in study.toml, \
+         or --column \"force=Extend Force\" --column \"travel=Extend Z-Sense\""
+    );
+    let answers = [("force", "Extend Force"), ("travel", "Extend Z-Sense")];
+    let named = with(table.as_bytes(), &answers, None).unwrap();
+    let force = named.curves[0].channel("force_n").unwrap();
+    assert!((force[2] - 0.8e-9).abs() < 1e-20);
+    let travel = named.curves[0].channel("travel_mm").unwrap();
+    assert!((travel[0] - 4.129e-3).abs() < 1e-12 && (travel[2] - 4.131e-3).abs() < 1e-12);
+}
+
+#[test]
+fn an_elongation_in_percent_is_kept_and_costs_nothing() {
+    let head: &[&[&str]] = &[
+        &["Temps d'essai", "Force standard", "Allongement", "Course"],
+        &["s", "N", "%", "mm"],
+    ];
+    let curve = &read(text(&under(head), ";", false).as_bytes()).curves[0];
+    span(curve, "force_n", 0.0, 0.95);
+    assert!(curve.channel("elongation_mm").is_none());
+    assert!(
+        curve
+            .channels
+            .iter()
+            .any(|channel| channel.name == "elongation_as_%"),
+        "{:?}",
+        curve.channels.iter().map(|c| &c.name).collect::<Vec<_>>()
+    );
+}

@@ -221,3 +221,23 @@ fn columns_may_be_given_once_and_named_at_all() {
     columns.add("force_n", "F").unwrap();
     assert!(!columns.is_empty() && columns.add("force", "G").is_err());
 }
+
+#[test]
+fn notes_that_people_keep_to_the_right_of_a_table_cost_nothing() {
+    let mut rows = specimen("Probe 1");
+    rows[1].extend(row(&["", "20", "80"]));
+    rows[2].extend(row(&["", "5.9", "107.2"]));
+    rows[4].extend(row(&["", "2.3", "5.9"]));
+    let file = read(&workbook(&[("Probe 1", rows)]));
+    let curve = &file.curves[0];
+    assert_eq!(curve.samples(), 20);
+    span(curve, "force_n", 0.0, 0.95);
+    assert!(
+        curve.warnings.contains(
+            &"cells to the right of column 'Werkzeugabstand' stand under no unit and are not read"
+                .to_string()
+        ),
+        "{:?}",
+        curve.warnings
+    );
+}
