@@ -7,8 +7,8 @@ use std::path::Path;
 /// Largest number that is taken for a measurement in any unit; some programs write 1e300 for "no value".
 pub(crate) const LARGEST: f64 = 1e30;
 
-/// Longest problem that a message states, letters; some libraries quote the file in theirs.
-const LONGEST_PROBLEM: usize = 600;
+/// Longest problem and longest remedy of a message, letters; some libraries quote the file, and some lists are long.
+const LONGEST_PART: usize = 600;
 
 /// Where in a file a fault lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ impl Fault {
 
     pub fn at(place: Place, problem: String, remedy: impl Into<Cow<'static, str>>) -> Fault {
         let mut remedy = remedy.into();
-        if remedy.contains(char::is_control) {
+        if remedy.contains(char::is_control) || remedy.len() > LONGEST_PART {
             remedy = printable(&remedy).into();
         }
         Fault {
@@ -89,7 +89,7 @@ impl Fault {
 /// A text without letters that steer a terminal, and of one line: what a file or a library says in it may be anything.
 fn printable(text: &str) -> String {
     let seen = |c: char| if c.is_control() { '?' } else { c };
-    match text.char_indices().nth(LONGEST_PROBLEM) {
+    match text.char_indices().nth(LONGEST_PART) {
         Some((end, _)) => text[..end].chars().map(seen).chain("...".chars()).collect(),
         None => text.chars().map(seen).collect(),
     }

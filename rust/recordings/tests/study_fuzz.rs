@@ -36,3 +36,19 @@ fn damaged_studies_are_loaded_or_refused() {
         "{loaded} of {CASES} were loaded"
     );
 }
+
+/// Found by damaged files at random: the remedy listed names of any length.
+#[test]
+fn names_of_regions_of_any_length_leave_the_message_short() {
+    let folder = Folder::new();
+    let name = "x".repeat(5_000);
+    folder.write(
+        "regions.csv",
+        format!("vertex,region\n0,{name}\n2,-1\n1,tip\n"),
+    );
+    let message = Study::load(folder.path()).unwrap_err().to_string();
+    assert!(
+        message.contains("'pad'") && message.len() < 1_500,
+        "{message}"
+    );
+}
