@@ -1,5 +1,6 @@
 """The sample scenes: a hand in contact with a product, lit, framed and ready to solve; and the files that hold them."""
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..grasp_fit import fitter
-from ..hand import build, pads, posing, products, reading, studio
+from ..hand import build, pads, poses, posing, products, reading, roles, studio
 from ..hand.skinning import skin
 from ..scene.units import mm_per_unit
 from . import fitting
@@ -16,6 +17,12 @@ from . import fitting
 FILE_SUFFIX = ".blend"
 RANGE_KPA = 150.0
 """Top of the color map in every sample: about the peak pressures of Xie Table 6, so that samples compare."""
+
+EARLIER_TWIST_DEG = (-20.0, 30.0)
+"""Twist of the thumb in which the grasps of Xie Table 6 were fitted; figures of this repository rest on them."""
+
+FIRST = "held_bottle"
+"""The sample of the first card: a light grasp in balance, pressed to less than half the tissue's thickness."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +86,36 @@ def _power(targets_mm, height_mm=0.0, force_n=None):
         rig.matrix_world = Matrix.Rotation(-np.pi / 2, 4, "Y")
         context.view_layer.update()
         wish = fitter.Wish(targets_mm, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, height_mm))
-        job = fitting.prepare(context, hand, [product], wish, force_n)
-        fitting.finish(context, job, fitting.compute(job), "HAND")
+        with _earlier_twist(rig):
+            job = fitting.prepare(context, hand, [product], wish, force_n)
+            fitting.finish(context, job, fitting.compute(job), "HAND")
+
+    return meet
+
+
+@contextmanager
+def _earlier_twist(rig):
+    """The thumb's twist within `EARLIER_TWIST_DEG` for as long as a fit runs."""
+    limit = rig.pose.bones["thumb_metacarpal"].constraints["Joint limits"]
+    own = limit.min_y, limit.max_y
+    limit.min_y, limit.max_y = np.radians(EARLIER_TWIST_DEG)
+    try:
+        yield
+    finally:
+        limit.min_y, limit.max_y = own
+
+
+def _kept(pose, place):
+    """A grasp that was found before: angles as in `poses.POSES`, and the hand's place, mm and Euler degrees, in the
+    product's space."""
+
+    def meet(context, hand, rig, product):
+        arrays, names = reading.read_free_rig(context, hand)
+        joints = roles.resolve(arrays, names, reading.own_limits(rig, arrays))
+        reading.write_angles(rig, arrays, joints, roles.pose_angles(arrays, joints, pose))
+        shift, turn = place
+        rig.matrix_world = Matrix.Translation(np.array(shift) / mm_per_unit(context.scene)) @ _euler(turn)
+        context.view_layer.update()
 
     return meet
 
@@ -230,6 +265,14 @@ SAMPLES = {
         products.bottle,
         _satin("Bottle", (0.78, 0.78, 0.74, 1.0), 0.3),
         _power(pads.LIGHT_MM, -20.0),
+        **_GRASP,
+    ),
+    FIRST: Sample(
+        "Held bottle",
+        "Bottle",
+        products.bottle,
+        _satin("Bottle", (0.78, 0.78, 0.74, 1.0), 0.3),
+        _kept(poses.HELD_BOTTLE, poses.HELD_BOTTLE_AT),
         **_GRASP,
     ),
 }

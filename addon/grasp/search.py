@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
-from ..grasp_fit import fitter
+from ..grasp_fit import fitter, thumb
 from ..grasp_fit.least_squares import minimize
 from ..grasp_fit.task import Task
+from ..hand.skinning import pose_matrices, skin, skin_normals
 from ..scene.checks import Refusal
 from . import polishing, settling, ways
 from .settings import FRICTION
@@ -23,18 +24,25 @@ THINNED = 3
 BAR_COST = 15.0
 """Residual, mm2, that a bar's cost of one adds: a bar as a hand likes it goes before a better fit on another part."""
 
+ROUGH_FACING_MM = 4.0
+"""What the thumb's facing weighs in a rough fit, as `thumb.WEIGHT_FACING`: with all of it a thin part of the product,
+which is easily opposed, goes before the one that fits the hand."""
+
 ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
 LAST, LAST_ROUNDS = 3, 5
 UNSETTLED = 2.0
 SLIPS = 2.0
 POOR = 8.0
+OPPOSED = 4.0
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
 the next where that one does not. What is not settled counts `UNSETTLED` more, what slips `SLIPS`; a power grip that
-counts more than `POOR` is compared with pinches. What leaves more than `LOST` of its forces over, or presses a vertex
-harder than `TOO_HARD_MPA`, is no grasp."""
+counts more than `POOR` is compared with pinches. A thumb whose pad faces away from the index finger's counts `OPPOSED`
+for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
+one is not counted. What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is
+no grasp."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +133,8 @@ def _best(ready, aim, watch):
         out[place] = one
     out.sort(key=lambda found: in_steps(found.score))
     _refuse_what_does_not_hold(out[0].state)
-    return out
+    averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
+    return [replace(one, score=one.score - averted) for one in out]
 
 
 def _settled(stage, state, aim, watch):
@@ -156,8 +165,20 @@ def _found(state, aim, way):
     """A grasp as a way led to it, with its score and what its holding takes."""
     held = settling.friction_of(way.stage, state, aim)
     score = score_of(state, aim) + way.spot.cost + (SLIPS if held > FRICTION else 0.0)
+    score += OPPOSED * _averted(way, state.grasp)
     pose = state.grasp.angles, state.grasp.place
     return Found(state.grasp, state, score, way, held, pose, aim.total_n)
+
+
+def _averted(way, grasp):
+    """What the cosine between the thumb pad's facing and the way to the index finger's pad lacks; 0 in a pinch."""
+    if way.bar is None:
+        return 0.0
+    rig = way.stage.hand.rig.moved(grasp.place)
+    posed = pose_matrices(rig, grasp.angles)
+    if rig.normals is None:
+        return 0.0
+    return max(thumb.FACING - thumb.cosine_of(way.stage.hand, skin(rig, posed), skin_normals(rig, posed)), 0.0)
 
 
 def _finished(one, seconds):
@@ -189,7 +210,7 @@ def _rough(ready, watch):
         watch.report("Trying where to hold it", 0.2 * number / len(ready))
         fitter.leave_if_cancelled(watch)
         wanted = fitter.wanted_depths(hand.pads, way.stage.fit.wish)
-        goal = settling.goal_of(wanted, way.bar)
+        goal = replace(settling.goal_of(wanted, way.bar), facing_mm=ROUGH_FACING_MM)
         tasks.append((Task(hand, way.stage.gauge, goal, way.start(sparse, wanted), way.stage.fit.wish), way))
     tasks.sort(key=lambda task: in_steps(task[0].first_cost + BAR_COST * task[1].spot.cost))
     fitted = []

@@ -5,12 +5,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..grasp_fit import closing, fitter, pinches, pinching, places
+from ..hand.poses import OPEN
+from ..hand.roles import angle_bounds, pose_angles
+from ..hand.skinning import TWIST
 
 ROLLS = 4
 """Directions around a bar from which the palm is tried."""
 
 STOPS_DEG = {"thumb_proximal": 30.0, "thumb_distal": 25.0}
 """The thumb closes this far before a fit: further, its tip hooks into the palm and stays there."""
+
+OPPOSED_DEG = -25.0
+"""Twist of the thumb's first joint from which a power grip begins: pronated, its pad toward the fingers."""
 
 OBLIQUE_DEG = 12.0
 ALONG = -0.25
@@ -46,7 +52,17 @@ class Way:
         center, axis = self.bar
         along = ALONG * fitter.breadth_of(hand)
         placing = closing.Placing(center, axis, np.radians(OBLIQUE_DEG), along, toward)
-        return fitter.start_of(hand, self.stage.gauge, wanted, (placing, None, STOPS_DEG))
+        return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
+
+
+def _opposed(hand):
+    """Angles (b, 3) of the open hand with its thumb pronated."""
+    angles = pose_angles(hand.rig, hand.joints, OPEN)
+    bone = hand.joints.bone("thumb_metacarpal")
+    if bone is not None:
+        low, high = angle_bounds(hand.joints, "thumb_metacarpal", "twist")
+        angles[bone, TWIST] = np.clip(hand.joints.side * np.radians(OPPOSED_DEG), low, high)
+    return angles
 
 
 def powers(stage, end):

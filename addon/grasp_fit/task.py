@@ -11,7 +11,6 @@ from ..hand.rotations import left_jacobian, rotation_of
 from ..hand.skinning import (
     ABDUCTION,
     FLEXION,
-    TWIST,
     descendants,
     joint_axes,
     pose_matrices,
@@ -23,6 +22,7 @@ from ..hand.skinning import (
 from . import habits
 from .least_squares import Problem
 from .load import Touched, unit
+from .thumb import WEIGHT_FACING, Thumb
 
 ARM_MM = 60.0
 """A turn of the whole hand is counted in mm at this arm, so that turns and shifts weigh alike."""
@@ -40,11 +40,6 @@ TURN at 0.02 let the product lie along the fingers. Chosen by eye on the three c
 
 CROSSED = 1e3
 """Residual of a finger that stands in a thin wall: more than any other, so that no step leads there."""
-
-WEIGHT_AROUND = 12.0
-AROUND = 0.7
-"""mm for each unit that the cosine between the thumb and the way around a bar stays below `AROUND`: in a power grip
-the thumb closes around the bar, against the fingers."""
 
 TURN_MM = 1.0
 TURN_COSINE = 0.7
@@ -74,7 +69,7 @@ class Goal:
     vertex of a pad shall pass, None for the tissue's own; `load` the forces that shall balance, or None; `bar` the
     center (3) and the axis (3), toward the thumb's side, of a bar that the thumb shall close around, or None.
     A pad that is `shallow_mm` too high or more is drawn in with a force that grows no further. `is_smooth`: skin that
-    is too deep counts with all its vertices."""
+    is too deep counts with all its vertices. `facing_mm` as `thumb.WEIGHT_FACING`: what the thumb's facing weighs."""
 
     wanted: np.ndarray
     limits: np.ndarray | None = None
@@ -82,6 +77,7 @@ class Goal:
     bar: tuple | None = None
     shallow_mm: float = 1.0
     is_smooth: bool = False
+    facing_mm: float = WEIGHT_FACING
 
 
 class Task:
@@ -102,9 +98,14 @@ class Task:
         aside = [column != FLEXION or role == "thumb_metacarpal" for _, column, role in self.dofs]
         self.held = np.where(aside, WEIGHT_ASIDE, WEIGHT_START)
         self.coupled = habits.couples(hand.joints, self.dofs)
+        if goal.bar is not None:
+            of_thumb = habits.of_thumb(hand.joints, self.dofs)
+            self.held[[couple[0] for couple in of_thumb]] = 0.0
+            self.coupled += of_thumb
         bounds = [angle_bounds(hand.joints, role, _name(column)) for _, column, role in self.dofs]
         shift = [(-wish.free_mm, wish.free_mm)] * 6
         self.bounds = np.array(bounds + shift)
+        self.thumb = Thumb(hand, self.rig, goal, self.groups)
         self.start = np.concatenate([[angles[bone, column] for bone, column, _ in self.dofs], np.zeros(6)])
         self.state = None
         self.first_cost = float((self.residuals(self.start) ** 2).clip(max=4.0).sum())
@@ -141,7 +142,7 @@ class Task:
         bones = (capsules_of_hand.center_points(self.hand.capsules, self.rig, posed) - self.pivot) @ turn.T
         crossed = CROSSED * self.gauge.is_crossed(bones + self.pivot + shift)
         loads = self.goal.load.residuals(Touched(self.rows, points, gap, slopes)) if self.goal.load is not None else []
-        lies = [WEIGHT_AROUND * max(AROUND - self._thumb_around(posed, (turn, shift))[0], 0.0)]
+        lies = self.thumb.residuals(posed, points, (self.pivot, turn, shift))
         return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x), [crossed], lies, loads])
 
     def _chosen(self, gap):
@@ -195,7 +196,7 @@ class Task:
             depth,
             self._apart(posed, angles, apart),
             self._soft_slope(),
-            self._thumb_slope(posed, angles, (turn, x[-6:-3], spin)),
+            self.thumb.slopes((posed, angles, points), (self.pivot, turn, x[-6:-3], spin), self.part, self.dofs),
         ]
         if load is not None:
             skin_there = Touched(self.rows[touched], points[touched], gap[touched], slopes[touched])
@@ -213,48 +214,6 @@ class Task:
             change = np.where((there * outward).sum(axis=1, keepdims=True) > TURN_COSINE, there - outward, 0.0)
             out += change[:, :, None] / TURN_MM * way[:, None]
         return out
-
-    def _thumb_around(self, posed, motion):
-        """Cosine between the thumb's last bone and the way around the bar; that way (3), the bone's direction (3), its
-        head (3), and how the cosine changes with the head (3), 1 / mm.
-
-        Around a bar the thumb runs against the fingers.
-        """
-        bone = self.hand.joints.bone("thumb_distal")
-        if self.goal.bar is None or bone is None:
-            return 1.0, *np.zeros((4, 3))
-        (center, axis), (turn, shift) = self.goal.bar, motion
-        head = turn @ (to_world(self.rig, posed[[bone], :3, 3])[0] - self.pivot) + self.pivot + shift
-        around = self.hand.joints.side * np.cross(head - center, axis)
-        far = max(np.linalg.norm(around), 1e-9)
-        around = around / far
-        direction = turn @ self.rig.world_from_rig[:3, :3] @ posed[bone, :3, :3] @ self.rig.axes[bone, :, TWIST]
-        direction = direction / np.linalg.norm(direction)
-        cosine = float(direction @ around)
-        by_head = self.hand.joints.side * np.cross(axis, direction - cosine * around) / far
-        return cosine, around, direction, head, by_head
-
-    def _thumb_slope(self, posed, angles, motion):
-        """The row of the Jacobian that goes with `_thumb_around`; `motion`: the turn, the shift, and the spin (3, 3)
-        that a change of the turn's vector makes."""
-        out = np.zeros((1, len(self.dofs) + 6))
-        turn, shift, spin = motion
-        cosine, around, direction, head, by_head = self._thumb_around(posed, (turn, shift))
-        if cosine >= AROUND:
-            return out
-        linear = turn @ self.rig.world_from_rig[:3, :3]
-        mirror = np.sign(np.linalg.det(linear))
-        origins, axes = joint_axes(self.rig, posed, angles)
-        origins = (to_world(self.rig, origins) - self.pivot) @ turn.T + self.pivot + shift
-        below = descendants(self.rig.parents)[:, self.hand.joints.bone("thumb_distal")]
-        for k, (bone, column, _) in enumerate(self.dofs):
-            if below[bone]:
-                axis = linear @ axes[bone, :, column]
-                axis = mirror * axis / np.linalg.norm(axis)
-                out[0, k] = np.cross(axis, direction) @ around + np.cross(axis, head - origins[bone]) @ by_head
-        out[0, -6:-3] = by_head
-        out[0, -3:] = (np.cross(direction, around) + np.cross(head - self.pivot - shift, by_head)) @ spin
-        return -WEIGHT_AROUND * out
 
     def _apart(self, posed, angles, apart):
         overlap, contacts, direction = apart

@@ -107,4 +107,17 @@ SPREAD = {
     **_thumb((10, 6, -16), -4, -8),
 }
 """A pinch begins between these two: pads together and far apart. Of the postures within the joint limits these turn the
-pads toward each other the most; the thumb of this hand has no joint that would turn its pad further."""
+pads toward each other the most, with the thumb's twist down to -20."""
+
+HELD_BOTTLE = {
+    **_fingers(
+        (5.0, 34.53, 61.73, 21.56), (11.69, 46.1, 58.68, 43.0), (11.9, 39.82, 52.2, 36.4), (15.46, 35.86, 34.84, 22.59)
+    ),
+    **_thumb((5.73, 10.61, -40.0), -9.78, 13.8),
+    **_cup(3.77, 3.69),
+}
+HELD_BOTTLE["thumb_proximal"]["abduction"] = 4.45
+HELD_BOTTLE_AT = (-24.55, 78.49, -64.97), (115.411, -68.513, 47.42)
+"""A median right hand on `products.bottle`, and where it stands: mm and Euler XYZ degrees in the bottle's space. The
+search of *Grasp* found it (light, power): 60 N in sum over the skin, in balance. Kept as numbers, for the first sample
+shall open at once."""

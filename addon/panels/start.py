@@ -75,10 +75,10 @@ def draw_add(layout):
 
 def _draw_sample(column, context):
     column.label(text="Try a sample", icon="SCENE_DATA")
-    text.faint(column, context, "A hand on a bar, ready to solve")
+    text.faint(column, context, "A hand holding a bottle, ready to solve")
     row = column.row()
     row.scale_y = BIG
-    row.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "cylinder_48"
+    row.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "held_bottle"
     column.operator_menu_enum("thenar.add_sample", "kind", text="Other Samples")
 
 

@@ -10,6 +10,7 @@ from thenar_blender.hand import build, pads, reading
 
 SAMPLE_KINDS = (
     "fingertip_on_plate", "palm_on_plate", "cylinder_48", "cylinder_60", "cylinder_100", "handlebar", "bottle",
+    "held_bottle",
 )  # fmt: skip
 
 
@@ -142,6 +143,26 @@ def test_sample_is_complete_and_solves(blender, kind):
         assert result.force_n == pytest.approx(wanted, rel=0.05)
     for region, material in zip(result.regions, settings.hand.thenar.materials, strict=True):
         assert region.depth_mm < material.thickness_mm
+
+
+def test_first_sample_is_good_and_in_balance(blender):
+    """What the first card opens: its first solve is graded good, and the hand leaves no force on the bottle."""
+    kind = samples.FIRST
+    assert blender.ops.thenar.add_sample(kind=kind) == {"FINISHED"}
+    settings = blender.context.scene.thenar
+    assert settings.product.name == "Bottle" and settings.hand.parent.type == "ARMATURE"
+    assert blender.ops.thenar.solve() == {"FINISHED"}
+    result = settings.result
+    assert result.grade.replace("_", " ").lower() == "good", [text.name for text in result.warnings]
+    values = np.empty(len(settings.hand.data.vertices), np.float32)
+    settings.hand.data.attributes["contact_force_n"].data.foreach_get("value", values)
+    tree = BVHTree.FromPolygons(
+        evaluated_mm(settings.product).tolist(), [tuple(face.vertices) for face in settings.product.data.polygons]
+    )
+    pressed, points = np.flatnonzero(values > 0.0), evaluated_mm(settings.hand)
+    push = [-np.array(tree.find_nearest(points[k])[1]) for k in pressed]
+    left = np.linalg.norm((values[pressed, None] * push).sum(axis=0))
+    assert 50.0 < values.sum() < 70.0 and left < 0.05 * values.sum()
 
 
 def self_crossing(vertices, triangles):

@@ -57,6 +57,13 @@ def test_grasp_is_sound_or_refused(name, rows):
     assert grasping.faults(rows[name]) == [], rows[name]
 
 
+@pytest.mark.parametrize("name", ["bulb, 50, made", "tube, 50, made"])
+def test_the_thumb_opposes_the_index_finger(name, rows):
+    """In a power grip the thumb's pad faces the index finger's within 25 degrees; no last joint is bent back."""
+    assert rows[name]["force_n"] > 45.0, rows[name]
+    assert rows[name]["thumb_off_deg"] <= 25.0 and rows[name]["dip_back_deg"] <= 10.0, rows[name]
+
+
 def test_few_are_refused(rows):
     assert rows and sum(map(grasping.is_refused, rows.values())) <= 1, rows
 
