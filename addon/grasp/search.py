@@ -34,7 +34,7 @@ LAST, LAST_ROUNDS = 3, 5
 UNSETTLED = 2.0
 SLIPS = 2.0
 POOR = 8.0
-OPPOSED = 4.0
+OPPOSED = 1.5
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
@@ -120,12 +120,12 @@ def _best(ready, aim, watch):
         raise refusals[0] if refusals else fitter.GraspError("no way to hold the product was found")
     out.sort(key=lambda found: in_steps(found.score))
     for place in range(min(LAST, len(out))):
-        if any(settling.is_settled(one.state, aim) for one in out):
+        if any(settling.is_settled(one.state, aim) for one in out[: place + 1]):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
         own = replace(aim, bar=one.way.bar)
-        for further in (_settled, polishing.polish):
+        for further in (_settled, polishing.polish, _with_thumb_freed):
             try:
                 one = _found(further(one.way.stage, one.state, own, watch), aim, one.way)
             except (Refusal, native.module.SolveError):
@@ -140,6 +140,16 @@ def _best(ready, aim, watch):
 def _settled(stage, state, aim, watch):
     """A `State` after all rounds of settling."""
     return settling.settle(stage, state.grasp, aim, LAST_ROUNDS, watch)
+
+
+def _with_thumb_freed(stage, state, aim, watch):
+    """A `State` settled again with less asked of the thumb's facing, where that kept the forces out of balance."""
+    if aim.bar is None or settling.is_settled(state, aim):
+        return state
+    eased = replace(aim, facing_mm=ROUGH_FACING_MM)
+    after = settling.settle(stage, state.grasp, eased, LAST_ROUNDS, watch)
+    after = polishing.polish(stage, after, eased, watch)
+    return after if settling.cost_of(after, aim) < settling.cost_of(state, aim) else state
 
 
 def _refuse_what_does_not_hold(state):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
-from ..grasp_fit import fitter
+from ..grasp_fit import fitter, thumb
 from ..grasp_fit import load as loads
 from ..grasp_fit.task import Goal
 from ..hand.pads import TISSUE_SHARE
@@ -62,7 +62,7 @@ LEAST_FACTOR = 0.6
 class Aim:
     """What settling is to reach, in the product's own frame: `weight_n` (3) and where it acts, `about_mm` (3); a sum of
     forces, or None; `bar` as in `task.Goal`; `depths_mm` (p,) of the pads if not the
-    wish's.
+    wish's; `facing_mm` as in `task.Goal`.
     """
 
     about_mm: np.ndarray
@@ -70,6 +70,7 @@ class Aim:
     total_n: float | None = None
     bar: tuple | None = None
     depths_mm: np.ndarray | None = None
+    facing_mm: float = thumb.WEIGHT_FACING
 
 
 @dataclass(frozen=True)
@@ -162,6 +163,7 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
         share = np.clip((FAR - max(state.imbalance, state.lever)) / (FAR - NEAR), 0.0, 1.0)
         left = share * (left + np.concatenate([state.net_n, state.moment_nmm]))
         goal = goal_of(wanted, aim.bar, limits, _load(stage, state, (now, left), areas))
+        goal = replace(goal, facing_mm=aim.facing_mm)
         evaluations = EVALUATIONS if count == 0 else LATER_EVALUATIONS
         found = fitter.refit(stage.hand, found, replace(stage.fit.wish, evaluations=evaluations), watch, goal)
     return best

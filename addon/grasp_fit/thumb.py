@@ -13,7 +13,7 @@ AROUND = 0.7
 """mm for each unit that the cosine between the thumb and the way around a bar stays below `AROUND`: in a power grip
 the thumb closes around the bar, against the fingers."""
 
-WEIGHT_FACING = 30.0
+WEIGHT_FACING = 16.0
 FACING = 0.97
 """mm for each unit that the cosine between the way the thumb's pad faces and the way to the index finger's pad stays
 below `FACING`, 14 degrees."""
