@@ -75,7 +75,7 @@ def draw_add(layout):
 
 def _draw_sample(column, context):
     column.label(text="Try a sample", icon="SCENE_DATA")
-    text.faint(column, context, "A hand holding a bottle, ready to solve")
+    text.faint(column, context, "A held bottle, ready to solve")
     row = column.row()
     row.scale_y = BIG
     row.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "held_bottle"
