@@ -1,4 +1,4 @@
-"""The three cards that stand in the main panel while no hand is set: each button does the whole step."""
+"""The cards that stand in the main panel while no hand is set: each button does the whole step."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""The buttons of the three cards do their whole step; what cannot act yet says why."""
+"""The buttons of the cards do their whole step; what cannot act yet says why."""
 
 import bpy
 import product_files as files
