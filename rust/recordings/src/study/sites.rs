@@ -33,7 +33,7 @@ pub(super) fn read(root: &mut Section, skin: &StudySkin) -> Result<Vec<Site>, Fa
             return Err(section.needs("point_mm", "give the point of first touch as [x, y, z]"));
         };
         let direction = unit_vector(&mut section, "direction")?;
-        let (distance_mm, nearest) = to_skin(skin, point_mm);
+        let (distance_mm, nearest, corners) = to_skin(skin, point_mm);
         if distance_mm > FARTHEST {
             let [x, y, z] = nearest;
             let problem = format!(
@@ -43,6 +43,16 @@ pub(super) fn read(root: &mut Section, skin: &StudySkin) -> Result<Vec<Site>, Fa
             return Err(section.fault(
                 problem,
                 "give a point on the mesh, in its coordinates and in mm",
+            ));
+        }
+        if corners.iter().all(|&vertex| skin.is_bare(vertex)) {
+            let problem = format!(
+                "{} lies where the skin has no region, which counts as no skin: vertices {}, {} and {}",
+                section.name, corners[0], corners[1], corners[2]
+            );
+            return Err(section.fault(
+                problem,
+                "give a point within a region, or give these vertices one in the file of regions",
             ));
         }
         section.finish()?;
@@ -56,15 +66,15 @@ pub(super) fn read(root: &mut Section, skin: &StudySkin) -> Result<Vec<Site>, Fa
     Ok(sites)
 }
 
-/// Distance to the surface, mm, and the nearest point of it.
-fn to_skin(skin: &StudySkin, point: [f64; 3]) -> (f64, [f64; 3]) {
-    let (point, mut best) = (Vector3::from(point), (f64::INFINITY, [0.0; 3]));
+/// Distance to the surface, mm, the nearest point of it, and the vertices of its triangle.
+fn to_skin(skin: &StudySkin, point: [f64; 3]) -> (f64, [f64; 3], [u32; 3]) {
+    let (point, mut best) = (Vector3::from(point), (f64::INFINITY, [0.0; 3], [0; 3]));
     for triangle in &skin.mesh.triangles {
         let corners = triangle.map(|index| skin.mesh.positions[index as usize]);
         let on = closest_point(corners, point).point;
         let distance = (on - point).norm();
         if distance < best.0 {
-            best = (distance, on.into());
+            best = (distance, on.into(), *triangle);
         }
     }
     best

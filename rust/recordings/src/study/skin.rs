@@ -28,6 +28,15 @@ pub struct StudySkin {
     pub materials: Vec<StudyMaterial>,
 }
 
+impl StudySkin {
+    /// Whether a vertex is in no region, which counts as no skin.
+    pub(super) fn is_bare(&self, vertex: u32) -> bool {
+        self.regions
+            .get(vertex as usize)
+            .is_some_and(|region| *region < 0)
+    }
+}
+
 /// Where the fit of a region starts; what is not given is `None`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StudyMaterial {
