@@ -15,9 +15,10 @@ PITCH_MM = 10.0 / 4.2**0.5
 """F-Scan, 4.2 sensels per cm² (Xie et al. 2013)."""
 THRESHOLDS_KPA = (0.0, 2.0, 5.0)
 """A sensel counts as loaded above these; the threshold of the paper's mat is not known."""
-PLACEMENTS = 24
-_STEP_AROUND = 7
-"""Placement k lies k/24 of a pitch along the axis and 7k/24 around it: a lattice that fills the cell evenly."""
+PLACEMENTS = 34
+_STEP_AROUND = 21
+"""Placement k lies k/34 of a pitch along the axis and 21k/34 around it: neighbors of Fibonacci's series, whose lattice
+fills the cell evenly (Sloan and Joe 1994, Lattice Methods for Multiple Integration, chapter 4)."""
 ROUND = 0.02
 """Most that the product's distance from its axis may differ from the radius, relative: areas then err by less than
 the range over the placements."""
