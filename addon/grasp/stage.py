@@ -58,6 +58,8 @@ DIGITS = 6
 """Lengths in the own frame are rounded to so many digits behind the point, mm: what turning and moving in single
 precision leaves is then gone, and the same product gives the same bits."""
 
+PLACES = 9
+"""The same for what the hand is, in mm and in its turn."""
 
 SAMPLES = 1000
 """Points of the surface at which walls are looked at: a box of twelve triangles has no vertices on its sides."""
@@ -106,5 +108,7 @@ def _at_home(hand):
     turn = np.stack([radial, np.cross(facing, radial), facing])
     home = np.eye(4)
     home[:3, :3], home[:3, 3] = turn, -turn @ knuckles
-    linear = (home @ placed.world_from_rig).round(9)
-    return replace(hand, rig=replace(hand.rig, world_from_rig=linear)), home @ plain
+    linear = (home @ placed.world_from_rig).round(PLACES)
+    # How deep bones may lie in others was measured where the hand stands.
+    capsules = replace(hand.capsules, allowed=hand.capsules.allowed.round(PLACES))
+    return replace(hand, rig=replace(hand.rig, world_from_rig=linear), capsules=capsules), home @ plain

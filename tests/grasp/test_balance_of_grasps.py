@@ -75,6 +75,22 @@ def test_the_same_from_everywhere(blender, scene):
     assert np.ptp(areas) < 0.03 * areas.mean()
 
 
+def test_the_search_begins_with_the_same_bits_everywhere(blender, scene):
+    """A search amplifies the last bit of what it begins with to another way to hold a door knob."""
+    found = []
+    for turn, shift in (((0, 0, 0), (0, 0, 0)), ((-25, 10, 140), (0.1, 0.5, -0.2)), ((90, 0, 45), (0, 0, 0.4))):
+        blender.ops.wm.read_homefile(use_empty=True)
+        hand, product = scene(shapes.SHAPES["door knob"](), turn, shift)
+        hand.parent.location = (0.3, shift[0], 0.1)
+        blender.context.view_layer.update()
+        fit = fitting.prepare(blender.context, hand, [product], fitter.Wish(pads.FIRM_MM))
+        stage = stage_of(fit)
+        rig, capsules = stage.hand.rig, stage.hand.capsules
+        found.append((stage.vertices, stage.mark, rig.vertices, rig.world_from_rig, rig.rest, capsules.allowed))
+    for other in found[1:]:
+        assert all(np.array_equal(a, b) for a, b in zip(found[0], other, strict=True))
+
+
 def test_grasps_found_are_kept_with_the_product(blender, scene, bar, tmp_path):
     hand, product = scene(bar)
     blender.ops.thenar.fit_grasp()
