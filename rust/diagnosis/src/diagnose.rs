@@ -223,6 +223,9 @@ fn told(
         }
         found.unlisted = Some(described);
     }
+    found
+        .notes
+        .extend(decision.named.and_then(crate::effect_numbers::use_note));
     add_notes(study, &mut found, ready);
     ceiling
         .into_iter()

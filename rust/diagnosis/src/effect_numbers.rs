@@ -5,7 +5,9 @@ use thenar_contact::effects::Effect;
 
 use crate::findings::{Number, Switched};
 use thenar_inference::forward::surrogate::candidate_model::Model;
-use thenar_inference::forward::surrogate::mechanism::{DeformationMeasure, Law, Mechanism};
+use thenar_inference::forward::surrogate::mechanism::{
+    DeformationMeasure, Law, Mechanism, UseAtStart,
+};
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::forward::surrogate::relaxation_spectrum::Spectrum;
 use thenar_inference::forward::surrogate::tissue_laws::RAMP;
@@ -102,6 +104,22 @@ fn list(effect: Effect, amplitude: Three, numbers: &[Named]) -> Vec<Number> {
     let is_found = amplitude != WHOLE || numbers.is_empty();
     let own = is_found.then_some(("amplitude", amplitude.0, amplitude.1, amplitude.2));
     own.iter().chain(numbers).map(tell).collect()
+}
+
+/// What softening by use assumes of the tissue between recordings, where the session states no rest.
+pub fn use_note(named: &Scored) -> Option<String> {
+    let before = named.mechanisms.iter().find_map(|m| match m.law {
+        Law::Softening { start, .. } => match start {
+            UseAtStart::Rested => None,
+            UseAtStart::AfterProtocols => Some("protocols before it"),
+            UseAtStart::AfterRecordings => Some("recordings before it"),
+        },
+        _ => None,
+    })?;
+    Some(format!(
+        "no rest is stated: the softening fits tissue that each recording takes up as the {before} left it, without recovery between \
+         them; how fast it recovers was not seen, recordings with rest_s show it"
+    ))
 }
 
 /// Choices that the catalogue leaves, by name.

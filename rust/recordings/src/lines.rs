@@ -31,6 +31,7 @@ pub(crate) struct Lines<'a> {
     number: usize,
     follows_feed: bool,
     is_held: bool,
+    has_end: bool,
 }
 
 impl<'a> Lines<'a> {
@@ -42,6 +43,7 @@ impl<'a> Lines<'a> {
             number: 0,
             follows_feed: false,
             is_held: false,
+            has_end: true,
         }
     }
 
@@ -95,6 +97,11 @@ impl<'a> Lines<'a> {
         self.number
     }
 
+    /// Whether the last line that was given ended with a line end; the last of a file that is cut off within it does not.
+    pub fn has_end(&self) -> bool {
+        self.has_end
+    }
+
     /// The fault of a file that ends although `missing` should follow.
     pub fn ended(&self, missing: &str) -> Fault {
         Fault::line(
@@ -110,9 +117,10 @@ impl<'a> Lines<'a> {
         let mut has_begun = false;
         loop {
             let Some(next) = waiting(self.source.as_mut(), self.number + 1)? else {
+                self.has_end = !has_begun;
                 return Ok(has_begun);
             };
-            has_begun = true;
+            (has_begun, self.has_end) = (true, true);
             let end = memchr::memchr2(b'\n', b'\r', next);
             let (taken, found) = (end.unwrap_or(next.len()), end.map(|at| next[at]));
             self.bytes.extend_from_slice(&next[..taken]);

@@ -46,7 +46,7 @@ pub(crate) fn read(lines: &mut Lines, named: &Columns) -> Result<RecordingFile, 
             );
             if !is_closed {
                 curve.warnings.push(format!(
-                    "the file ends at line {} without <END DATA>: more samples may have followed",
+                    "the file ends at line {} without <END DATA>: more samples may have followed, and a row without line end is left out",
                     lines.number()
                 ));
             }
@@ -103,6 +103,10 @@ fn read_block(lines: &mut Lines, named: &Columns, held: &mut usize) -> Result<(R
                 "the recording is too long".into(),
                 "export a shorter part of it",
             ));
+        }
+        if !lines.has_end() {
+            // Its last number may lack digits.
+            run.drop_last();
         }
     }
 }

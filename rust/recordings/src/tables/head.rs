@@ -11,6 +11,10 @@ use crate::units::{Quantity, unit};
 const LONGEST: usize = 1 << 14;
 /// Most columns that a question names.
 const MOST_ASKED: usize = 8;
+/// Words in the names of results.
+const RESULTS: [&str; 7] = [
+    "duration", "peak", "max", "mean", "average", "break", "dauer",
+];
 /// Quantities that make a curve.
 const OF_CURVES: [Quantity; 3] = [Quantity::Time, Quantity::Force, Quantity::Length];
 
@@ -108,7 +112,7 @@ impl<'m> Search<'m> {
             return Ok(None);
         }
         let is_head = is_curve(&columns)
-            || is_one_time_and_force(&columns)
+            || (is_one_time_and_force(&columns) && !are_results(&columns))
             || (!self.named.is_empty() && known(&columns) >= 2);
         if !is_head || row.iter().filter(|text| value(text).is_ok()).count() > row.len() / 2 {
             return Ok(None);
@@ -158,11 +162,15 @@ impl<'m> Search<'m> {
     }
 }
 
-/// A row of units without what stands from its first number on: notes that people keep to the right of a table.
+/// A row of units without what stands from its first number on: notes that people keep to the right of a table. A number with a unit to
+/// its right is no note: it stands for a column without unit, or in a row of numbers.
 fn before_notes(row: &[String]) -> &[String] {
     let Some(notes) = row.iter().position(|text| value(text).is_ok()) else {
         return row;
     };
+    if row[notes..].iter().any(|text| unit(text).is_some()) {
+        return row;
+    }
     let last = row[..notes].iter().rposition(|text| !text.is_empty());
     &row[..last.map_or(0, |last| last + 1)]
 }
@@ -213,6 +221,15 @@ fn is_one_time_and_force(columns: &[Column]) -> bool {
         let of_kind = |column: &&Column| column.unit.is_some_and(|unit| unit.quantity == *quantity);
         columns.iter().filter(of_kind).count() == 1
     })
+}
+
+/// Whether the columns are results of a test, one row of which may stand above its curve.
+fn are_results(columns: &[Column]) -> bool {
+    let is_result = |column: &Column| {
+        let header = column.header.to_lowercase();
+        RESULTS.iter().any(|word| header.contains(word))
+    };
+    columns.iter().any(is_result)
 }
 
 /// The question which columns are meant, where names in units of force and length are not known, and nothing else is.

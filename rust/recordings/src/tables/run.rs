@@ -93,6 +93,13 @@ impl Run {
         self.values.iter().map(Vec::len).max().unwrap_or(0)
     }
 
+    /// Takes back the last sample.
+    pub fn drop_last(&mut self) {
+        for values in &mut self.values {
+            values.pop();
+        }
+    }
+
     pub fn width(&self) -> usize {
         self.columns.len()
     }

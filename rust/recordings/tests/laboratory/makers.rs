@@ -194,11 +194,16 @@ fn mach1_blocks_are_runs_with_clocks_of_their_own() {
     assert_eq!(last.channel("time_s").unwrap(), [0.0, 1.0, 2.0]);
     assert!(
         last.warnings.iter().any(|text| text
-            == "the file ends at line 19 without <END DATA>: more samples may have followed"),
+            == "the file ends at line 19 without <END DATA>: more samples may have followed, and a row without line end is left out"),
         "{:?}",
         last.warnings
     );
     assert!(stopped.curves[0].warnings.is_empty());
+    // 15 gf, cut to 1 gf; 20 gf before it.
+    let within = read(&MACH1.as_bytes()[..MACH1.len() - "5\n<END DATA>\n".len()]);
+    let last = &within.curves[1];
+    assert_eq!(last.channel("time_s").unwrap(), [0.0, 1.0]);
+    assert!((last.channel("force_n").unwrap()[1] - 20.0 * 9.80665e-3).abs() < 1e-9);
     let cut = refused(&MACH1.as_bytes()[..MACH1.len() - "\t15\n<END DATA>\n".len()]);
     assert!(
         cut.contains("line 19: the row holds 2 values, expected 3"),

@@ -268,6 +268,23 @@ fn one_time_and_one_force_make_a_curve_whatever_they_are_called() {
 }
 
 #[test]
+fn results_above_a_curve_are_no_head() {
+    let text = "Test duration (s),Peak load (N)\n12.3,4.5\nTime (s),Load (N),Extension (mm)\n0,0,0\n0.1,1,0.2\n0.2,2,0.4\n";
+    let curve = &read(text.as_bytes()).curves[0];
+    assert_eq!(curve.channel("time_s").unwrap(), [0.0, 0.1, 0.2]);
+    assert_eq!(curve.channel("force_n").unwrap(), [0.0, 1.0, 2.0]);
+}
+
+/// A column in the unit 1 is a column: what is right of it is no note.
+#[test]
+fn a_number_between_units_is_no_note() {
+    let text = "Time;Load;Ratio;Extension\ns;N;1;mm\n0;0;0;0\n0.1;1;0;0.2\n";
+    let message = refused(text.as_bytes());
+    assert!(message.contains("unit"), "{message}");
+    assert!(!message.contains("damaged"), "{message}");
+}
+
+#[test]
 fn columns_of_force_and_length_under_other_names_are_asked_for() {
     let table = "Force-Distance Curve\nX, um:\t25\n\nExtend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)\n\
         4129,0.5,5345,0.7\n4130,0.6,5344,0.6\n4131,0.8,5343,0.5\n";

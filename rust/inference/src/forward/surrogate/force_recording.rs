@@ -183,20 +183,31 @@ pub(crate) fn force_recordings(
     for (order, course) in by_order.iter().enumerate() {
         found[*course].order = order;
     }
-    let is_in_order =
-        |c: &ForceRecording| study.recordings[c.recording].order.is_some() && is_unrested(study, c);
+    let is_in_order = |c: &ForceRecording| {
+        let stated = &study.recordings[c.recording];
+        stated.order.is_some() && stated.rest_s.is_none()
+    };
     if found.iter().all(is_in_order) {
-        carry_use(&mut found, &by_order);
+        let tissue = |c: &ForceRecording| {
+            let stated = &study.recordings[c.recording];
+            (&stated.subject, &stated.day, &stated.site)
+        };
+        let mut tissues: Vec<Vec<usize>> = Vec::new();
+        for course in by_order {
+            let is_own = |one: &&mut Vec<usize>| tissue(&found[one[0]]) == tissue(&found[course]);
+            match tissues.iter_mut().find(is_own) {
+                Some(own) => own.push(course),
+                None => tissues.push(vec![course]),
+            }
+        }
+        for own in tissues {
+            carry_use(&mut found, &own);
+        }
     }
     found
 }
 
-/// Whether nothing states that the tissue rested before a recording.
-fn is_unrested(study: &Study, course: &ForceRecording) -> bool {
-    study.recordings[course.recording].rest_s.is_none()
-}
-
-/// Adds up what was traveled before each recording, in the session's order. What the first repeat of a protocol finds, its other repeats
+/// Adds up what was traveled before each recording of one tissue (a site of a subject on one day), in the session's order. What the first repeat of a protocol finds, its other repeats
 /// find, where repeats begin alike.
 pub(crate) fn carry_use(courses: &mut [ForceRecording], by_order: &[usize]) {
     let (mut protocols, mut recordings) = (0.0, 0.0);
