@@ -3,17 +3,17 @@
 from pathlib import Path
 
 from ..scene.checks import Refusal
-from . import looking, repeats, settings
-
-DIAMETER_MM = 0.0
-"""A tool's size is never guessed."""
+from . import looking, repeats, settings, writing
 
 
 def begin(context, folder, names):
     """Look at the files and open the proposal. Returns its recordings' count. Raises `Refusal`, the scene as it was."""
     if not names:
         raise Refusal("no file is chosen; choose the files of the recordings, with Ctrl or Shift for several")
-    paths = [Path(folder) / name for name in sorted(names, key=_natural)]
+    recorded = [name for name in names if name not in writing.OWN]
+    if not recorded:
+        raise Refusal(f"'{names[0]}' is a file of a study and no recording; choose the files of the recordings")
+    paths = [Path(folder) / name for name in sorted(recorded, key=_natural)]
     found = [each for path in paths for each in looking.look(path)]
     state, hand = context.scene.thenar_new_study, context.scene.thenar.hand
     with settings.filling():
@@ -49,6 +49,14 @@ def refresh(context):
         _fit_protocols(state, tracks)
 
 
+def read_again(context):
+    """Read every file as it is now on disk; groups and tools stay as the user saw them."""
+    state = context.scene.thenar_new_study
+    with settings.filling():
+        for item in state.files:
+            _read(state, item)
+
+
 def _read(state, item):
     try:
         track = looking.track(item.path, item.run, columns_of(state, item))
@@ -63,19 +71,34 @@ def _read(state, item):
 
 
 def _fit_protocols(state, tracks):
-    """A protocol for each number that a file has; new ones take the first one's tool."""
-    while len(state.protocols) < max((item.protocol for item in state.files), default=0):
-        new, first = state.protocols.add(), state.protocols[0]
-        new.shape, new.diameter_mm, new.turn_deg = first.shape, first.diameter_mm, first.turn_deg
-    while len(state.protocols) > max((item.protocol for item in state.files), default=0):
+    """A protocol for each number up to the largest that a file has, with the tool that its files bring."""
+    most = max((item.protocol for item in state.files), default=0)
+    while len(state.protocols) < most:
+        state.protocols.add()
+    while len(state.protocols) > most:
         state.protocols.remove(len(state.protocols) - 1)
-    words = [repeats.describe(track) for track in tracks]
     taken = set()
+    words = [repeats.describe(track) for track in tracks]
     for number, protocol in enumerate(state.protocols, 1):
+        _bring_tool(protocol, [item.tool for item in state.files if item.protocol == number], state.is_own_grouping)
         of_it = [text for item, text in zip(state.files, words, strict=True) if item.protocol == number and text]
         name = of_it[0] if of_it else f"protocol {number}"
         protocol.name = name if name not in taken else f"{name} ({number})"
         taken.add(protocol.name)
+
+
+def _bring_tool(protocol, tools, is_own_grouping):
+    """Give a protocol the tool of its files.
+
+    Where they differ, the user who put them together sees and keeps the protocol's; else the size is asked for again.
+    """
+    differ = set(tools)
+    if not is_own_grouping and len(differ) > 1:
+        differ.discard(settings.NO_TOOL)
+    if len(differ) == 1:
+        settings.set_tool(protocol, differ.pop())
+    elif not is_own_grouping or not differ:
+        settings.set_tool(protocol, settings.NO_TOOL)
 
 
 def columns_of(state, item):

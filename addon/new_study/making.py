@@ -13,7 +13,7 @@ _SHAPES = {"SPHERE": "sphere", "CYLINDER": "cylinder", "PLANE": "plane", "PUNCH"
 
 def make(context):
     """Write the study and load it; the proposal is then closed. Returns its title. Raises `Refusal`, `ThenarError`."""
-    drafting.refresh(context)
+    drafting.read_again(context)
     problem = drafting.problem(context)
     if problem:
         raise Refusal(problem)

@@ -29,7 +29,10 @@ class THENAR_PT_new_study(Tab, bpy.types.Panel):
         for head in state.columns:
             _draw_columns(layout.box().column(align=True), context, state, head)
         layout.use_property_split = True
+        used = {item.protocol for item in state.files}
         for number, protocol in enumerate(state.protocols, 1):
+            if number not in used:
+                continue
             _draw_protocol(layout.box().column(align=True), number, protocol)
         _draw_skin(layout.column(align=True), context, state)
         _draw_write(layout, context, state)

@@ -59,6 +59,27 @@ def _regrouped(_self, context):
         _changed(_self, context)
 
 
+NO_TOOL = "SPHERE 0.0 0.0"
+"""The tool of which nothing was said; its size is never guessed."""
+
+
+def set_tool(protocol, text):
+    """Give a protocol the tool of a text as `ThenarStudyFile.tool` holds it."""
+    shape, diameter_mm, turn_deg = text.split()
+    protocol.shape, protocol.diameter_mm, protocol.turn_deg = shape, float(diameter_mm), float(turn_deg)
+
+
+def _tool_given(protocol, _context):
+    """The recordings of a protocol keep the tool that the user gave it, wherever they are moved."""
+    if _quiet:
+        return
+    state = protocol.id_data.thenar_new_study
+    number = next(k for k, each in enumerate(state.protocols, 1) if each == protocol)
+    for item in state.files:
+        if item.protocol == number:
+            item.tool = f"{protocol.shape} {protocol.diameter_mm!r} {protocol.turn_deg!r}"
+
+
 class ThenarStudyColumns(bpy.types.PropertyGroup):
     """Columns of files of one head, as the user names them; `name` is the head, `asks` the roles that are open."""
 
@@ -92,11 +113,15 @@ class ThenarStudyColumns(bpy.types.PropertyGroup):
 
 
 class ThenarStudyFile(bpy.types.PropertyGroup):
-    """A recording of the study; `name` is shown, `run` names one of several in a file, `head` its columns."""
+    """A recording of the study; `name` is shown, `run` names one of several in a file, `head` its columns.
+
+    `tool`: what the user said that pressed it, as shape, diameter (mm) and turn (degrees).
+    """
 
     path: StringProperty(subtype="FILE_PATH")
     run: StringProperty()
     head: StringProperty()
+    tool: StringProperty(default=NO_TOOL)
     problem: StringProperty()
     about: StringProperty()
     reach_mm: FloatProperty()
@@ -122,13 +147,17 @@ class ThenarStudyProtocol(bpy.types.PropertyGroup):
             ("PLANE", "Flat Plate", "A flat plate larger than the contact"),
             ("PUNCH", "Flat Rod", "The flat end of a round rod"),
         ),
+        update=_tool_given,
     )
-    diameter_mm: FloatProperty(name="Diameter (mm)", description="Diameter of the tool, mm", min=0.0, soft_max=200.0)
+    diameter_mm: FloatProperty(
+        name="Diameter (mm)", description="Diameter of the tool, mm", min=0.0, soft_max=200.0, update=_tool_given
+    )
     turn_deg: FloatProperty(
         name="Axis (°)",
         description="Turn of the cylinder's axis about the direction of travel, degrees; 0: along the hand",
         soft_min=-180,
         soft_max=180,
+        update=_tool_given,
     )
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import numpy as np
 from .. import native
 from ..scene.checks import Refusal
 
-STUDY, SKIN, REGIONS = "study.toml", "study_skin.ply", "study_regions.csv"
+STUDY, SKIN, REGIONS = OWN = "study.toml", "study_skin.ply", "study_regions.csv"
+"""Names of the files that a study is written to."""
 
 
 @dataclass(frozen=True)
@@ -53,50 +55,86 @@ def write(folder, texts, replaces):
             f"{_listed(there)} {'is' if len(there) == 1 else 'are'} in '{folder}' already; "
             "tick Replace them, or copy the recordings into a folder of their own"
         )
-    before = {}
+    before = _read(folder, there)
+    parts = {folder / name: folder / f".{name}.part" for name in texts}
+    done = []
     try:
-        before = {name: (folder / name).read_bytes() for name in there}
-        for name, text in texts.items():
-            _put(folder / name, text.encode())
+        for path, part in parts.items():
+            part.write_bytes(texts[path.name].encode())
+        for path, part in parts.items():
+            os.replace(part, path)
+            done.append(path.name)
         return native.module.Study.load(folder)
-    except OSError as error:
-        _restore(folder, texts, before)
-        raise Refusal(
-            f"'{folder}' cannot be written ({error.strerror or error}); copy the recordings to a folder of your own"
-        ) from None
-    except native.error_types():
-        _restore(folder, texts, before)
+    except (OSError, *native.error_types()) as error:
+        lost = _restore(folder, done, before)
+        if isinstance(error, OSError):
+            raise Refusal(
+                f"'{folder}' cannot be written ({error.strerror or error}); copy the recordings to a folder of your own"
+                + lost
+            ) from None
+        if lost:
+            raise Refusal(f"{error}{lost}") from None
         raise
-
-
-def _put(path, content):
-    """Write a file whole: what stood there stays until the new one is complete."""
-    passing = path.with_name(f".{path.name}.part")
-    try:
-        passing.write_bytes(content)
-        os.replace(passing, path)
     finally:
-        passing.unlink(missing_ok=True)
+        for part in parts.values():
+            _remove(part)
+
+
+def _read(folder, names):
+    """The bytes of files that would be replaced, by name."""
+    before = {}
+    for name in names:
+        try:
+            before[name] = (folder / name).read_bytes()
+        except OSError as error:
+            raise Refusal(
+                f"'{name}' in '{folder}' cannot be read ({error.strerror or error}), so it is not replaced; "
+                "move it elsewhere, or copy the recordings into a folder of their own"
+            ) from None
+    return before
 
 
 def _restore(folder, names, before):
+    """Put back what stood there, each file whole. Returns which could not be, as the end of a sentence."""
+    lost = []
     for name in names:
+        part = folder / f".{name}.part"
         try:
             if name in before:
-                _put(folder / name, before[name])
+                part.write_bytes(before[name])
+                os.replace(part, folder / name)
             else:
                 (folder / name).unlink(missing_ok=True)
-        except OSError:  # the folder went away, and with it what could be put back
-            return
+        except OSError:
+            lost.append(name)
+    return f"; {_listed(lost)} could not be put back as before" if lost else ""
+
+
+def _remove(path):
+    """Remove a file if it is there and can be removed."""
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
 
 
 def texts(title, skin, tools, presses):
-    """The study's files as text by name. `tools` by protocol number."""
+    """The study's files as text by name. `tools` by protocol number. Raises `Refusal` for a region's odd name."""
+    if skin.regions is not None:
+        _check_names(skin.materials)
     out = {STUDY: _study(title, skin, tools, presses), SKIN: _ply(skin)}
     if skin.regions is not None:
         rows = [f"{number},{name or -1}" for number, name in enumerate(skin.regions)]
         out[REGIONS] = "\n".join(["vertex,region", *rows, ""])
     return out
+
+
+def _check_names(regions):
+    """The library parts rows of regions at commas, takes blanks off, and reads `none` as no skin."""
+    for name in regions:
+        if "," in name or name != name.strip() or not name.isprintable() or name in {"", "-1", "none"}:
+            raise Refusal(
+                f"the region '{name}' cannot be written to {REGIONS}: a name there is not none or -1, "
+                "and has no comma and no blank at its ends; rename the region under Materials"
+            )
 
 
 def _study(title, skin, tools, presses):
@@ -106,7 +144,7 @@ def _study(title, skin, tools, presses):
     for region, numbers in skin.materials.items():
         lines += ["", f"[skin.materials.{_text(region)}]  # where the fit starts"]
         lines += [f"{name} = {_number(value)}" for name, value in numbers.items()]
-    kinds = list(dict.fromkeys(_key(tool) for tool in tools))
+    kinds = list(dict.fromkeys(_key(tools[press.protocol]) for press in presses))
     called = {key: _called(key, kinds) for key in kinds}
     for key in kinds:
         lines += ["", f"[indenters.{_text(called[key])}]", f"shape = {_text(key[0])}"]
