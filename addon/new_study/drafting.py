@@ -15,6 +15,11 @@ def begin(context, folder, names):
         raise Refusal(f"'{names[0]}' is a file of a study and no recording; choose the files of the recordings")
     paths = [Path(folder) / name for name in sorted(recorded, key=_natural)]
     found = [each for path in paths for each in looking.look(path)]
+    if len(found) > settings.MOST_FILES:
+        raise Refusal(
+            f"these are {len(found)} recordings, and one study takes {settings.MOST_FILES} here; "
+            "choose fewer, or write study.toml by hand"
+        )
     state, hand = context.scene.thenar_new_study, context.scene.thenar.hand
     with settings.filling():
         discard(state)
@@ -32,10 +37,26 @@ def begin(context, folder, names):
 
 def discard(state):
     """Close the proposal; files on disk stay."""
+    looking.forget()
     for name in ("files", "columns", "protocols"):
         getattr(state, name).clear()
-    for name in ("is_open", "is_own_grouping", "replaces", "site_vertex", "site_region"):
+    for name in ("is_open", "is_own_grouping", "replaces", "site_vertex", "site_hand", "site_count", "site_region"):
         state.property_unset(name)
+
+
+def leave_out(context, number):
+    """Take the recording of this number, from 0, out of the proposal. Returns its name. Raises `Refusal`."""
+    state = context.scene.thenar_new_study
+    if number >= len(state.files):
+        raise Refusal(f"there is no recording {number}; the list has {len(state.files)}, numbered from 0")
+    name = state.files[number].name
+    state.files.remove(number)
+    asked = {item.head for item in state.files}
+    for place in reversed(range(len(state.columns))):
+        if state.columns[place].name not in asked:
+            state.columns.remove(place)
+    refresh(context)
+    return name
 
 
 def refresh(context):
@@ -65,7 +86,12 @@ def _read(state, item):
         return None
     item.problem, item.reach_mm = "", repeats.reach_mm(track)
     item.about = repeats.describe(track)
-    if not item.about:
+    if not item.about and repeats.is_still(track):
+        item.problem = (
+            f"'{item.name}' shows a tool that does not move while it presses; "
+            "choose a recording that holds the way down too, or leave this one out"
+        )
+    elif not item.about:
         item.problem = f"'{item.name}' shows no press: no force above zero; check columns and signs"
     return track
 
@@ -141,9 +167,17 @@ def problem(context):
     state = context.scene.thenar_new_study
     if not state.is_open:
         return "no study is being made; press New Study from Files first"
+    if not len(state.files):
+        return "every recording is left out; press New Study from Files to choose others"
     for item in state.files:
         if item.problem:
             return item.problem
+    count = len({item.protocol for item in state.files})
+    if count > settings.MOST_PROTOCOLS:
+        return (
+            f"these are {count} protocols, and one study takes {settings.MOST_PROTOCOLS} here; "
+            "make several studies, each from a folder of its own, or write study.toml by hand"
+        )
     for number, protocol in enumerate(state.protocols, 1):
         is_used = any(item.protocol == number for item in state.files)
         if is_used and protocol.shape != "PLANE" and protocol.diameter_mm <= 0.0:
@@ -162,8 +196,11 @@ def _skin_problem(context, state):
     hand = context.scene.thenar.hand
     if hand is None or hand.type != "MESH":
         return "there is no hand yet; press Make Hand, or choose Flat Skin under Pressed"
-    if state.site_vertex >= len(hand.data.vertices):
-        return f"'{hand.name}' was changed since the place was clicked; click it again"
+    if state.site_vertex >= 0 and state.site_hand != hand:
+        return f"the place was clicked on another hand than '{hand.name}'; press Pick Site and click it again"
+    count = len(hand.data.vertices)
+    if state.site_vertex >= 0 and (state.site_count != count or state.site_vertex >= count):
+        return f"'{hand.name}' was changed since the place was clicked; press Pick Site and click it again"
     if state.site_vertex < 0 and state.site_region not in hand.thenar.materials:
         return "where on the hand did the tool press? Press Pick Site and click the skin, or choose a region"
     return ""

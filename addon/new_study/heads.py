@@ -1,5 +1,7 @@
 """Names of the columns of a text table, to ask the user which is which. Values are read by the native module alone."""
 
+import csv
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -7,8 +9,13 @@ _MOST_BYTES = 1 << 16
 """Part of a file in which its head is looked for."""
 _SEPARATORS = "\t;,"
 """The first that a line holds parts it, as in the native module."""
-_LONGEST_UNIT = 10
-"""Letters of a unit, with brackets."""
+_UNITS = re.compile(
+    r"s|secs?|seconds?|[mu]s|min|h|[cmun]?m|(milli|centi)?meters|in|inches|[kmunp]?n|kgf?s?|gf?|lbf|lbs?|[kmg]?pa|m?bar"
+    r"|psi|mmhg|n/m|n/mm2?|m?v|hz|%|mm/s"
+)
+"""Units in lower case, `u` for micro and `2` for squares: those of the native module, and others that tables have."""
+_LEAST_UNITS = 2
+"""Known units that make a row one of units, as in the native module."""
 
 
 def of(path):
@@ -26,7 +33,7 @@ def _names(above, before):
     """The row above the numbers, or the one before it where the former holds units alone."""
     if not above or any(_is_number(field) for field in above):
         return []
-    are_units = len(before) == len(above) and all(before) and all(len(field) <= _LONGEST_UNIT for field in above)
+    are_units = len(before) == len(above) and all(before) and sum(map(_is_unit, above)) >= _LEAST_UNITS
     return [name for name in (before if are_units else above) if name]
 
 
@@ -46,7 +53,13 @@ def _text(path):
 
 def _fields(line):
     separator = next((letter for letter in _SEPARATORS if letter in line), None)
-    return [field.strip().strip('"').strip() for field in line.split(separator)]
+    parts = next(csv.reader([line])) if separator == "," else line.split(separator)
+    return [field.strip().strip('"').strip() for field in parts]
+
+
+def _is_unit(field):
+    bare = field.strip("()[] ").lower().replace("\N{SUPERSCRIPT TWO}", "2").replace("^", "")
+    return _UNITS.fullmatch(bare.replace("\N{MICRO SIGN}", "u").replace("\N{GREEK SMALL LETTER MU}", "u")) is not None
 
 
 def _is_number(field):

@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +22,8 @@ _GUESSES = {
 TOUCHED = re.compile(r"depth|tiefe|profond|indent|penetr", re.IGNORECASE)
 """Names of a length that counts from the skin."""
 _NO_UNIT = re.compile(r"column '(.+?)' has no unit")
+_read = {}
+"""By path and run: time, size and columns of a recording when it was read, and its `Track`."""
 _CHANNELS = {"time": ("time_s",), "depth": ("depth_mm", "travel_mm"), "force": ("force_n",)}
 
 
@@ -112,12 +113,20 @@ def track(path, run, columns):
         seen = file.stat()
     except OSError:
         raise Refusal(f"'{path}' is not there any more; choose the files again") from None
-    return _track((str(path), seen.st_mtime_ns, seen.st_size), run, tuple(columns))
+    state = (seen.st_mtime_ns, seen.st_size, tuple(columns))
+    held = _read.get((str(path), run))
+    if held is None or held[0] != state:
+        held = _read[str(path), run] = state, _track(str(path), run, columns)
+    return held[1]
 
 
-@lru_cache(maxsize=64)
-def _track(file, run, columns):
-    path, name = file[0], Path(file[0]).name
+def forget():
+    """Let go of the recordings that were read."""
+    _read.clear()
+
+
+def _track(path, run, columns):
+    name = Path(path).name
     named = {"columns": dict(columns)} if columns else {}
     named |= {"run": run} if run else {}
     try:

@@ -31,12 +31,28 @@ def make(context):
 def _skin(context, state):
     if state.skin == settings.HAND:
         return skins.of_hand(context, context.scene.thenar.hand, state.site_vertex, state.site_region)
-    contacts = []
-    for item in state.files:
-        tool = state.protocols[item.protocol - 1]
-        radius = 0.5 * tool.diameter_mm
-        contacts.append(radius if tool.shape == "PUNCH" else min(radius, np.sqrt(radius * item.reach_mm)))
-    return skins.flat((max(min(contacts), 1e-3), max(contacts)), state.thickness_mm)
+    contacts = sorted(((_contact_mm(state, item), item.name) for item in state.files), key=lambda each: each[0])
+    (least, smallest), (most, largest) = contacts[0], contacts[-1]
+    if most > skins.LARGEST_MM:
+        raise Refusal(
+            f"the tool of '{largest}' touches a radius of about {most:.3g} mm, more than the "
+            f"{skins.LARGEST_MM:.0f} mm that the flat piece of skin allows; check its diameter and the depth's unit, "
+            "or give a larger mesh in study.toml"
+        )
+    if not skins.fits(least, most):
+        raise Refusal(
+            f"the contact of '{smallest}' (radius about {least:.2g} mm) is too small next to that of '{largest}' "
+            f"({most:.2g} mm) for one piece of skin; check the unit of the depth and the diameters, "
+            "or make a study of each"
+        )
+    return skins.flat((least, most), state.thickness_mm)
+
+
+def _contact_mm(state, item):
+    """Radius of contact, mm: of a ball on a half-space by Hertz, at most its own; at least a micrometer."""
+    tool = state.protocols[item.protocol - 1]
+    radius = 0.5 * tool.diameter_mm
+    return max(1e-3, radius if tool.shape == "PUNCH" else min(radius, np.sqrt(radius * item.reach_mm)))
 
 
 def _tool(protocol, skin):

@@ -96,6 +96,21 @@ class THENAR_OT_discard_study(_OfStudy, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class THENAR_OT_leave_out_file(_OfStudy, bpy.types.Operator):
+    """Take this recording out of the study that is being made; the file stays"""
+
+    bl_idname = "thenar.leave_out_file"
+    bl_label = "Leave Out"
+
+    number: bpy.props.IntProperty(name="Recording", description="Place in the list of recordings, from 0", min=0)
+
+    def execute(self, context):
+        if running.attempt(self, drafting.leave_out, context, self.number) is None:
+            return {"CANCELLED"}
+        running.redraw(context)
+        return {"FINISHED"}
+
+
 class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
     """Click the place on the hand's skin where the tool pressed. Esc cancels"""
 
@@ -119,6 +134,10 @@ class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
     def modal(self, context, event):
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             return self._end(context, {"CANCELLED"})
+        problem = _gone(context)
+        if problem:
+            self.report({"ERROR"}, running.sentence(problem))
+            return self._end(context, {"CANCELLED"})
         region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
         inside = region is not None and 0 <= event.mouse_x - region.x < region.width
         inside = inside and 0 <= event.mouse_y - region.y < region.height
@@ -137,8 +156,21 @@ class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
         return result
 
 
+def _gone(context):
+    """What a place cannot be picked without any more: the study, or its hand in the scene; empty while both are."""
+    if not context.scene.thenar_new_study.is_open:
+        return "no study is being made any more; press New Study from Files first"
+    hand = context.scene.thenar.hand
+    if hand is None or hand.type != "MESH" or hand.name not in context.scene.objects:
+        return "the hand is not in the scene any more; make or choose one, and press Pick Site again"
+    return ""
+
+
 def take_site(context, eye, ray):
     """The site where a ray (world, Blender's units) meets the hand. Returns its place there. Raises `Refusal`."""
+    problem = _gone(context)
+    if problem:
+        raise Refusal(problem)
     hand, state = context.scene.thenar.hand, context.scene.thenar_new_study
     depsgraph = context.evaluated_depsgraph_get()
     into = hand.matrix_world.inverted_safe()
@@ -185,6 +217,7 @@ CLASSES = (
     THENAR_OT_new_study,
     THENAR_OT_write_study,
     THENAR_OT_discard_study,
+    THENAR_OT_leave_out_file,
     THENAR_OT_pick_site,
     THENAR_OT_sample_study,
 )

@@ -29,21 +29,21 @@ class THENAR_PT_new_study(Tab, bpy.types.Panel):
         for head in state.columns:
             _draw_columns(layout.box().column(align=True), context, state, head)
         layout.use_property_split = True
-        used = {item.protocol for item in state.files}
-        for number, protocol in enumerate(state.protocols, 1):
-            if number not in used:
-                continue
-            _draw_protocol(layout.box().column(align=True), number, protocol)
+        used = sorted({item.protocol for item in state.files})
+        for number in used[: settings.MOST_PROTOCOLS]:
+            _draw_protocol(layout.box().column(align=True), number, state.protocols[number - 1])
         _draw_skin(layout.column(align=True), context, state)
         _draw_write(layout, context, state)
 
 
 def _draw_files(column, state):
     """Each recording with the number of its protocol."""
-    for item in state.files:
-        split = column.split(factor=0.8, align=True)
+    for number, item in enumerate(state.files):
+        row = column.row(align=True)
+        split = row.split(factor=0.8, align=True)
         split.label(text=item.name, icon="ERROR" if item.problem else "CHECKMARK")
         split.prop(item, "protocol", text="")
+        row.operator("thenar.leave_out_file", text="", icon="X").number = number
 
 
 def _draw_columns(column, context, state, head):

@@ -37,18 +37,21 @@ def groups(tracks):
     """Number of the group, from 0 in order of appearance, of each track; None, which cannot be compared, is alone."""
     firsts, numbers = [], []
     for track in tracks:
-        number = next((k for k, first in enumerate(firsts) if are_repeats(first, track)), len(firsts))
+        part = None if track is None else _loaded(track)
+        number = next((k for k, first in enumerate(firsts) if _are_alike(first, part)), len(firsts))
         if number == len(firsts):
-            firsts.append(track)
+            firsts.append(part)
         numbers.append(number)
     return numbers
 
 
 def are_repeats(one, other):
     """Whether two tracks follow one path: the same motion answered by about the same force, or the other way around."""
-    if one is None or other is None:
-        return False
-    first, second = _loaded(one), _loaded(other)
+    return one is not None and other is not None and _are_alike(_loaded(one), _loaded(other))
+
+
+def _are_alike(first, second):
+    """Whether two loaded parts follow one path; None does not."""
     if first is None or second is None:
         return False
     if abs(first.time_s[-1] - second.time_s[-1]) > SAME_TIME * max(first.time_s[-1], second.time_s[-1]):
@@ -70,9 +73,21 @@ def describe(track):
     speed = 0.6 * (depth[deepest] - depth[0]) / took if took > 0.0 else 0.0
     text = f"{_short(speed)} mm/s to " if speed > 0.0 else "press to "
     text += f"{_short(reach_mm(track))} mm"
-    held = np.ptp(time[depth >= depth[0] + _HOLD * (depth[deepest] - depth[0])])
+    held = _longest_s(time, depth >= depth[0] + _HOLD * (depth[deepest] - depth[0]))
     is_held = held > max(_LEAST_HOLD_S, 4.0 * (1.0 - _HOLD) / max(speed, 1e-9) * depth[deepest])
     return f"{text}, hold {_short(held)} s" if is_held else text
+
+
+def is_still(track):
+    """Whether the tool presses and does not move."""
+    part = _loaded(track)
+    return part is not None and np.ptp(part.length_mm) <= 0.0
+
+
+def _longest_s(time, is_deep):
+    """The longest stretch of time through which it is deep without a break."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], is_deep.astype(np.int8), [0]])))
+    return max((float(time[last - 1] - time[first]) for first, last in edges.reshape(-1, 2)), default=0.0)
 
 
 def reach_mm(track):

@@ -59,6 +59,10 @@ def _regrouped(_self, context):
         _changed(_self, context)
 
 
+MOST_PROTOCOLS = 99
+"""Protocols of a study that the panel shows."""
+MOST_FILES = 999
+"""Recordings of a study in the panel; each may be a protocol of its own until its columns are known."""
 NO_TOOL = "SPHERE 0.0 0.0"
 """The tool of which nothing was said; its size is never guessed."""
 
@@ -78,6 +82,13 @@ def _tool_given(protocol, _context):
     for item in state.files:
         if item.protocol == number:
             item.tool = f"{protocol.shape} {protocol.diameter_mm!r} {protocol.turn_deg!r}"
+
+
+def _site_given(state, _context):
+    """The vertex's number means something on this hand alone, and as long as it has as many vertices."""
+    hand = state.id_data.thenar.hand
+    state.site_hand = hand
+    state.site_count = len(hand.data.vertices) if hand is not None and hand.type == "MESH" else 0
 
 
 class ThenarStudyColumns(bpy.types.PropertyGroup):
@@ -129,7 +140,7 @@ class ThenarStudyFile(bpy.types.PropertyGroup):
         name="Protocol",
         description="Number of the protocol below; repeats of one protocol share it and show the noise",
         min=1,
-        max=99,
+        max=MOST_FILES,
         default=1,
         update=_regrouped,
     )
@@ -180,8 +191,14 @@ class ThenarNewStudy(bpy.types.PropertyGroup):
         ),
     )
     site_vertex: IntProperty(
-        name="Vertex", description="Vertex of the hand at which the tool touches first; -1: none", min=-1, default=-1
+        name="Vertex",
+        description="Vertex of the hand at which the tool touches first; -1: none",
+        min=-1,
+        default=-1,
+        update=_site_given,
     )
+    site_hand: PointerProperty(type=bpy.types.Object)
+    site_count: IntProperty()
     site_region: StringProperty(
         name="Region", description="Region of the hand in whose middle the tool touches, if no place was clicked"
     )

@@ -16,6 +16,11 @@ NORMAL_MM = 4.0
 FINE, WIDE = 0.2, 3.0
 """Of a flat patch: spacing in its middle as a share of the smallest contact's radius, and its own radius in largest."""
 _LEAST_MM, _MOST_MM = 8.0, 60.0
+MOST_POINTS = 100_000
+"""Of a flat patch: joining 94,000 to triangles took 10 s and 29,000 0.8 s, through which Blender stands still."""
+LARGEST_MM = _MOST_MM / 2.0**0.5
+"""Largest contact radius of a half-space that stays inside a flat patch also on the thinnest layer, where a ball's
+grows from (R d)^(1/2) up to (2 R d)^(1/2)."""
 _GROWTH = 0.12
 _FIT_STARTS = ("g0_mpa", "g_lim_mpa", "d_lim_mm", "thickness_mm")
 
@@ -36,15 +41,10 @@ class Skin:
 def flat(contacts_mm, thickness_mm):
     """A round flat patch, its middle the site, +z out of the skin.
 
-    `contacts_mm`: least and greatest radius of contact, mm; `thickness_mm`: 0 for a half-space.
+    `contacts_mm`: least and greatest radius of contact, mm, that `fits`; `thickness_mm`: 0 for a half-space.
     """
-    least, most = contacts_mm
-    radius = float(np.clip(WIDE * most, _LEAST_MM, _MOST_MM))
-    step, r, points = FINE * least, 0.0, [np.zeros((1, 2))]
-    while r < radius:
-        grown = step * (1.0 + _GROWTH * max(0.0, r - 1.2 * most) / step)
-        r += grown
-        count = max(6, round(2.0 * np.pi * r / (1.1 * grown)))
+    points = [np.zeros((1, 2))]
+    for r, count in _rings(*contacts_mm):
         angle = 2.0 * np.pi * (np.arange(count) + 0.5 * (len(points) % 2)) / count
         points.append(r * np.stack([np.cos(angle), np.sin(angle)], axis=1))
     points = np.concatenate(points)
@@ -58,6 +58,26 @@ def flat(contacts_mm, thickness_mm):
     numbers = {name: material[name] for name in _FIT_STARTS}
     numbers["thickness_mm"] = thickness_mm if thickness_mm > 0.0 else np.inf
     return Skin(vertices, faces, None, {"default": numbers}, np.zeros(3), np.array([0.0, 0.0, -1.0]), "middle")
+
+
+def fits(least, most):
+    """Whether a flat patch for contacts of these radii, mm, has at most `MOST_POINTS`."""
+    points = 1
+    for _, count in _rings(least, most):
+        points += count
+        if points > MOST_POINTS:
+            return False
+    return True
+
+
+def _rings(least, most):
+    """Radius, mm, and number of points of each ring of a flat patch, from the middle out."""
+    radius = float(np.clip(WIDE * most, _LEAST_MM, _MOST_MM))
+    step, r = FINE * least, 0.0
+    while r < radius:
+        grown = step * (1.0 + _GROWTH * max(0.0, r - 1.2 * most) / step)
+        r += grown
+        yield r, max(6, round(2.0 * np.pi * r / (1.1 * grown)))
 
 
 def of_hand(context, hand, vertex, region):

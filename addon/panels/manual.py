@@ -21,7 +21,7 @@ _OPERATORS = (
     ("picture open_picture", "guide.html#pictures"),
     ("bake export export_bake", "guide.html#bake--export"),
     ("load_recording remove_recording compare outline_mat", "guide.html#recordings"),
-    ("new_study write_study discard_study pick_site sample_study", "guide.html#new-study"),
+    ("new_study write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
     ("diagnose apply_finding show_finding", "guide.html#diagnosis"),
     ("copy_debug_info", "guide.html#menus-and-preferences"),
     ("*", "guide.html"),

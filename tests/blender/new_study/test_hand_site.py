@@ -1,6 +1,7 @@
 """The place of a new study on the hand: clicked or by region, written as the hand is at rest, found there again."""
 
 import tomllib
+from types import SimpleNamespace
 
 import bpy
 import laboratory
@@ -139,6 +140,59 @@ def test_a_click_off_the_hand_and_a_hand_that_changed_are_refused(draft):
         operators.take_site(bpy.context, Vector((9.0, 9.0, 9.0)), Vector((0.0, 0.0, 1.0)))
     draft.site_vertex = len(hand().data.vertices)
     assert "was changed since" in drafting.problem(bpy.context)
+
+
+def test_a_place_on_another_hand_is_no_place_on_this_one(draft):
+    draft.site_vertex = 5
+    assert drafting.problem(bpy.context) == ""
+    clicked = hand()
+    other = clicked.copy()
+    other.data = clicked.data.copy()
+    bpy.context.collection.objects.link(other)
+    bpy.context.scene.thenar.hand = other
+    assert "clicked on another hand" in drafting.problem(bpy.context)
+    assert not bpy.ops.thenar.write_study.poll()
+    bpy.context.scene.thenar.hand = clicked
+    assert drafting.problem(bpy.context) == ""
+
+
+def test_a_hand_with_more_vertices_than_when_it_was_clicked_is_another(draft):
+    draft.site_vertex = 5
+    hand().data.vertices.add(1)
+    assert "was changed since the place was clicked" in drafting.problem(bpy.context)
+
+
+@pytest.mark.parametrize("gone", ["hand", "hand in the scene", "draft"])
+def test_a_click_without_hand_or_draft_ends_picking_with_the_reason(draft, monkeypatch, gone):
+    """The modal's click, with a ray that would meet the hand."""
+    for name in ("region_2d_to_origin_3d", "region_2d_to_vector_3d"):
+        monkeypatch.setattr(operators, name, lambda *_: Vector((0.0, 0.0, 1.0)))
+    if gone == "hand":
+        bpy.data.objects.remove(hand())
+    elif gone == "hand in the scene":
+        bpy.context.collection.objects.unlink(hand())
+    else:
+        bpy.ops.thenar.discard_study()
+    said = []
+    window = SimpleNamespace(type="WINDOW", x=0, y=0, width=9, height=9)
+    area = SimpleNamespace(regions=[window], tag_redraw=lambda: None)
+    context = SimpleNamespace(
+        scene=bpy.context.scene,
+        view_layer=bpy.context.view_layer,
+        area=area,
+        space_data=SimpleNamespace(region_3d=None),
+        workspace=SimpleNamespace(status_text_set=lambda text: None),
+        evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get,
+    )
+    picking = SimpleNamespace(
+        report=lambda level, text: said.append(text),
+        _end=lambda context, result: result,
+        bl_idname="thenar.pick_site",
+    )
+    click = SimpleNamespace(type="LEFTMOUSE", value="PRESS", mouse_x=4, mouse_y=4)
+    assert operators.THENAR_OT_pick_site.modal(picking, context, click) == {"CANCELLED"}
+    assert ("No study is being made" if gone == "draft" else "The hand is not in the scene") in said[0]
+    assert draft.site_vertex == -1
 
 
 def test_undo_brings_a_discarded_draft_back(draft, tmp_path):
