@@ -97,20 +97,22 @@ impl Columns {
         headers.join(", ")
     }
 
-    /// Names the columns of a head. Whether all that a user named are there.
+    /// Names the columns of a head, in each run that stands side by side. Whether all that a user named are there.
     pub(crate) fn apply(&self, columns: &mut [Column]) -> bool {
         let found: Option<Vec<usize>> = self.0.iter().map(|named| named.find(columns)).collect();
         let Some(found) = found else { return false };
+        let width = run_width(columns);
         for (named, &at) in self.0.iter().zip(&found) {
             for (k, column) in columns.iter_mut().enumerate() {
-                if k == at {
+                if k % width == at % width {
                     column.base = named.what.to_string();
                     column.is_reversed = named.is_reversed;
                     if column.unit.is_none() && named.unit.is_some() {
                         column.unit = named.unit;
                         column.unit_text.clone_from(&named.unit_text);
                     }
-                } else if column.base == named.what && !found.contains(&k) {
+                } else if column.base == named.what && found.iter().all(|f| k % width != f % width)
+                {
                     // What the user did not name is kept under the file's own name.
                     column.base = format!("file_{}", normal(&column.header));
                 }
@@ -118,6 +120,16 @@ impl Columns {
         }
         true
     }
+}
+
+/// Columns of each run where runs of the same names stand side by side, or all.
+fn run_width(columns: &[Column]) -> usize {
+    let count = columns.len();
+    let is_repeated = |width: &usize| {
+        let mut rest = columns.iter().zip(columns.iter().skip(*width));
+        count.is_multiple_of(*width) && rest.all(|(a, b)| a.header == b.header)
+    };
+    (2..count).find(is_repeated).unwrap_or(count.max(1))
 }
 
 impl Named {

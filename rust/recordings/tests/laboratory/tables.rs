@@ -267,6 +267,22 @@ fn one_time_and_one_force_make_a_curve_whatever_they_are_called() {
     );
 }
 
+/// Two runs side by side under the same names: what a column is called holds in both.
+#[test]
+fn a_named_column_is_named_in_every_run() {
+    let text = "Time (s),Way (mm),Load (N),Time (s),Way (mm),Load (N)\n0,0,0,0,0,0\n0.1,0.2,1,0.1,0.4,3\n0.2,0.4,2,0.2,0.8,6\n";
+    for (run, reach, most) in [("run 1", 0.4, 2.0), ("run 2", 0.8, 6.0)] {
+        let file = with(
+            text.as_bytes(),
+            &[("travel", "Way"), ("force", "Load (N)")],
+            Some(run),
+        );
+        let curve = &file.unwrap().curves[0];
+        assert_eq!(curve.channel("travel_mm").unwrap()[2], reach);
+        assert_eq!(curve.channel("force_n").unwrap()[2], most);
+    }
+}
+
 #[test]
 fn results_above_a_curve_are_no_head() {
     let text = "Test duration (s),Peak load (N)\n12.3,4.5\nTime (s),Load (N),Extension (mm)\n0,0,0\n0.1,1,0.2\n0.2,2,0.4\n";
