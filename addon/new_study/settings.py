@@ -165,7 +165,7 @@ class ThenarStudyProtocol(bpy.types.PropertyGroup):
     )
     turn_deg: FloatProperty(
         name="Axis (°)",
-        description="Turn of the cylinder's axis about the direction of travel, degrees; 0: along the hand",
+        description="Turn of the cylinder's axis about the direction of travel, degrees; 0: along the mesh's y axis",
         soft_min=-180,
         soft_max=180,
         update=_tool_given,

@@ -6,6 +6,7 @@ import numpy as np
 from mathutils.geometry import delaunay_2d_cdt
 
 from .. import names, native, workflow
+from ..hand.normals import vertex_normals
 from ..scene import mesh, read, regions, units
 from ..scene.checks import Refusal
 
@@ -86,7 +87,7 @@ def of_hand(context, hand, vertex, region):
     triangles = mesh.triangles(hand.data)
     if units.is_mirrored(units.world_from_local(hand)):
         triangles = triangles[:, ::-1]
-    normals = _normals(positions, triangles)
+    normals = vertex_normals(positions, triangles)
     listed = tuple(material.name for material in hand.thenar.materials)
     sorted_in = regions.vertex_regions(context, hand, listed)
     if vertex < 0:
@@ -157,12 +158,3 @@ def _piece(positions, triangles, vertex):
         if kept.sum() == before:
             return kept
 
-
-def _normals(positions, triangles):
-    """Unit normals (n, 3) of vertices, outward, weighted by area."""
-    corners = positions[triangles]
-    cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(positions)
-    for corner in range(3):
-        np.add.at(normals, triangles[:, corner], cross)
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)

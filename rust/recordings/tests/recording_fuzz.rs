@@ -2,52 +2,15 @@
 #![allow(clippy::unwrap_used)]
 
 mod exports;
+mod promises;
 mod random;
 
 use exports::*;
 use random::Random;
-use thenar_recordings::RecordingFile;
 
 /// Damaged files per format of text, and per archive.
 const TEXTS: usize = 8_000;
 const ARCHIVES: usize = 4_000;
-/// What a recording promises to whoever uses it.
-fn keeps_its_promises(file: &RecordingFile) {
-    assert!(!file.maps.is_empty() || !file.curves.is_empty());
-    for map in &file.maps {
-        assert!(map.frames() > 0 && map.values.len() == map.frames() * map.sensels.len());
-        assert!(map.values.iter().all(|value| !value.is_infinite()));
-        if let Some(times) = &map.time_s {
-            assert!(times.len() == map.frames() && times.windows(2).all(|pair| pair[0] < pair[1]));
-        }
-        assert!(
-            map.channels
-                .iter()
-                .all(|channel| channel.values.len() == map.frames())
-        );
-        assert!(map.clipped_count() <= map.values.len());
-        assert!(
-            map.grid()
-                .is_none_or(|grid| grid.rows * grid.columns == map.sensels.len())
-        );
-        assert!(map.force_n(0).is_none_or(|force| !force.is_nan()));
-    }
-    for curve in &file.curves {
-        assert!(curve.samples() > 0 && !curve.channels.is_empty());
-        assert!(
-            curve
-                .channels
-                .iter()
-                .all(|channel| channel.values.len() == curve.samples())
-        );
-        assert!(
-            curve
-                .segments
-                .iter()
-                .all(|part| part.start <= part.end && part.end <= curve.samples())
-        );
-    }
-}
 
 /// Reads damaged copies of a file and counts those that were read.
 fn survive(name: &str, bytes: &[u8], count: usize) -> usize {
@@ -61,7 +24,7 @@ fn survive(name: &str, bytes: &[u8], count: usize) -> usize {
         random.damage(&mut damaged);
         match export(&damaged) {
             Ok(file) => {
-                keeps_its_promises(&file);
+                promises::of_recording(&file);
                 read += 1;
             }
             Err(message) => {
@@ -115,7 +78,7 @@ fn damaged_members_are_read_or_refused() {
                 .map(|(name, bytes)| (name.as_str(), bytes.as_slice()))
                 .collect();
             if let Ok(file) = export(&zipped(&parts)) {
-                keeps_its_promises(&file);
+                promises::of_recording(&file);
             }
         }
     }

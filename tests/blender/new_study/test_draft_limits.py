@@ -40,7 +40,7 @@ def test_contacts_of_very_different_size_are_refused_by_file_and_write_nothing(t
 
 
 def test_a_depth_in_the_wrong_unit_is_refused_at_once(tmp_path):
-    """0.8 mm that are called nanometers beside 0.8 mm: a patch for both would have millions of points."""
+    """0.8 mm that are called nanometers next to 0.8 mm: a patch for both would have millions of points."""
     laboratory.write(tmp_path / "p1.csv", laboratory.press(1), head=("time_s", "depth_nm", "force_n"))
     laboratory.write(tmp_path / "p2.csv", laboratory.press(2))
     choose(tmp_path, ["p1.csv", "p2.csv"])

@@ -19,6 +19,8 @@ mod exports;
 mod folders;
 #[path = "../../tests/inked/mod.rs"]
 mod inked;
+#[path = "../../tests/promises/mod.rs"]
+mod promises;
 mod seeds;
 mod targets;
 

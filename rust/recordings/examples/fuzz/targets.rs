@@ -1,12 +1,10 @@
 //! The readers, each as a function of bytes; whether it read them. What is read must keep its promises, or it panics.
 
-use crate::{folders, seeds};
+use crate::{folders, promises, seeds};
 use std::path::Path;
 use thenar_recordings::handprint::{Handprint, PrintOptions, Scale};
 use thenar_recordings::meshes::{self, Format, MeshFile};
-use thenar_recordings::{
-    Columns, ReadOptions, RecordingError, RecordingFile, Study, read_bytes_with,
-};
+use thenar_recordings::{Columns, ReadOptions, RecordingError, Study, read_bytes_with};
 
 /// Longest message, bytes; names and paths are cut before.
 const LONGEST_MESSAGE: usize = 4_000;
@@ -103,46 +101,12 @@ fn recording(options: ReadOptions) -> Read {
     Box::new(
         move |bytes| match sentence(read_bytes_with(bytes, Path::new("a"), &options)) {
             Some(file) => {
-                keeps_its_promises(&file);
+                promises::of_recording(&file);
                 true
             }
             None => false,
         },
     )
-}
-
-fn keeps_its_promises(file: &RecordingFile) {
-    assert!(!file.maps.is_empty() || !file.curves.is_empty());
-    for map in &file.maps {
-        assert!(map.frames() > 0 && map.values.len() == map.frames() * map.sensels.len());
-        assert!(map.values.iter().all(|value| !value.is_infinite()));
-        if let Some(times) = &map.time_s {
-            assert!(times.len() == map.frames() && times.is_sorted_by(|a, b| a < b));
-        }
-        assert!(
-            map.channels
-                .iter()
-                .all(|channel| channel.values.len() == map.frames())
-        );
-        assert!(
-            map.grid()
-                .is_none_or(|grid| grid.rows * grid.columns == map.sensels.len())
-        );
-        assert!(map.force_n(0).is_none_or(|force| !force.is_nan()));
-    }
-    for curve in &file.curves {
-        let samples = curve.samples();
-        assert!(samples > 0 && !curve.channels.is_empty());
-        assert!(
-            curve
-                .channels
-                .iter()
-                .all(|channel| channel.values.len() == samples)
-        );
-        let is_inside =
-            |part: &thenar_recordings::Segment| part.start <= part.end && part.end <= samples;
-        assert!(curve.segments.iter().all(is_inside));
-    }
 }
 
 /// The value, or nothing where the refusal is one sentence with a remedy.
@@ -163,19 +127,8 @@ fn sentence<T>(result: Result<T, RecordingError>) -> Option<T> {
 
 fn sound_points(result: Result<MeshFile, RecordingError>) -> bool {
     sentence(result).is_some_and(|mesh| {
-        let count = mesh.positions.len();
-        assert!(
-            mesh.positions
-                .iter()
-                .all(|p| p.iter().all(|value| value.is_finite()))
-        );
-        assert!(
-            mesh.triangles
-                .iter()
-                .flatten()
-                .all(|index| (*index as usize) < count)
-        );
-        count > 0
+        promises::of_mesh(&mesh);
+        !mesh.positions.is_empty()
     })
 }
 

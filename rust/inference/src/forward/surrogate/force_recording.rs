@@ -188,23 +188,28 @@ pub(crate) fn force_recordings(
         stated.order.is_some() && stated.rest_s.is_none()
     };
     if found.iter().all(is_in_order) {
-        let tissue = |c: &ForceRecording| {
-            let stated = &study.recordings[c.recording];
+        let tissue = |course: &usize| {
+            let stated = &study.recordings[found[*course].recording];
             (&stated.subject, &stated.day, &stated.site)
         };
-        let mut tissues: Vec<Vec<usize>> = Vec::new();
-        for course in by_order {
-            let is_own = |one: &&mut Vec<usize>| tissue(&found[one[0]]) == tissue(&found[course]);
-            match tissues.iter_mut().find(is_own) {
-                Some(own) => own.push(course),
-                None => tissues.push(vec![course]),
-            }
-        }
-        for own in tissues {
+        for own in by_tissue(&by_order, tissue) {
             carry_use(&mut found, &own);
         }
     }
     found
+}
+
+/// Recordings of each tissue, in the order given.
+fn by_tissue<T: PartialEq>(by_order: &[usize], tissue: impl Fn(&usize) -> T) -> Vec<Vec<usize>> {
+    let mut tissues: Vec<Vec<usize>> = Vec::new();
+    for course in by_order {
+        let is_own = |one: &&mut Vec<usize>| tissue(&one[0]) == tissue(course);
+        match tissues.iter_mut().find(is_own) {
+            Some(own) => own.push(*course),
+            None => tissues.push(vec![*course]),
+        }
+    }
+    tissues
 }
 
 /// Adds up what was traveled before each recording of one tissue (a site of a subject on one day), in the session's order. What the first repeat of a protocol finds, its other repeats
@@ -315,6 +320,23 @@ mod tests {
             .iter_mut()
             .for_each(|c| c.travel_before_mm = [0.0; 2]);
         assert!(!carries_use(&courses), "the tissue has rested");
+    }
+
+    /// Recordings 0 and 3 are of another finger: what 2 and 1 did before them does not count there.
+    #[test]
+    fn use_of_one_site_is_not_carried_to_another() {
+        let fingers = ["index", "thumb", "thumb", "index"];
+        let own = by_tissue(&[2, 0, 1, 3], |course| fingers[*course]);
+        assert_eq!(own, [vec![2, 1], vec![0, 3]]);
+        let mut courses = recordings(&[(1, "a"), (1, "b"), (3, "c"), (1, "d")]);
+        for one in &own {
+            carry_use(&mut courses, one);
+        }
+        let before: Vec<f64> = courses
+            .iter()
+            .map(|c| c.travel_before_mm[1].round())
+            .collect();
+        assert_eq!(before, [0.0, 6.0, 0.0, 2.0]);
     }
 
     /// Forces of a closed form in which damage never heals: the carried laws find its share, the rested one cannot.
