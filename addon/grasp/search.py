@@ -31,14 +31,16 @@ which is easily opposed, goes before the one that fits the hand."""
 ROUGH, ROUGH_EVALUATIONS = 6, 20
 FINE, FINE_EVALUATIONS, FINE_ROUNDS = 4, 30, 2
 LAST, LAST_ROUNDS = 3, 5
-UNSETTLED = 2.0
+UNSETTLED, OFF_BALANCE = 2.0, 0.1
 SLIPS = 2.0
 POOR = 8.0
 OPPOSED = 1.5
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
-the next where that one does not. What is not settled counts `UNSETTLED` more, what slips `SLIPS`; a power grip that
+the next where that one does not. What is not settled counts `UNSETTLED` more, and
+`OFF_BALANCE` for each tolerance that it misses, or a way that was balanced a little would go before one that was
+balanced nearly; what slips counts `SLIPS`; a power grip that
 counts more than `POOR` is compared with pinches. A thumb whose pad faces away from the index finger's counts `OPPOSED`
 for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
 one is not counted. What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is
@@ -208,7 +210,8 @@ def score_of(state, aim):
     score += 2.0 * max(float(state.peaks_mpa.max()) / settling.MOST_MPA - 1.0, 0.0)
     score += 0.3 * max(grasp.deepest_body_mm - 1.0, 0.0) + 5.0 * (fitter.CROSSED_TEXT in grasp.warnings)
     score += settling.SUNK * state.sunk_mm
-    score += 0.0 if settling.is_settled(state, aim) else UNSETTLED
+    if not settling.is_settled(state, aim):
+        score += UNSETTLED + OFF_BALANCE * (settling.cost_of(state, aim) - settling.LEAST_COST)
     return score + (10.0 if state.contact.grade == "do not use" else 0.0)
 
 

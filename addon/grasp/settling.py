@@ -186,12 +186,16 @@ def is_settled(state, aim):
     return abs(state.total_n / aim.total_n - 1.0) <= FORCE_MISS
 
 
+LEAST_COST = 3.0
+"""`cost_of` a settled state."""
+
+
 def cost_of(state, aim):
-    """How far a state is from settled: 1 for each tolerance that it misses by its own size."""
+    """How far a state is from settled: 1 for each tolerance that it misses by its own size, at least `LEAST_COST`."""
     cost = max(state.imbalance / BALANCED, 1.0) + max(state.lever / MOMENT, 1.0)
     cost += 10.0 * max(state.peaks_mpa.max() / MOST_MPA - 1.0, 0.0) + SUNK * state.sunk_mm
     if aim.total_n is None:
-        return cost + 10.0 * max(state.total_n / MOST_N - 1.0, 0.0)
+        return cost + 1.0 + 10.0 * max(state.total_n / MOST_N - 1.0, 0.0)
     return cost + max(abs(state.total_n / aim.total_n - 1.0) / FORCE_MISS, 1.0)
 
 

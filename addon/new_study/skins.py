@@ -157,4 +157,3 @@ def _piece(positions, triangles, vertex):
         kept[touched] = True
         if kept.sum() == before:
             return kept
-
