@@ -227,10 +227,13 @@ def _gain(fit):
         if removed.get("low") is not None and removed.get("high") is not None:
             between = f" ({wording.share(removed['low'])} to {wording.share(removed['high'])})"
         yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
-    placebo = fit.get("placebo_removed")
-    if placebo is not None:
-        share = wording.share(max(placebo, 0.0))
-        yield f"A negative control, the same change on the wrong recordings and moments, removes {share} at most."
+    score = fit.get("log_score")
+    if score and score.get("value") is not None:
+        text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])} nats"
+        if score.get("placebo") is not None:
+            most = wording.number(max(score["placebo"], 0.0))
+            text += f"; by the same change on the wrong recordings and moments (negative control) by {most} at most"
+        yield f"{text}."
     held_out = fit.get("held_out")
     if held_out:
         count = len(held_out)

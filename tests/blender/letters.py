@@ -48,6 +48,7 @@ FINDINGS = {
             "after": {"rms": 0.05, "unit": "N", "low": 0.04, "high": 0.06},
             "noise_floor": {"rms": 0.03, "unit": "N", "low": 0.02, "high": 0.04},
             "reducible_error_removed": {"value": 0.96, "low": 0.91, "high": 0.998},
+            "log_score": {"value": 374.5, "unit": "nats", "placebo": 35.3},
         },
         "smallest_seen": {
             "adhesion": {"value": 0.02, "unit": "J/m2"},

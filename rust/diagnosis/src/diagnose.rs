@@ -242,7 +242,7 @@ fn told(
 
 /// What a reader should be told besides, and the place that maps show.
 fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
-    let is_no_better = |g: &Gain| g.placebo.is_some_and(|placebo| g.removed <= placebo);
+    let is_no_better = |g: &Gain| g.log_score <= g.placebo;
     if found.gain.as_ref().is_some_and(is_no_better) {
         found.notes.push(
             "on held-out recordings the finding gains no more than its change on the wrong recordings at the wrong moments does"

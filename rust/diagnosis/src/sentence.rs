@@ -56,18 +56,28 @@ pub fn sentence(
             let when = when.map_or(String::new(), |w| {
                 format!(", seen most {}", phase_in_words(w.phase))
             });
-            let gained = gain.map_or(String::new(), |g| {
-                format!(
-                    "; with it {:.0} % of the reducible error of held-out recordings goes away",
-                    100.0 * g.removed.max(0.0)
-                )
-            });
+            let gained = gain.map_or(String::new(), predicted);
             format!(
                 "What is missing is {names} ({:.0} % sure){when}{gained}.",
                 100.0 * sure
             )
         }
     }
+}
+
+/// Share of the reducible error from which it is told: below, the noise of the curves decides how large it is.
+const TELLING: f64 = 0.3;
+
+/// How much better held-out recordings are predicted.
+fn predicted(gain: &Gain) -> String {
+    if gain.removed < TELLING {
+        return "; it is small beside the noise, yet held-out recordings are predicted better with it"
+            .to_owned();
+    }
+    format!(
+        "; with it {:.0} % of the reducible error of held-out recordings goes away",
+        100.0 * gain.removed
+    )
 }
 
 /// How often a recording settles a matter from which it is advised without reserve.

@@ -107,6 +107,7 @@ fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
         gain.after.rms < gain.before.rms && gain.removed > 0.75,
         "{gain:?}"
     );
+    assert!(gain.log_score > 2.0 * gain.placebo.max(5.0), "{gain:?}");
     let json: Value = serde_json::from_str(&findings_json(&found)).unwrap();
     assert_eq!(json["schema"], 1);
     assert_eq!(json["findings"][0]["kind"], "tissue");
