@@ -71,7 +71,7 @@ const TELLING: f64 = 0.3;
 /// How much better held-out recordings are predicted.
 fn predicted(gain: &Gain) -> String {
     if gain.removed < TELLING {
-        return "; it is small beside the noise, yet held-out recordings are predicted better with it"
+        return "; it is small against the noise, yet held-out recordings are predicted better with it"
             .to_owned();
     }
     format!(

@@ -183,7 +183,7 @@ mod tests {
 
     /// Of a tenth that the other leaves half is much; of a half that it leaves a hundredth is nothing.
     #[test]
-    fn an_instrument_beside_an_effect_must_remove_what_that_leaves() {
+    fn an_instrument_with_an_effect_must_remove_what_that_leaves() {
         assert!(share_of_rest(0.95, 0.9) > REMOVED_BY_INSTRUMENT.1);
         assert!(share_of_rest(0.51, 0.5) < REMOVED_BY_INSTRUMENT.1);
         assert!(share_of_rest(0.7, 0.8) < 0.0);
