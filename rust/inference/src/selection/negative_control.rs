@@ -5,12 +5,12 @@ use crate::random::Random;
 /// Draws, and the part of them that a gain must exceed.
 const DRAWS: (usize, f64) = (199, 0.99);
 
-/// A held-out recording in standard deviations of the noise.
+/// A held-out recording, whitened.
 #[derive(Debug, Clone)]
 pub struct HeldOut {
     /// Number of its protocol.
     pub protocol: usize,
-    /// Measured less what is predicted without the finding.
+    /// Residuals of what is predicted without the finding.
     pub error: Vec<f64>,
     /// What the finding adds to that prediction.
     pub patch: Vec<f64>,
