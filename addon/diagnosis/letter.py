@@ -223,10 +223,12 @@ def _moduli(found):
 def _gain(fit):
     removed = fit.get("reducible_error_removed")
     if removed and removed.get("value") is not None:
-        between = ""
-        if removed.get("low") is not None and removed.get("high") is not None:
-            between = f" ({wording.share(removed['low'])} to {wording.share(removed['high'])})"
-        yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
+        low, high = removed.get("low"), removed.get("high")
+        between = "" if low is None or high is None else f" ({wording.share(low)} to {wording.share(high)})"
+        if low is not None and low < 0.0:
+            yield "The share of the reducible error that is removed cannot be given: noise is larger than the effect."
+        else:
+            yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
     score = fit.get("log_score")
     if score and score.get("value") is not None:
         text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])} nats"

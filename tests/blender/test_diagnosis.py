@@ -1,5 +1,6 @@
 """The diagnosis in a scene: asked for, kept, read as a letter, shown on the skin, switched on or refused."""
 
+import copy
 import json
 from types import SimpleNamespace
 
@@ -64,6 +65,16 @@ def test_every_verdict_has_its_letter(verdict, diagnose):
     assert lines[0] == letter.HEADINGS[verdict] and lines[1] == letters.FINDINGS[verdict]["sentence"]
     assert all(line == line.strip() or line.startswith("   ") for line in lines) and "" not in lines
     assert not any(word in " ".join(lines) for word in ("None", "nan", "_", "[", "{"))
+
+
+def test_a_share_that_noise_leaves_unknown_is_not_given(diagnose):
+    """Of an effect below the noise the interval of the share reaches from far below 0 to 100 %."""
+    found = copy.deepcopy(letters.FINDINGS["missing_physics"])
+    found["fit"]["reducible_error_removed"] = {"value": 1.0, "low": -22.8, "high": 1.0}
+    diagnose(found)
+    lines = told()
+    assert "The share of the reducible error that is removed cannot be given: noise is larger than the effect." in lines
+    assert not any("of the reducible error is removed" in line for line in lines)
 
 
 def test_the_letter_tells_size_place_time_and_gain(diagnose):

@@ -7,6 +7,7 @@ nodal forces is held to less.
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -39,6 +40,22 @@ def test_firm_grasps_balance_and_carry_what_was_asked(blender, scene, bar):
     assert solved < 0.05 * total
     assert best.net_n == pytest.approx(solved, abs=0.02 * total)
     assert best.friction < 0.1
+
+
+def test_of_two_that_are_not_settled_the_one_nearer_to_balance_goes_first():
+    """A fit that touches well and leaves 23 N over went before one that leaves 9 N, by the last bits of a sum."""
+
+    def scored(net_n, clear_mm):
+        fit = SimpleNamespace(
+            depths_mm={"pad": 1.0 - clear_mm}, targets_mm={"pad": 1.0}, deepest_body_mm=0.0, warnings=()
+        )
+        contact = SimpleNamespace(grade="read this")
+        net = np.array([net_n, 0.0, 0.0])
+        state = settling.State(fit, contact, np.zeros(1), 200.0, net, np.zeros(3), np.array([0.1]))
+        return search.score_of(state, settling.Aim(np.zeros(3), np.zeros(3), 200.0))
+
+    assert scored(9.0, 0.9) < scored(23.0, 0.0)
+    assert scored(0.0, 0.9) < scored(9.0, 0.0), "settled"
 
 
 def test_a_light_grasp_carries_less(blender, scene, bar):

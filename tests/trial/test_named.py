@@ -48,12 +48,19 @@ def test_an_effect_of_the_skin_is_named_and_predicts_what_was_held_out(case, tmp
 
 
 @pytest.mark.parametrize("case", WEAK)
-def test_an_effect_below_the_noise_is_named_if_held_out_recordings_bear_it_out(case, tmp_path):
+def test_an_effect_below_the_noise_is_named_if_held_out_recordings_confirm_it(case, tmp_path):
     """Squared errors hardly show it, since the noise is slow and larger; held-out recordings are likelier with it."""
     said = found(case, tmp_path)
     assert [one["effect"] for one in said["findings"]] == [WEAK[case]]
+    assert "100 %" not in said["sentence"] and "small against the noise" in said["sentence"]
     score = said["fit"]["log_score"]
     assert score["value"] > max(4.0, 2.0 * score["placebo"])
+
+
+def test_a_name_that_held_out_recordings_hardly_confirm_is_only_suspected(tmp_path):
+    """A pocket that collapses: softening by use explains 7.5 nats of it, of which half are confirmed."""
+    said = found("case_312", tmp_path)
+    assert said["findings"] == [] and any("cycle softening is suspected" in note for note in said["notes"])
 
 
 @pytest.mark.parametrize("case", SKINS)

@@ -4,6 +4,8 @@ Printed by `cargo xtask prove -- --split calibration`. The thresholds stand in r
 case of the trial is looked at for them.
 """
 
+import re
+
 import numpy as np
 from trial import observing
 
@@ -64,12 +66,35 @@ def taken_up(sealed, said):
     return {key: pair for key, pair in found.items() if pair[0] > 0.0}
 
 
+SUSPECTED = re.compile(r"is suspected, .* they confirm (\d+) % of its evidence")
+
+
+def confirmed(sealed, said):
+    """(share of evidence that held-out recordings confirm, whether it is right, names) of what reaches that gate."""
+    for name, label in sealed.items():
+        verdict, there = said.get(name, {}), label.get("names", [])
+        score = (verdict.get("fit") or {}).get("log_score") or {}
+        names = [one["effect"] for one in verdict.get("findings", [])]
+        if names and score.get("of_evidence") is not None:
+            yield score["of_evidence"], set(names) <= set(there), " and ".join(names)
+        for found in filter(None, map(SUSPECTED.search, verdict.get("notes", []))):
+            yield 0.01 * int(found[1]), None, "only suspected" + (f" ({' and '.join(there)} is there)" if there else "")
+
+
 def lines(sealed, said):
     """All of it as lines of text, the largest first."""
     told = ["largest evidence where nothing is missing, nats:"]
     told += [f"  {effect}: {nats:.1f}" for effect, nats in _sorted(reached(sealed, said))]
     least, middle, most = noise(sealed, said) or (np.nan, np.nan, np.nan)
     told.append(f"slow noise that repeats tell, over what it is: median {middle:.2f}, {least:.2f} to {most:.2f}")
+    told.append("share of its evidence that held-out recordings confirm:")
+    shares = sorted(confirmed(sealed, said), key=lambda one: one[0])
+    right = [share for share, is_right, names in shares if is_right and names != "gain"]
+    if right:
+        told.append(
+            f"  right names: {min(right):.2f} to {max(right):.2f}, median {np.median(right):.2f}, of {len(right)}"
+        )
+    told += [f"  {names}{'' if ok is None else ', wrong'}: {share:.2f}" for share, ok, names in shares if not ok]
     told.append("clearest rhythm in repeats, and how often noise alone shows one as clear:")
     found = sorted(rhythms(sealed, said), key=lambda one: one[2])
     nulls = [chance for what, _, chance in found if what == "nothing"]

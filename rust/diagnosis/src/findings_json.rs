@@ -153,8 +153,10 @@ fn fit(gain: Option<&Gain>) -> Value {
             "reducible_error_removed": {
                 "value": rounded(gain.removed), "low": rounded(gain.interval.0), "high": rounded(gain.interval.1),
             },
-            "log_score": {"value": rounded(gain.log_score), "unit": "nats", "placebo": rounded(gain.placebo)},
-            "evidence_borne_out_beside_the_other": gain.members.iter()
+            "log_score": {
+                "value": rounded(gain.log_score), "unit": "nats", "placebo": rounded(gain.placebo), "of_evidence": rounded(gain.confirmed),
+            },
+            "evidence_confirmed_given_the_other": gain.members.iter()
                 .map(|(name, share)| ((*name).to_owned(), json!(rounded(*share)))).collect::<Map<String, Value>>(),
         }),
     }

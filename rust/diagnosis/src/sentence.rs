@@ -65,12 +65,12 @@ pub fn sentence(
     }
 }
 
-/// Share of the reducible error from which it is told: below, the noise of the curves decides how large it is.
+/// Share of the reducible error from which it is stated, if all of its interval is above 0: otherwise noise decides how large it is.
 const TELLING: f64 = 0.3;
 
 /// How much better held-out recordings are predicted.
 fn predicted(gain: &Gain) -> String {
-    if gain.removed < TELLING {
+    if gain.removed < TELLING || gain.interval.0 < 0.0 {
         return "; it is small against the noise, yet held-out recordings are predicted better with it"
             .to_owned();
     }

@@ -181,19 +181,21 @@ fn signs(consequences: &[(String, bool)]) -> String {
 }
 
 fn gained(gain: &Gain) -> String {
+    let share = match gain.interval.0 < 0.0 {
+        true => "The share of the reducible error that is removed cannot be given: noise is larger than the effect.".to_owned(),
+        false => format!(
+            "Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %).",
+            100.0 * gain.removed,
+            100.0 * gain.interval.0,
+            100.0 * gain.interval.1
+        ),
+    };
     format!(
         "<p>Predictions of recordings that were held out, protocol by protocol: {:.2} standard deviations of the noise before, {:.2} \
-after; repeats predict one another to {:.2}. Share of the reducible error removed: {:.0} % ({:.0} to {:.0} %). \
+after; repeats predict one another to {:.2}. {share} \
 Their log predictive density rises by {:.1} nats (plug-in estimate of the elpd difference); by the same change on the wrong recordings at the wrong \
 moments it rises by {:.1} at most (99 of 100 draws).</p>\n",
-        gain.before.rms,
-        gain.after.rms,
-        gain.floor.rms,
-        100.0 * gain.removed,
-        100.0 * gain.interval.0,
-        100.0 * gain.interval.1,
-        gain.log_score,
-        gain.placebo
+        gain.before.rms, gain.after.rms, gain.floor.rms, gain.log_score, gain.placebo
     )
 }
 

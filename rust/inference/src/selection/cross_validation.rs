@@ -89,6 +89,7 @@ pub fn gain(
     let nats = |squares: f64| 0.5 * squares / overdispersion;
     Some(Gain {
         log_score: nats(deviance),
+        confirmed: nats(deviance) / found.qaic_gain.max(1e-3),
         placebo: nats(negative_control(&held, MOST, seed)),
         ..told(ready, &all, seed)
     })
@@ -241,6 +242,7 @@ fn told(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
         removed: best[3],
         interval: interval(&mut removed),
         log_score: 0.0,
+        confirmed: 0.0,
         placebo: 0.0,
         members: Vec::new(),
     }
@@ -274,8 +276,10 @@ pub struct Gain {
     /// over the overdispersion (a plug-in estimate of the difference in elpd, Vehtari, Gelman and Gabry 2017). It weighs what noise
     /// hardly hides, which the squared error of curves with a slow noise does not.
     pub log_score: f64,
-    /// The same of the finding's change on the wrong recordings at the wrong moments, in 99 of 100 draws at most.
+    /// Share of the finding's evidence that this is.
+    pub confirmed: f64,
+    /// The same rise with the finding's change on the wrong recordings at the wrong moments, in 99 of 100 draws at most.
     pub placebo: f64,
-    /// Of two effects together: share of the evidence of each, beside the other, that held-out recordings bear out.
+    /// Of two effects together: share of the evidence for each, given the other, that held-out recordings confirm.
     pub members: Vec<(&'static str, f64)>,
 }
