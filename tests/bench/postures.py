@@ -1,6 +1,7 @@
 """Random search for presses that do not hold: hands in random postures against random products. --help tells the rest.
 
     target/venv/bin/python tests/bench/postures.py [--count 2000] [--first 0] [--out target/postures.jsonl]
+    target/venv/bin/python tests/bench/postures.py --remedy [--count 2000] [--out target/postures.jsonl]
     target/venv/bin/python tests/bench/postures.py --case SEED [--dump FILE.npz]
 
 Goes on where it was cut: seeds that have a row in the file are kept (--again: none is). Exit code 1 if a case is
@@ -10,6 +11,7 @@ unsound or more than 3 % are refused.
 import argparse
 import json
 import os
+import re
 import sys
 from collections import Counter
 from pathlib import Path
@@ -30,6 +32,9 @@ def main():
     parser.add_argument("--workers", type=int, default=1)
     parser.add_argument("--out", type=Path, default=TESTS.parent / "target/postures.jsonl", help="a row a case")
     parser.add_argument("--again", action="store_true", help="press seeds that the file holds once more")
+    parser.add_argument(
+        "--remedy", action="store_true", help="press what the file's rows refuse on a hand cut twice as fine"
+    )
     parser.add_argument("--case", type=int, help="this seed alone, printed in full")
     parser.add_argument("--dump", type=Path, help="with --case: the arrays of the press, as .npz")
     parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
@@ -43,6 +48,8 @@ def main():
         asked.out.unlink(missing_ok=True)
     seeds = range(asked.first, asked.first + asked.count)
     rows = searching.search(__file__, seeds, asked.out, asked.workers)
+    if asked.remedy:
+        return report_remedy([row for seed, row in sorted(rows.items()) if seed in seeds])
     return report([row for seed, row in rows.items() if seed in seeds])
 
 
@@ -86,7 +93,7 @@ def report(rows):
         refused, unsound = sum(map(random_postures.is_refused, chosen)), sum(bool(wrong[row["case"]]) for row in chosen)
         cells = "".join(f"{count[name]:>15}" for name in FAULTS)
         print(f"{kind or 'all':<8}{len(chosen):>7}{refused:>9}{unsound:>9}{cells}")
-    for text, number in Counter(row["refused"][:110] for row in rows if "refused" in row).most_common(12):
+    for text, number in Counter(_reason(row) for row in rows if random_postures.is_refused(row)).most_common(12):
         print(f"refused {number}: {text}")
     for key, label in (("moved_mm", "farthest moved"), ("left_mm", "deepest left"), ("under_mm", "deepest under skin")):
         worst = sorted((row for row in rows if key in row), key=lambda row: -row[key])[:6]
@@ -98,6 +105,9 @@ def report(rows):
     )
     grades = Counter(row["grade"] for row in rows if row.get("grade"))
     print("grades:", dict(grades) or "none reported")
+    good = [row for row in rows if random_postures.grade_of(row) == "good"]
+    most = [max((row[key] for row in good), default=0.0) for key in ("complementarity", "left_mm")]
+    print(f"of {len(good)} graded good: complementarity at most {most[0]:.0e}, skin inside at most {most[1]:.1e} mm")
     refused = sum(map(random_postures.is_refused, rows))
     unsound = sum(bool(faults) for faults in wrong.values())
     print(
@@ -112,6 +122,30 @@ def report(rows):
     )
     results.record("bench", "target/venv/bin/python tests/bench/postures.py", [figure])
     return int(not is_met)
+
+
+def report_remedy(rows):
+    """Presses what was refused as the message says: on a finer hand. Returns 1 if a result is unsound then."""
+    from handles import random_postures
+
+    refused = [row for row in rows if random_postures.is_refused(row)]
+    cases = [row["case"] for row in refused]
+    after = [{"case": c} | random_postures.press(random_postures.draw(c), is_refined=True) for c in cases]
+    solved = [row for row in after if not random_postures.is_refused(row)]
+    unsound = [row for row in after if random_postures.faults(row)]
+    print(f"{len(refused)} refused; on the hand cut twice as fine {len(solved)} are solved, {len(unsound)} unsound")
+    for row in unsound:
+        print(f"unsound: seed {row['case']}, {', '.join(random_postures.faults(row))}")
+    for text, number in Counter(_reason(row) for row in after if random_postures.is_refused(row)).most_common(6):
+        print(f"refused {number}: {text}")
+    share = (len(refused) - len(solved)) / max(len(rows), 1)
+    print(f"left refused: {100 * share:.1f} % of {len(rows)}")
+    return int(bool(unsound))
+
+
+def _reason(row):
+    """Why a row is refused, its numbers taken out."""
+    return re.sub(r"[0-9]+([.][0-9]+)?", "#", row.get("refused") or row.get("reason", ""))[:150]
 
 
 if __name__ == "__main__":

@@ -83,7 +83,39 @@ def hand_of(percentile):
 @lru_cache(maxsize=8)
 def skin_of(percentile):
     """The prepared skin of that hand."""
+    return _prepared(hand_of(percentile))
+
+
+@lru_cache(maxsize=5)
+def refined_of(percentile):
+    """That hand with every triangle cut in four at the middles of its edges: (`HandArrays`, its skin, edges (k, 2)).
+
+    The shape stays; a middle takes the mean thickness of its ends and, where they differ, the lesser region's number.
+    """
     hand = hand_of(percentile)
+    triangles = np.asarray(hand.made["triangles"])
+    sides = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+    edges, index = np.unique(sides, axis=0, return_inverse=True)
+    ab, bc, ca = index.reshape(3, -1) + len(hand.made["vertices_mm"])
+    a, b, c = triangles.T
+    cut = np.concatenate([np.stack(corners, 1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    made = {
+        "vertices_mm": with_middles(hand.made["vertices_mm"], edges),
+        "triangles": cut,
+        "regions": np.concatenate([hand.made["regions"], np.asarray(hand.made["regions"])[edges].min(axis=1)]),
+        "region_names": hand.made["region_names"],
+    }
+    fine = HandArrays(made, hand.materials, made["regions"] >= 0)
+    return fine, _prepared(fine), edges
+
+
+def with_middles(positions, edges):
+    """Positions (n, 3), and after them the middles of the edges (k, 2)."""
+    positions = np.asarray(positions)
+    return np.concatenate([positions, positions[edges].mean(axis=1)])
+
+
+def _prepared(hand):
     return thenar.Skin(
         hand.made["vertices_mm"],
         hand.made["triangles"],
@@ -217,8 +249,15 @@ def outward_normals(positions, triangles):
     return out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
 
 
-def press(posture):
-    """What the module makes of it, as one row: refused, or numbers with the skin measured independently."""
+def press(posture, is_refined=False):
+    """What the module makes of it, as one row: refused, or numbers with the skin measured independently.
+
+    `is_refined`: on the hand of `refined_of`, in the same pose.
+    """
+    hand, skin, posed = hand_of(posture.percentile), skin_of(posture.percentile), posture.posed
+    if is_refined:
+        hand, skin, edges = refined_of(posture.percentile)
+        posed = with_middles(posed, edges)
     row = {
         "kind": posture.product.kind,
         "percentile": posture.percentile,
@@ -228,13 +267,13 @@ def press(posture):
         "overlap_mm": posture.overlap_mm,
         **posture.product.sizes,
     }
-    skin, ends = skin_of(posture.percentile), time.monotonic() + SECONDS
+    ends = time.monotonic() + SECONDS
     started = time.process_time()
     try:
         contact = skin.press(
             posture.vertices,
             posture.product.triangles,
-            posed_vertices_mm=posture.posed,
+            posed_vertices_mm=posed,
             cancel=lambda: time.monotonic() > ends,
         )
     except thenar.Cancelled:
@@ -242,14 +281,14 @@ def press(posture):
     except MODULE_ERRORS as error:
         return row | {"refused": f"{type(error).__name__}: {error}", "seconds": time.process_time() - started}
     row["seconds"] = time.process_time() - started
-    return row | measured(posture, np.asarray(contact.displacement_mm)) | claimed(contact)
+    return row | measured(posture, (hand, posed), np.asarray(contact.displacement_mm)) | claimed(contact)
 
 
-def measured(posture, displacement):
-    """Numbers of the written skin, made apart from the library."""
-    hand = hand_of(posture.percentile)
+def measured(posture, skin, displacement):
+    """Numbers of the written skin, made apart from the library. `skin`: the `HandArrays` and its posed vertices."""
+    hand, posed = skin
     moved = np.linalg.norm(displacement, axis=1)
-    after = posture.posed + displacement
+    after = posed + displacement
     left = 0.0
     if posture.product.is_closed and np.isfinite(after).all():
         left = measuring.depths(after[hand.is_skin], posture.vertices, posture.product.triangles).max()
@@ -274,7 +313,9 @@ def claimed(contact):
         "converged": bool(contact.convergence["has_converged"]),
         "passes": int(contact.convergence["passes"]),
         "claimed_left_mm": float(contact.residual["penetration_mm"]),
+        "complementarity": float(contact.residual["complementarity"]),
         "grade": str(getattr(contact, "grade", "")),
+        "reason": contact.reason or "",
         "warnings": list(contact.warnings),
     }
 

@@ -16,15 +16,15 @@ SEEDS = {
     "ball": (0, 8, 16, 24, 40),
     "box": (1, 9, 17, 25, 33),
     "rod": (2, 10, 338, 794, 962),
-    "plate": (11, 27, 163, 299, 1027),
-    "sheet": (12, 20, 404, 372, 1500),
+    "plate": (11, 27, 163, 459, 1027),
+    "sheet": (12, 20, 404, 468, 828, 852),
     "fork": (13, 5, 29, 893, 1445),
-    "wire": (30, 6, 366, 710, 1534),
-    "tube": (7, 15, 23, 31, 1439),
+    "wire": (30, 6, 366, 390, 1534),
+    "tube": (7, 15, 703, 815, 1439),
 }
 """Of each kind first two ordinary ones."""
-FAILED = ("spike", "inside", "peak", "not converged", "hung")
-"""`through` is left to the search: an edge finer than the skin's vertices may cut between them."""
+FAILED = ("spike", "inside", "peak", "not converged", "through", "hung")
+"""A product that passes between the skin's vertices (`through`) has to be graded so."""
 
 
 @pytest.mark.parametrize("kind", random_products.KINDS)
@@ -66,10 +66,10 @@ def test_planted_faults_are_seen(planted, fault):
         posture.vertices, posture.product.triangles, posed_vertices_mm=posture.posed
     )
     moves = np.array(contact.displacement_mm)
-    row = random_postures.measured(posture, moves) | random_postures.claimed(contact)
+    row = random_postures.measured(posture, (hand, posture.posed), moves) | random_postures.claimed(contact)
     row |= {"travel_mm": posture.travel_mm, "overlap_mm": posture.overlap_mm}
     assert random_postures.faults(row) == []
     pressed = np.flatnonzero(np.asarray(contact.in_contact) & hand.is_skin)[0]
     way = moves[pressed] / np.linalg.norm(moves[pressed])
     moves[pressed] += (planted[0] + planted[1]) * way
-    assert fault in random_postures.faults(row | random_postures.measured(posture, moves))
+    assert fault in random_postures.faults(row | random_postures.measured(posture, (hand, posture.posed), moves))

@@ -1,5 +1,6 @@
 //! Stage 5: fields, totals and warnings of a solved contact.
 
+mod between_vertices;
 pub mod contact_area;
 pub mod patch_peak;
 pub mod merged_vertices;

@@ -2,6 +2,7 @@
 
 use thenar_surface::{Mesh, Product, Vec3};
 
+use super::between_vertices::product_between;
 use super::warnings::Warning;
 use crate::Model;
 use crate::detection::gaps::limits;
@@ -57,11 +58,13 @@ pub fn warnings_of(
         said.extend(region(skin, index, (*depth, thickness)));
     }
     said.extend(bare(skin, pressed));
+    let between = product_between(skin, product, pressed, figures.displacement);
     if pressed.solved.force.iter().all(|f| *f <= 0.0) {
-        said.push(no_contact(posed, product));
+        said.push(between.unwrap_or_else(|| no_contact(posed, product)));
     } else {
         said.extend(coarse(skin, product, pressed));
         said.extend(few(skin, figures));
+        said.extend(between);
         said.extend(edge(figures));
         said.extend(crease(skin, pressed, figures));
         said.extend(balance(pressed));

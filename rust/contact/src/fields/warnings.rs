@@ -66,6 +66,13 @@ pub enum Warning {
     CoarseProduct { longest: f64, spacing: f64 },
     /// Few vertices bear the contact.
     FewVertices { vertices: usize, spacing: f64 },
+    /// The product lies under the skin between its vertices; `touches` tells whether any vertex bears force.
+    ProductBetweenVertices {
+        vertex: usize,
+        depth: f64,
+        spacing: f64,
+        touches: bool,
+    },
     /// The pressure over a sensel is beyond what skin bears: an edge does that.
     Edge { patch_peak: f64 },
     /// The peak stands on a vertex whose skin is folded together.
@@ -111,9 +118,9 @@ impl Warning {
             }
             Warning::HandSize { .. }
             | Warning::BeyondTheory { .. }
-            | Warning::BeyondTissue { .. }
             | Warning::CoarseProduct { .. }
             | Warning::FewVertices { .. }
+            | Warning::ProductBetweenVertices { touches: true, .. }
             | Warning::Edge { .. }
             | Warning::Crease { .. }
             | Warning::OffBalance { .. }
@@ -125,6 +132,8 @@ impl Warning {
             Warning::GripStrain { .. }
             | Warning::ProductInside
             | Warning::NoContact
+            | Warning::BeyondTissue { .. }
+            | Warning::ProductBetweenVertices { touches: false, .. }
             | Warning::Unsolved { .. }
             | Warning::GripUnsolved { .. }
             | Warning::UnsolvedRows { .. }
@@ -146,6 +155,7 @@ impl Warning {
             Warning::NoContact => "no_contact",
             Warning::CoarseProduct { .. } => "coarse_product",
             Warning::FewVertices { .. } => "few_vertices",
+            Warning::ProductBetweenVertices { .. } => "product_between_vertices",
             Warning::Edge { .. } => "sharp_edge",
             Warning::Crease { .. } => "peak_in_crease",
             Warning::OffBalance { .. } => "off_balance",
@@ -167,6 +177,7 @@ impl Warning {
         match self {
             Warning::Bare { vertex, .. }
             | Warning::Crease { vertex, .. }
+            | Warning::ProductBetweenVertices { vertex, .. }
             | Warning::Runaway { vertex, .. } => Some(*vertex),
             _ => None,
         }
@@ -259,6 +270,20 @@ impl fmt::Display for Warning {
                 "only {vertices} {} in contact: the contact is finer than the hand's vertex spacing of {spacing:.1} mm, so its \
                  force and pressure are rough; refine the hand there",
                 if *vertices == 1 { "vertex is" } else { "vertices are" }
+            ),
+            Warning::ProductBetweenVertices {
+                vertex,
+                depth,
+                spacing,
+                touches,
+            } => write!(
+                f,
+                "the product passes between the skin's vertices, up to {depth:.1} mm under the skin at vertex {vertex}: it is finer \
+                 than their spacing of {spacing:.1} mm, so that {}; refine the skin there",
+                match touches {
+                    true => "force and pressure are too low",
+                    false => "no vertex touches it and there is no pressure",
+                }
             ),
             Warning::Edge { patch_peak } => write!(
                 f,

@@ -17,6 +17,13 @@ use crate::tree::nearest::Pending;
 /// Cosine between a sheet's outward direction and the skin's normal below which the skin plainly faces it.
 const FACING: f64 = -0.7;
 
+/// Cosine between the way out of a sheet and the normal of the deepest skin behind it below which that skin was not pushed through.
+const PARALLEL: f64 = 0.7;
+
+/// The same that every vertex of such a patch needs: so much for each mm of depth, and at most.
+const TURN_PER_MM: f64 = 0.15;
+const MOST_TURNED: f64 = 0.5;
+
 /// Part of a way within which two crossings are one.
 const ON_EDGE: f64 = 1e-9;
 
@@ -91,14 +98,64 @@ pub(crate) fn read_by_side(
             }
         }
     }
+    let is_cut = cut_patches(skin, &near, &side);
     let reads = |j: usize| {
         let gap = near[j].as_ref()?;
-        let is_through = side[j] == SkinSide::Through && gap.distance <= limits.max_depth_mm;
+        let is_through = side[j] == SkinSide::Through
+            && gap.distance <= limits.max_depth_mm
+            && (!is_cut[j] || is_behind_its_flesh(gap, &skin.normals[j]));
         let reads = if is_through { flipped(gap) } else { *gap };
         let is_known = side[j] != SkinSide::Unknown;
         (is_known && gaps[j] != Some(reads)).then_some((j as u32, reads))
     };
     (0..near.len()).filter_map(reads).collect()
+}
+
+/// Marks the patches of skin that a rim has cut into (n): there, the skin goes on around the rim, and how far the patch reaches is chance.
+///
+/// Skin that was pushed through a sheet lies deepest where it is parallel to the sheet. Where it does not, the patch ends at the rim.
+fn cut_patches(skin: &PosedSkin<'_>, near: &[Option<Gap>], side: &[SkinSide]) -> Vec<bool> {
+    let mut is_cut = vec![false; side.len()];
+    let mut is_seen = vec![false; side.len()];
+    let Some(surface) = skin.surface else {
+        return is_cut;
+    };
+    let depth = |i: usize| near[i].as_ref().map_or(0.0, |gap| gap.distance);
+    for start in 0..side.len() {
+        if side[start] != SkinSide::Through || is_seen[start] {
+            continue;
+        }
+        is_seen[start] = true;
+        let (mut patch, mut next) = (vec![start], 0);
+        while let Some(&i) = patch.get(next) {
+            next += 1;
+            for &j in surface.adjacency.neighbors(i) {
+                let j = j as usize;
+                if side[j] == SkinSide::Through && !is_seen[j] {
+                    is_seen[j] = true;
+                    patch.push(j);
+                }
+            }
+        }
+        let deepest = patch
+            .iter()
+            .copied()
+            .max_by(|&a, &b| depth(a).total_cmp(&depth(b)));
+        let turned = |i: usize| {
+            let gap = near[i].as_ref();
+            gap.is_some_and(|gap| gap.normal.dot(&skin.normals[i]) < PARALLEL)
+        };
+        if deepest.is_some_and(turned) {
+            patch.iter().for_each(|&i| is_cut[i] = true);
+        }
+    }
+    is_cut
+}
+
+/// Whether the way back to the sheet leads into the flesh, the deeper the more squarely: skin far behind a cut would be drawn along itself.
+fn is_behind_its_flesh(gap: &Gap, skin_normal: &Vec3) -> bool {
+    let least = (TURN_PER_MM * gap.distance).min(MOST_TURNED);
+    gap.normal.dot(skin_normal) >= least
 }
 
 impl Product {
