@@ -5,7 +5,7 @@
 //! vertices that have it behind them. Ordinary contacts have none. Only there is the product sampled, and its depth under the written
 //! skin measured.
 
-use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3};
+use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
 
 use super::warnings::Warning;
 use crate::press::pressed::Pressed;
@@ -28,6 +28,10 @@ const SAMPLE_STEP: f64 = 0.7;
 const MOST_STEPS: usize = 300;
 /// Least cosine between the skin's normal and the way from a sample to it: beside a rim of the skin nothing is beneath.
 const BENEATH: f64 = 0.5;
+/// Depth below the nearest vertices' tangent planes from which a sample is measured, as a share of what is worth a word; and for how many
+/// pairs of samples and vertices that is faster.
+const ROUGH_SHARE: f64 = 0.5;
+const MOST_PAIRS: usize = 2_000_000;
 /// Depth of the product under skin in contact that is worth a word, mm: flat triangles span less of a sharp edge.
 const MOST_SPANNED: f64 = 1.0;
 /// The same where nothing touches, mm.
@@ -42,16 +46,26 @@ pub(super) fn product_between(
     pressed: &Pressed,
     displacement: &[Vec3],
 ) -> Option<Warning> {
-    let suspects = suspects(skin, pressed);
+    let detection = &pressed.detection;
+    let within = NEAR_SPACINGS * skin.spacing;
+    let is_near = |v: &u32| detection.distances[*v as usize] < within && is_skin(skin, *v);
+    let near: Vec<u32> = (0..detection.positions.len() as u32)
+        .filter(is_near)
+        .collect();
+    let touches = pressed.solved.force.iter().any(|f| *f > 0.0);
+    let place = Place {
+        skin,
+        normals: &detection.normals,
+        before: &detection.positions,
+        displacement,
+        most: if touches { MOST_SPANNED } else { MOST_MISSED },
+    };
+    let suspects = place.suspects(&near, &detection.gaps, within);
     if suspects.is_empty() {
         return None;
     }
-    let written = pressed.detection.positions.iter().zip(displacement);
-    let written: Vec<Vec3> = written.map(|(p, u)| p + u).collect();
-    let touches = pressed.solved.force.iter().any(|f| *f > 0.0);
-    let (depth, vertex) = deepest(skin, &written, product, &suspects)?;
-    let most = if touches { MOST_SPANNED } else { MOST_MISSED };
-    (depth > most).then(|| Warning::ProductBetweenVertices {
+    let (depth, vertex) = place.deepest(product.mesh(), &suspects)?;
+    (depth > place.most).then(|| Warning::ProductBetweenVertices {
         vertex: skin.merged.source[vertex as usize] as usize,
         depth,
         spacing: skin.spacing,
@@ -59,97 +73,128 @@ pub(super) fn product_between(
     })
 }
 
-/// Skin vertices between which, or behind which, the product may lie.
-fn suspects(skin: &Skin, pressed: &Pressed) -> Vec<u32> {
-    let detection = &pressed.detection;
-    let near = NEAR_SPACINGS * skin.spacing;
-    let seen = |v: u32| {
-        let is_near = detection.distances[v as usize] < near;
-        let gap = is_near
-            .then(|| detection.gaps[v as usize].as_ref())
-            .flatten()?;
-        is_skin(skin, v).then_some(gap)
-    };
-    let is_behind = |v: u32, gap: &Gap| {
-        gap.distance > LEAST_DISTANCE && gap.normal.dot(&detection.normals[v as usize]) > BEHIND
-    };
-    let is_opposite = |v: u32, gap: &Gap| {
-        let around = skin.adjacency.neighbors(v as usize).iter();
-        let mut others = around.filter_map(|&w| seen(w));
-        others.any(|other| gap.normal.dot(&other.normal) < OPPOSITE)
-    };
-    let is_suspect =
-        |v: &u32| seen(*v).is_some_and(|gap| is_behind(*v, gap) || is_opposite(*v, gap));
-    (0..detection.positions.len() as u32)
-        .filter(is_suspect)
-        .collect()
-}
-
 fn is_skin(skin: &Skin, v: u32) -> bool {
     skin.regions[skin.merged.source[v as usize] as usize] >= 0
 }
 
-/// How deep the product lies under the written skin near `suspects`, mm, and the vertex there.
-fn deepest(
-    skin: &Skin,
-    written: &[Vec3],
-    product: &Product,
-    suspects: &[u32],
-) -> Option<(f64, u32)> {
-    let at = |v: &u32| written[*v as usize];
-    let (low, high) = bounds(suspects.iter().map(at));
-    let samples = samples(
-        product.mesh(),
-        (low.add_scalar(-REACH), high.add_scalar(REACH)),
-    );
-    let is_near = |p: &&Vec3| {
-        suspects
-            .iter()
-            .any(|v| (at(v) - **p).norm_squared() < REACH * REACH)
-    };
-    let samples: Vec<Vec3> = samples.iter().filter(is_near).copied().collect();
-    let (low, high) = (
-        low.add_scalar(-REACH - MARGIN),
-        high.add_scalar(REACH + MARGIN),
-    );
-    let is_here = |v: &u32| (0..3).all(|k| (low[k]..=high[k]).contains(&written[*v as usize][k]));
-    let triangles = skin.merged.mesh.triangles().iter();
-    let triangles: Vec<[u32; 3]> = triangles
-        .filter(|t| t.iter().any(is_here))
-        .copied()
-        .collect();
-    let surface = Mesh::new(written.to_vec(), triangles).ok()?;
-    let normals = thenar_surface::vertex_normals(&surface);
-    let surface = Product::new(surface).ok()?;
-    let limits = GapLimits {
-        cut_off_mm: MARGIN,
-        max_depth_mm: MARGIN,
-    };
-    let depth_of = |(p, gap): (&Vec3, Option<Gap>)| {
-        let gap = gap?;
-        let corners = surface.mesh().triangles()[gap.triangle as usize];
-        if !corners.iter().all(|v| is_skin(skin, *v)) {
+/// The written skin, by welded vertex.
+struct Place<'a> {
+    skin: &'a Skin,
+    /// Normals before the press.
+    normals: &'a [Vec3],
+    /// Positions before the press, mm.
+    before: &'a [Vec3],
+    displacement: &'a [Vec3],
+    /// Depth that is worth a word, mm.
+    most: f64,
+}
+
+impl Place<'_> {
+    fn at(&self, v: u32) -> Vec3 {
+        self.before[v as usize] + self.displacement[v as usize]
+    }
+
+    /// Vertices between which, or behind which, the product may lie, of those `near` it.
+    fn suspects(&self, near: &[u32], gaps: &[Option<Gap>], within: f64) -> Vec<u32> {
+        let skin = self.skin;
+        let seen = |v: u32| {
+            let gap = gaps[v as usize].as_ref();
+            gap.filter(|gap| gap.distance < within && is_skin(skin, v))
+        };
+        let is_behind = |v: u32, gap: &Gap| {
+            let turned = gap.normal.dot(&self.normals[v as usize]);
+            let is_away = gap.distance > LEAST_DISTANCE && turned > BEHIND;
+            is_away && self.roughly(near, gap.closest) > ROUGH_SHARE * self.most
+        };
+        let is_opposite = |v: u32, gap: &Gap| {
+            let around = skin.adjacency.neighbors(v as usize).iter();
+            let mut others = around.filter_map(|&w| seen(w));
+            others.any(|other| gap.normal.dot(&other.normal) < OPPOSITE)
+        };
+        let is_suspect =
+            |&v: &u32| seen(v).is_some_and(|gap| is_opposite(v, gap) || is_behind(v, gap));
+        near.iter().copied().filter(is_suspect).collect()
+    }
+
+    /// Least depth of a point below the tangent planes of the nearest three of some vertices, mm.
+    fn roughly(&self, vertices: &[u32], point: Vec3) -> f64 {
+        let mut nearest = [(f64::INFINITY, 0u32); 3];
+        for &v in vertices {
+            let away = (self.at(v) - point).norm_squared();
+            if away < nearest[2].0 {
+                nearest[2] = (away, v);
+                nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+            }
+        }
+        let found = nearest.iter().filter(|(away, _)| away.is_finite());
+        let depths = found.map(|(_, v)| (self.at(*v) - point).dot(&self.normals[*v as usize]));
+        depths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// How deep the product lies under the written skin near `suspects`, mm, and the vertex there.
+    fn deepest(&self, product: &Mesh, suspects: &[u32]) -> Option<(f64, u32)> {
+        let (low, high) = bounds(suspects.iter().map(|v| self.at(*v)));
+        let is_near = |p: &Vec3| {
+            let mut away = suspects.iter().map(|v| (self.at(*v) - p).norm_squared());
+            away.any(|squared| squared < REACH * REACH)
+        };
+        let within = |(low, high): (Vec3, Vec3), reach: f64| {
+            (low.add_scalar(-reach), high.add_scalar(reach))
+        };
+        let mut samples = samples(product, within((low, high), REACH));
+        samples.retain(is_near);
+        let here = within((low, high), REACH + MARGIN);
+        let count = self.before.len() as u32;
+        let local: Vec<u32> = (0..count).filter(|v| contains(here, self.at(*v))).collect();
+        if samples.len() * local.len() < MOST_PAIRS {
+            samples.retain(|p| self.roughly(&local, *p) > ROUGH_SHARE * self.most);
+        }
+        if samples.is_empty() {
             return None;
         }
-        let weighted = corners.iter().zip(gap.barycentric);
-        let normal: Vec3 = weighted.map(|(v, w)| normals[*v as usize] * w).sum();
-        let depth = gap.distance.abs();
-        let is_beneath = (gap.closest - p).dot(&normal) > BENEATH * depth * normal.norm();
-        let nearest = (0..3).max_by(|a, b| gap.barycentric[*a].total_cmp(&gap.barycentric[*b]))?;
-        is_beneath.then_some((depth, corners[nearest]))
-    };
-    let gaps = surface.gaps(&samples, None, limits);
-    let depths = samples.iter().zip(gaps).filter_map(depth_of);
-    depths.max_by(|a, b| a.0.total_cmp(&b.0))
+        let (surface, normals) = self.surface(here)?;
+        let limits = GapLimits {
+            cut_off_mm: MARGIN,
+            max_depth_mm: MARGIN,
+        };
+        let depth_of = |(p, gap): (&Vec3, Option<Gap>)| {
+            let gap = gap?;
+            let corners = surface.mesh().triangles()[gap.triangle as usize];
+            if !corners.iter().all(|v| is_skin(self.skin, *v)) {
+                return None;
+            }
+            let weighted = corners.iter().zip(gap.barycentric);
+            let normal: Vec3 = weighted.map(|(v, w)| normals[*v as usize] * w).sum();
+            let depth = gap.distance.abs();
+            let is_beneath = (gap.closest - p).dot(&normal) > BENEATH * depth * normal.norm();
+            let weight = |k: &usize| gap.barycentric[*k];
+            let nearest = (0..3).max_by(|a, b| weight(a).total_cmp(&weight(b)))?;
+            is_beneath.then_some((depth, corners[nearest]))
+        };
+        let gaps = surface.gaps(&samples, None, limits);
+        let depths = samples.iter().zip(gaps).filter_map(depth_of);
+        depths.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The written skin within a box, and its vertex normals.
+    fn surface(&self, here: (Vec3, Vec3)) -> Option<(Product, Vec<Vec3>)> {
+        let written: Vec<Vec3> = (0..self.before.len() as u32).map(|v| self.at(v)).collect();
+        let is_here = |t: &&[u32; 3]| t.iter().any(|v| contains(here, written[*v as usize]));
+        let triangles = self.skin.merged.mesh.triangles().iter();
+        let triangles = triangles.filter(is_here).copied().collect();
+        let surface = Mesh::new(written, triangles).ok()?;
+        let normals = vertex_normals(&surface);
+        Some((Product::new(surface).ok()?, normals))
+    }
 }
 
 /// Points of the mesh within a box, `SAMPLE_STEP` apart.
-fn samples(mesh: &Mesh, (low, high): (Vec3, Vec3)) -> Vec<Vec3> {
+fn samples(mesh: &Mesh, here: (Vec3, Vec3)) -> Vec<Vec3> {
     let mut found = Vec::new();
     for triangle in 0..mesh.triangles().len() {
         let [a, b, c] = mesh.corners(triangle);
         let (least, most) = bounds([a, b, c].into_iter());
-        if (0..3).any(|k| least[k] > high[k] || most[k] < low[k]) {
+        if (0..3).any(|k| least[k] > here.1[k] || most[k] < here.0[k]) {
             continue;
         }
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
@@ -158,13 +203,17 @@ fn samples(mesh: &Mesh, (low, high): (Vec3, Vec3)) -> Vec<Vec3> {
             for j in 0..=steps - i {
                 let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
                 let point = a + (b - a) * u + (c - a) * v;
-                if (0..3).all(|k| (low[k]..=high[k]).contains(&point[k])) {
+                if contains(here, point) {
                     found.push(point);
                 }
             }
         }
     }
     found
+}
+
+fn contains((low, high): (Vec3, Vec3), point: Vec3) -> bool {
+    (0..3).all(|k| (low[k]..=high[k]).contains(&point[k]))
 }
 
 fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
