@@ -44,7 +44,8 @@ def test_an_effect_of_the_skin_is_named_and_predicts_what_was_held_out(case, tmp
     assert [one["effect"] for one in said["findings"]] == [NAMED[case]]
     assert said["verdict"] == "missing_physics" and [NAMED[case]] in said["names_90"]
     fit = said["fit"]
-    assert fit["reducible_error_removed"]["value"] > 0.5 and fit["log_score"]["value"] > fit["log_score"]["placebo"]
+    assert fit["held_out_by"] == "protocol" and fit["reducible_error_removed"]["value"] > 0.5
+    assert fit["log_score"]["value"] > fit["log_score"]["placebo"]
 
 
 @pytest.mark.parametrize("case", WEAK)
@@ -61,6 +62,14 @@ def test_a_name_that_held_out_recordings_hardly_confirm_is_only_suspected(tmp_pa
     """A pocket that collapses: softening by use explains 7.5 nats of it, of which half are confirmed."""
     said = found("case_312", tmp_path)
     assert said["findings"] == [] and any("cycle softening is suspected" in note for note in said["notes"])
+
+
+def test_a_ceiling_that_one_protocol_alone_reaches_is_confirmed_by_its_repeats(tmp_path):
+    """No other protocol can predict it. A case of the second trial."""
+    said = found("second_377", tmp_path)
+    assert [one["effect"] for one in said["findings"]] == ["saturation"] and said["verdict"] == "instrument"
+    score = said["fit"]["log_score"]
+    assert said["fit"]["held_out_by"] == "repeat" and score["value"] > max(40.0, score["placebo"])
 
 
 @pytest.mark.parametrize("case", SKINS)

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::findings::{Diagnosis, Finding, Rival, Suggestion, Switched};
 use crate::unlisted_finding::{Correction, Unlisted};
-use thenar_inference::selection::cross_validation::{Gain, Spread};
+use thenar_inference::selection::cross_validation::{Gain, HeldOutBy, Spread};
 
 /// The diagnosis as JSON, schema 1.
 pub fn findings_json(found: &Diagnosis) -> String {
@@ -147,6 +147,7 @@ fn fit(gain: Option<&Gain>) -> Value {
         None => json!({"held_out": []}),
         Some(gain) => json!({
             "held_out": gain.held_out,
+            "held_out_by": match gain.held_out_by { HeldOutBy::Protocol => "protocol", HeldOutBy::Repeat => "repeat" },
             "before": spread(gain.before),
             "after": spread(gain.after),
             "noise_floor": spread(gain.floor),

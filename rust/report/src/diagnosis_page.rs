@@ -9,7 +9,7 @@ use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};
 use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
 use thenar_inference::number_format::capital;
-use thenar_inference::selection::cross_validation::Gain;
+use thenar_inference::selection::cross_validation::{Gain, HeldOutBy};
 
 /// Recordings that are drawn.
 const MOST_CURVES: usize = 6;
@@ -190,8 +190,12 @@ fn gained(gain: &Gain) -> String {
             100.0 * gain.interval.1
         ),
     };
+    let held_out = match gain.held_out_by {
+        HeldOutBy::Protocol => "protocol by protocol",
+        HeldOutBy::Repeat => "repeat by repeat, since one protocol alone shows it",
+    };
     format!(
-        "<p>Predictions of recordings that were held out, protocol by protocol: {:.2} standard deviations of the noise before, {:.2} \
+        "<p>Predictions of recordings that were held out, {held_out}: {:.2} standard deviations of the noise before, {:.2} \
 after; repeats predict one another to {:.2}. {share} \
 Their log predictive density rises by {:.1} nats (plug-in estimate of the elpd difference); by the same change on the wrong recordings at the wrong \
 moments it rises by {:.1} at most (99 of 100 draws).</p>\n",

@@ -7,7 +7,7 @@ use crate::wording::effect_in_words;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::observe::measured::Measured;
-use thenar_inference::selection::cross_validation::{Gain, gain};
+use thenar_inference::selection::cross_validation::{Gain, gain, gain_of_repeats};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Share of the evidence (nats) for an effect, and for each of two given the other, that held-out recordings must confirm. Right names of
@@ -22,6 +22,9 @@ const LEAST_OF_INSTRUMENT: f64 = 0.8;
 /// Share of the reducible error of held-out recordings that an error of the instrument must also remove, and share of what an effect
 /// leaves: a ceiling that is only noise of the depth is confirmed by repeats, and removes 2 to 16 %; real ones remove 80 % and more.
 const REMOVED_BY_INSTRUMENT: (f64, f64) = (0.3, 0.1);
+/// Evidence from which a ceiling that held-out protocols do not confirm may be confirmed by held-out repeats, nats. A ceiling that one
+/// protocol alone reaches is predicted by no other; one that is only noise of the depth has 7 to 17 nats, real ones 100 and more.
+const LEAST_OF_REPEATS: f64 = 60.0;
 /// Share of the reducible error from which one of two is named when the other does not predict, though repeats agree on more than it
 /// explains.
 const ALONE: f64 = 0.5;
@@ -72,10 +75,24 @@ pub fn decide<'a>(
             false => (unnamed(ready, rungs, (named, &all)), None),
         };
     }
-    match is_refuted(named, &all) {
-        true => (unnamed(ready, rungs, (named, &all)), None),
-        false => (decision, Some(all)),
+    if is_refuted(named, &all) {
+        let again = may_be_shown_by_repeats(named)
+            .then(|| gain_of_repeats(ready, measured, (named, rungs.overdispersion), seed));
+        return match again.flatten().filter(|again| !is_refuted(named, again)) {
+            Some(again) => (decision, Some(again)),
+            None => (unnamed(ready, rungs, (named, &all)), None),
+        };
     }
+    (decision, Some(all))
+}
+
+/// Whether it is a ceiling of the instrument with much evidence: it shows at the largest forces alone, which one protocol may have.
+fn may_be_shown_by_repeats(named: &Scored) -> bool {
+    let is_ceiling = named
+        .mechanisms
+        .iter()
+        .all(|m| m.effect == Effect::Saturation);
+    is_ceiling && named.qaic_gain >= LEAST_OF_REPEATS
 }
 
 /// Share that a pair removes of what one of its members alone leaves, where both shares are of the same error.
@@ -160,7 +177,7 @@ fn predicts(gain: &Gain, least: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use thenar_inference::selection::cross_validation::Spread;
+    use thenar_inference::selection::cross_validation::{HeldOutBy, Spread};
 
     fn gain(log_score: f64, placebo: f64, evidence: f64) -> Gain {
         let unknown = Spread {
@@ -178,6 +195,7 @@ mod tests {
             confirmed: log_score / evidence,
             placebo,
             members: Vec::new(),
+            held_out_by: HeldOutBy::Protocol,
         }
     }
 

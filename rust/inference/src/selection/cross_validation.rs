@@ -40,6 +40,43 @@ pub fn gain(
     seed: u64,
 ) -> Option<Gain> {
     let folds = folds(&ready.courses)?;
+    gain_over(
+        (&folds, HeldOutBy::Protocol),
+        ready,
+        measured,
+        (found, overdispersion),
+        seed,
+    )
+}
+
+/// The same with the first repeats of all protocols held out together, then the second ones, and so on: what one protocol alone can
+/// show, as a ceiling that no other reaches, only its own repeats can confirm. None where no protocol was repeated.
+pub fn gain_of_repeats(
+    ready: &PreparedStudy,
+    measured: &[Measured],
+    (found, overdispersion): (&Scored, f64),
+    seed: u64,
+) -> Option<Gain> {
+    let folds = repeats(&ready.courses);
+    let is_repeated = folds.iter().any(|number| *number > 0);
+    is_repeated.then(|| {
+        gain_over(
+            (&folds, HeldOutBy::Repeat),
+            ready,
+            measured,
+            (found, overdispersion),
+            seed,
+        )
+    })?
+}
+
+fn gain_over(
+    (folds, held_out_by): (&[usize], HeldOutBy),
+    ready: &PreparedStudy,
+    measured: &[Measured],
+    (found, overdispersion): (&Scored, f64),
+    seed: u64,
+) -> Option<Gain> {
     let (mut all, mut held) = (Vec::new(), Vec::new());
     let mut deviance = 0.0;
     for number in 0..=folds.iter().copied().max()? {
@@ -91,6 +128,7 @@ pub fn gain(
         log_score: nats(deviance),
         confirmed: nats(deviance) / found.qaic_gain.max(1e-3),
         placebo: nats(negative_control(&held, MOST, seed)),
+        held_out_by,
         ..told(ready, &all, seed)
     })
 }
@@ -112,6 +150,19 @@ fn folds(courses: &[ForceRecording]) -> Option<Vec<usize>> {
         (1, n) => Some((0..n).collect()),
         _ => Some(folds),
     }
+}
+
+/// By recording, how many of its protocol and place come before it.
+fn repeats(courses: &[ForceRecording]) -> Vec<usize> {
+    let is_same =
+        |a: &ForceRecording, b: &ForceRecording| a.protocol == b.protocol && a.place == b.place;
+    let before = |(c, one): (usize, &ForceRecording)| {
+        courses[..c]
+            .iter()
+            .filter(|other| is_same(one, other))
+            .count()
+    };
+    courses.iter().enumerate().map(before).collect()
 }
 
 /// Mean square of repeats about each other, over the noise, as noise would give it: 1, or less if the noise was judged too large.
@@ -245,7 +296,17 @@ fn told(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
         confirmed: 0.0,
         placebo: 0.0,
         members: Vec::new(),
+        held_out_by: HeldOutBy::Protocol,
     }
+}
+
+/// What is held out at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeldOutBy {
+    /// All recordings of a protocol.
+    Protocol,
+    /// One recording of every protocol.
+    Repeat,
 }
 
 /// An error of prediction with its 90 % interval.
@@ -282,4 +343,6 @@ pub struct Gain {
     pub placebo: f64,
     /// Of two effects together: share of the evidence for each, given the other, that held-out recordings confirm.
     pub members: Vec<(&'static str, f64)>,
+    /// What was held out at once.
+    pub held_out_by: HeldOutBy,
 }
