@@ -1,46 +1,93 @@
-"""Diagnoses studies of the world of closed forms and counts what is said, by noise family.
+"""Diagnoses studies of a world and counts what is said, by noise family.
 
-    PYTHONPATH=tests target/venv/bin/python tests/trial/worlds/accusations.py [--truth nothing] [--cases 10] [--seed 1]
-        [--noises white ...]
+    PYTHONPATH=tests target/venv/bin/python tests/trial/worlds/accusations.py [--world finite_element_pads]
+        [--truth nothing] [--cases 10] [--seed 1] [--noises white ...] [--workers 1] [--keep DIR]
 
 Prints a row for each family: how many of its cases end in each verdict, and how many name an effect or an instrument
 that is not there (where nothing is missing: how many accuse at all), with the 95 % bounds of the share (Clopper and
-Pearson). Exit code 1 if more than 3 % of all do.
+Pearson). In the world of closed forms that is `is_wrong`; a world with a `judged` of its own says what is right and
+what is only missed. With `--keep`, verdicts are kept in DIR, and those that lie there are not asked for again. Exit
+code 1 if more than 3 % of all are wrong.
 """
 
 import argparse
 import collections
+import importlib
 import json
 import os
+import shutil
 import sys
 import tempfile
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 from scipy.stats import beta
 from trial.running import Binary, Fault
-from trial.worlds import closed_forms
 
 WRONG = 0.03
+WORLDS = ("closed_forms", "finite_element_pads")
 
 
-def answer(case):
-    """(verdict, names) of one case, or ("fault", [sentence])."""
-    seed, truth, noise, program = case
+@dataclass(frozen=True)
+class Asked:
+    """One case of a world, the program that is to diagnose it, and where its verdict is kept (None: nowhere)."""
+
+    world: str
+    seed: int
+    truth: str
+    noise: str
+    program: str
+    keep: str | None = None
+
+    def kept(self):
+        """The file of the verdict."""
+        return self.keep and Path(self.keep) / f"{self.world}_{self.truth}_{self.noise}_{self.seed}.json"
+
+    def draw(self):
+        """The case."""
+        return importlib.import_module(f"trial.worlds.{self.world}").draw(self.seed, self.truth, self.noise)
+
+
+def answer(asked):
+    """(verdict, names) of one case, or ("fault", [sentence]); of *cannot tell*, the names that it cannot tell apart."""
+    kept = asked.kept()
+    if kept and kept.exists():
+        return _said(json.loads(kept.read_text()))
     with tempfile.TemporaryDirectory() as place:
-        closed_forms.draw(seed, truth, noise).write(Path(place) / "study")
+        asked.draw().write(Path(place) / "study")
         try:
-            Binary(Path(program)).diagnose(Path(place) / "study", Path(place) / "out")
+            Binary(Path(asked.program)).diagnose(Path(place) / "study", Path(place) / "out")
         except Fault as fault:
             return "fault", [str(fault)]
-        said = json.loads((Path(place) / "out" / "findings.json").read_text())
-    return said["verdict"], [finding["effect"] for finding in said["findings"]]
+        found = Path(place) / "out" / "findings.json"
+        if kept:
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(found, kept)
+        return _said(json.loads(found.read_text()))
+
+
+def _said(found):
+    names = {finding["effect"] for finding in found["findings"]}
+    return found["verdict"], sorted(names.union(*found["cannot_tell"]))
 
 
 def is_wrong(truth, verdict, names):
     """Whether something is named that is not there, or, where nothing is missing, something is accused at all."""
     accused = verdict in ("fault", "unlisted", "cannot_tell", "missing_physics", "instrument")
-    return any(name != truth for name in names) or verdict == "fault" or (truth.startswith("nothing") and accused)
+    named = [] if verdict == "cannot_tell" else names
+    return any(name != truth for name in named) or verdict == "fault" or (truth.startswith("nothing") and accused)
+
+
+def judged(asked, verdict, names):
+    """`right`, `missed` or `wrong`."""
+    world = importlib.import_module(f"trial.worlds.{asked.world}")
+    if hasattr(world, "judged"):
+        return world.judged(asked.truth, asked.draw().pad.stiffening, verdict, names)
+    if is_wrong(asked.truth, verdict, names):
+        return "wrong"
+    is_right = verdict != "cannot_tell" and (asked.truth.startswith("nothing") or asked.truth in names)
+    return "right" if is_right else "missed"
 
 
 def bounds(count, of):
@@ -50,31 +97,52 @@ def bounds(count, of):
     return low, high
 
 
-def main():
-    """Prints the table."""
+def arguments():
+    """As they were asked for; ends with a sentence where a world has no such truth or noise."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--truth", default="nothing", choices=closed_forms.TRUTHS)
+    parser.add_argument("--world", default="closed_forms", choices=WORLDS)
+    parser.add_argument("--truth", default="nothing")
     parser.add_argument("--cases", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--noises", nargs="+", default=closed_forms.NOISES, choices=closed_forms.NOISES)
+    parser.add_argument("--noises", nargs="+")
+    parser.add_argument("--workers", type=int, default=os.cpu_count())
+    parser.add_argument("--keep")
     parser.add_argument("--program", default=str(Path(__file__).parents[3] / "target/release/thenar"))
-    asked = parser.parse_args()
-    cases = [(asked.seed + k, asked.truth, noise, asked.program) for noise in asked.noises for k in range(asked.cases)]
-    wrong = 0
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(answer, cases))
-    for noise in asked.noises:
-        own = [(case, said) for case, said in zip(cases, found, strict=True) if case[2] == noise]
-        bad = [(case[0], said) for case, said in own if is_wrong(asked.truth, *said)]
-        wrong += len(bad)
-        verdicts = collections.Counter(said[0] for _, said in own)
-        said = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
-        print(f"{noise:15s} wrong {len(bad):3d} of {len(own)}; {said}", flush=True)
-        for seed, (_, names) in bad:
-            print(f"    seed {seed}: {', '.join(names)}")
-    low, high = bounds(wrong, len(cases))
-    print(f"{asked.truth}: a wrong name in {wrong} of {len(cases)} ({100 * low:.1f} to {100 * high:.1f} %)")
-    return int(wrong > WRONG * len(cases))
+    given = parser.parse_args()
+    world = importlib.import_module(f"trial.worlds.{given.world}")
+    given.noises = given.noises or list(world.NOISES)
+    if given.truth not in world.TRUTHS or set(given.noises) - set(world.NOISES):
+        parser.error(f"{given.world} has the truths {', '.join(world.TRUTHS)} and the noises {', '.join(world.NOISES)}")
+    return given
+
+
+def main():
+    """Prints the table."""
+    given = arguments()
+    seeds = range(given.seed, given.seed + given.cases)
+    cases = [
+        Asked(given.world, seed, given.truth, noise, given.program, given.keep)
+        for noise in given.noises
+        for seed in seeds
+    ]
+    with ProcessPoolExecutor(given.workers) as pool:
+        found = list(zip(cases, pool.map(answer, cases), strict=True))
+    total = collections.Counter()
+    for noise in given.noises:
+        own = [(case, said, judged(case, *said)) for case, said in found if case.noise == noise]
+        words = collections.Counter(word for _, _, word in own)
+        total += words
+        verdicts = collections.Counter(said[0] for _, said, _ in own)
+        text = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
+        print(f"{noise:15s} wrong {words['wrong']:3d}, right {words['right']:3d} of {len(own)}; {text}", flush=True)
+        for case, (verdict, names), word in own:
+            if word == "wrong":
+                print(f"    seed {case.seed}: {verdict}: {', '.join(names)}")
+    for word in ("wrong", "right"):
+        low, high = bounds(total[word], len(cases))
+        share = f"{total[word]} of {len(cases)} ({100 * low:.1f} to {100 * high:.1f} %)"
+        print(f"{given.truth}: {word} in {share}")
+    return int(total["wrong"] > WRONG * len(cases))
 
 
 if __name__ == "__main__":
