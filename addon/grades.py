@@ -25,7 +25,7 @@ NO_CONTACT = "no_contact"
 """The kind of a contact that touches nothing; finer skin mends it where the product passes between vertices."""
 CUT_MM = 0.1
 """How deep flat triangles of the shown skin may cut into the product before finer skin is offered."""
-_FINER = ("refine the hand", "subdivide the hand")
+_FINER = ("refine the hand", "refine the skin", "subdivide the hand")
 """What sentences ask for that finer skin mends."""
 
 

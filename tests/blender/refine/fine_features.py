@@ -129,6 +129,12 @@ def _product(name, points, faces):
     return obj
 
 
+def is_between(result):
+    """Whether a result says that the product lies between vertices none of which touch it."""
+    kind = result.reason_kind
+    return kind == "product_between_vertices" or (kind == "no_contact" and result.passes_between)
+
+
 def refine(times=1, **options):
     """Press Refine Skin so many times."""
     for _ in range(times):

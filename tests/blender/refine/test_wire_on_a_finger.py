@@ -52,7 +52,7 @@ def crossed():
 def test_what_passed_between_vertices_is_felt_and_sound(crossed):
     hand, wire = crossed
     assert stage.solve().force_n == 0.0
-    assert bpy.context.scene.thenar.result.passes_between
+    assert fine_features.is_between(bpy.context.scene.thenar.result)
     for _ in range(2):
         fine_features.refine()
     assert 9_600 < len(hand.data.vertices) < 10_400
