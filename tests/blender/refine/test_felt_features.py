@@ -119,6 +119,25 @@ def test_a_contact_elsewhere_keeps_its_force():
     assert force[~low].sum() > 0.0
 
 
+def test_a_product_that_a_force_target_has_moved_counts_where_it_stands():
+    """A bar 3 mm off is pressed on by a force target; the skin under its place in the contact is refined."""
+    hand = fine_features.ball()
+    points, triangles = fine_features.points_mm(hand), fine_features.triangles_of(hand)
+    foot, way, out = fine_features.gap_place(points, triangles)
+    fine_features.wire((foot, way, out), radius=1.5, sunk=-3.0)
+    with pytest.raises(RuntimeError, match="No skin of 'Pad' comes within 1 mm of 'Wire'"):
+        fine_features.refine()
+    settings = bpy.context.scene.thenar
+    settings.use_force, settings.force_n, settings.direction_mode = True, 0.1, "OWN"
+    settings.direction = -out
+    assert stage.solve().reason_kind == "few_vertices"
+    fine_features.refine(1)
+    new = fine_features.points_mm(hand)[len(points) :]
+    assert len(new) > 20 and np.linalg.norm(new - foot, axis=1).max() < 10.0
+    assert not settings.product.thenar.is_moved
+    assert abs(np.dot(stage.solve().force_vector_n, out)) == pytest.approx(0.1, rel=0.02)
+
+
 def test_a_contact_that_is_on_the_hand_changes_nothing_of_it():
     """The skin is refined where it is before the contact: after a solve as without one."""
     found = []
