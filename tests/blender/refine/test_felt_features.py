@@ -119,7 +119,7 @@ def test_a_contact_elsewhere_keeps_its_force():
     assert force[~low].sum() > 0.0
 
 
-def test_a_product_that_a_force_target_has_moved_counts_where_it_stands():
+def test_a_product_that_a_force_target_has_moved_is_read_at_its_present_place():
     """A bar 3 mm off is pressed on by a force target; the skin under its place in the contact is refined."""
     hand = fine_features.ball()
     points, triangles = fine_features.points_mm(hand), fine_features.triangles_of(hand)
