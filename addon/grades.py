@@ -19,6 +19,31 @@ class Judgement:
     vertex: int = -1
 
 
+COARSE_SKIN = ("few_vertices", "product_between_vertices", "unsolved", "penetration")
+"""Kinds of reasons that finer skin may mend."""
+NO_CONTACT = "no_contact"
+"""The kind of a contact that touches nothing; finer skin mends it where the product passes between vertices."""
+CUT_MM = 0.1
+"""How deep flat triangles of the shown skin may cut into the product before finer skin is offered."""
+_FINER = ("refine the hand", "refine the skin", "subdivide the hand")
+"""What sentences ask for that finer skin mends."""
+
+
+def asks_for_finer_skin(kind: str, passes_between: bool) -> bool:
+    """Whether finer skin may mend a result whose gravest reason is of this `kind`."""
+    return kind in COARSE_SKIN or (kind == NO_CONTACT and passes_between)
+
+
+def is_cut(shown_between_mm: float) -> bool:
+    """Whether the shown skin cuts so deep into the product between its vertices that finer skin is offered."""
+    return shown_between_mm > CUT_MM
+
+
+def says_finer_skin(text: str) -> bool:
+    """Whether a refusal's sentence asks for finer skin."""
+    return any(words in text for words in _FINER)
+
+
 def title(grade: str) -> str:
     """The grade as a label."""
     return grade.capitalize()

@@ -73,6 +73,7 @@ def clear(result: PropertyGroup) -> None:
     result.input_hash = result.state_hash = result.comfort = result.comfort_source = ""
     result.grade = result.reason = result.reason_kind = ""
     result.reason_vertex = -1
+    result.passes_between = False
 
 
 def as_dict(result):
@@ -190,6 +191,7 @@ def _add_grade(result, contact):
     found = grades.judge(contact, shown_mm, vertex)
     result.grade, result.reason = found.grade, found.reason
     result.reason_kind, result.reason_vertex = found.kind, found.vertex
+    result.passes_between = False
 
 
 def _add_stages(result, job, contact):

@@ -107,6 +107,7 @@ class ThenarResult(bpy.types.PropertyGroup):
     reason: StringProperty()
     reason_kind: StringProperty()
     reason_vertex: IntProperty(default=-1)
+    passes_between: BoolProperty()
     regions: CollectionProperty(type=ThenarRegionResult)
     region_index: IntProperty()
     fingers: CollectionProperty(type=ThenarRegionResult)

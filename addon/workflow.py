@@ -10,9 +10,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from . import cache, certificate, comfort, effect_settings, effects, maps, names, native, sentences, status
+from . import cache, certificate, comfort, effect_settings, effects, grades, maps, names, native, sentences, status
 from . import result as results
-from .contact_fields import written
+from .contact_fields import between, written
 from .material_settings import ANATOMY, MATERIAL_NUMBERS
 from .scene import checks, own, owned, read, sizes, state, units, write
 from .scene import parts as parts_of
@@ -247,10 +247,17 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, report, notes)
+    if result.reason_kind == grades.NO_CONTACT:
+        result.passes_between = yield partial(between.passes, job.product, _posed(job))
     result.state_hash = state_hash(context)
     comfort.judge(context)
     status.set_stale(context.scene.name, False)
     return result
+
+
+def _posed(job: Job) -> between.Posed:
+    hand = job.reading.hand
+    return between.Posed(hand.posed_mm, hand.triangles, hand.regions >= 0, np.ones(len(hand.triangles), bool))
 
 
 def steps(context: Context) -> Steps[PropertyGroup]:

@@ -1,1 +1,1 @@
-"""What is written of a contact: arrays by vertex, and where on skin and product the contact ends."""
+"""What is written of a contact by vertex, where it ends on skin and product, and where a product is finer than skin."""

@@ -34,7 +34,7 @@ def reshape(context, hand, wanted):
     if is_mirrored:
         guards.check_side(rig)
     made = _hand(shape)
-    _clear_contact(context, hand)
+    clear_contact(context, hand)
     _make_over(context, hand, made, was)
     rest_bones.lay(context, rig, made, was)
     if is_mirrored:
@@ -80,8 +80,8 @@ def _remember(store, name, value):
         store.popitem(last=False)
 
 
-def _clear_contact(context, hand):
-    """Take a contact off the hand: it belongs to vertices that go."""
+def clear_contact(context, hand):
+    """Take a contact off the hand, its map and its result: it belongs to the vertices that the hand has now."""
     settings = context.scene.thenar
     if settings.hand == hand and workflow.has_output(context):
         display.hide(context)

@@ -34,7 +34,7 @@ def check(context, hand, made):
         )
     _check_mesh(hand, made)
     _check_bones(rig, made)
-    _check_bound(hand)
+    check_bound(hand)
     return rig
 
 
@@ -55,7 +55,8 @@ def _check_mesh(hand, made):
     if not is_whole or rest is None or len(mesh.loops) != 3 * len(mesh.polygons):
         raise Refusal(
             f"'{hand.name}' has {len(mesh.vertices):,} vertices and was made with {made.vertices:,}: its mesh was "
-            "edited, and a new size would lose that; make a new hand of the size first, then edit it"
+            "edited or refined, and a new size would lose that; make a new hand of the size first, "
+            "then edit or refine it"
         )
 
 
@@ -75,8 +76,8 @@ def _check_bones(rig, made):
             )
 
 
-def _check_bound(hand):
-    """What holds on to the vertices by number."""
+def check_bound(hand):
+    """Refuse a hand to whose vertices something is bound by number. Raises `Refusal`."""
     for modifier in hand.modifiers:
         holds = modifier.type == "MULTIRES" or (modifier.type == "HOOK" and len(modifier.vertex_indices))
         smooth = modifier.type == "CORRECTIVE_SMOOTH" and modifier.rest_source == "BIND" and modifier.is_bind

@@ -144,6 +144,8 @@ def _draw_refusal(layout, context, refusal):
     _draw_explained(box, refusal.text)
     row = box.row(align=True)
     row.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
+    if grades.says_finer_skin(refusal.text):
+        box.operator("thenar.refine_skin", icon="MOD_SUBSURF")
     if bpy.ops.thenar.fit_grasp.poll():
         row.operator("thenar.grasp_lighter", text="Lighter Grasp", icon="HAND")
 

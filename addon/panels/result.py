@@ -57,6 +57,8 @@ def _draw_grade(layout, context, result):
     text.paragraph(box, context, result.reason)
     if result.reason_vertex >= 0:
         box.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
+    if grades.asks_for_finer_skin(result.reason_kind, result.passes_between):
+        box.operator("thenar.refine_skin", icon="MOD_SUBSURF")
 
 
 def draw_maps(layout, settings):
@@ -240,6 +242,8 @@ class THENAR_PT_notes(Tab, bpy.types.Panel):
     def draw(self, context):
         for note in context.scene.thenar.result.warnings:
             text.paragraph(self.layout, context, note.name, "ERROR")
+        if grades.is_cut(context.scene.thenar.result.shown_between_mm):
+            self.layout.operator("thenar.refine_skin", icon="MOD_SUBSURF")
 
 
 class THENAR_PT_quality(OfResult, bpy.types.Panel):

@@ -28,7 +28,7 @@ class THENAR_MT_object(bpy.types.Menu):
 
 _GROUPS = (
     ("add_sample", "add_product", "make_hand", "pick_hand", "pick", "guess_bones", "assign_regions"),
-    ("fit_grasp", "settle_grasp", "solve", "certify", "clear", "apply"),
+    ("fit_grasp", "settle_grasp", "solve", "refine_skin", "certify", "clear", "apply"),
     ("bake", "export", "export_bake", "load_recording", "new_study", "compare", "diagnose"),
 )
 """Operators by what they are for."""
