@@ -9,7 +9,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "manual"
 """Where the extension holds its pages as HTML; the source tree has none."""
 
 _OPERATORS = (
-    ("add_sample add_product accept_size scale_product pick pick_hand make_hand", "guide.html#start"),
+    ("add_sample add_product accept_size scale_product pick pick_hand add_hand make_hand", "guide.html#start"),
     ("solve clear apply grasp_lighter show_place select_place", "guide.html#thenar"),
     ("fit_grasp settle_grasp use_grasp apply_pose", "guide.html#grasp"),
     ("guess_bones join_bones assign_digit pick_digits regions_from_bones show_regions", "guide.html#bones"),
