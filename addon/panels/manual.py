@@ -20,7 +20,10 @@ _OPERATORS = (
     ("effect_add effect_remove", "guide.html#effects"),
     ("picture open_picture", "guide.html#pictures"),
     ("bake export export_bake", "guide.html#bake--export"),
-    ("load_recording remove_recording compare outline_mat", "guide.html#recordings"),
+    (
+        "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
+        "guide.html#recordings",
+    ),
     ("new_study write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
     ("diagnose apply_finding show_finding", "guide.html#diagnosis"),
     ("copy_debug_info", "guide.html#menus-and-preferences"),
