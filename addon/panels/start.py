@@ -26,7 +26,8 @@ def draw_cards(layout, context):
     _draw_sample(layout.box().column(), context)
     _draw_product(layout.box().column(), context)
     _draw_hand(layout.box().column(), context)
-    draw_studies(layout.box().column())
+    if not is_loaded:
+        draw_studies(layout.box().column())
 
 
 def draw_studies(column):

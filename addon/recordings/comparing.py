@@ -48,6 +48,7 @@ def steps(context):
     else:
         comparison = yield from _still(context, item)
         filling.fill(state.comparison, comparison, (name, hand, None))
+        state.comparison.frame = item.frame if item.kind == settings.MAP else 0
     state.comparison.stamp = reports.keep(comparison)
     return comparison
 

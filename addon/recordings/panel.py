@@ -64,7 +64,7 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
             text.faint(layout, context, "Set hand and product first; then the mat is placed on the product here")
             return
         if item.kind != settings.STUDY:
-            _draw_placing(layout, item)
+            _draw_placing(layout, context, item)
         if text.progress(layout):
             return
         row = layout.row()
@@ -72,7 +72,8 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         row.operator("thenar.compare", icon="MOD_DATA_TRANSFER")
 
 
-def _draw_placing(layout, item):
+def _draw_placing(layout, context, item):
+    compared = context.scene.thenar_recordings.comparison
     layout.use_property_split = True
     layout.use_property_decorate = False
     placing, column = item.placing, layout.column(align=True)
@@ -103,6 +104,8 @@ def _draw_placing(layout, item):
     row.operator("thenar.show_recording", text="Recording", icon="IMAGE_DATA")
     row.operator("thenar.show_residual", text="Residual")
     row.operator("thenar.outline_mat", text="", icon="MOD_WIREFRAME")
+    if compared.is_valid and compared.recording == item.name and compared.frame not in (0, item.frame):
+        text.faint(layout, context, f"Compared was frame {compared.frame}; press Compare for frame {item.frame}")
 
 
 class THENAR_PT_comparison(Tab, bpy.types.Panel):

@@ -194,6 +194,7 @@ class ThenarComparison(bpy.types.PropertyGroup):
 
     is_valid: BoolProperty()
     recording: StringProperty()
+    frame: IntProperty()
     stamp: StringProperty()
     hand_name: StringProperty()
     vertices: IntProperty()
