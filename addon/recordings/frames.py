@@ -10,6 +10,9 @@ from .. import cache, native
 from ..scene.checks import Refusal
 from . import laying, settings
 
+_BY_RULE = "frame_by_rule"
+"""Entry that is added to a map's record: the frames that its rules choose."""
+
 
 def read(path):
     """The library's record of a measurement file; read once, and again when the file was changed.
@@ -44,12 +47,20 @@ def number_of(found, rule, number):
         if number > len(values):
             raise Refusal(f"there is no frame {number}; the recording has {len(values)}")
         return number - 1
-    areas = np.nan_to_num(np.asarray(found.area_mm2), nan=1.0)
+    if _BY_RULE not in found:
+        found[_BY_RULE] = _by_rule(values, np.nan_to_num(np.asarray(found.area_mm2), nan=1.0))
+    if found[_BY_RULE] is None:
+        raise Refusal("no frame of the recording reads anything; load another")
+    return found[_BY_RULE][rule]
+
+
+def _by_rule(values, areas):
+    """Rule -> frame that it chooses, from 0; None where no frame reads anything."""
     force = np.nansum(values * areas, axis=1)
     if not (force > 0.0).any():
-        raise Refusal("no frame of the recording reads anything; load another")
-    wanted = force[force > 0.0].mean() if rule == "MEAN" else force.max()
-    return int(np.abs(np.where(force > 0.0, force, np.inf) - wanted).argmin())
+        return None
+    wanted = {"MEAN": force[force > 0.0].mean(), "LARGEST": force.max()}
+    return {rule: int(np.abs(np.where(force > 0.0, force, np.inf) - each).argmin()) for rule, each in wanted.items()}
 
 
 def shown(item):

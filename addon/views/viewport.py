@@ -1,5 +1,6 @@
 """The legend in the 3D view, while a map is shown."""
 
+import itertools
 import json
 
 import blf
@@ -12,6 +13,8 @@ from mathutils import Vector
 from . import legend
 
 _STEPS = 96
+LEAST = 0.6
+"""How much smaller words of neighbors may become."""
 LABELS = "thenar_labels"
 """Property of a look's collection: JSON of places (x, y, z), texts, and whether the legend holds for them."""
 _state = {"handle": None}
@@ -44,16 +47,20 @@ def _labels(scene):
 
 
 def _draw_labels(context, labels):
-    """The words of each picture, on a plate above it."""
-    size = 13 * context.preferences.system.ui_scale
+    """The words of each picture, on a plate above it; smaller where plates would meet."""
+    places = [
+        location_3d_to_region_2d(context.region, context.region_data, Vector(place))
+        for place in labels.get("places", ())
+    ]
+    if not places or None in places:
+        return
     shader = gpu.shader.from_builtin("SMOOTH_COLOR")
-    for place, text in zip(labels.get("places", ()), labels.get("texts", ()), strict=True):
-        at = location_3d_to_region_2d(context.region, context.region_data, Vector(place))
-        if at is None:
-            continue
-        lines = text.split("\n")
-        blf.size(0, size)
-        wide = max(blf.dimensions(0, line)[0] for line in lines)
+    texts = [text.split("\n") for text in labels["texts"]]
+    size = 13 * context.preferences.system.ui_scale
+    widths = _widths(texts, size)
+    apart = [abs(b.x - a.x) / (max(widths) + 1.5 * size) for a, b in itertools.pairwise(places)]
+    size *= max(min([1.0, *apart]), LEAST)
+    for at, lines, wide in zip(places, texts, _widths(texts, size), strict=True):
         left, low = at.x - 0.5 * wide, at.y + size
         gpu.state.blend_set("ALPHA")
         plate = (left - 0.6 * size, low - 0.6 * size, wide + 1.2 * size, (1.5 * len(lines) + 0.5) * size)
@@ -63,6 +70,12 @@ def _draw_labels(context, labels):
             blf.color(0, 0.95, 0.95, 0.95, 1.0)
             blf.position(0, left, low + 1.5 * number * size, 0)
             blf.draw(0, line)
+
+
+def _widths(texts, size):
+    """Width of the longest line of each text, pixels."""
+    blf.size(0, size)
+    return [max(blf.dimensions(0, line)[0] for line in lines) for lines in texts]
 
 
 def _draw_layout(plan, look):

@@ -132,9 +132,10 @@ def drive(bpy, ui):
     yield 1.0
     mark("map")
     print(f"STOPWATCH {', '.join(marks)}; map {took:.1f} s of {LIMIT_S:g} s")
+    yield 2.0
     for name, place in (("opened", OPENED), ("apart", APART)):
         yield from press(ui, place)
-        yield 2.0
+        yield 3.0
         ui.shot(f"d9_{name}")
 
 

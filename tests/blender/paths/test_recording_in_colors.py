@@ -2,6 +2,7 @@
 
 import json
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 import numpy as np
@@ -10,6 +11,7 @@ import stage
 from mathutils import Matrix
 from test_recordings import PITCH, SIDE, read_by_hand, write_asf
 from thenar_blender import colormap, native
+from thenar_blender.recordings import loading
 
 LEFT, RIGHT = "Thenar Mat Recorded", "Thenar Mat Simulated"
 
@@ -202,3 +204,13 @@ def test_a_recording_that_is_gone_leaves_the_look_and_says_why(pressed, tmp_path
     assert LEFT in bpy.data.objects
     with pytest.raises(RuntimeError, match="mat.asf"):
         bpy.ops.thenar.show_recording()
+
+
+def test_a_file_is_read_in_any_thread_and_listed_in_blenders(tmp_path):
+    path = write_asf(tmp_path / "mat.asf", np.ones((2, 3, 4)))
+    with ThreadPoolExecutor(1) as worker:
+        found = worker.submit(loading.read, path).result()
+    assert not recordings().items
+    assert loading.add(bpy.context, found) == ["mat.asf"]
+    assert bpy.ops.thenar.read_recording(filepath=path) == {"FINISHED"}
+    assert [item.frames for item in recordings().items] == [2, 2]
