@@ -12,6 +12,8 @@ _SKINS_KEPT = 4
 _skins: OrderedDict[str, Any] = OrderedDict()
 _PRODUCTS_KEPT = 2
 _products: OrderedDict[str, Any] = OrderedDict()
+_RECORDINGS_KEPT = 2
+_recordings: OrderedDict[str, Any] = OrderedDict()
 
 
 def content_hash(*parts: object) -> str:
@@ -49,7 +51,19 @@ def product(key: str, make: Callable[[], T]) -> T:
     return kept
 
 
+def recording(key: str, make: Callable[[], T]) -> T:
+    """What the measurement file of `key` holds, read by `make()` when it is not kept; a few are kept."""
+    if key not in _recordings:
+        _recordings[key] = make()
+        while len(_recordings) > _RECORDINGS_KEPT:
+            _recordings.popitem(last=False)
+    _recordings.move_to_end(key)
+    kept: T = _recordings[key]
+    return kept
+
+
 def clear() -> None:
     """Drop everything."""
     _skins.clear()
     _products.clear()
+    _recordings.clear()

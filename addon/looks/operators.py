@@ -53,7 +53,7 @@ class THENAR_OT_look(bpy.types.Operator):
             display.show(context)
         view = running.attempt(self, putting.put, context, self.kind)
         if view is not None and not (self.kind == putting.GLASS and is_print_seen(context)):
-            _turn(context, view)
+            turn_to(context, view)
         running.redraw(context)
         return {"FINISHED"}
 
@@ -125,7 +125,7 @@ def seen_share(skin, pressure, away):
     return float(pressure[used][seen].sum() / max(pressure[used].sum(), 1e-12))
 
 
-def _turn(context, view):
+def turn_to(context, view):
     """Turn the 3D view of the button, else all, to the look, and remember how it was."""
     if bpy.app.background or context.window is None:
         return

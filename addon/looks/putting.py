@@ -16,6 +16,8 @@ from ..operators import display
 from ..picture_stage import laying, views
 from ..scene import copies, mesh, units
 
+SURFACES = laying.SURFACES
+"""Types of objects that have a surface."""
 GLASS, OPENED, PALM, PRODUCT, APART = "GLASS", "OPENED", "PALM", "PRODUCT", "APART"
 COLLECTION = "Thenar View"
 _MATERIAL = "Thenar Glass"
@@ -36,7 +38,7 @@ class View:
 
 def kind_shown(context):
     """Which look the scene has; empty if none."""
-    home = _home(context)
+    home = home_of(context)
     return "" if home is None else json.loads(home[_STATE])["kind"]
 
 
@@ -60,9 +62,35 @@ def put(context, kind):
         context.view_layer.update()
 
 
+renewed_by = {}
+"""Kind of a look that another room builds -> `renew(context)` of that room."""
+
+
+def put_own(context, kind, build):
+    """Show a look that another room builds: all is hidden, and `build(home)` adds what is seen to a collection.
+
+    Returns what `build` returns; where it raises, nothing stays.
+    """
+    take_back(context)
+    context.view_layer.update()
+    home = bpy.data.collections.new(COLLECTION)
+    context.scene.collection.children.link(home)
+    hidden = [obj for obj in context.view_layer.objects if not obj.hide_get()]
+    for obj in hidden:
+        obj.hide_set(True)
+    home[_STATE] = json.dumps({"kind": kind, "hidden": [obj.name for obj in hidden], "boxed": {}})
+    try:
+        return build(home)
+    except BaseException:
+        take_back(context)
+        raise
+    finally:
+        context.view_layer.update()
+
+
 def take_back(context):
     """Remove the stand-ins and show the real objects as they were. Returns whether there was a look."""
-    home = _home(context)
+    home = home_of(context)
     if home is None:
         return False
     state = json.loads(home[_STATE])
@@ -84,6 +112,9 @@ def renew(context):
     """Bring the look to the map that is shown now; without one, or without a map, nothing stays of it."""
     kind, hand = kind_shown(context), context.scene.thenar.hand
     if not kind:
+        return
+    if kind in renewed_by:
+        renewed_by[kind](context)
         return
     is_live = context.scene.thenar.live  # then the hand itself moves, and stand-ins would lag behind
     if hand is not None and not is_live and hand.thenar.shows_pressure and display.shown_objects(context):
@@ -133,7 +164,7 @@ def _stand_ins(context, kind, scene, home):
         return _corners(parts)
     if kind in {GLASS, PALM}:
         for part in parts:
-            stand_in = _stand_in(home, part, _still(context, part), part.matrix_world.copy())
+            stand_in = _stand_in(home, part, still(context, part), part.matrix_world.copy())
             stand_in.data.materials.clear()
             stand_in.data.materials.append(_glass())
             for name in [each.name for each in stand_in.data.color_attributes]:
@@ -141,7 +172,7 @@ def _stand_ins(context, kind, scene, home):
         return _corners([hand])
     shown = [_stand_in(home, hand, found.hand.mesh, Matrix(found.hand.matrix))]
     half_turn = _half_turn(found.posed, _corners([hand]), _corners(parts))
-    shown += [_stand_in(home, part, _still(context, part), half_turn @ part.matrix_world) for part in parts]
+    shown += [_stand_in(home, part, still(context, part), half_turn @ part.matrix_world) for part in parts]
     return _corners(shown)
 
 
@@ -175,7 +206,8 @@ def _stand_in(home, obj, still, matrix):
     return stand_in
 
 
-def _still(context, obj):
+def still(context, obj):
+    """A new mesh of the object as it is shown."""
     graph = context.evaluated_depsgraph_get()
     return bpy.data.meshes.new_from_object(obj.evaluated_get(graph), preserve_all_data_layers=True, depsgraph=graph)
 
@@ -204,7 +236,7 @@ def _parts(context):
     for part in display.workflow.product_parts(context.scene.thenar):
         copy = copies.find_copy(part.name)
         shown = copy if copy is not None and not copy.hide_viewport else part
-        if shown.type in laying.SURFACES:
+        if shown.type in SURFACES:
             found.append(shown)
     return found
 
@@ -234,7 +266,7 @@ def _glass():
     return material
 
 
-def _home(context):
+def home_of(context):
     """The collection of stand-ins that the scene shows, or None."""
     homes = context.scene.collection.children
     return next((home for home in homes if home.name.startswith(COLLECTION) and _STATE in home), None)

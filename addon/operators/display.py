@@ -67,7 +67,7 @@ def show(context, kind=maps.PRESSURE):
         index = obj.data.color_attributes.find(names.COLOR if kind == maps.PRESSURE else names.MAP_COLOR)
         if index >= 0:
             obj.data.color_attributes.active_color_index = index
-    _solid_colors(context, "VERTEX")
+    solid_colors(context, "VERTEX")
     return objects
 
 
@@ -89,7 +89,7 @@ def hide_overlays(context):
 def hide(context):
     """Show no map."""
     hide_overlays(context)
-    _solid_colors(context, "MATERIAL")
+    solid_colors(context, "MATERIAL")
     refresh(context)
 
 
@@ -104,7 +104,8 @@ def fitting_range(context):
     return next(step for step in steps if step >= peak)
 
 
-def _solid_colors(context, kind):
+def solid_colors(context, kind):
+    """Color the Solid view by `kind`; by MATERIAL only where it was by VERTEX."""
     manager = context.window_manager
     for window in manager.windows if manager is not None else ():
         for area in window.screen.areas:

@@ -176,13 +176,18 @@ def _draw_next(layout, context):
     if text.progress(layout):
         return
     settings = context.scene.thenar
-    if not settings.result.is_valid and not _is_posed(settings.hand) and bpy.ops.thenar.fit_grasp.poll():
+    waits = any([draw(layout, context) for draw in before_grasp])
+    if not (waits or settings.result.is_valid or _is_posed(settings.hand)) and bpy.ops.thenar.fit_grasp.poll():
         row = layout.row()
         row.scale_y = start.BIG
         row.operator("thenar.fit_grasp", text="Grasp the Product", icon="CON_ARMATURE").place = "LAY"
     row = layout.row()
     row.scale_y = start.BIG
     row.operator("thenar.solve", text="Solve", icon="PLAY")
+
+
+before_grasp = []
+"""Functions `(layout, context)` that draw a step which the hand needs first; each returns whether a grasp waits."""
 
 
 def _is_posed(hand):

@@ -9,7 +9,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "manual"
 """Where the extension holds its pages as HTML; the source tree has none."""
 
 _OPERATORS = (
-    ("add_sample add_product accept_size scale_product pick pick_hand make_hand", "guide.html#start"),
+    ("add_sample add_product accept_size scale_product pick pick_hand add_hand make_hand", "guide.html#start"),
     ("solve clear apply grasp_lighter show_place select_place", "guide.html#thenar"),
     ("refine_skin", "guide.html#finer-skin"),
     ("fit_grasp settle_grasp use_grasp apply_pose", "guide.html#grasp"),
@@ -21,7 +21,10 @@ _OPERATORS = (
     ("effect_add effect_remove", "guide.html#effects"),
     ("picture open_picture", "guide.html#pictures"),
     ("bake export export_bake", "guide.html#bake--export"),
-    ("load_recording remove_recording compare outline_mat", "guide.html#recordings"),
+    (
+        "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
+        "guide.html#recordings",
+    ),
     ("new_study write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
     ("diagnose apply_finding show_finding", "guide.html#diagnosis"),
     ("copy_debug_info", "guide.html#menus-and-preferences"),

@@ -26,12 +26,13 @@ def draw_cards(layout, context):
     _draw_sample(layout.box().column(), context)
     _draw_product(layout.box().column(), context)
     _draw_hand(layout.box().column(), context)
-    draw_studies(layout.box().column())
+    if not is_loaded:
+        draw_studies(layout.box().column())
 
 
 def draw_studies(column):
     """The ways to a study, which needs no hand: from recordings, from a folder, a sample."""
-    column.label(text="I have recordings: diagnose them", icon="VIEWZOOM")
+    column.label(text="I have recordings of pressure", icon="VIEWZOOM")
     column.operator("thenar.new_study", text="New Study from Files...", icon="FILE_NEW")
     column.operator("thenar.load_recording", text="Load Recording or Study...", icon="MESH_GRID")
     column.operator_menu_enum("thenar.sample_study", "kind", text="Sample Study")
@@ -104,6 +105,7 @@ def _draw_product(column, context):
 def _draw_hand(column, context):
     settings = context.scene.thenar
     column.label(text="I have a hand: pick it", icon="VIEW_PAN")
+    column.operator("thenar.add_hand", text="Add Hand from File...", icon="IMPORT")
     if bpy.ops.thenar.pick.poll():
         row = column.row()
         row.scale_y = BIG
@@ -113,5 +115,5 @@ def _draw_hand(column, context):
         row.scale_y = BIG
         row.operator("thenar.pick_hand", text=f"Use '{context.object.name[:_LONGEST]}'", icon="RESTRICT_SELECT_OFF")
     else:
-        text.faint(column, context, "Click its mesh in the 3D view, or choose it:")
+        text.faint(column, context, "GLB, FBX, USD, .blend; or click or choose a mesh of the scene:")
     column.prop(settings, "hand", text="")

@@ -38,7 +38,8 @@ class THENAR_OT_add_product(bpy.types.Operator, ImportHelper):
         added = running.attempt(self, reading.add_product, context, bpy.path.abspath(self.filepath))
         if added is None:
             return {"CANCELLED"}
-        framing.frame(context, *added.parts)
+        hand = context.scene.thenar.hand
+        framing.frame(context, *added.parts, *([] if hand is None else [hand]))
         self.report(*_told(added))
         running.redraw(context)
         return {"FINISHED"}

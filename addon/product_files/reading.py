@@ -1,6 +1,5 @@
 """Brings the surfaces of a file into the scene as the product; nothing else of the file stays."""
 
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,10 +9,7 @@ import numpy as np
 from ..scene import mesh as meshes
 from ..scene import sizes
 from ..scene.checks import PRODUCT_TYPES, Refusal
-from . import formats
-
-_OF_THE_WINDOW = {"window_managers", "workspaces", "screens"}
-_KEPT_WITH_MATERIALS = {"materials", "images", "node_groups", "textures"}
+from . import formats, importing
 
 
 @dataclass(frozen=True)
@@ -32,19 +28,19 @@ def add_product(context, path):
     """
     path = Path(path)
     found = formats.check(path)
-    scene, before = context.scene, _everything()
+    scene, before = context.scene, importing.everything()
     try:
-        with _kept(context):
-            _import(found, path)
+        with importing.kept(context):
+            importing.run(found, path)
             context.view_layer.update()
             made = _surfaces(context, path, before)
-            _remove_new(before, made)
+            importing.remove_new(before, made)
     except Exception as error:
-        _remove_new(before, [])
+        importing.remove_new(before, [])
         if isinstance(error, Refusal):
             raise
         raise Refusal(
-            f"'{path.name}' could not be read: {_reason(error)}; export it again, or as another format"
+            f"'{path.name}' could not be read: {importing.reason(error)}; export it again, or as another format"
         ) from None
     parts = [_object(*row) for row in made]
     _link(context, parts, path.stem)
@@ -53,20 +49,6 @@ def add_product(context, path):
     settings.accepted_mm = 0.0
     settings.added_mm = sizes.measure(scene, settings.hand, parts).product_mm
     return Added(parts, sizes.measure(scene, settings.hand, parts))
-
-
-def _import(found, path):
-    """Run Blender's importer of that format. Raises `Refusal` where Blender has none, RuntimeError where it fails."""
-    for area, name in found.importers:
-        if name not in dir(getattr(bpy.ops, area)):
-            continue
-        operator = getattr(getattr(bpy.ops, area), name)
-        known = operator.get_rna_type().properties
-        options = {key: value for key, value in found.options.items() if key in known}
-        if "FINISHED" not in operator(filepath=str(path), **options):
-            raise RuntimeError("Blender's importer gave up")
-        return
-    raise Refusal(f"this Blender has no importer for {found.title}; enable it in Preferences > Add-ons")
 
 
 def _surfaces(context, path, before):
@@ -115,66 +97,3 @@ def _link(context, parts, name):
     for part in parts:
         part.select_set(True)
     context.view_layer.objects.active = parts[0]
-
-
-@contextmanager
-def _kept(context):
-    """Selection, camera, world, frames and rate of the scene as before: importers set them."""
-    scene, layer = context.scene, context.view_layer
-    names = ("camera", "world", "frame_start", "frame_end")
-    values = [getattr(scene, name) for name in names]
-    rate = scene.render.fps, scene.render.fps_base
-    now, active, selected = scene.frame_current, layer.objects.active, list(context.selected_objects)
-    try:
-        yield
-    finally:
-        for name, value in zip(names, values, strict=True):
-            setattr(scene, name, value)
-        scene.render.fps, scene.render.fps_base = rate
-        if scene.frame_current != now:
-            scene.frame_set(now)
-        for obj in list(context.selected_objects):
-            obj.select_set(obj in selected)
-        for obj in selected:
-            obj.select_set(True)
-        layer.objects.active = active
-
-
-def _everything():
-    """Every data-block of the file: {name of its list: session numbers}."""
-    return {name: {block.session_uid for block in blocks} for name, blocks in _lists()}
-
-
-def _remove_new(before, made):
-    """Remove every data-block that is not in `before`, but for the meshes of `made` and what their materials need."""
-    wanted = {mesh.session_uid for _, mesh, _ in made}
-    used = {slot.session_uid for _, mesh, _ in made for slot in mesh.materials if slot is not None}
-    gone = []
-    for name, blocks in _lists():
-        for block in blocks:
-            number = block.session_uid
-            if number in before[name] or number in wanted:
-                continue
-            if used and name in _KEPT_WITH_MATERIALS and (name != "materials" or number in used):
-                continue
-            gone.append(block)
-    bpy.data.batch_remove(gone)
-
-
-def _lists():
-    for name in dir(bpy.data):
-        blocks = getattr(bpy.data, name)
-        if isinstance(blocks, bpy.types.bpy_prop_collection) and name not in {
-            "window_managers",
-            "workspaces",
-            "screens",
-        }:
-            yield name, blocks
-
-
-def _reason(error):
-    """The last line of what an importer reported, without a full stop."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    said = [line.removeprefix("Error: ") for line in lines if line.startswith("Error: ") and "Traceback" not in line]
-    text = (said or lines or [type(error).__name__])[-1 if not said else 0]
-    return text.rstrip(".;") or type(error).__name__

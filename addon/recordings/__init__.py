@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import operators, panel, settings
+from . import frames, operators, panel, settings, showing
 
 CLASSES = (*settings.CLASSES, *operators.CLASSES, *panel.CLASSES)
 
@@ -12,10 +12,14 @@ def register():
     for cls in CLASSES:
         bpy.utils.register_class(cls)
     settings.register_properties()
+    frames.register()
+    showing.register()
 
 
 def unregister():
     """Unregister them again."""
+    showing.unregister()
+    frames.unregister()
     settings.unregister_properties()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)

@@ -4,6 +4,7 @@ A study is compared with its own skin; where that is the scene's hand, its place
 """
 
 from contextlib import ExitStack
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,19 @@ from .. import names, native, reports, status, workflow
 from ..contact_fields import written
 from ..scene import attributes, matching, own, read, units
 from ..scene.checks import Refusal
-from . import filling, laying, loading, settings
+from . import filling, frames, laying, settings
+
+simulated = {}
+"""Scene name -> (`Lie`, what each cell of the mat would read of the contact, kPa, or None), of the last comparison.
+Derived: nothing of it lasts."""
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Residual and simulated reading of every cell of a mat (n,), NaN where it has no place; None where not known."""
+
+    residual: np.ndarray | None
+    simulated: np.ndarray | None
 
 
 def steps(context):
@@ -35,6 +48,7 @@ def steps(context):
     else:
         comparison = yield from _still(context, item)
         filling.fill(state.comparison, comparison, (name, hand, None))
+        state.comparison.frame = item.frame if item.kind == settings.MAP else 0
     state.comparison.stamp = reports.keep(comparison)
     return comparison
 
@@ -79,9 +93,10 @@ def _still(context, item):
         request = (seat, laying.lie_of(item), item.name, item.frame_rule, item.frame)
         contact = yield partial(workflow.compute, job)
         by_cell = _compare_print if item.kind == settings.PRINT else _compare
-        comparison, mat, residual = yield partial(by_cell, job, contact, request)
+        comparison, mat, cells = yield partial(by_cell, job, contact, request)
         yield from workflow.finish(context, job, contact)
-    _write(context, job, (comparison, mat, residual))
+    _write(context, job, (comparison, mat, cells.residual))
+    simulated[context.scene.name] = (request[1], cells.simulated)
     return comparison
 
 
@@ -98,16 +113,13 @@ def _compare(job, contact, told, cancel=None, progress=None):
     """The library's comparison, the mat, and the residual of every sensel. No Blender in it."""
     seat, lie, name, rule, number = told
     mat = laying.lay(lie, seat)
-    maps = native.module.read_recording(lie.path).maps
-    found = next((found for found in maps if found.name == lie.mat), None)
-    if found is None:
-        raise Refusal(f"'{lie.path}' holds no mat '{lie.mat}' any more; load it again")
-    frame = loading.frame_number(found, rule, number)
+    found = frames.map_of(lie.path, lie.mat)
+    frame = frames.number_of(found, rule, number)
     is_calibrated = found.pressure_kpa is not None
     limit, unit = found.threshold or (None, found.unit)
     hand = job.reading.hand
     comparison = native.module.compare_map(
-        loading.values_of(found)[frame],
+        frames.values_of(found)[frame],
         mat,
         hand.posed_mm + np.asarray(contact.displacement_mm) - written.offset_mm(contact, job),
         hand.triangles,
@@ -122,9 +134,10 @@ def _compare(job, contact, told, cancel=None, progress=None):
         unknown=list(found.unknown),
     )
     if not is_calibrated:
-        return comparison, mat, None
-    frames = comparison.recordings[0].frames
-    return comparison, mat, _by_cell(mat, frames[0].residual if frames else np.nan)
+        return comparison, mat, Cells(None, None)
+    compared = comparison.recordings[0].frames
+    read = (compared[0].residual, compared[0].simulated) if compared else (np.nan, np.nan)
+    return comparison, mat, Cells(*(_by_cell(mat, values) for values in read))
 
 
 def _compare_print(job, contact, told, cancel=None, progress=None):
@@ -145,7 +158,7 @@ def _compare_print(job, contact, told, cancel=None, progress=None):
         product=", ".join(job.part_names),
         hand=job.hand_name,
     )
-    return comparison, mat, _by_cell(mat, comparison.recordings[0].print.cell_residual)
+    return comparison, mat, Cells(_by_cell(mat, comparison.recordings[0].print.cell_residual), None)
 
 
 def _by_cell(mat, of_placed):

@@ -8,6 +8,9 @@ from .. import native
 from ..scene.checks import Refusal
 from . import settings
 
+_LONG = 1.2
+"""How much longer than wide a product is whose long axis is taken for a cylinder's."""
+
 
 @dataclass(frozen=True)
 class Seat:
@@ -85,9 +88,16 @@ def axes_of(matrix):
     return axes
 
 
+def long_axis(seat, axis):
+    """Name of the product's own axis that it is longest along, by a fifth at least; else `axis`."""
+    extent = np.ptp(seat.vertices_mm @ seat.axes, axis=0)
+    order = np.argsort(extent)
+    return f"+{'XYZ'[order[2]]}" if extent[order[2]] > _LONG * extent[order[1]] else axis
+
+
 def diameter_mm(seat, axis):
     """Mean width of the product across an axis, mm."""
-    number, _ = _axis(axis)
+    number, _ = axis_of(axis)
     extent = np.ptp(seat.vertices_mm @ seat.axes, axis=0)
     return float(np.delete(extent, number).mean())
 
@@ -98,7 +108,7 @@ def lay(lie, seat, source=None):
     `source`: what `lie.source()` gave, if it was read already.
     """
     source = lie.source() if source is None else source
-    number, sign = _axis(lie.axis)
+    number, sign = axis_of(lie.axis)
     along = sign * seat.axes[:, number]
     first = seat.axes[:, (number + 1) % 3]
     angle = np.radians(lie.turn_deg)
@@ -150,5 +160,6 @@ def _middle(points, direction):
     return 0.5 * (np.nanmin(along) + np.nanmax(along))
 
 
-def _axis(name):
+def axis_of(name):
+    """Number of an axis, and its sign, by its name."""
     return "XYZ".index(name[1]), -1.0 if name[0] == "-" else 1.0

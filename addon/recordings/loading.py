@@ -1,12 +1,10 @@
-"""Reads studies and measurement files into the scene's list of recordings, and picks the frame that is compared."""
+"""Reads studies and measurement files into the scene's list of recordings."""
 
 from pathlib import Path
 
-import numpy as np
-
 from .. import native
 from ..scene.checks import Refusal
-from . import settings
+from . import frames, settings
 
 _STUDY_FILE = "study.toml"
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -16,9 +14,14 @@ _LOOK_PX = 256.0
 
 
 def load(context, path):
-    """Add what `path` holds to the list: a study (its folder or study.toml), every mat of a file, or a handprint.
+    """Add what `path` holds to the list. Returns the names added. Raises as `read`."""
+    return add(context, read(path))
 
-    Returns the names added. Raises `Refusal` and the native module's errors.
+
+def read(path, cancel=None, progress=None):
+    """What `path` holds: a study (its folder or study.toml), every mat of a file, or a handprint. No Blender in it.
+
+    Returns the properties of each recording. Raises `Refusal` and the native module's errors.
     """
     problem = native.problem()
     if problem:
@@ -27,7 +30,11 @@ def load(context, path):
     if place.name == _STUDY_FILE:
         place = place.parent
     of_file = _print if place.suffix.lower() in IMAGES else _maps
-    found = _study(place) if place.is_dir() else of_file(place)
+    return _study(place) if place.is_dir() else of_file(place)
+
+
+def add(context, found):
+    """Add what `read` returned to the list, and choose the last. Returns the names added."""
     state, added = context.scene.thenar_recordings, []
     for values in found:
         item = state.items.add()
@@ -46,7 +53,7 @@ def _study(folder):
 
 
 def _maps(file):
-    read = native.module.read_recording(file)
+    read = frames.read(file)
     if not read.maps:
         raise Refusal(
             f"'{file.name}' holds {len(read.curves)} indentations and no pressure map; "
@@ -54,11 +61,11 @@ def _maps(file):
         )
     rows = []
     for found in read.maps:
-        frames = len(values_of(found))
-        about = f"{read.format}: {frames} frames of {len(found.row)} sensels, {found.unit}"
+        count = len(frames.values_of(found))
+        about = f"{read.format}: {count} frames of {len(found.row)} sensels, {found.unit}"
         name = f"{file.name}, {found.name}" if found.name else file.name
         rows.append(
-            {"name": name, "kind": settings.MAP, "path": str(file), "mat": found.name, "about": about, "frames": frames}
+            {"name": name, "kind": settings.MAP, "path": str(file), "mat": found.name, "about": about, "frames": count}
         )
     return rows
 
@@ -68,23 +75,3 @@ def _print(file):
     width, height = native.module.Print.read(file, mm_per_px=1.0, cell_mm=_LOOK_PX).size_px
     about = f"handprint of {width} x {height} pixels; its size goes by the dpi of its scan"
     return [{"name": file.name, "kind": settings.PRINT, "path": str(file), "about": about}]
-
-
-def values_of(found):
-    """The frames (frames, sensels) of a map: kPa, or counts."""
-    return np.asarray(found.counts if found.pressure_kpa is None else found.pressure_kpa)
-
-
-def frame_number(found, rule, number):
-    """Which frame of a map is compared. Raises `Refusal` for a number that is not there, or an empty map."""
-    values = values_of(found)
-    if rule == "NUMBER":
-        if number > len(values):
-            raise Refusal(f"there is no frame {number}; the recording has {len(values)}")
-        return number - 1
-    areas = np.nan_to_num(np.asarray(found.area_mm2), nan=1.0)
-    force = np.nansum(values * areas, axis=1)
-    if not (force > 0.0).any():
-        raise Refusal("no frame of the recording reads anything; load another")
-    wanted = force[force > 0.0].mean() if rule == "MEAN" else force.max()
-    return int(np.abs(np.where(force > 0.0, force, np.inf) - wanted).argmin())

@@ -1,12 +1,14 @@
 """Operators of recordings: load, take off, show the mat, compare, select a place."""
 
+from functools import partial
+
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from .. import names
 from ..operators import computing, display, polling, running, selecting
 from ..scene.checks import Refusal
-from . import comparing, laying, loading, outline, settings
+from . import comparing, frames, laying, loading, outline, settings, showing
 
 RESIDUAL, PRINT = "RESIDUAL", "PRINT"
 
@@ -42,22 +44,54 @@ class THENAR_OT_load_recording(bpy.types.Operator, ImportHelper):
         return polling.allows(cls, polling.no_module(), polling.busy())
 
     def execute(self, context):
-        added = running.attempt(self, loading.load, context, bpy.path.abspath(self.filepath))
-        if added is None:
-            return {"CANCELLED"}
-        item = settings.chosen(context)
-        if item.kind != settings.STUDY:
-            _guess_diameter(context, item)
-        self.report({"INFO"}, f"Loaded {', '.join(added)}")
-        return {"FINISHED"}
+        path = bpy.path.abspath(self.filepath)
+        if context.window is not None and not bpy.app.background:
+            bpy.ops.thenar.read_recording("INVOKE_DEFAULT", filepath=path)
+            return {"CANCELLED"}  # what reads leaves the undo step
+        added = running.attempt(self, loading.load, context, path)
+        return {"CANCELLED"} if added is None else _loaded(self, context, added)
 
 
-def _guess_diameter(context, item):
-    """Begin with the product's own width; where there is no product yet, the default stays."""
+class THENAR_OT_read_recording(computing.Computing, bpy.types.Operator):
+    """Read a measurement file, a study or a handprint next to the window, and add it to the list"""
+
+    bl_idname = "thenar.read_recording"
+    bl_label = "Read Recording"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+    noun = "Reading"
+
+    filepath: bpy.props.StringProperty(name="File", description="The recording's file", subtype="FILE_PATH")
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_module(), polling.busy())
+
+    def steps(self, context):
+        found = yield partial(loading.read, bpy.path.abspath(self.filepath))
+        return loading.add(context, found)
+
+    def _report(self, context, added):
+        return _loaded(self, context, added)
+
+
+def _loaded(operator, context, added):
+    """Guess where a mat lies, and report."""
+    _guess_size(context, settings.chosen(context))
+    frames.settle(context)
+    operator.report({"INFO"}, f"Loaded {', '.join(added)}")
+    return {"FINISHED"}
+
+
+def _guess_size(context, item):
+    """Begin with the product's own long axis and width, once; where there is no product yet, the defaults stay."""
+    if item.kind == settings.STUDY or item.placing.is_sized:
+        return
     try:
-        item.placing.diameter_mm = laying.diameter_mm(comparing.seat_of(context), item.placing.axis)
+        seat = comparing.seat_of(context)
     except Refusal:
         return
+    item.placing.axis = laying.long_axis(seat, item.placing.axis)
+    item.placing.diameter_mm = laying.diameter_mm(seat, item.placing.axis)
 
 
 class THENAR_OT_remove_recording(bpy.types.Operator):
@@ -95,6 +129,49 @@ class THENAR_OT_outline_mat(bpy.types.Operator):
         return {"CANCELLED"} if drawn is None else {"FINISHED"}
 
 
+class THENAR_OT_show_recording(bpy.types.Operator):
+    """Show the recording in its colors on the product, and next to it what the mat would read of the contact"""
+
+    bl_idname = "thenar.show_recording"
+    bl_label = "Show Recording"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        problems = (polling.no_module(), _no_map(context), polling.no_hand(context), polling.no_product(context))
+        return polling.allows(cls, *problems, polling.busy(), polling.live(context), polling.wrong_mode(context))
+
+    def execute(self, context):
+        _guess_size(context, settings.chosen(context))
+        shown = running.attempt(self, showing.put, context)
+        running.redraw(context)
+        return {"CANCELLED"} if shown is None else {"FINISHED"}
+
+
+class THENAR_OT_show_residual(bpy.types.Operator):
+    """Show measured minus simulated on the opened hand"""
+
+    bl_idname = "thenar.show_residual"
+    bl_label = "Residual"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, _no_comparison(context), polling.no_hand(context), polling.busy())
+
+    def execute(self, context):
+        held = context.scene.thenar.hand.data.attributes
+        kind = PRINT if names.PRINT_RESIDUAL in held else RESIDUAL
+        try:
+            bpy.ops.thenar.show_map(kind=kind)
+        except RuntimeError as error:
+            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+            return {"CANCELLED"}
+        if bpy.ops.thenar.look.poll():
+            bpy.ops.thenar.look(kind="OPENED")
+        return {"FINISHED"}
+
+
 class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
     """Compare with the simulation: a study with its own skin, a mat or a print with the contact of this scene"""
 
@@ -111,6 +188,8 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
         return polling.allows(cls, *problems, polling.busy())
 
     def steps(self, context):
+        self._was_shown = showing.is_shown(context)
+        _guess_size(context, settings.chosen(context))
         return comparing.steps(context)
 
     def _report(self, context, comparison):
@@ -125,6 +204,8 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
                 context.scene.thenar.maps.residual_kpa = fitting
         else:
             display.refresh(context)
+        if self._was_shown and bpy.ops.thenar.show_recording.poll():
+            running.attempt(self, showing.put, context)
         running.redraw(context)
         self.report({"INFO"}, comparison.sentence)
         return {"FINISHED"}
@@ -164,8 +245,11 @@ def _select(context, index):
 
 CLASSES = (
     THENAR_OT_load_recording,
+    THENAR_OT_read_recording,
     THENAR_OT_remove_recording,
     THENAR_OT_outline_mat,
+    THENAR_OT_show_recording,
+    THENAR_OT_show_residual,
     THENAR_OT_compare,
     THENAR_OT_select_place,
 )

@@ -3,9 +3,8 @@
 import bpy
 import numpy as np
 
-from .. import native
 from ..scene import attributes, units
-from . import comparing, laying, loading
+from . import comparing, frames, laying
 
 NAME = "Thenar Mat"
 
@@ -14,26 +13,21 @@ def draw(context, item):
     """Make or renew the object that shows the mat of a recording. Returns it. Raises `Refusal`, `RecordingError`."""
     seat = comparing.seat_of(context)
     mat = laying.lay(laying.lie_of(item), seat)
-    values = _reading(item)
+    values, _ = frames.shown(item)
     is_placed = np.isfinite(np.asarray(mat.area_mm2))
-    corners = _corners(mat, is_placed) / units.mm_per_unit(context.scene)
-    count = len(corners)
-    mesh = bpy.data.meshes.new(NAME)
-    mesh.from_pydata(corners.reshape(-1, 3).tolist(), [], np.arange(4 * count).reshape(-1, 4).tolist())
+    mesh = mesh_of(corners(mat, is_placed).reshape(-1, 3) / units.mm_per_unit(context.scene))
     attributes.write(mesh, "reading", "FLOAT", np.repeat(np.nan_to_num(values[is_placed]), 4))
     return _shown(context, mesh)
 
 
-def _reading(item):
-    """What every cell of a recording reads: pressure, counts, or share of ink."""
-    look = laying.look_of(item)
-    if look is not None:
-        return np.asarray(look.read(item.path).inked)
-    found = next(found for found in native.module.read_recording(item.path).maps if found.name == item.mat)
-    return loading.values_of(found)[loading.frame_number(found, item.frame_rule, item.frame)]
+def mesh_of(corners):
+    """A mesh of squares from their corners (4 n, 3), units."""
+    mesh = bpy.data.meshes.new(NAME)
+    mesh.from_pydata(corners.tolist(), [], np.arange(len(corners)).reshape(-1, 4).tolist())
+    return mesh
 
 
-def _corners(mat, is_placed):
+def corners(mat, is_placed):
     """Corners (n, 4, 3) of every sensel, mm: squares of its area across its normal, drawn a tenth smaller."""
     center, normal = np.asarray(mat.center_mm)[is_placed], np.asarray(mat.normal)[is_placed]
     half = 0.45 * np.sqrt(np.asarray(mat.area_mm2)[is_placed])[:, None]

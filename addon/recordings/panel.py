@@ -5,6 +5,7 @@ import bpy
 from .. import status
 from ..panels import start, text
 from ..panels.main import Tab, has_hand
+from ..scene.parts import product_parts
 from . import settings
 
 SHARE, PLACE_SHARE = 0.5, 0.45
@@ -21,8 +22,8 @@ class THENAR_UL_recordings(bpy.types.UIList):
         layout.label(text=item.name, icon=_ICONS.get(item.kind, "MESH_GRID"))
 
 
-class THENAR_PT_recordings(Tab, bpy.types.Panel):
-    """Recordings beside the simulation."""
+class THENAR_PT_no_recordings(Tab, bpy.types.Panel):
+    """Where recordings are loaded, closed until there is one."""
 
     bl_label = "Recordings"
     bl_parent_id = "THENAR_PT_main"
@@ -31,7 +32,23 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context) or (not status.native_problem and bool(context.scene.thenar_recordings.items))
+        return has_hand(context) and not context.scene.thenar_recordings.items
+
+    def draw(self, context):
+        if not text.progress(self.layout):
+            start.draw_studies(self.layout.column())
+
+
+class THENAR_PT_recordings(Tab, bpy.types.Panel):
+    """Recordings and the simulation, open and near the top once there is one."""
+
+    bl_label = "Recordings"
+    bl_parent_id = "THENAR_PT_main"
+    bl_order = 0
+
+    @classmethod
+    def poll(cls, context):
+        return not status.native_problem and bool(context.scene.thenar_recordings.items)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings
@@ -42,13 +59,12 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         side.operator("thenar.new_study", text="", icon="FILE_NEW")
         side.operator("thenar.remove_recording", text="", icon="REMOVE")
         item = settings.chosen(context)
-        if item is None:
-            layout.label(text="Load a study, a mat or a print", icon="INFO")
-            start.draw_studies(layout.column())
-            return
         text.faint(layout, context, item.about)
+        if item.kind != settings.STUDY and not (has_hand(context) and product_parts(context.scene.thenar)):
+            text.faint(layout, context, "Set hand and product first; then the mat is placed on the product here")
+            return
         if item.kind != settings.STUDY:
-            _draw_placing(layout, item)
+            _draw_placing(layout, context, item)
         if text.progress(layout):
             return
         row = layout.row()
@@ -56,7 +72,8 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
         row.operator("thenar.compare", icon="MOD_DATA_TRANSFER")
 
 
-def _draw_placing(layout, item):
+def _draw_placing(layout, context, item):
+    compared = context.scene.thenar_recordings.comparison
     layout.use_property_split = True
     layout.use_property_decorate = False
     placing, column = item.placing, layout.column(align=True)
@@ -76,9 +93,19 @@ def _draw_placing(layout, item):
             column.prop(item.print, name)
     else:
         column.prop(item, "frame_rule")
-        if item.frame_rule == "NUMBER":
-            column.prop(item, "frame", text=f"of {item.frames}")
-    layout.operator("thenar.outline_mat", icon="MOD_WIREFRAME")
+        if item.frames > 1:
+            row = column.row(align=True)
+            row.prop(item, "position", slider=True)
+            row.prop(item, "follows_timeline", text="", icon="TIME")
+        row = column.row()
+        row.enabled = item.frame_rule == "NUMBER"
+        row.prop(item, "frame", text=f"of {item.frames}")
+    row = layout.row(align=True)
+    row.operator("thenar.show_recording", text="Recording", icon="IMAGE_DATA")
+    row.operator("thenar.show_residual", text="Residual")
+    row.operator("thenar.outline_mat", text="", icon="MOD_WIREFRAME")
+    if compared.is_valid and compared.recording == item.name and compared.frame not in (0, item.frame):
+        text.faint(layout, context, f"Compared was frame {compared.frame}; press Compare for frame {item.frame}")
 
 
 class THENAR_PT_comparison(Tab, bpy.types.Panel):
@@ -146,4 +173,10 @@ class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):
             text.paragraph(self.layout, context, note.name, "DOT")
 
 
-CLASSES = (THENAR_UL_recordings, THENAR_PT_recordings, THENAR_PT_comparison, THENAR_PT_comparison_notes)
+CLASSES = (
+    THENAR_UL_recordings,
+    THENAR_PT_no_recordings,
+    THENAR_PT_recordings,
+    THENAR_PT_comparison,
+    THENAR_PT_comparison_notes,
+)

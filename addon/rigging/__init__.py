@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import joining, operators, overlay, region_map, regions
+from . import joining, next_step, operators, overlay, region_map, regions
 
 CLASSES = (*operators.CLASSES, *joining.CLASSES, *regions.CLASSES, *region_map.CLASSES)
 
@@ -13,10 +13,12 @@ def register():
         bpy.utils.register_class(cls)
     overlay.register()
     region_map.register()
+    next_step.register()
 
 
 def unregister():
     """Unregister them again."""
+    next_step.unregister()
     region_map.unregister()
     overlay.unregister()
     for cls in reversed(CLASSES):

@@ -42,6 +42,12 @@ def join(context, hand):
     return joined
 
 
+def loose(bones, known):
+    """Which bones (names) of the assigned digits hang on nothing of their digit's; `bones`: those of an armature."""
+    links = [(bones.get(name), bones.get(before)) for name, before in _links(known)]
+    return [bone.name for bone, before in links if bone is not None and before is not None and not _hangs(bone, before)]
+
+
 def _links(known):
     """`(bone, bone before)` names of every assigned digit; the first hangs on the wrist."""
     out = []

@@ -23,9 +23,9 @@ _state = {"handle": None}
 
 
 def shown():
-    """Digit -> world points of what is drawn now; empty if nothing is."""
+    """Digit -> world points of what is drawn now; empty if nothing is, as while a map is shown, which lines cover."""
     settings = getattr(bpy.context.scene, "thenar", None)
-    if settings is None or settings.hand is None:
+    if settings is None or settings.hand is None or settings.hand.thenar.shows_pressure:
         return {}
     try:
         armature = reading.armature_of(settings.hand)

@@ -3,9 +3,9 @@
 import bpy
 
 from ..panels import manual
-from . import debug_info, menus, picking
+from . import debug_info, hand_file, menus, picking
 
-_MODULES = (picking, debug_info, menus)
+_MODULES = (picking, hand_file, debug_info, menus)
 
 
 def register():

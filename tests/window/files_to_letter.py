@@ -13,8 +13,8 @@ import random
 import time
 
 LIMIT_S = 180.0
-NEW, FILES, ACCEPT = (1165, 536), (700, 300), (1135, 614)
-DIAMETER, WRITE, DIAGNOSE = (1205, 509), (1152, 615), (1165, 726)
+NEW, FILES, ACCEPT = (1165, 559), (700, 300), (1135, 614)
+DIAMETER, WRITE, DIAGNOSE = (1205, 509), (1152, 615), (1165, 782)
 """Where buttons and fields are in Blender 5.2's sidebar and file browser at their default sizes."""
 RADIUS_MM, SHEAR_MPA = 6.0, 0.012
 

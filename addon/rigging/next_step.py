@@ -1,0 +1,39 @@
+"""The button that a rigged hand needs before a grasp, in the main panel: find its bones, or join loose ones."""
+
+from ..hand import bonemap
+from ..hand.panel import armature_of
+from ..panels import main, start, text
+from . import joining
+
+
+def draw(layout, context):
+    """Draw the step that is missing. Returns whether a grasp has to wait for it."""
+    armature = armature_of(context)
+    if armature is None:
+        return False
+    known = bonemap.get_map(armature)
+    if not known:
+        text.faint(layout, context, "Which bone is which finger's is not known yet:")
+        _big(layout, "thenar.guess_bones", "VIEWZOOM")
+        return False
+    if not joining.loose(armature.data.bones, known):
+        return False
+    text.faint(layout, context, "The fingers' bones do not hang on each other, so that they cannot bend yet:")
+    _big(layout, "thenar.join_bones", "CONSTRAINT_BONE")
+    return True
+
+
+def _big(layout, operator, icon):
+    row = layout.row()
+    row.scale_y = start.BIG
+    row.operator(operator, icon=icon)
+
+
+def register():
+    """Draw it above the main panel's own buttons."""
+    main.before_grasp.append(draw)
+
+
+def unregister():
+    """Draw it no more."""
+    main.before_grasp.remove(draw)
