@@ -1,4 +1,4 @@
-"""Droppable derived state: prepared skins and products by content."""
+"""Droppable derived state: prepared skins and products, and maps of Subdivision levels, by content."""
 
 import hashlib
 from collections import OrderedDict
@@ -14,6 +14,8 @@ _PRODUCTS_KEPT = 2
 _products: OrderedDict[str, Any] = OrderedDict()
 _RECORDINGS_KEPT = 2
 _recordings: OrderedDict[str, Any] = OrderedDict()
+_LEVELS_KEPT = 2
+_levels: OrderedDict[str, Any] = OrderedDict()
 
 
 def content_hash(*parts: object) -> str:
@@ -31,23 +33,26 @@ def content_hash(*parts: object) -> str:
 
 def skin(key: str, make: Callable[[], T]) -> T:
     """The prepared skin of `key`, made by `make()` when it is not kept; a few are kept."""
-    if key not in _skins:
-        _skins[key] = make()
-        while len(_skins) > _SKINS_KEPT:
-            _skins.popitem(last=False)
-    _skins.move_to_end(key)
-    kept: T = _skins[key]
-    return kept
+    return _kept(_skins, _SKINS_KEPT, key, make)
 
 
 def product(key: str, make: Callable[[], T]) -> T:
     """The prepared product of `key`, made by `make()` when it is not kept; a few are kept."""
-    if key not in _products:
-        _products[key] = make()
-        while len(_products) > _PRODUCTS_KEPT:
-            _products.popitem(last=False)
-    _products.move_to_end(key)
-    kept: T = _products[key]
+    return _kept(_products, _PRODUCTS_KEPT, key, make)
+
+
+def level(key: str, make: Callable[[], T]) -> T:
+    """The map of a Subdivision level of `key`, made by `make()` when it is not kept; a few are kept."""
+    return _kept(_levels, _LEVELS_KEPT, key, make)
+
+
+def _kept(where: OrderedDict[str, Any], most: int, key: str, make: Callable[[], T]) -> T:
+    if key not in where:
+        where[key] = make()
+        while len(where) > most:
+            where.popitem(last=False)
+    where.move_to_end(key)
+    kept: T = where[key]
     return kept
 
 
@@ -67,3 +72,4 @@ def clear() -> None:
     _skins.clear()
     _products.clear()
     _recordings.clear()
+    _levels.clear()

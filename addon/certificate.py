@@ -3,7 +3,9 @@
 Of a flat sheet nothing is inside: there, skin that has the sheet close beneath it has come through.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -33,13 +35,15 @@ _ROUNDS = 12
 class Surface:
     """The shown skin: `points_mm` (m, 3) about the hand, `triangles` (t, 3), and which vertices `counts` (m,) as skin.
 
-    The first `base_count` points are the vertices of the hand's own mesh.
+    The first `base_count` points are the vertices of the hand's own mesh. `before`: what was measured of a surface with
+    most points in the same places, so that those are not asked for again.
     """
 
     points_mm: Floats
     triangles: Ints
     counts: Bools
     base_count: int
+    before: "Found | None" = None
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,17 @@ class Found:
     between_mm: float
     between_place_mm: Floats
     offsets_mm: Floats
+    asked: tuple["_Answers", ...] = field(default=(), repr=False, compare=False)
+    """What the product answered, at vertices and between them."""
+
+
+@dataclass(frozen=True)
+class _Answers:
+    """Gap (n,), mm, infinite where far, and the nearest point of the product (n, 3), for each of `points` (n, 3)."""
+
+    points: Floats
+    gap: Floats
+    closest: Floats
 
 
 def measure(
@@ -78,15 +93,17 @@ def measure(
     rows = np.flatnonzero(held & surface.counts)
     triangles = surface.triangles[surface.counts[surface.triangles].all(axis=1)]
     asked = _Asked(product, cancel, progress)
-    normals = _normals(points, surface.triangles)
-    gap, closest = asked.at(points[rows], normals[rows])
+    before = surface.before.asked if surface.before is not None else (None, None)
+    at_vertices = asked.at(points[rows], lambda: _normals(points, surface.triangles)[rows], before[0])
+    gap, closest = at_vertices.gap, at_vertices.closest
     inside = gap < 0.0
     added = inside & (rows >= surface.base_count)
     offsets[rows[added]] += closest[added] - points[rows[added]]
     near = np.full(len(points), np.inf)
     near[rows] = gap
     samples, faces = _between(points, triangles, near)
-    between, _ = asked.at(samples, _unit(_crosses(samples_of=points, triangles=faces)))
+    at_samples = asked.at(samples, partial(_face_normals, points, faces), before[1])
+    between = at_samples.gap
     worst, deepest = _deepest(gap), _deepest(between)
     here = points[rows[worst]] + offset_mm if worst >= 0 else np.zeros(3)
     there = samples[deepest] + offset_mm if deepest >= 0 else np.zeros(3)
@@ -99,6 +116,7 @@ def measure(
         between_mm=float(below),
         between_place_mm=there,
         offsets_mm=offsets,
+        asked=(at_vertices, at_samples),
     )
 
 
@@ -113,11 +131,12 @@ def spread(surface: Surface, left_mm: Floats) -> Floats:
     ends = np.concatenate([ends, ends[:, ::-1]])
     ends = ends[ends[:, 0] >= count]
     degree = np.maximum(np.bincount(ends[:, 0], minlength=total), 1)[count:]
-    for _ in range(_ROUNDS):
-        for axis in range(3):
-            sums = np.bincount(ends[:, 0], offsets[ends[:, 1], axis], minlength=total)
-            offsets[count:, axis] = sums[count:] / degree
-    return offsets
+    here, there = np.ascontiguousarray(ends.T)
+    columns = np.ascontiguousarray(offsets.T)
+    for column in columns:
+        for _ in range(_ROUNDS):
+            column[count:] = np.bincount(here, column[there], minlength=total)[count:] / degree
+    return np.ascontiguousarray(columns.T)
 
 
 class _Asked:
@@ -130,8 +149,19 @@ class _Asked:
         if progress is not None:
             progress("check", 0.0)
 
-    def at(self, points: Floats, normals: Floats) -> tuple[Floats, Floats]:
-        """Gap (n,), mm, infinite where far, and the nearest point of the product (n, 3)."""
+    def at(self, points: Floats, normals_of: Callable[[], Floats], before: _Answers | None) -> _Answers:
+        """The product's `_Answers`; `normals_of` gives the skin's normals (n, 3), `before` answers of an earlier time.
+
+        Near a sheet an answer depends on all points: there nothing is taken from before.
+        """
+        if before is None or before.points.shape != points.shape or self.is_sheet.any():
+            return _Answers(points, *self._at(points, normals_of))
+        gap, closest = before.gap.copy(), before.closest.copy()
+        moved = (points != before.points).any(axis=1)
+        gap[moved], closest[moved] = self._at(points[moved], normals_of)
+        return _Answers(points, gap, closest)
+
+    def _at(self, points: Floats, normals_of: Callable[[], Floats]) -> tuple[Floats, Floats]:
         gap, closest = np.full(len(points), np.inf), np.full((len(points), 3), np.nan)
         on_sheet = np.zeros(len(points), bool)
         for first in range(0, len(points), _CHUNK):
@@ -141,7 +171,7 @@ class _Asked:
             on_sheet[piece] = self.is_sheet[found["triangle"]] & (found["triangle"] >= 0)
         if not on_sheet.any():
             return gap, closest
-        away = points - closest
+        away, normals = points - closest, normals_of()
         beneath = np.einsum("ij,ij->i", away, normals)
         with np.errstate(invalid="ignore"):
             through = on_sheet & (gap > 0.0) & (gap < _THROUGH_MM) & (beneath > _BENEATH * gap)
@@ -158,6 +188,7 @@ class _Asked:
 
 def _between(points: Floats, triangles: Ints, gap: Floats) -> tuple[Floats, Ints]:
     """Mid points of edges and centres of the triangles near contact, and the triangle (n, 3) that each belongs to."""
+    triangles = triangles[np.isfinite(gap[triangles]).any(axis=1)]
     corners = points[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
     faces = triangles[gap[triangles].min(axis=1, initial=np.inf) < longest]
@@ -166,10 +197,15 @@ def _between(points: Floats, triangles: Ints, gap: Floats) -> tuple[Floats, Ints
     return samples, np.tile(faces, (4, 1))
 
 
-def _crosses(samples_of: Floats, triangles: Ints) -> Floats:
-    a, b, c = (samples_of[triangles[:, corner]] for corner in range(3))
+def _crosses(points: Floats, triangles: Ints) -> Floats:
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
     crosses: Floats = np.cross(b - a, c - a)
     return crosses
+
+
+def _face_normals(points: Floats, faces: Ints) -> Floats:
+    """Normals (n, 3) of triangles (n, 3)."""
+    return _unit(_crosses(points, faces))
 
 
 def _unit(vectors: Floats) -> Floats:

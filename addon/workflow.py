@@ -20,6 +20,7 @@ from .scene.units import Floats
 from .soft_grip import covering
 from .soft_grip import settings as grip_settings
 from .steps import PAUSE, Cancel, Progress, Steps, Work, at_once
+from .subdivision import last
 
 Numbers: TypeAlias = tuple[tuple[str, float], ...]
 """The library's numbers of a material by name."""
@@ -66,8 +67,7 @@ def prepare(context: Context, taken: ExitStack) -> Job:
         raise checks.Refusal(f"'{hand.name}' plays a bake; press Clear first, then solve")
     if context.scene.thenar.live:
         raise checks.Refusal(f"Live keeps the contact of '{hand.name}' up to date; switch it off first")
-    own.take_out(context, hand, parts, taken)
-    job = read_job(context, hand, parts)
+    job = read_job(context, hand, parts, last.take_out(context, hand, parts, taken))
     job.refines_product = True
     job.taken, job.state_hash = taken, state_hash(context)
     job.seconds["read"] = time.perf_counter() - started
@@ -97,14 +97,17 @@ def check_objects(context: Context) -> tuple[Object, list[Object]]:
     return hand, parts
 
 
-def read_job(context: Context, hand: Object, parts: Sequence[Object]) -> Job:
-    """The job of this hand and these parts at the current frame, read without Thenar's own output."""
+def read_job(context: Context, hand: Object, parts: Sequence[Object], subdivision: last.Last | None = None) -> Job:
+    """The job of this hand and these parts at the current frame, read without Thenar's own output.
+
+    `subdivision`: what ends the hand's stack and is computed, since it is switched off.
+    """
     settings = context.scene.thenar
     listed = tuple(hand.thenar.materials)
     group_names = tuple(material.name for material in listed)
     check_groups(hand, group_names)
     with own.without_own_output(context, hand, parts):
-        skin = read.read_hand(context, hand, group_names)
+        skin = read.read_hand(context, hand, group_names, subdivision)
         product = read.read_product(context, parts, skin.scale, skin.origin_mm)
         grip = covering.read(context, parts, product)
         used = effects.read(context, hand, group_names or (names.WHOLE_SKIN,))
@@ -262,6 +265,13 @@ def _posed(job: Job) -> between.Posed:
 
 def steps(context: Context) -> Steps[PropertyGroup]:
     """One press as the steps of a computation. Returns the scene's result."""
+    try:
+        return (yield from _once(context))
+    except last.DiffersError:  # the scene is as before
+        return (yield from _once(context))
+
+
+def _once(context: Context) -> Steps[PropertyGroup]:
     with ExitStack() as taken:
         job = prepare(context, taken)
         contact = yield partial(compute, job)

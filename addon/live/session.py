@@ -218,6 +218,7 @@ def _paint(session, obj, fields, look):
         obj.data.update()
     else:
         colors.lay_map(obj.data, settings, under)
+        obj.data.update()
 
 
 @dataclass(frozen=True)

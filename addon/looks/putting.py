@@ -23,6 +23,7 @@ COLLECTION = "Thenar View"
 _MATERIAL = "Thenar Glass"
 _STATE = "thenar_look"
 _TINT = (0.75, 0.87, 0.95, 0.16)
+_SUBDIVIDING = frozenset({"SUBSURF", "MULTIRES"})
 _STAYING = {"LIGHT", "LIGHT_PROBE", "SPEAKER"}
 _GAP = 0.12
 """Room between hand and product when they lie apart, as a share of the hand's width."""
@@ -49,7 +50,7 @@ def put(context, kind):
     """
     take_back(context)
     hand, parts = context.scene.thenar.hand, _parts(context)
-    found = _Frame.of(context, hand)
+    found = _Frame.of(context, hand, kind)
     try:
         home = bpy.data.collections.new(COLLECTION)
         context.scene.collection.children.link(home)
@@ -133,9 +134,13 @@ class _Frame:
     posed: np.ndarray
 
     @classmethod
-    def of(cls, context, hand):
-        """Of the scene's hand; its two meshes are of this object until they are used or forgotten."""
-        posed, opened = laying.still(context, hand, "hand", True), laying.opened(context, hand)
+    def of(cls, context, hand, kind):
+        """Of the scene's hand; its two meshes are of this object until they are used or forgotten.
+
+        Whole only where the look `kind` shows them: else Blender would subdivide one hand more, which takes seconds.
+        """
+        posed = laying.still(context, hand, "hand", True) if kind == APART else laying.glimpse(context, hand, "hand")
+        opened = laying.opened(context, hand, frozenset() if kind == OPENED else _SUBDIVIDING)
         scale = units.mm_per_unit(context.scene)
         subject = laying.Subject(posed, opened, [], [], scale)
         axes = views.opened_frame(context, subject)

@@ -113,14 +113,21 @@ def still(context, obj, kind, has_map):
     return Solid(made, np.array(obj.matrix_world, float), kind, has_map)
 
 
-def opened(context, hand):
-    """The hand in its rest pose, without the contact's shape."""
+def glimpse(context, obj, kind):
+    """The same for its points and fields alone: Blender then gives what it has, and evaluates nothing again."""
+    graph = context.evaluated_depsgraph_get()
+    made = bpy.data.meshes.new_from_object(obj.evaluated_get(graph), depsgraph=graph)
+    return Solid(made, np.array(obj.matrix_world, float), kind, True)
+
+
+def opened(context, hand, without=frozenset()):
+    """The hand in its rest pose, without the contact's shape and without modifiers of the types `without`."""
     copy = hand.copy()
     copy.data = hand.data.copy()
     context.scene.collection.objects.link(copy)
     try:
         for modifier in list(copy.modifiers):
-            if modifier.type == "ARMATURE" or modifier.name in _OURS:
+            if modifier.type in {"ARMATURE", *without} or modifier.name in _OURS:
                 copy.modifiers.remove(modifier)
         key = own.contact_key(copy)
         if key is not None:

@@ -27,13 +27,17 @@ def write(mesh: Mesh, name: str, kind: str, values: ArrayLike) -> None:
     attribute.data.foreach_set(_FIELD[kind], np.ascontiguousarray(values, dtype).ravel())
 
 
-def settle(mesh: Mesh, name: str, kind: str, values: ArrayLike) -> None:
-    """Write as `write` does, but only where the mesh holds something else: writing makes Blender evaluate it anew."""
+def settle(mesh: Mesh, name: str, kind: str, values: ArrayLike) -> bool:
+    """Write as `write` does, but only where the mesh holds something else: writing makes Blender evaluate it again.
+
+    Returns whether it wrote.
+    """
     attribute = mesh.attributes.get(name)
     held = read(mesh, name) if attribute is not None and attribute.data_type == kind else None
     if held is not None and np.array_equal(held, values):
-        return
+        return False
     write(mesh, name, kind, values)
+    return True
 
 
 def read(mesh: Mesh, name: str) -> NDArray[Any] | None:

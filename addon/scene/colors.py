@@ -10,7 +10,7 @@ from bpy.types import Mesh, Object, PropertyGroup
 
 from .. import colormap, maps, names
 from ..contact_fields import skin_edge
-from . import attributes, shading, units
+from . import attributes, owned, shading, units
 from . import mesh as mesh_of
 from .units import Floats, Ints
 
@@ -111,24 +111,30 @@ def mapped(values: Sequence[Floats], scale: maps.Scale, under: Ground) -> Floats
 def recolor(obj: Object, look: PropertyGroup, color: Color) -> None:
     """Color the object again from its pressure and from the map that is shown, after a range or the colours changed."""
     mesh, under = obj.data, ground(obj, color)
-    pressure = attributes.read(mesh, names.PRESSURE_KPA)
+    pressure, changed = attributes.read(mesh, names.PRESSURE_KPA), False
     if pressure is not None:
-        _require_edge(obj, pressure)
+        changed = _require_edge(obj, pressure)
         edge = attributes.read(mesh, names.EDGE_MM)
-        attributes.write(mesh, names.COLOR, "FLOAT_COLOR", linear((pressure, edge), look, under))
-    lay_map(mesh, look, under)
+        changed |= attributes.settle(mesh, names.COLOR, "FLOAT_COLOR", linear((pressure, edge), look, under))
+    changed |= lay_map(mesh, look, under)
+    if changed:
+        mesh.update()
 
 
-def lay_map(mesh: Mesh, look: PropertyGroup, under: Ground) -> None:
-    """Colour the mesh from the map that is shown, beside the colours of the pressure."""
+def lay_map(mesh: Mesh, look: PropertyGroup, under: Ground) -> bool:
+    """Color the mesh from the map that is shown, next to the colors of the pressure.
+
+    Returns whether it changed; then `mesh.update()` is due.
+    """
     view = maps.shown(look)
     read = (attributes.read(mesh, name) for name in (view.attribute, maps.covering(view)))
     values = [part for part in read if part is not None]
     if view.kind == maps.PRESSURE or len(values) < 2:
+        is_there = owned.is_own(mesh, names.MAP_COLOR)
         attributes.remove(mesh, [names.MAP_COLOR])
-    else:
-        attributes.write(mesh, names.MAP_COLOR, "FLOAT_COLOR", mapped(values, maps.scale(view, look), under))
-    mesh.update()
+        return is_there
+    laid = mapped(values, maps.scale(view, look), under)
+    return attributes.settle(mesh, names.MAP_COLOR, "FLOAT_COLOR", laid)
 
 
 def _tints(share: Floats, palette: str) -> Floats:
@@ -155,11 +161,12 @@ def _laid(tinted: Floats, cover: Floats, under: Ground) -> Floats:
     return tinted
 
 
-def _require_edge(obj: Object, pressure: Floats) -> None:
+def _require_edge(obj: Object, pressure: Floats) -> bool:
     """Give the mesh the edges that its maps end at, from its pressures alone, where it has none.
 
-    That is so in files and bakes of earlier versions, and after Live with no map shown.
+    That is so in files and bakes of earlier versions, and after Live with no map shown. Returns whether it wrote.
     """
+    wrote = False
     needed = {names.EDGE_MM: pressure, names.REFERENCE_EDGE_MM: attributes.read(obj.data, names.REFERENCE_KPA)}
     for name, values in needed.items():
         if values is not None and attributes.read(obj.data, name) is None:
@@ -167,6 +174,9 @@ def _require_edge(obj: Object, pressure: Floats) -> None:
             points = units.to_world_mm(mesh_of.positions(obj.data), units.world_from_local(obj), scale, np.zeros(3))
             edge = skin_edge.signed_distance(points, mesh_of.triangles(obj.data), values)
             attributes.write(obj.data, name, "FLOAT", edge)
+            wrote = True
     depth = attributes.read(obj.data, names.DEPTH_MM)
     if depth is not None and attributes.read(obj.data, names.OVERLAP_MM) is None:
         attributes.write(obj.data, names.OVERLAP_MM, "FLOAT", np.where(depth > 0.0, depth, -skin_edge.REACH_MM))
+        wrote = True
+    return wrote

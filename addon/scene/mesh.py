@@ -61,7 +61,7 @@ def keeps_vertices(context: Context, obj: Object) -> bool:
     if all(modifier.type in _APPENDING for modifier in obj.modifiers if modifier.show_viewport):
         return True
     with evaluated_mesh(obj, context.evaluated_depsgraph_get()) as mesh:
-        if _same_topology(base, mesh):
+        if is_same_topology(base, mesh):
             return True
         if len(mesh.vertices) < len(base.vertices):
             return False
@@ -110,7 +110,8 @@ def is_used(faces: Ints, count: int) -> Bools:
     return used
 
 
-def _same_topology(base: Mesh, mesh: Mesh) -> bool:
+def is_same_topology(base: Mesh, mesh: Mesh) -> bool:
+    """Whether two meshes have the same corners, so that their vertices are the same ones."""
     if len(base.vertices) != len(mesh.vertices) or len(base.loops) != len(mesh.loops):
         return False
     return np.array_equal(_corners(base), _corners(mesh))

@@ -8,6 +8,7 @@ import numpy as np
 from bpy.types import Context, Depsgraph, Object
 
 from .. import names
+from ..subdivision.last import Last
 from . import checks, mesh, owned, regions, units
 from .units import Floats, Ints
 
@@ -24,6 +25,8 @@ class HandReading:
     scale: float
     origin_mm: Floats
     warnings: tuple[str, ...] = ()
+    last: Last | None = None
+    """The Subdivision at the end of the stack that is switched off and computed, or None."""
 
 
 @dataclass(frozen=True)
@@ -66,8 +69,8 @@ class Reading:
     product: ProductReading
 
 
-def read_hand(context: Context, hand: Object, group_names: Sequence[str]) -> HandReading:
-    """The hand at rest and posed, about its own centre.
+def read_hand(context: Context, hand: Object, group_names: Sequence[str], last: Last | None = None) -> HandReading:
+    """The hand at rest and posed, about its own centre; `last` is its Subdivision where that is switched off.
 
     Raises `Refusal` for vertices that are not numbers, an impossible size, or modifiers that reorder vertices.
     """
@@ -78,6 +81,8 @@ def read_hand(context: Context, hand: Object, group_names: Sequence[str]) -> Han
     count = len(hand.data.vertices)
     rest = rest_positions(hand)
     posed = mesh.evaluated_positions(hand, depsgraph, count)
+    if last is not None:
+        posed = last.level.own_points(posed)
     checks.check_finite(rest, hand.name, "hand")
     checks.check_finite(posed, hand.name, "posed hand")
     matrix, scale = units.world_from_local(hand), units.mm_per_unit(context.scene)
@@ -98,6 +103,7 @@ def read_hand(context: Context, hand: Object, group_names: Sequence[str]) -> Han
         scale=scale,
         origin_mm=origin,
         warnings=_hand_warnings(hand),
+        last=last,
     )
 
 

@@ -6,7 +6,7 @@ vertices of their own, a modifier at the end of the stack adds (see `correction`
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -15,6 +15,7 @@ from bpy.types import Context, Modifier, Object
 from .. import names
 from ..certificate import BETWEEN_MM, TOLERANCE_MM, Found, Surface
 from ..steps import PAUSE, Steps, Work
+from ..subdivision.last import Last
 from . import attributes, correction, mesh, own, read, units
 from .checks import Refusal
 from .units import Floats, Ints
@@ -67,7 +68,7 @@ def certify(
     skin, (measure, undo) = reading.hand, tools
     goal = skin.posed_mm + wanted_mm
     count = len(goal)
-    surface = _read(context, hand, skin)
+    surface = _read(context, hand, skin) if skin.last is None else _computed(context, hand, skin, skin.last)
     attributes.remove(hand.data, [names.SHOWN_SKIN])
     yield PAUSE
     left = goal - surface.points_mm[:count]
@@ -78,9 +79,14 @@ def certify(
     if moved:
         offsets = units.vectors_to_local(found.offsets_mm, skin.matrix, skin.scale)
         correction.attach(hand, offsets, undo)
-        surface = _read(context, hand, skin, surface)
-        yield PAUSE
+        if skin.last is None:
+            surface = _read(context, hand, skin, surface)
+            yield PAUSE
+        else:
+            surface = replace(surface, points_mm=surface.points_mm + found.offsets_mm, before=found)
         found = yield measure(surface, None)
+    if skin.last is not None:
+        surface = _switched_on(context, hand, skin, surface)
     error = _largest(goal - surface.points_mm[:count])
     suspects = tuple(_suspects(hand))
     if error > LOST_MM:
@@ -131,6 +137,31 @@ def _read(context: Context, hand: Object, skin: read.HandReading, before: Surfac
                 triangles = triangles[:, ::-1]
     points = units.to_world_mm(local, skin.matrix, skin.scale, skin.origin_mm)
     return Surface(points, triangles, counts, len(skin.posed_mm))
+
+
+def _computed(context: Context, hand: Object, skin: read.HandReading, last: Last) -> Surface:
+    """The hand behind its Subdivision, which is switched off, as a `Surface`."""
+    context.view_layer.update()
+    with mesh.evaluated_mesh(hand, context.evaluated_depsgraph_get()) as cage:
+        local = mesh.positions(cage).astype(np.float64)
+        weights = attributes.read(cage, names.SHOWN_SKIN)
+    is_skin = np.ones(len(local), bool) if weights is None else weights > 0.999
+    points = last.level.points(local)
+    triangles = last.level.triangles(points)
+    if units.is_mirrored(skin.matrix):
+        triangles = triangles[:, ::-1]
+    points_mm = units.to_world_mm(points, skin.matrix, skin.scale, skin.origin_mm)
+    return Surface(points_mm, triangles, last.level.only(is_skin), len(local))
+
+
+def _switched_on(context: Context, hand: Object, skin: read.HandReading, computed: Surface) -> Surface:
+    """The hand as Blender shows it with its Subdivision on. Raises `DiffersError` where that is not as computed."""
+    assert skin.last is not None
+    skin.last.put_back(hand)
+    found = _read(context, hand, skin, computed)
+    home = skin.matrix[:3, 3] * skin.scale - skin.origin_mm
+    skin.last.check(hand, found.points_mm - home, computed.points_mm - home)
+    return found
 
 
 def _largest(vectors: Floats) -> float:

@@ -120,7 +120,9 @@ def write_hand(hand: Object, fields: Fields, look: PropertyGroup) -> None:
     if fields.thickness_mm is not None:
         write_thickness(mesh, fields.thickness_mm)
     under = colors.ground(hand, colors.SKIN)
-    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear((pressure, fields.edge_mm), look, under))
+    # Of what the mesh holds, in single precision: colors that are laid again from it are then the same ones.
+    held = pressure.astype(np.float32), None if fields.edge_mm is None else fields.edge_mm.astype(np.float32)
+    attributes.write(mesh, names.COLOR, "FLOAT_COLOR", colors.linear(held, look, under))
     mesh.update()
 
 
