@@ -85,11 +85,17 @@ def _join(one, other):
     """Cut the face that has both vertices and no edge between them yet."""
     for face in one.link_faces:
         if other in face.verts:
-            loop = next(loop for loop in face.loops if loop.vert == one)
+            loop = _corner(face, one)
             if other not in (loop.link_loop_next.vert, loop.link_loop_prev.vert):
                 bmesh.utils.face_split(face, one, other)
                 return
     raise AssertionError(f"no face joins vertices {one.index} and {other.index}")
+
+
+def _corner(face, vertex):
+    """The loop of a face, a triangle or little more, at one of its vertices."""
+    corners = tuple(face.loops)
+    return corners[[corner.vert for corner in corners].index(vertex)]
 
 
 def _sort_into_regions(work, level, deform, groups):

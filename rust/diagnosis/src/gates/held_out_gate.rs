@@ -7,7 +7,7 @@ use crate::wording::effect_in_words;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::observe::measured::Measured;
-use thenar_inference::selection::cross_validation::{Gain, gain, gain_of_repeats};
+use thenar_inference::selection::cross_validation::{Gain, Judged};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Share of the evidence (nats) for an effect, and for each of two given the other, that held-out recordings must confirm. Right names of
@@ -40,7 +40,14 @@ pub fn decide<'a>(
     let Some(named) = decision.named else {
         return (decision, None);
     };
-    let of = |scored: &Scored| gain(ready, measured, (scored, rungs.overdispersion), seed);
+    let judged = |found: &'a Scored| Judged {
+        ready,
+        measured,
+        found,
+        overdispersion: rungs.overdispersion,
+        seed,
+    };
+    let of = |scored: &'a Scored| judged(scored).by_protocol();
     let Some(mut all) = of(named) else {
         return (decision, None);
     };
@@ -76,8 +83,7 @@ pub fn decide<'a>(
         };
     }
     if is_refuted(named, &all) {
-        let again = may_be_shown_by_repeats(named)
-            .then(|| gain_of_repeats(ready, measured, (named, rungs.overdispersion), seed));
+        let again = may_be_shown_by_repeats(named).then(|| judged(named).by_repeat());
         return match again.flatten().filter(|again| !is_refuted(named, again)) {
             Some(again) => (decision, Some(again)),
             None => (unnamed(ready, rungs, (named, &all)), None),

@@ -29,108 +29,104 @@ struct Errors {
     count: f64,
 }
 
-/// Holds every protocol out in turn, or where there is but one every recording; None where there is but one recording.
-///
-/// What belongs to a held-out recording alone (its gain and first touch, within what repeats differ by; the model's form where its
-/// tool was not seen) is told from it, with and without the finding alike; nothing else is.
-pub fn gain(
-    ready: &PreparedStudy,
-    measured: &[Measured],
-    (found, overdispersion): (&Scored, f64),
-    seed: u64,
-) -> Option<Gain> {
-    let folds = folds(&ready.courses)?;
-    gain_over(
-        (&folds, HeldOutBy::Protocol),
-        ready,
-        measured,
-        (found, overdispersion),
-        seed,
-    )
+/// A finding to be judged by recordings that it was not fitted to.
+pub struct Judged<'a> {
+    /// The study.
+    pub ready: &'a PreparedStudy,
+    /// Its recordings.
+    pub measured: &'a [Measured],
+    /// The finding.
+    pub found: &'a Scored,
+    /// Variance of the residuals over the noise's.
+    pub overdispersion: f64,
+    /// Of what is drawn for intervals and for the negative control.
+    pub seed: u64,
 }
 
-/// The same with the first repeats of all protocols held out together, then the second ones, and so on: what one protocol alone can
-/// show, as a ceiling that no other reaches, only its own repeats can confirm. None where no protocol was repeated.
-pub fn gain_of_repeats(
-    ready: &PreparedStudy,
-    measured: &[Measured],
-    (found, overdispersion): (&Scored, f64),
-    seed: u64,
-) -> Option<Gain> {
-    let folds = repeats(&ready.courses);
-    let is_repeated = folds.iter().any(|number| *number > 0);
-    is_repeated.then(|| {
-        gain_over(
-            (&folds, HeldOutBy::Repeat),
-            ready,
-            measured,
-            (found, overdispersion),
-            seed,
-        )
-    })?
-}
-
-fn gain_over(
-    (folds, held_out_by): (&[usize], HeldOutBy),
-    ready: &PreparedStudy,
-    measured: &[Measured],
-    (found, overdispersion): (&Scored, f64),
-    seed: u64,
-) -> Option<Gain> {
-    let (mut all, mut held) = (Vec::new(), Vec::new());
-    let mut deviance = 0.0;
-    for number in 0..=folds.iter().copied().max()? {
-        let is_out = |c: usize| folds[c] == number;
-        let before = predicted(ready, measured, (&[], &found.refit.at), &is_out);
-        let after = predicted(
-            ready,
-            measured,
-            (&found.mechanisms, &found.refit.at),
-            &is_out,
-        );
-        deviance += before.deviance - after.deviance;
-        for (c, course) in ready.courses.iter().enumerate().filter(|(c, _)| is_out(*c)) {
-            let mut sum = Errors {
-                before: 0.0,
-                after: 0.0,
-                floor: 0.0,
-                count: 0.0,
-            };
-            let mut own = HeldOut {
-                protocol: number,
-                error: Vec::new(),
-                patch: Vec::new(),
-            };
-            for row in &course.rows {
-                let Some(sample) = row.sample else {
-                    continue;
-                };
-                let sigma = ready.sigma[sample];
-                own.error.push(before.residual[sample]);
-                own.patch
-                    .push(before.residual[sample] - after.residual[sample]);
-                let square = |simulated: &[f64]| {
-                    ((row.force_n - simulated[sample]) / sigma)
-                        .clamp(-MOST, MOST)
-                        .powi(2)
-                };
-                sum.before += square(&before.simulated);
-                sum.after += square(&after.simulated);
-                sum.count += 1.0;
-            }
-            sum.floor = sum.count * floor(ready, c);
-            all.push(sum);
-            held.push(own);
-        }
+impl Judged<'_> {
+    /// Holds every protocol out in turn, or where there is but one every recording; None where there is but one recording.
+    ///
+    /// What belongs to a held-out recording alone (its gain and first touch, within what repeats differ by; the model's form where its
+    /// tool was not seen) is fitted to it, with and without the finding alike; nothing else is.
+    pub fn by_protocol(&self) -> Option<Gain> {
+        self.over(&folds(&self.ready.courses)?, HeldOutBy::Protocol)
     }
-    let nats = |squares: f64| 0.5 * squares / overdispersion;
-    Some(Gain {
-        log_score: nats(deviance),
-        confirmed: nats(deviance) / found.qaic_gain.max(1e-3),
-        placebo: nats(negative_control(&held, MOST, seed)),
-        held_out_by,
-        ..told(ready, &all, seed)
-    })
+
+    /// The same with the first repeats of all protocols held out together, then the second ones, and so on: what one protocol alone can
+    /// show, as a ceiling that no other reaches, only its own repeats can confirm. None where no protocol was repeated.
+    pub fn by_repeat(&self) -> Option<Gain> {
+        let folds = repeats(&self.ready.courses);
+        let is_repeated = folds.iter().any(|number| *number > 0);
+        is_repeated.then(|| self.over(&folds, HeldOutBy::Repeat))?
+    }
+
+    fn over(&self, folds: &[usize], held_out_by: HeldOutBy) -> Option<Gain> {
+        let (mut all, mut held) = (Vec::new(), Vec::new());
+        let mut deviance = 0.0;
+        for number in 0..=folds.iter().copied().max()? {
+            let is_out = |c: usize| folds[c] == number;
+            let before = predicted(
+                self.ready,
+                self.measured,
+                (&[], &self.found.refit.at),
+                &is_out,
+            );
+            let after = predicted(
+                self.ready,
+                self.measured,
+                (&self.found.mechanisms, &self.found.refit.at),
+                &is_out,
+            );
+            deviance += before.deviance - after.deviance;
+            for (c, course) in self
+                .ready
+                .courses
+                .iter()
+                .enumerate()
+                .filter(|(c, _)| is_out(*c))
+            {
+                let mut sum = Errors {
+                    before: 0.0,
+                    after: 0.0,
+                    floor: 0.0,
+                    count: 0.0,
+                };
+                let mut own = HeldOut {
+                    protocol: number,
+                    error: Vec::new(),
+                    patch: Vec::new(),
+                };
+                for row in &course.rows {
+                    let Some(sample) = row.sample else {
+                        continue;
+                    };
+                    let sigma = self.ready.sigma[sample];
+                    own.error.push(before.residual[sample]);
+                    own.patch
+                        .push(before.residual[sample] - after.residual[sample]);
+                    let square = |simulated: &[f64]| {
+                        ((row.force_n - simulated[sample]) / sigma)
+                            .clamp(-MOST, MOST)
+                            .powi(2)
+                    };
+                    sum.before += square(&before.simulated);
+                    sum.after += square(&after.simulated);
+                    sum.count += 1.0;
+                }
+                sum.floor = sum.count * floor(self.ready, c);
+                all.push(sum);
+                held.push(own);
+            }
+        }
+        let nats = |squares: f64| 0.5 * squares / self.overdispersion;
+        Some(Gain {
+            log_score: nats(deviance),
+            confirmed: nats(deviance) / self.found.qaic_gain.max(1e-3),
+            placebo: nats(negative_control(&held, MOST, self.seed)),
+            held_out_by,
+            ..told(self.ready, &all, self.seed)
+        })
+    }
 }
 
 /// By recording, the number of the fold with which it is held out: its protocol's, or where there is but one its own.

@@ -1,6 +1,6 @@
 """How far Thenar's layer is from finite elements of round fingertips over bone, by the ways in which a form may be off.
 
-    python -m trial.against_pads        (in `tests`)
+    PYTHONPATH=tests target/venv/bin/python tests/trial/worlds/against_pads.py
 
 Pads of `tests/proof/by_finite_elements/fingertip.json` under plate and rod, as a study states them: the thickness, and
 no width of the bone. Of the finite elements' force over the layer's, as a logarithm over depth, prints the ways of
@@ -17,7 +17,7 @@ from numpy.polynomial import legendre
 from proof import pressing
 from proof.deep_pads import bone_pads
 
-TABLE = json.loads((Path(__file__).parents[1] / "proof/by_finite_elements/fingertip.json").read_text())
+TABLE = json.loads((Path(__file__).parents[2] / "proof/by_finite_elements/fingertip.json").read_text())
 FIRST = 0.05  # part of the depth over which an error at first touch dies away, as `stiffness_factor` has it
 ORDERS = 6
 SPACING_MM = 1.0
