@@ -13,6 +13,10 @@ use crate::skin::prepare::Skin;
 
 /// How near the product is to a vertex that may have missed it, in spacings of the skin.
 const NEAR_SPACINGS: f64 = 1.5;
+/// The same beyond the deepest skin, mm: beside a wire that some vertices have met, others have it as far behind them.
+const BEYOND_DEPTH: f64 = 0.5;
+/// How many vertices that have the product behind them are asked whether it lies under skin.
+const MOST_ASKED: usize = 24;
 /// Cosine between the ways to the product below which two neighbors see it from opposite sides.
 const OPPOSITE: f64 = -0.1;
 /// Cosine of the angle between a vertex's normal and its way back from the product above which it has the product behind it.
@@ -47,7 +51,7 @@ pub(super) fn product_between(
     displacement: &[Vec3],
 ) -> Option<Warning> {
     let detection = &pressed.detection;
-    let within = NEAR_SPACINGS * skin.spacing;
+    let within = (NEAR_SPACINGS * skin.spacing).max(detection.deepest() + BEYOND_DEPTH);
     let is_near = |v: &u32| detection.distances[*v as usize] < within && is_skin(skin, *v);
     let near: Vec<u32> = (0..detection.positions.len() as u32)
         .filter(is_near)
@@ -101,19 +105,27 @@ impl Place<'_> {
             let gap = gaps[v as usize].as_ref();
             gap.filter(|gap| gap.distance < within && is_skin(skin, v))
         };
-        let is_behind = |v: u32, gap: &Gap| {
-            let turned = gap.normal.dot(&self.normals[v as usize]);
-            let is_away = gap.distance > LEAST_DISTANCE && turned > BEHIND;
-            is_away && self.roughly(near, gap.closest) > ROUGH_SHARE * self.most
-        };
-        let is_opposite = |v: u32, gap: &Gap| {
+        let is_opposite = |&v: &u32| {
+            let Some(gap) = seen(v) else { return false };
             let around = skin.adjacency.neighbors(v as usize).iter();
             let mut others = around.filter_map(|&w| seen(w));
             others.any(|other| gap.normal.dot(&other.normal) < OPPOSITE)
         };
-        let is_suspect =
-            |&v: &u32| seen(v).is_some_and(|gap| is_opposite(v, gap) || is_behind(v, gap));
-        near.iter().copied().filter(is_suspect).collect()
+        let mut found: Vec<u32> = near.iter().copied().filter(is_opposite).collect();
+        let behind = |&v: &u32| {
+            let gap = seen(v)?;
+            let turned = gap.normal.dot(&self.normals[v as usize]);
+            (gap.distance > LEAST_DISTANCE && turned > BEHIND).then_some((v, gap.closest))
+        };
+        let behind: Vec<(u32, Vec3)> = near.iter().filter_map(behind).collect();
+        // Skin in creases and on the back of a finger has the product behind it as well, beyond other skin.
+        let mut some = behind.iter().step_by(behind.len() / MOST_ASKED + 1);
+        let is_under =
+            |(_, place): &(u32, Vec3)| self.roughly(near, *place) > ROUGH_SHARE * self.most;
+        if some.any(is_under) {
+            found.extend(behind.iter().map(|(v, _)| *v));
+        }
+        found
     }
 
     /// Least depth of a point below the tangent planes of the nearest three of some vertices, mm.
