@@ -10,6 +10,7 @@ use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
 use super::warnings::Warning;
 use crate::press::pressed::Pressed;
 use crate::skin::prepare::Skin;
+use crate::solve::Accuracy;
 
 /// How near the product is to a vertex that may have missed it, in spacings of the skin.
 const NEAR_SPACINGS: f64 = 1.5;
@@ -43,13 +44,16 @@ const MOST_MISSED: f64 = 0.1;
 
 /// The warning that the product lies under the skin between its vertices, and at which of them.
 ///
-/// `displacement` by welded vertex, mm.
+/// `displacement` by welded vertex, mm. Frames of Live are not searched: they show no grade, and `Solve` follows.
 pub(super) fn product_between(
     skin: &Skin,
     product: &Product,
     pressed: &Pressed,
     displacement: &[Vec3],
 ) -> Option<Warning> {
+    if pressed.accuracy == Accuracy::Rough {
+        return None;
+    }
     let detection = &pressed.detection;
     let within = (NEAR_SPACINGS * skin.spacing).max(detection.deepest() + BEYOND_DEPTH);
     let is_near = |v: &u32| detection.distances[*v as usize] < within && is_skin(skin, *v);

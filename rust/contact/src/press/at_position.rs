@@ -99,6 +99,7 @@ pub(crate) fn press_at(
         recalled,
         adhesion,
         shear: None,
+        accuracy: pressing.workspace.warm_start.accuracy,
     })
 }
 

@@ -9,6 +9,7 @@ use crate::detection::gaps::Detection;
 use crate::history::tissue_memory::MemoryStep;
 use crate::interface::friction_state::ShearState;
 use crate::interface::pulls::Adhesion;
+use crate::solve::Accuracy;
 use crate::workspace::Pressing;
 
 /// Travel of the product.
@@ -42,6 +43,8 @@ pub(crate) struct Pressed {
     pub adhesion: Adhesion,
     /// Shear of a drag with friction.
     pub shear: Option<ShearState>,
+    /// How far it was solved: a frame of Live roughly.
+    pub accuracy: Accuracy,
 }
 
 impl Pressed {
