@@ -27,7 +27,7 @@ class Faces:
 
 @dataclass(frozen=True)
 class Rules:
-    """How Blender is told to subdivide.
+    """How Blender subdivides.
 
     `is_limit`: vertices go on to where infinitely many levels bring them; `keeps_corners`: those with one face stay.
     """

@@ -102,7 +102,7 @@ def drive(bpy, ui):
     yield from press(ui, COMPARE)
     yield from until(lambda: kept.comparison.is_valid)
     yield from until(lambda: bpy.data.objects.get("Thenar Mat Simulated") is not None)
-    beside = time.monotonic() - began
+    compared = time.monotonic() - began
     yield 1.0
     mark("compared")
     yield from press(ui, FOLLOW)
@@ -116,7 +116,7 @@ def drive(bpy, ui):
     took = time.monotonic() - began
     yield 1.5
     mark("residual")
-    print(f"STOPWATCH {', '.join(marks)}; compared {beside:.1f} s, residual {took:.1f} s of {LIMIT_S:g} s")
+    print(f"STOPWATCH {', '.join(marks)}; compared {compared:.1f} s, residual {took:.1f} s of {LIMIT_S:g} s")
     force, peak = min(known, key=lambda each: abs(each[0] - sum(row[0] for row in known) / FRAMES))
     measured = {row.name: float(row.measured) for row in kept.comparison.measures if row.name in ("Force", "Peak")}
     assert abs(measured["Force"] / force - 1.0) < 2e-3 and abs(measured["Peak"] / peak - 1.0) < 2e-3, (force, peak)

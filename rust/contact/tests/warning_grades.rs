@@ -141,7 +141,7 @@ fn a_pin_above_the_skin_touches_nothing_and_is_not_under_it() {
     assert_eq!(contact.reason(), Some(&Warning::NoContact));
 }
 
-/// It meets one vertex and reaches far past it, beside it.
+/// It meets one vertex, and reaches far deeper next to it.
 #[test]
 fn a_wall_that_few_vertices_meet_is_to_be_read_about() {
     let mesh = lattice(14.0, 1.4, 0.3);

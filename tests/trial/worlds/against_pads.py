@@ -45,7 +45,7 @@ def departure(depths, theirs, ours):
     ways = np.column_stack([legendre.legvander(2.0 * u - 1.0, ORDERS - 1), np.exp(-u / FIRST)])
     weight = u**1.5  # as readings of even noise weigh the logarithm of such a force
     log = np.log(theirs / ours)
-    # First touch is hardly told from the others at these depths: ridges of a percent of each keep the sizes small.
+    # First touch is hardly separable from the others at these depths: ridges of a percent of each keep the sizes small.
     ridge = 0.01 * np.eye(ways.shape[1])
     found = np.linalg.lstsq(
         np.vstack([weight[:, None] * ways, ridge]), np.append(weight * log, np.zeros(len(ridge))), rcond=None

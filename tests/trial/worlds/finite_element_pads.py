@@ -143,7 +143,7 @@ class Case:
 
 
 def judged(truth, stiffening, verdict, names):
-    """`right`, `missed` or `wrong`, as the table above has it; `names` of the findings, or of what cannot be told."""
+    """`right`, `missed` or `wrong`, as the table above has it; `names` of the findings, or of what is not separable."""
     allowed = {STIFFENING} if stiffening else set()
     planted = truth not in ("nothing", "exponential")
     if verdict == "fault":

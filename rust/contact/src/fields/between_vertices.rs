@@ -5,6 +5,8 @@
 //! vertices that have it behind them. Ordinary contacts have none. Only there is the product sampled, and its depth under the written
 //! skin measured.
 
+use std::collections::HashSet;
+
 use thenar_surface::{Gap, GapLimits, Mesh, Product, Vec3, vertex_normals};
 
 use super::warnings::Warning;
@@ -14,7 +16,7 @@ use crate::solve::Accuracy;
 
 /// How near the product is to a vertex that may have missed it, in spacings of the skin.
 const NEAR_SPACINGS: f64 = 1.5;
-/// The same beyond the deepest skin, mm: beside a wire that some vertices have met, others have it as far behind them.
+/// The same beyond the deepest skin, mm: next to a wire that some vertices have met, others have it as far behind them.
 const BEYOND_DEPTH: f64 = 0.5;
 /// How many vertices that have the product behind them are asked whether it lies under skin.
 const MOST_ASKED: usize = 24;
@@ -28,10 +30,10 @@ const LEAST_DISTANCE: f64 = 0.05;
 const REACH: f64 = 6.0;
 /// Skin beyond this from the samples is not looked at, mm: the far side of a finger.
 const MARGIN: f64 = 10.0;
-/// Distance between samples of the product, mm, and the most intervals along one side of a triangle.
+/// Distance between samples of the product, mm, and the most intervals along a side or across a triangle.
 const SAMPLE_STEP: f64 = 0.7;
 const MOST_STEPS: usize = 300;
-/// Least cosine between the skin's normal and the way from a sample to it: beside a rim of the skin nothing is beneath.
+/// Least cosine between the skin's normal and the way from a sample to it: past a rim of the skin nothing is beneath.
 const BENEATH: f64 = 0.5;
 /// Depth below the nearest vertices' tangent planes from which a sample is measured, as a share of what is worth a word; and for how many
 /// pairs of samples and vertices that is faster.
@@ -168,6 +170,7 @@ impl Place<'_> {
         if samples.is_empty() {
             return None;
         }
+        let here = within(bounds(samples.iter().copied()), MARGIN);
         let (surface, normals) = self.surface(here)?;
         let limits = GapLimits {
             cut_off_mm: MARGIN,
@@ -204,28 +207,43 @@ impl Place<'_> {
     }
 }
 
-/// Points of the mesh within a box, `SAMPLE_STEP` apart.
+/// Points of the mesh within a box, about `SAMPLE_STEP` apart: rows along the longest side of each triangle, one point a cell.
 fn samples(mesh: &Mesh, here: (Vec3, Vec3)) -> Vec<Vec3> {
-    let mut found = Vec::new();
+    let (mut found, mut taken) = (Vec::new(), HashSet::new());
+    let mut take = |point: Vec3| {
+        let cell = (point / SAMPLE_STEP).map(|x| x.floor() as i64);
+        if contains(here, point) && taken.insert([cell.x, cell.y, cell.z]) {
+            found.push(point);
+        }
+    };
     for triangle in 0..mesh.triangles().len() {
-        let [a, b, c] = mesh.corners(triangle);
-        let (least, most) = bounds([a, b, c].into_iter());
+        let corners = mesh.corners(triangle);
+        let (least, most) = bounds(corners.into_iter());
         if (0..3).any(|k| least[k] > here.1[k] || most[k] < here.0[k]) {
             continue;
         }
-        let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
-        let steps = ((longest / SAMPLE_STEP).ceil() as usize).clamp(1, MOST_STEPS);
-        for i in 0..=steps {
-            for j in 0..=steps - i {
-                let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
-                let point = a + (b - a) * u + (c - a) * v;
-                if contains(here, point) {
-                    found.push(point);
-                }
+        let length = |k: &usize| (corners[(k + 1) % 3] - corners[*k]).norm();
+        let longest = (0..3).max_by(|i, j| length(i).total_cmp(&length(j)));
+        let first = longest.unwrap_or(0);
+        let [a, b, c] = [0, 1, 2].map(|k| corners[(first + k) % 3]);
+        let side = (b - a).norm();
+        let height = (b - a).cross(&(c - a)).norm() / side.max(f64::MIN_POSITIVE);
+        let rows = steps(height);
+        for row in 0..=rows {
+            let up = row as f64 / rows as f64;
+            let (from, to) = (a + (c - a) * up, b + (c - b) * up);
+            let along = steps((to - from).norm());
+            for step in 0..=along {
+                take(from + (to - from) * (step as f64 / along as f64));
             }
         }
     }
     found
+}
+
+/// Intervals of at most `SAMPLE_STEP` along a length, mm.
+fn steps(length: f64) -> usize {
+    ((length / SAMPLE_STEP).ceil() as usize).clamp(1, MOST_STEPS)
 }
 
 fn contains((low, high): (Vec3, Vec3), point: Vec3) -> bool {
@@ -235,4 +253,39 @@ fn contains((low, high): (Vec3, Vec3), point: Vec3) -> bool {
 fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     let none = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     points.fold(none, |(low, high), p| (low.inf(&p), high.sup(&p)))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    /// The cap of a rod, a fan of long thin triangles, and the same disc in even triangles: its area decides, not how it is cut.
+    #[test]
+    fn samples_are_as_many_as_the_area_has_room_for_and_leave_no_hole() {
+        let (radius, sectors) = (30.0, 720u32);
+        let rim = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sectors);
+            Vec3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
+        };
+        let mut positions = vec![Vec3::zeros()];
+        positions.extend((0..sectors).map(rim));
+        let slice = |k: u32| [0, 1 + k, 1 + (k + 1) % sectors];
+        let fan = Mesh::new(positions, (0..sectors).map(slice).collect()).unwrap();
+        let everywhere = (Vec3::repeat(-100.0), Vec3::repeat(100.0));
+        let found = samples(&fan, everywhere);
+        let cells = std::f64::consts::PI * radius * radius / (SAMPLE_STEP * SAMPLE_STEP);
+        assert!(
+            (found.len() as f64) < 1.2 * cells,
+            "{} for {cells}",
+            found.len()
+        );
+        for k in 0..400 {
+            let (away, turn) = (radius * f64::from(k) / 400.0, f64::from(k) * 2.4);
+            let place = Vec3::new(away * turn.cos(), away * turn.sin(), 0.0);
+            let nearest = found.iter().map(|p| (p - place).norm());
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 1.5 * SAMPLE_STEP);
+        }
+    }
 }

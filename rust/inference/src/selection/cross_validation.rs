@@ -124,7 +124,7 @@ impl Judged<'_> {
             confirmed: nats(deviance) / self.found.qaic_gain.max(1e-3),
             placebo: nats(negative_control(&held, MOST, self.seed)),
             held_out_by,
-            ..told(self.ready, &all, self.seed)
+            ..summary(self.ready, &all, self.seed)
         })
     }
 }
@@ -240,7 +240,7 @@ fn predicted(
     within(&shown_by, Some(&fitted.at))
 }
 
-fn told(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
+fn summary(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
     let rms = |of: &[&Errors], which: &dyn Fn(&Errors) -> f64| {
         let (sum, n) = of
             .iter()
