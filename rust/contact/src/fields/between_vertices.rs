@@ -111,13 +111,19 @@ impl Place<'_> {
             let gap = gaps[v as usize].as_ref();
             gap.filter(|gap| gap.distance < within && is_skin(skin, v))
         };
-        let is_opposite = |&v: &u32| {
-            let Some(gap) = seen(v) else { return false };
-            let around = skin.adjacency.neighbors(v as usize).iter();
-            let mut others = around.filter_map(|&w| seen(w));
-            others.any(|other| gap.normal.dot(&other.normal) < OPPOSITE)
-        };
-        let mut found: Vec<u32> = near.iter().copied().filter(is_opposite).collect();
+        let mut found = Vec::new();
+        for &v in near {
+            let Some(gap) = seen(v) else { continue };
+            // A pair is looked at once.
+            let later = skin.adjacency.neighbors(v as usize).iter();
+            for &w in later.filter(|w| **w > v) {
+                if seen(w).is_some_and(|other| gap.normal.dot(&other.normal) < OPPOSITE) {
+                    found.extend([v, w]);
+                }
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
         let behind = |&v: &u32| {
             let gap = seen(v)?;
             let turned = gap.normal.dot(&self.normals[v as usize]);
@@ -126,26 +132,39 @@ impl Place<'_> {
         let behind: Vec<(u32, Vec3)> = near.iter().filter_map(behind).collect();
         // Skin in creases and on the back of a finger has the product behind it as well, beyond other skin.
         let mut some = behind.iter().step_by(behind.len() / MOST_ASKED + 1);
+        let near = if behind.is_empty() {
+            Vec::new()
+        } else {
+            self.placed(near)
+        };
         let is_under =
-            |(_, place): &(u32, Vec3)| self.roughly(near, *place) > ROUGH_SHARE * self.most;
+            |(_, place): &(u32, Vec3)| self.roughly(&near, *place) > ROUGH_SHARE * self.most;
         if some.any(is_under) {
             found.extend(behind.iter().map(|(v, _)| *v));
         }
         found
     }
 
+    /// Vertices with their written places, mm.
+    fn placed(&self, vertices: &[u32]) -> Vec<(u32, Vec3)> {
+        vertices.iter().map(|&v| (v, self.at(v))).collect()
+    }
+
     /// Least depth of a point below the tangent planes of the nearest three of some vertices, mm.
-    fn roughly(&self, vertices: &[u32], point: Vec3) -> f64 {
-        let mut nearest = [(f64::INFINITY, 0u32); 3];
-        for &v in vertices {
-            let away = (self.at(v) - point).norm_squared();
+    fn roughly(&self, vertices: &[(u32, Vec3)], point: Vec3) -> f64 {
+        let mut nearest = [(f64::INFINITY, 0usize); 3];
+        for (index, (_, place)) in vertices.iter().enumerate() {
+            let away = (place - point).norm_squared();
             if away < nearest[2].0 {
-                nearest[2] = (away, v);
+                nearest[2] = (away, index);
                 nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
             }
         }
         let found = nearest.iter().filter(|(away, _)| away.is_finite());
-        let depths = found.map(|(_, v)| (self.at(*v) - point).dot(&self.normals[*v as usize]));
+        let depths = found.map(|(_, index)| {
+            let (v, place) = vertices[*index];
+            (place - point).dot(&self.normals[v as usize])
+        });
         depths.fold(f64::INFINITY, f64::min)
     }
 
@@ -165,6 +184,7 @@ impl Place<'_> {
         let count = self.before.len() as u32;
         let local: Vec<u32> = (0..count).filter(|v| contains(here, self.at(*v))).collect();
         if samples.len() * local.len() < MOST_PAIRS {
+            let local = self.placed(&local);
             samples.retain(|p| self.roughly(&local, *p) > ROUGH_SHARE * self.most);
         }
         if samples.is_empty() {
