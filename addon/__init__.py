@@ -6,6 +6,7 @@ from . import (
     hand,
     hand_shape,
     handlers,
+    languages,
     live,
     looks,
     new_study,
@@ -22,6 +23,7 @@ from . import (
 from .views import viewport
 
 _MODULES = (
+    languages,
     settings,
     operators,
     product_files,

@@ -29,6 +29,35 @@ _FINER = ("refine the hand", "refine the skin", "subdivide the hand")
 """What sentences ask for that finer skin mends."""
 
 
+_HEADINGS = {
+    "shown_penetration": "The skin as shown lies inside the product",
+    "hand_size": "The hand has an unusual size",
+    "beyond_stiffening": "Deeper than the skin's stiffening is known",
+    "beyond_theory": "Deeper than the model is made for",
+    "beyond_tissue": "Deeper than the soft tissue is thick",
+    "bare_parts_inside": "Parts of the hand without a region lie inside the product",
+    "product_inside_hand": "The product lies inside the hand",
+    "no_contact": "No contact",
+    "coarse_product": "The product's mesh is coarse",
+    "few_vertices": "Few vertices carry the contact",
+    "product_between_vertices": "The product passes between the skin's vertices",
+    "sharp_edge": "Contact at a sharp edge",
+    "peak_in_crease": "The peak lies in a crease",
+    "off_balance": "The forces do not balance",
+    "adhesion_unsettled": "Adhesion did not settle",
+    "grip_strain": "The soft grip is strained beyond its model",
+    "grip_without_core": "The soft grip has no rigid core",
+    "grip_rough": "The soft grip's surface is rough",
+    "grip_unsolved": "The soft grip was not solved",
+    "unsolved": "The contact was not solved",
+    "unsolved_rows": "The contact was not solved at some vertices",
+    "penetration": "Skin remains inside the product",
+    "runaway": "The solution does not converge",
+    "force_leaps": "The force jumps: the target is not reached",
+}
+"""Kinds of reasons, the library's and that of the shown surface, in words."""
+
+
 def asks_for_finer_skin(kind: str, passes_between: bool) -> bool:
     """Whether finer skin may mend a result whose gravest reason is of this `kind`."""
     return kind in COARSE_SKIN or (kind == NO_CONTACT and passes_between)
@@ -42,6 +71,11 @@ def is_cut(shown_between_mm: float) -> bool:
 def says_finer_skin(text: str) -> bool:
     """Whether a refusal's sentence asks for finer skin."""
     return any(words in text for words in _FINER)
+
+
+def heading(kind: str) -> str:
+    """A reason's kind in a few words, for those who read the sentence in another language; empty if unknown."""
+    return _HEADINGS.get(kind, "")
 
 
 def title(grade: str) -> str:

@@ -5,7 +5,7 @@ import time
 import tomllib
 from pathlib import Path
 
-from .. import names
+from .. import languages, names
 
 STUDY_FILE = "study.toml"
 _EVERY_S = 2.0
@@ -28,10 +28,13 @@ def digest(folder):
 def problem(state):
     """Why the findings may not hold for the study as it is now, as one sentence; empty if they do."""
     if state.made_with != f"Thenar {names.VERSION}":
-        return f"These findings were made with {state.made_with}; diagnose again with this version"
+        return languages.iface(
+            "These findings were made with {made_with}; diagnose again with this version", made_with=state.made_with
+        )
     now = _remembered(state.path)
     if not now:
-        return f"The study is no longer at '{state.path}', so nobody can see whether it changed"
+        words = "The study is no longer at '{path}', so nobody can see whether it changed"
+        return languages.iface(words, path=state.path)
     return "" if now == state.study_hash else "The study has changed since; diagnose again"
 
 

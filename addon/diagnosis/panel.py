@@ -5,6 +5,7 @@ from functools import lru_cache
 import bpy
 
 from .. import status
+from ..languages import iface
 from ..panels import text
 from ..panels.main import Tab
 from ..recordings import settings as recordings
@@ -71,7 +72,7 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
         box.separator(factor=0.5)
         text.paragraph(box, context, told.sentence)
         if item is None or item.path != state.path:
-            text.faint(layout, context, f"Of the study '{state.study}'")
+            text.faint(layout, context, iface("Of the study '{title}'", title=state.study))
         layout.operator("thenar.report", text="Write Report", icon="TEXT").kind = "DIAGNOSIS"
 
 
@@ -150,7 +151,7 @@ class THENAR_PT_gain(_Part, bpy.types.Panel):
             text.paragraph(layout, context, sentence)
         kept = context.scene.thenar_diagnosis.curves
         for number, curve in enumerate(curves.read(kept)):
-            text.paragraph(layout, context, f"Force over time in '{curve['recording']}'")
+            text.paragraph(layout, context, iface("Force over time in '{recording}'", recording=curve["recording"]))
             layout.template_icon(icon_value=curves.icon(kept, number), scale=9.0)
         if kept:
             text.faint(layout, context, "White: measured. Orange: before. Blue: after")
@@ -251,7 +252,7 @@ def _draw_entry(layout, context, entry):
     if entry.sureness is not None:
         sure = head.row()
         sure.alignment = "RIGHT"
-        sure.label(text=f"{letter.wording.share(entry.sureness)} confidence")
+        sure.label(text=iface("{share} confidence", share=letter.wording.share(entry.sureness)))
     if entry.meaning:
         text.faint(box, context, entry.meaning)
     for row in entry.rows:

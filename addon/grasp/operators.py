@@ -5,7 +5,7 @@ from functools import partial
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from .. import workflow
+from .. import languages, workflow
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_make, can_pose
@@ -66,18 +66,26 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     noun = "Fit"
 
-    strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM")
+    strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM", translation_context=languages.FORCE)
     distal_mm: _depth("distal")
     middle_mm: _depth("middle")
     proximal_mm: _depth("proximal")
     palm_mm: _depth("palm")
     place: EnumProperty(name="Start", items=PLACES, default="LAY")
     moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
-    digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
+    digits: EnumProperty(
+        name="Digits",
+        items=DIGITS,
+        options={"ENUM_FLAG"},
+        default={digit[0] for digit in DIGITS},
+        translation_context=languages.OWN,
+    )
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
     )
-    kind: EnumProperty(name="Kind", description="How the hand holds the product", items=KINDS)
+    kind: EnumProperty(
+        name="Kind", description="How the hand holds the product", items=KINDS, translation_context=languages.OWN
+    )
     end: EnumProperty(name="Thumb At", description="Which end of the handle the thumb is at", items=ENDS)
 
     @classmethod
@@ -133,11 +141,16 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
             self.report({"WARNING"}, running.sentence(text))
         misses = [abs(found.depths_mm[name] - want) for name, want in found.targets_mm.items()]
         force = f", {found.force_n:.0f} N" if found.force_n is not None else ""
-        self.report(
-            {"INFO"},
-            f"{len(misses)} pads within {max(misses):.1f} mm of their depth "
-            f"(mean {sum(misses) / len(misses):.1f} mm){force}, {found.seconds:.1f} s",
+        words = "{pads} pads within {most:.1f} mm of their depth (mean {mean:.1f} mm){force}, {seconds:.1f} s"
+        text = languages.report(
+            words,
+            pads=len(misses),
+            most=max(misses),
+            mean=sum(misses) / len(misses),
+            force=force,
+            seconds=found.seconds,
         )
+        self.report({"INFO"}, text)
         return {"FINISHED"}
 
     def _report_best(self, context, found):
@@ -145,14 +158,15 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         for text in best.grasp.warnings:
             self.report({"WARNING"}, running.sentence(text))
         level, text = words.held(best.state, (best.friction, context.scene.thenar_grasps.friction), best.asked_n)
-        ways = "1 way" if len(found) == 1 else f"the best of {len(found)} ways"
-        self.report({level}, f"{text}; {ways} to hold it, {best.grasp.seconds:.1f} s")
+        words = "{held}; the best of {ways} ways to hold it, {seconds:.1f} s"
+        words = "{held}; 1 way to hold it, {seconds:.1f} s" if len(found) == 1 else words
+        self.report({level}, languages.report(words, held=text, ways=len(found), seconds=best.grasp.seconds))
         return {"FINISHED"}
 
 
 class THENAR_OT_settle_grasp(computing.Computing, bpy.types.Operator):
-    """Bend and move the hand from where it is until the forces on the product balance, with its weight and at the grip
-    asked for"""
+    """Bend and move the hand from where it is until the forces on the product balance, with its weight and at the \
+grip asked for"""
 
     bl_idname = "thenar.settle_grasp"
     bl_label = "Settle"
@@ -200,7 +214,9 @@ class THENAR_OT_use_grasp(bpy.types.Operator):
         done = running.attempt(self, fitting.use, context, self.index)
         if done is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Grasp {self.index + 1} of {len(context.scene.thenar_grasps.found)}; solve to press it")
+        words = "Grasp {number} of {count}; solve to press it"
+        count = len(context.scene.thenar_grasps.found)
+        self.report({"INFO"}, languages.report(words, number=self.index + 1, count=count))
         return {"FINISHED"}
 
 
@@ -213,6 +229,7 @@ class THENAR_OT_add_sample(bpy.types.Operator):
 
     kind: EnumProperty(
         name="Sample",
+        translation_context=languages.OWN,
         items=[(kind, sample.label, "") for kind, sample in samples.SAMPLES.items()],
         default="cylinder_48",
     )

@@ -3,6 +3,7 @@
 import bpy
 
 from .. import status
+from ..languages import iface
 from ..panels.main import Tab
 
 
@@ -40,9 +41,12 @@ def _draw_found(layout, stored):
     column = layout.column(align=True)
     for index, row in enumerate(stored.found):
         icon = "CHECKMARK" if row.friction <= stored.friction else "ERROR"
-        slip = "slips" if row.friction > stored.friction else f"friction {row.friction:.2f}"
-        kind = f"{row.kind.capitalize()}, " if row.kind else ""
-        text = f"{index + 1}: {kind}{row.total_n:.0f} N, {row.net_n:.0f} N left over, {slip}"
+        slips = row.friction > stored.friction
+        words = "{force_n:.0f} N, {net_n:.0f} N left over, friction {friction:.2f}"
+        words = "{force_n:.0f} N, {net_n:.0f} N left over, slips" if slips else words
+        kind = f"{iface(row.kind.capitalize())}, " if row.kind else ""
+        numbers = iface(words, force_n=row.total_n, net_n=row.net_n, friction=row.friction)
+        text = f"{index + 1}: {kind}{numbers}"
         column.operator("thenar.use_grasp", text=text, icon=icon, depress=stored.shown == index).index = index
 
 

@@ -1,7 +1,8 @@
-"""What is said of a grasp: whether the product would stay in the hand. Knows nothing of Blender."""
+"""What is said of a grasp: whether the product would stay in the hand. Knows nothing of Blender but its language."""
 
 import math
 
+from ..languages import report
 from . import settling
 
 ALMOST = 0.005
@@ -17,16 +18,25 @@ def held(state, friction, asked_n=None):
     needed, available = friction
     net = math.sqrt(sum(part * part for part in state.net_n))
     is_short = asked_n is not None and state.total_n < SHORT * asked_n
-    grip = f"{state.total_n:.0f} of {asked_n:.0f} N of grip" if is_short else f"{state.total_n:.0f} N of grip"
-    text = f"{grip}, {net:.1f} N left over"
+    words = "{total:.0f} of {asked:.0f} N of grip, {net:.1f} N left over"
+    words = words if is_short else "{total:.0f} N of grip, {net:.1f} N left over"
+    forces = report(words, total=state.total_n, asked=asked_n, net=net)
+    level, words = _verdict(state, needed, available)
+    return level, report(words, forces=forces, needed=needed, available=available)
+
+
+def _verdict(state, needed, available):
+    """Report level and template for the friction that is needed and that is there."""
     if state.imbalance <= settling.BALANCED and needed <= available:
-        return "INFO", f"In balance: {text}" + ("" if needed < ALMOST else f", held by a friction of {needed:.2f}")
+        if needed < ALMOST:
+            return "INFO", "In balance: {forces}"
+        return "INFO", "In balance: {forces}, held by a friction of {needed:.2f}"
     if needed <= available:
-        return "INFO", f"Held by friction: {text}, a coefficient of {needed:.2f} holds it"
+        return "INFO", "Held by friction: {forces}, a coefficient of {needed:.2f} holds it"
     if math.isinf(needed):
-        return "WARNING", f"No balance: {text}, which no friction holds; move the hand to the middle of the product"
+        return "WARNING", "No balance: {forces}, which no friction holds; move the hand to the middle of the product"
     return (
         "WARNING",
-        f"No balance: {text}; it needs a friction of {needed:.2f} where {available:.2f} is there: the product would "
+        "No balance: {forces}; it needs a friction of {needed:.2f} where {available:.2f} is there: the product would "
         "slip out. Ask for more grip, or hold it nearer to its middle",
     )

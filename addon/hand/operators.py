@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
-from .. import status
+from .. import languages, status
 from ..hand_shape import framing
 from ..operators import polling, running
 from ..panels import preferences
@@ -41,7 +41,8 @@ class THENAR_OT_make_hand(bpy.types.Operator):
         hand = running.attempt(self, self._make, context)
         if hand is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"'{hand.name}' has {len(hand.data.vertices):,} vertices")
+        words = "'{name}' has {vertices:,} vertices"
+        self.report({"INFO"}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)))
         return {"FINISHED"}
 
     def _make(self, context):
@@ -62,7 +63,12 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
     bl_label = "Apply Pose"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: EnumProperty(name="Pose", items=[(name, label, "") for name, label in LABELS.items()], default="relaxed")
+    name: EnumProperty(
+        name="Pose",
+        items=[(name, label, "") for name, label in LABELS.items()],
+        default="relaxed",
+        translation_context=languages.OWN,
+    )
 
     @classmethod
     def poll(cls, context):
@@ -98,7 +104,8 @@ class THENAR_OT_guess_bones(bpy.types.Operator):
         count, remarks = found
         hand = context.scene.thenar.hand
         armature_of(hand).thenar_bones.show_digits = True
-        self.report({"WARNING" if remarks else "INFO"}, f"{count} bones found" + (f"; {remarks}" if remarks else ""))
+        text = languages.report("{count} bones found", count=count) + (f"; {remarks}" if remarks else "")
+        self.report({"WARNING" if remarks else "INFO"}, text)
         if self.with_regions and _has_bone_groups_only(hand) and bpy.ops.thenar.regions_from_bones.poll():
             _try_regions(self)
         return {"FINISHED"}

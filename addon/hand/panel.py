@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
 from . import roles
 
@@ -70,12 +71,12 @@ def _bones_of(layout, armature, digit):
     column = layout.column(align=True)
     own = [role for role in roles.ROLES if role.partition("_")[0] == digit]
     if len(own) > 1:
-        column.label(text=digit.capitalize())
+        column.label(text=iface(digit.capitalize()))
     for role in own:
         split = column.split(factor=SHARE)
         name = split.row()
         name.alignment = "RIGHT"
-        name.label(text=role.rpartition("_")[2].capitalize())
+        name.label(text=bone(role.rpartition("_")[2].capitalize()))
         split.prop_search(armature.thenar_bones, role, armature.data, "bones", text="")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 from mathutils.bvhtree import BVHTree
 
-from .. import names
+from .. import languages, names
 from ..operators import display, polling, running
 from ..scene import attributes, mesh
 from . import putting
@@ -41,7 +41,7 @@ class THENAR_OT_look(bpy.types.Operator):
     @classmethod
     def description(cls, context, properties):
         """The look's own meaning as the tooltip."""
-        return next(row[2] for row in KINDS if row[0] == properties.kind)
+        return languages.tip(next(row[2] for row in KINDS if row[0] == properties.kind))
 
     @classmethod
     def poll(cls, context):

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from ..languages import iface
 from ..scene.checks import Refusal
 from . import looking, repeats, settings, writing
 
@@ -174,14 +175,16 @@ def problem(context):
             return item.problem
     count = len({item.protocol for item in state.files})
     if count > settings.MOST_PROTOCOLS:
-        return (
-            f"these are {count} protocols, and one study takes {settings.MOST_PROTOCOLS} here; "
-            "make several studies, each from a folder of its own, or write study.toml by hand"
+        words = (
+            "these are {count} protocols, and one study takes {most} here; make several studies, each from a folder of "
+            "its own, or write study.toml by hand"
         )
+        return iface(words, count=count, most=settings.MOST_PROTOCOLS)
     for number, protocol in enumerate(state.protocols, 1):
         is_used = any(item.protocol == number for item in state.files)
         if is_used and protocol.shape != "PLANE" and protocol.diameter_mm <= 0.0:
-            return f"the tool's diameter of protocol {number} is not given; measure it and enter it in mm"
+            words = "the tool's diameter of protocol {number} is not given; measure it and enter it in mm"
+            return iface(words, number=number)
         if is_used and state.skin == settings.FLAT and protocol.shape in {"PLANE", "CYLINDER"}:
             return (
                 "a flat plate or a cylinder touches flat skin up to its edges, which the study does not know; "
@@ -197,10 +200,12 @@ def _skin_problem(context, state):
     if hand is None or hand.type != "MESH":
         return "there is no hand yet; press Make Hand, or choose Flat Skin under Pressed"
     if state.site_vertex >= 0 and state.site_hand != hand:
-        return f"the place was clicked on another hand than '{hand.name}'; press Pick Site and click it again"
+        words = "the place was clicked on another hand than '{name}'; press Pick Site and click it again"
+        return iface(words, name=hand.name)
     count = len(hand.data.vertices)
     if state.site_vertex >= 0 and (state.site_count != count or state.site_vertex >= count):
-        return f"'{hand.name}' was changed since the place was clicked; press Pick Site and click it again"
+        words = "'{name}' was changed since the place was clicked; press Pick Site and click it again"
+        return iface(words, name=hand.name)
     if state.site_vertex < 0 and state.site_region not in hand.thenar.materials:
         return "where on the hand did the tool press? Press Pick Site and click the skin, or choose a region"
     return ""

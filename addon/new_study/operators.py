@@ -6,6 +6,7 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
+from .. import languages
 from ..operators import polling, running
 from ..recordings import loading
 from ..scene.checks import Refusal
@@ -48,7 +49,9 @@ to diagnose, and asks what the files do not state"""
         if count is None:
             return {"CANCELLED"}
         running.redraw(context)
-        self.report({"INFO"}, f"{count} recording{'' if count == 1 else 's'}; answer what New Study asks")
+        words = "{count} recordings; answer what New Study asks"
+        words = "1 recording; answer what New Study asks" if count == 1 else words
+        self.report({"INFO"}, languages.report(words, count=count))
         return {"FINISHED"}
 
 
@@ -80,7 +83,8 @@ class THENAR_OT_write_study(_OfStudy, bpy.types.Operator):
         if title is None:
             return {"CANCELLED"}
         running.redraw(context)
-        self.report({"INFO"}, f"Study '{title}' is written and loaded; press Diagnose")
+        words = "Study '{title}' is written and loaded; press Diagnose"
+        self.report({"INFO"}, languages.report(words, title=title))
         return {"FINISHED"}
 
 
@@ -127,7 +131,8 @@ class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
         if context.area is None or context.area.type != "VIEW_3D":
             self.report({"ERROR"}, "The site is picked in a 3D view; press this in its sidebar")
             return {"CANCELLED"}
-        context.workspace.status_text_set("Click the skin where the tool pressed    Esc: cancel")
+        words = languages.iface("Click the skin where the tool pressed    Esc: cancel")
+        context.workspace.status_text_set(words)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -136,7 +141,7 @@ class THENAR_OT_pick_site(_OfStudy, bpy.types.Operator):
             return self._end(context, {"CANCELLED"})
         problem = _gone(context)
         if problem:
-            self.report({"ERROR"}, running.sentence(problem))
+            self.report({"ERROR"}, running.sentence(languages.report(problem)))
             return self._end(context, {"CANCELLED"})
         region = next((each for each in context.area.regions if each.type == "WINDOW"), None)
         inside = region is not None and 0 <= event.mouse_x - region.x < region.width
@@ -209,7 +214,7 @@ class THENAR_OT_sample_study(bpy.types.Operator):
         if added is None:
             return {"CANCELLED"}
         running.redraw(context)
-        self.report({"INFO"}, f"Loaded {', '.join(added)}; press Diagnose")
+        self.report({"INFO"}, languages.report("Loaded {files}; press Diagnose", files=", ".join(added)))
         return {"FINISHED"}
 
 

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab
 from . import drafting, settings, writing
@@ -24,7 +25,7 @@ class THENAR_PT_new_study(Tab, bpy.types.Panel):
         layout, state = self.layout, context.scene.thenar_new_study
         layout.use_property_decorate = False
         layout.prop(state, "title")
-        layout.label(text=f"{len(state.files)} recordings; repeats share a number")
+        layout.label(text=iface("{count} recordings; repeats share a number", count=len(state.files)))
         _draw_files(layout.box().column(align=True), state)
         for head in state.columns:
             _draw_columns(layout.box().column(align=True), context, state, head)
@@ -48,8 +49,8 @@ def _draw_files(column, state):
 
 def _draw_columns(column, context, state, head):
     files = [item.name for item in state.files if item.head == head.name]
-    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-    column.label(text=f"Columns of {files[0]}{more}", icon="QUESTION")
+    words = "Columns of {file} and {more} more" if len(files) > 1 else "Columns of {file}"
+    column.label(text=iface(words, file=files[0], more=len(files) - 1), icon="QUESTION")
     for role in head.asks.split():
         split = column.split(factor=0.66, align=True)
         split.prop_search(head, role, head, "headers", text=_ROLES[role])
@@ -84,7 +85,7 @@ def _draw_skin(column, context, state):
         column.operator("thenar.make_hand", text="Make Hand", icon="VIEW_PAN")
         return
     is_picked = state.site_vertex >= 0
-    words = f"Site: vertex {state.site_vertex} (pick another)" if is_picked else "Pick Site"
+    words = iface("Site: vertex {vertex} (pick another)", vertex=state.site_vertex) if is_picked else "Pick Site"
     column.operator("thenar.pick_site", text=words, icon="CHECKMARK" if is_picked else "EYEDROPPER")
     if not is_picked and len(hand.thenar.materials):
         column.prop_search(state, "site_region", hand.thenar, "materials", text="or Region")
@@ -94,7 +95,7 @@ def _draw_write(layout, context, state):
     there = writing.in_the_way(state.folder, state.skin == settings.HAND)
     if there:
         box = layout.box().column(align=True)
-        text.alert(box, context, f"The folder holds {', '.join(there)} already")
+        text.alert(box, context, iface("The folder holds {files} already", files=", ".join(there)))
         box.use_property_split = False
         box.prop(state, "replaces")
     problem = drafting.problem(context)

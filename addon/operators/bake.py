@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import baking
+from .. import baking, languages
 from . import computing, display, polling
 
 
@@ -27,9 +27,12 @@ class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
     def _report(self, context, bake):
         display.refresh(context)
         told, count = context.scene.thenar.hand.thenar.bake, len(bake.done)
-        text = f"Baked {count} frame{'s' if count > 1 else ''}; max. pressure {told.peak_kpa:.0f} kPa"
+        words = "Baked {count} frames; max. pressure {kpa:.0f} kPa"
+        if count == 1:
+            words = "Baked 1 frame; max. pressure {kpa:.0f} kPa"
+        text = languages.report(words, count=count, kpa=told.peak_kpa)
         if told.cycles:
-            text += f"; {told.cycle_loss_mj:.3g} mJ lost per cycle"
+            text += languages.report("; {loss_mj:.3g} mJ lost per cycle", loss_mj=told.cycle_loss_mj)
         self.report({"INFO"}, text)
         return {"FINISHED"}
 

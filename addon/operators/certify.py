@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import languages
 from ..reference import certify
 from . import computing, display, polling
 
@@ -25,9 +26,12 @@ class THENAR_OT_certify(computing.Computing, bpy.types.Operator):
     def _report(self, context, result):
         display.refresh(context)
         reference = result.reference
-        numbers = (
-            f"reference {reference.force_n:.1f} N on {reference.area_mm2 / 100:.1f} cm², "
-            f"fast {result.force_n:.1f} N on {result.area_mm2 / 100:.1f} cm²"
+        numbers = languages.report(
+            "reference {solid_n:.1f} N on {solid_cm2:.1f} cm², fast {fast_n:.1f} N on {fast_cm2:.1f} cm²",
+            solid_n=reference.force_n,
+            solid_cm2=reference.area_mm2 / 100,
+            fast_n=result.force_n,
+            fast_cm2=result.area_mm2 / 100,
         )
         if reference.note:
             self.report({"WARNING"}, f"{reference.note} ({numbers})")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import bpy
 from bpy.app.handlers import persistent
 
-from .. import steps
+from .. import languages, steps
 from . import running
 
 TURN_S = 0.1
@@ -55,7 +55,8 @@ class Computing:
             return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             self.cancel(context)
-            self.report({"WARNING"}, f"{self.noun} cancelled; the scene is as before")
+            noun = languages.report(self.noun)
+            self.report({"WARNING"}, languages.report("{noun} cancelled; the scene is as before", noun=noun))
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"} if running.is_navigation(event) else {"RUNNING_MODAL"}

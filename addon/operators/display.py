@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import comfort, map_settings, maps, names, status, tissue, workflow
+from .. import comfort, languages, map_settings, maps, names, status, tissue, workflow
 from ..scene import attributes, colors, copies, owned, shading
 from ..views import compositor
 from . import polling, running
@@ -122,7 +122,7 @@ def _no_pressure(context):
 def _no_map(context):
     view = maps.shown(context.scene.thenar)
     if not view.limit:
-        return f"the range of {view.title.lower()} is fixed"
+        return languages.tip("the range of {map} is fixed", map=languages.inside(view.title))
     return "" if shown_objects(context, view.attribute) else view.missing
 
 
@@ -154,12 +154,17 @@ class THENAR_OT_show_map(bpy.types.Operator):
     bl_label = "Show Map"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(name="Map", description="Quantity that the colors show", items=map_settings.KINDS)
+    kind: bpy.props.EnumProperty(
+        name="Map",
+        description="Quantity that the colors show",
+        items=map_settings.KINDS,
+        translation_context=languages.OWN,
+    )
 
     @classmethod
     def description(cls, context, properties):
         """The map's own meaning as the tooltip."""
-        return maps.MAPS[properties.kind].meaning
+        return languages.tip(maps.MAPS[properties.kind].meaning)
 
     @classmethod
     def poll(cls, context):
@@ -170,7 +175,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
         if self.kind == maps.THICKNESS and running.attempt(self, tissue.write_thickness, context) is None:
             return {"CANCELLED"}
         if not shown_objects(context, view.attribute):
-            self.report({"ERROR"}, running.sentence(view.missing))
+            self.report({"ERROR"}, running.sentence(languages.report(view.missing)))
             return {"CANCELLED"}
         if look_hides(context):
             bpy.ops.object.mode_set(mode="OBJECT")
@@ -192,8 +197,9 @@ class THENAR_OT_reset_range(bpy.types.Operator):
     def execute(self, context):
         fitting, look = fitting_range(context), context.scene.thenar
         if fitting is None:
-            name = maps.shown(look).title
-            self.report({"ERROR"}, f"No {name.lower()} is above zero; solve a contact that touches first")
+            name = languages.inside(maps.shown(look).title)
+            words = "No {map} is above zero; solve a contact that touches first"
+            self.report({"ERROR"}, languages.report(words, map=name))
             return {"CANCELLED"}
         setattr(*maps.setting(maps.shown(look), look), fitting)
         return {"FINISHED"}

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, tissue
+from .. import effect_settings, languages, tissue
 from . import polling, running
 
 _ITEMS = []
@@ -78,7 +78,8 @@ class THENAR_OT_paint_thickness(bpy.types.Operator):
         context.view_layer.objects.active = hand
         if hand.mode != "WEIGHT_PAINT":
             bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
-        self.report({"INFO"}, f"Weight 1 of '{group.name}' is {effect.painted_full:g} mm, weight 0.5 half of it")
+        words = "Weight 1 of '{group}' is {mm:g} mm, weight 0.5 half of it"
+        self.report({"INFO"}, languages.report(words, group=group.name, mm=effect.painted_full))
         return {"FINISHED"}
 
 
@@ -89,7 +90,10 @@ def _selected(hand):
 def _cannot_be_painted(context):
     effect = _selected(context.scene.thenar.hand)
     painted = effect_settings.can_be_painted(effect.name)
-    return "" if painted else f"{effect_settings.title(effect.name).lower()} has no field to paint; select bone"
+    if painted:
+        return ""
+    name = languages.inside(effect_settings.title(effect.name))
+    return languages.tip("{effect} has no field to paint; select bone", effect=name)
 
 
 CLASSES = (THENAR_OT_effect_add, THENAR_OT_effect_remove, THENAR_OT_paint_thickness)

@@ -3,7 +3,7 @@
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .. import export
+from .. import export, languages
 from . import polling, running
 
 
@@ -28,7 +28,8 @@ class THENAR_OT_export(bpy.types.Operator, ExportHelper):
         written = running.attempt(self, export.write, context, bpy.path.abspath(self.filepath))
         if written is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {', '.join(path.name for path in written)}")
+        files = ", ".join(path.name for path in written)
+        self.report({"INFO"}, languages.report("Wrote {files}", files=files))
         return {"FINISHED"}
 
 
@@ -50,7 +51,7 @@ class THENAR_OT_export_bake(bpy.types.Operator, ExportHelper):
         written = running.attempt(self, export.write_bake, context, bpy.path.abspath(self.filepath))
         if written is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {written.name}")
+        self.report({"INFO"}, languages.report("Wrote {files}", files=written.name))
         return {"FINISHED"}
 
 

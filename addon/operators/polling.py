@@ -1,6 +1,6 @@
 """Why a button cannot be pressed now: one sentence each, for its tooltip and for scripts."""
 
-from .. import names, status, workflow
+from .. import languages, names, status, workflow
 from . import running
 
 
@@ -8,7 +8,7 @@ def allows(cls, *problems):
     """Whether none of `problems` stands: sentences, empty where all is well. The first becomes the button's tooltip."""
     problem = next((text for text in problems if text), "")
     if problem:
-        cls.poll_message_set(running.sentence(problem))
+        cls.poll_message_set(running.sentence(languages.tip(problem)))
     return not problem
 
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import material_settings
+from .. import languages, material_settings
 from ..scene import regions
 from . import polling, selecting
 
@@ -44,9 +44,8 @@ class THENAR_OT_assign_regions(bpy.types.Operator):
         bones = _bone_names(hand)
         found = [group.name for group in hand.vertex_groups if group.name not in bones]
         if not found:
-            self.report(
-                {"ERROR"}, f"Every vertex group of '{hand.name}' is a bone's; add groups for the skin's regions"
-            )
+            words = "Every vertex group of '{name}' is a bone's; add groups for the skin's regions"
+            self.report({"ERROR"}, languages.report(words, name=hand.name))
             return {"CANCELLED"}
         listed = {material.name for material in hand.thenar.materials}
         for name in found:
@@ -70,7 +69,8 @@ class THENAR_OT_region_add(bpy.types.Operator):
         hand = context.scene.thenar.hand
         name = hand.vertex_groups.active.name
         if name in hand.thenar.materials:
-            self.report({"ERROR"}, f"'{name}' is listed already; make another vertex group active")
+            words = "'{name}' is listed already; make another vertex group active"
+            self.report({"ERROR"}, languages.report(words, name=name))
             return {"CANCELLED"}
         add_region(hand, name)
         return {"FINISHED"}

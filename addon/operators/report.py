@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .. import reports
+from .. import languages, reports
 from . import polling, running
 
 _KINDS = (
@@ -37,7 +37,7 @@ class THENAR_OT_report(bpy.types.Operator, ExportHelper):
         written = running.attempt(self, reports.write, context.scene, path, kind)
         if written is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {written.name}")
+        self.report({"INFO"}, languages.report("Wrote {files}", files=written.name))
         return {"FINISHED"}
 
 

@@ -4,7 +4,7 @@ import threading
 import time
 import weakref
 
-from .. import native, status
+from .. import languages, native, status
 from ..scene.checks import Refusal
 from ..steps import PAUSE
 
@@ -122,7 +122,8 @@ def begin(context, operator):
 def show(context):
     """Progress to status bar and panels, where it changed; the views themselves stay, drawing them holds Esc up."""
     run = status.run
-    text = f"Thenar: {run.stage} {run.fraction:.0%}   Esc: cancel"
+    stage = languages.stage(run.stage)
+    text = languages.iface("Thenar: {stage} {fraction:.0%}   Esc: cancel", stage=stage, fraction=run.fraction)
     if text == run.shown:
         return
     run.shown = text

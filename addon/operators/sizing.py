@@ -4,6 +4,7 @@ import bpy
 
 from .. import workflow
 from ..hand_shape import framing
+from ..panels import start
 from ..scene import sizes
 from . import polling, running
 
@@ -28,7 +29,7 @@ class THENAR_OT_scale_product(bpy.types.Operator):
         if found is None:
             return {"CANCELLED"}
         framing.frame(context, *parts)
-        self.report({"INFO"}, str(found))
+        self.report({"INFO"}, start.both(found))
         running.redraw(context)
         return {"FINISHED"}
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import grades, workflow
+from .. import grades, languages, workflow
 from ..panels import preferences
 from ..scene import regions
 from . import computing, display, polling, running, selecting
@@ -60,14 +60,18 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
             display.refresh(context)
         for text in result.warnings:
             self.report({"WARNING"}, running.sentence(text.name))
-        numbers = (
-            f"{result.force_n:.1f} N on {result.area_mm2 / 100:.1f} cm², peak {result.peak_kpa:.0f} kPa, "
-            f"mean {result.mean_kpa:.0f} kPa"
+        numbers = languages.report(
+            "{force_n:.1f} N on {area_cm2:.1f} cm², peak {peak_kpa:.0f} kPa, mean {mean_kpa:.0f} kPa",
+            force_n=result.force_n,
+            area_cm2=result.area_mm2 / 100,
+            peak_kpa=result.peak_kpa,
+            mean_kpa=result.mean_kpa,
         )
         if result.grade == grades.GOOD:
             self.report({"INFO"}, numbers)
         else:
-            self.report({"WARNING"}, f"{grades.title(result.grade)}: {result.reason} ({numbers})")
+            grade = languages.report(grades.title(result.grade))
+            self.report({"WARNING"}, f"{grade}: {result.reason} ({numbers})")
         return {"FINISHED"}
 
 

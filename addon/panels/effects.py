@@ -3,6 +3,7 @@
 import bpy
 
 from .. import effect_settings, maps, names, sentences
+from ..languages import iface
 from .main import OfHand
 
 NAME_SHARE = 0.72
@@ -18,8 +19,8 @@ class THENAR_UL_effects(bpy.types.UIList):
         row.prop(item, "is_on", text="")
         words = row.row()
         words.active = item.is_on
-        place = f", {sentences.region_title(item.region)}" if item.region else ""
-        words.label(text=effect_settings.title(item.name) + place)
+        place = f", {iface(sentences.region_title(item.region))}" if item.region else ""
+        words.label(text=iface(effect_settings.title(item.name)) + place)
         number = split.row()
         number.active = item.is_on
         number.prop(item, "amplitude", text="", slider=True)
@@ -58,7 +59,7 @@ def _draw_effect(layout, effect, hand):
         column.prop(choice, "value", text=effect_settings.title(choice.name))
     for number in effect.numbers:
         unit = "" if number.unit == "1" else f" ({number.unit})"
-        column.prop(number, "value", text=effect_settings.title(number.name) + unit)
+        column.prop(number, "value", text=iface(effect_settings.title(number.name)) + unit)
     if effect_settings.can_be_painted(effect.name):
         row = column.row(align=True)
         row.prop_search(effect, "painted", hand, "vertex_groups", icon="BRUSH_DATA")
@@ -67,7 +68,7 @@ def _draw_effect(layout, effect, hand):
             column.prop(effect, "painted_full", text="Weight 1 (mm)")
             lines = column.column(align=True)
             lines.active = False
-            lines.label(text=f"Weight 0.5 is {effect.painted_full / 2:.3g} mm")
+            lines.label(text=iface("Weight 0.5 is {mm:.3g} mm", mm=effect.painted_full / 2))
             lines.label(text="Weight 0 takes the number above")
             row = column.row(align=True)
             row.operator("thenar.show_map", text="Show Thickness", icon="SHADING_RENDERED").kind = maps.THICKNESS

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..languages import iface
 from ..scene.parts import product_parts
 from ..soft_grip import settings as grip_settings
 from . import text
@@ -46,7 +47,8 @@ def _draw_grip(column, part, context):
     if part.type == "MESH":
         column.prop_search(grip, "group", part, "vertex_groups")
     _thickness, youngs_mpa, poisson_ratio = grip_settings.numbers(part)
-    text.faint(column, context, f"E {youngs_mpa:.3g} MPa, Poisson's ratio {poisson_ratio:g}, linear")
+    words = iface("E {youngs_mpa:.3g} MPa, Poisson's ratio {nu:g}, linear", youngs_mpa=youngs_mpa, nu=poisson_ratio)
+    text.faint(column, context, words)
 
 
 CLASSES = (THENAR_PT_grip,)

@@ -3,6 +3,7 @@
 import bpy
 
 from .. import sentences
+from ..languages import iface
 
 
 class THENAR_UL_materials(bpy.types.UIList):
@@ -11,7 +12,7 @@ class THENAR_UL_materials(bpy.types.UIList):
     def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
         missing = item.name not in item.id_data.vertex_groups
         split = layout.split(factor=SHARE)
-        split.label(text=sentences.region_title(item.name), icon="ERROR" if missing else "NONE")
+        split.label(text=iface(sentences.region_title(item.name)), icon="ERROR" if missing else "NONE")
         split.prop(item, "preset", text="", emboss=False)
 
 
@@ -23,7 +24,7 @@ class THENAR_UL_regions(bpy.types.UIList):
         row = split.row(align=True)
         pick = row.operator("thenar.select_region", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         pick.index = index
-        row.label(text=brief(item.name))
+        row.label(text=iface(brief(item.name)))
         columns(split, item)
 
 

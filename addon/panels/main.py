@@ -3,6 +3,7 @@
 import bpy
 
 from .. import effect_settings, grades, maps, names, status
+from ..languages import iface
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
 from . import manual, start, text
@@ -109,10 +110,9 @@ def _draw_state(layout, context):
         column.label(text="Choose a mesh as the hand", icon="INFO")
         return
     count = sum(modifier.show_viewport for modifier in hand.modifiers)
-    column.label(
-        text=f"{len(hand.data.vertices):,} vertices, {count} modifier{'' if count == 1 else 's'}", icon="MESH_DATA"
-    )
-    column.label(text=f"1 unit = {mm_per_unit(context.scene):g} mm", icon="DRIVER_DISTANCE")
+    about = "{vertices:,} vertices, 1 modifier" if count == 1 else "{vertices:,} vertices, {count} modifiers"
+    column.label(text=iface(about, vertices=len(hand.data.vertices), count=count), icon="MESH_DATA")
+    column.label(text=iface("1 unit = {mm:g} mm", mm=mm_per_unit(context.scene)), icon="DRIVER_DISTANCE")
     if settings.live:
         told = status.live.get(context.scene.name)
         waits = told is not None and told.problem
@@ -131,7 +131,7 @@ def _draw_state(layout, context):
         row = column.row()
         row.alert = settings.result.grade == grades.DO_NOT
         icon = "CANCEL" if row.alert else "ERROR"
-        row.label(text=f"Result up to date: {settings.result.grade}", icon=icon)
+        row.label(text=iface("Result up to date: {grade}", grade=iface(settings.result.grade)), icon=icon)
     _draw_refusal(layout, context, settings.refusal)
 
 
@@ -214,7 +214,8 @@ def _draw_live(layout, context):
     if told.problem:
         text.alert(layout, context, told.problem)
     else:
-        layout.label(text=f"{told.rate:.0f} updates/s, {told.ms:.0f} ms each", icon="TIME")
+        words = iface("{rate:.0f} updates/s, {ms:.0f} ms each", rate=told.rate, ms=told.ms)
+        layout.label(text=words, icon="TIME")
 
 
 class THENAR_PT_display(Tab, bpy.types.Panel):
@@ -236,7 +237,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
         view = maps.shown(settings)
         button = layout.operator(
             "thenar.show_pressure",
-            text=f"Hide {view.title}" if shown else "Show Pressure",
+            text=iface("Hide {map}", map=iface(view.title)) if shown else "Show Pressure",
             icon="HIDE_ON" if shown else "SHADING_RENDERED",
             depress=shown,
         )
@@ -311,12 +312,13 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
         if hand is not None and effect_settings.needs_history(hand):
             column = layout.column(align=True)
             column.active = False
-            column.label(text=f"Frames keep history, {scene.render.fps / scene.render.fps_base:g} fps", icon="TIME")
+            rate = scene.render.fps / scene.render.fps_base
+            column.label(text=iface("Frames keep history, {rate:g} fps", rate=rate), icon="TIME")
         layout.operator("thenar.export", icon="EXPORT")
         column = layout.column(align=True)
         column.active = False
-        column.label(text=f"Shape key: {names.SHAPE_KEY}")
-        column.label(text=f"Attribute: {names.PRESSURE_KPA}")
+        column.label(text=iface("Shape key: {name}", name=names.SHAPE_KEY))
+        column.label(text=iface("Attribute: {name}", name=names.PRESSURE_KPA))
 
 
 CLASSES = (THENAR_PT_main, THENAR_PT_display, THENAR_PT_output, THENAR_PT_physics, THENAR_PT_physics_display)

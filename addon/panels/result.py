@@ -3,6 +3,7 @@
 import bpy
 
 from .. import grades, maps, status
+from ..languages import iface
 from . import text
 from .lists import SHARE, brief, columns
 from .main import Physics, Tab, draw_looks, has_result
@@ -40,7 +41,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
         if result.shear_n:
             _pair(box, "Shear force", f"{result.shear_n:.1f} N")
             _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")
-            _pair(box, "Slipping area", f"{result.slipping:.0%} of the area")
+            _pair(box, "Slipping area", iface("{share:.0%} of the area", share=result.slipping))
         draw_maps(layout, context.scene.thenar)
 
 
@@ -54,6 +55,9 @@ def _draw_grade(layout, context, result):
     box.label(text=grades.title(result.grade), icon=icon)
     if not result.reason:
         return
+    heading = grades.heading(result.reason_kind)
+    if heading and iface(heading) != heading:  # the reason itself is English
+        text.paragraph(box, context, heading)
     text.paragraph(box, context, result.reason)
     if result.reason_vertex >= 0:
         box.operator("thenar.show_place", icon="RESTRICT_SELECT_OFF")
@@ -76,10 +80,10 @@ def draw_maps(layout, settings):
 
 def _pair(column, name, value):
     split = column.split(factor=0.55)
-    split.label(text=name)
+    split.label(text=iface(name))
     right = split.row()
     right.alignment = "RIGHT"
-    right.label(text=value)
+    right.label(text=iface(value))
 
 
 class THENAR_PT_physics_result(Physics, bpy.types.Panel):
@@ -125,7 +129,7 @@ class THENAR_PT_regions(OfResult, bpy.types.Panel):
         column = layout.box().column(align=True)
         for finger in result.fingers:
             split = column.split(factor=SHARE)
-            split.label(text=finger.name.capitalize())
+            split.label(text=iface(finger.name.capitalize()))
             columns(split, finger)
 
 
@@ -150,7 +154,7 @@ class THENAR_PT_reference(OfResult, bpy.types.Panel):
         box = layout.box().column(align=True)
         for row in result.regions:
             if row.force_n > 0.0 or row.reference_n > 0.0:
-                _compared(box, brief(row.name), _three(row.force_n, row.reference_n, ".1f"))
+                _compared(box, iface(brief(row.name)), _three(row.force_n, row.reference_n, ".1f"))
         if reference.note:
             text.paragraph(layout, context, reference.note, "ERROR")
 
@@ -162,12 +166,12 @@ def _three(fast, reference, digits):
 
 def _compared(column, name, values):
     split = column.split(factor=0.4)
-    split.label(text=name)
+    split.label(text=iface(name))
     row = split.row()
     for value in values:
         cell = row.row()
         cell.alignment = "RIGHT"
-        cell.label(text=value)
+        cell.label(text=iface(value))
 
 
 class THENAR_PT_comfort(OfResult, bpy.types.Panel):
@@ -206,7 +210,7 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
     def draw(self, context):
         layout, told = self.layout, context.scene.thenar.hand.thenar.bake
         box = layout.box().column(align=True)
-        _pair(box, "Frames", f"{told.frame_start} to {told.frame_end}")
+        _pair(box, "Frames", iface("{first} to {last}", first=told.frame_start, last=told.frame_end))
         _pair(box, "History kept", "yes" if told.follows else "no")
         _pair(box, "Max. force", f"{told.peak_force_n:.1f} N")
         _pair(box, "Max. pressure", f"{told.peak_kpa:.0f} kPa")
@@ -221,7 +225,11 @@ def _draw_energy(box, told):
         _pair(box, "Slip dissipation", f"{told.slip_loss_mj:.3g} mJ")
     _pair(box, "Work on skin", f"{told.work_mj:.3g} mJ")
     if told.cycles:
-        _pair(box, f"Loss per cycle ({told.cycles})", f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}")
+        _pair(
+            box,
+            iface("Loss per cycle ({cycles})", cycles=told.cycles),
+            f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}",
+        )
 
 
 class THENAR_PT_notes(Tab, bpy.types.Panel):

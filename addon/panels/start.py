@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..languages import iface
 from ..scene import sizes
 from ..scene.parts import product_parts
 from . import text
@@ -52,19 +53,31 @@ def draw_sizes(layout, context):
     if not measured.factors:
         row = layout.row()
         row.active = False
-        row.label(text=str(measured) if settings.hand is not None else f"Product {size}", icon="DRIVER_DISTANCE")
+        row.label(
+            text=both(measured) if settings.hand is not None else iface("Product {size}", size=size),
+            icon="DRIVER_DISTANCE",
+        )
         return True
     box = layout.box().column(align=True)
     if settings.hand is None:
         others = [sizes.length(factor * measured.product_mm) for factor in measured.factors]
-        text.alert(box, context, f"Is the product {size} long" + (f", or {others[0]}?" if len(others) == 1 else "?"))
+        words = "Is the product {size} long, or {other}?" if len(others) == 1 else "Is the product {size} long?"
+        text.alert(box, context, iface(words, size=size, other=others[0]))
     else:
-        text.alert(box, context, f"{measured}: read in the wrong unit?")
+        text.alert(box, context, iface("{sizes}: read in the wrong unit?", sizes=both(measured)))
     for factor in measured.factors:
         right = sizes.length(factor * measured.product_mm)
-        box.operator("thenar.scale_product", text=f"Scale by {factor:.4g}, to {right}").factor = factor
-    box.operator("thenar.accept_size", text=f"Keep size {size}")
+        box.operator(
+            "thenar.scale_product", text=iface("Scale by {factor:.4g}, to {size}", factor=factor, size=right)
+        ).factor = factor
+    box.operator("thenar.accept_size", text=iface("Keep size {size}", size=size))
     return False
+
+
+def both(measured):
+    """The sizes of hand and product in the user's language."""
+    hand, product = sizes.length(measured.hand_mm), sizes.length(measured.product_mm)
+    return iface("Hand {hand}, product {product}", hand=hand, product=product)
 
 
 def draw_add(layout):
@@ -113,7 +126,8 @@ def _draw_hand(column, context):
     elif bpy.ops.thenar.pick_hand.poll() and context.object not in product_parts(settings):
         row = column.row()
         row.scale_y = BIG
-        row.operator("thenar.pick_hand", text=f"Use '{context.object.name[:_LONGEST]}'", icon="RESTRICT_SELECT_OFF")
+        words = iface("Use '{name}'", name=context.object.name[:_LONGEST])
+        row.operator("thenar.pick_hand", text=words, icon="RESTRICT_SELECT_OFF")
     else:
         text.faint(column, context, "GLB, FBX, USD, .blend; or click or choose a mesh of the scene:")
     column.prop(settings, "hand", text="")

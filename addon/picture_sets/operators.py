@@ -5,7 +5,7 @@ from pathlib import Path
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from .. import status
+from .. import languages, status
 from ..operators import computing, polling
 from ..panels import preferences
 from ..scene.checks import Refusal
@@ -40,7 +40,7 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
     @classmethod
     def description(cls, context, properties):
         """The picture's own description as the tooltip."""
-        return next(row[2] for row in orders.KINDS if row[0] == properties.kind)
+        return languages.tip(next(row[2] for row in orders.KINDS if row[0] == properties.kind))
 
     @classmethod
     def poll(cls, context):
@@ -76,7 +76,8 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, paths):
         _made[:] = paths
-        self.report({"INFO"}, f"Wrote {', '.join(path.name for path in paths)} in {paths[0].parent}")
+        files = ", ".join(path.name for path in paths)
+        self.report({"INFO"}, languages.report("Wrote {files} in {folder}", files=files, folder=paths[0].parent))
         return {"FINISHED"}
 
 

@@ -4,6 +4,7 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ..hand_shape import framing
+from ..languages import report
 from ..operators import polling, running, selecting
 from ..scene import sizes
 from . import formats, reading
@@ -48,12 +49,14 @@ class THENAR_OT_add_product(bpy.types.Operator, ImportHelper):
 def _told(added):
     """Level and text of what was added, with the question about its unit where its size is unusual."""
     size, count = added.sizes, len(added.parts)
-    what = f"'{added.parts[0].name}'" if count == 1 else f"a product of {count} parts"
-    text = f"Added {what}, {sizes.length(size.product_mm)} long"
+    long = sizes.length(size.product_mm)
+    words = "Added '{name}', {long} long" if count == 1 else "Added a product of {count} parts, {long} long"
+    text = report(words, name=added.parts[0].name, count=count, long=long)
     if not size.factors:
         return {"INFO"}, text
     right = sizes.length(size.factors[0] * size.product_mm)
-    return {"WARNING"}, f"{text}: {sizes.length(size.product_mm)} or {right}? Choose in the Thenar panel"
+    words = "{added}: {long} or {other}? Choose in the Thenar panel"
+    return {"WARNING"}, report(words, added=text, long=long, other=right)
 
 
 class THENAR_FH_product(bpy.types.FileHandler):

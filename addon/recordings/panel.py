@@ -3,6 +3,7 @@
 import bpy
 
 from .. import status
+from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab, has_hand
 from ..scene.parts import product_parts
@@ -99,13 +100,14 @@ def _draw_placing(layout, context, item):
             row.prop(item, "follows_timeline", text="", icon="TIME")
         row = column.row()
         row.enabled = item.frame_rule == "NUMBER"
-        row.prop(item, "frame", text=f"of {item.frames}")
+        row.prop(item, "frame", text=iface("of {count}", count=item.frames))
     row = layout.row(align=True)
     row.operator("thenar.show_recording", text="Recording", icon="IMAGE_DATA")
     row.operator("thenar.show_residual", text="Residual")
     row.operator("thenar.outline_mat", text="", icon="MOD_WIREFRAME")
     if compared.is_valid and compared.recording == item.name and compared.frame not in (0, item.frame):
-        text.faint(layout, context, f"Compared was frame {compared.frame}; press Compare for frame {item.frame}")
+        words = "Compared was frame {old}; press Compare for frame {new}"
+        text.faint(layout, context, iface(words, old=compared.frame, new=item.frame))
 
 
 class THENAR_PT_comparison(Tab, bpy.types.Panel):
@@ -154,7 +156,7 @@ def _numbers(split, texts):
     for told in texts:
         cell = row.row()
         cell.alignment = "RIGHT"
-        cell.label(text=told)
+        cell.label(text=iface(told))
 
 
 class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import languages
 from ..operators import computing, polling, running
 from . import conduct
 
@@ -33,9 +34,15 @@ class THENAR_OT_refine_skin(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, refined):
         (before, after), (coarse, fine) = refined.vertices, refined.spacing_mm
-        text = (
-            f"Refined '{refined.hand_name}' at '{', '.join(refined.part_names)}': {before:,} to {after:,} vertices, "
-            f"spacing there {coarse:.2f} to {fine:.2f} mm; press Solve"
+        text = languages.report(
+            "Refined '{hand}' at '{product}': {before:,} to {after:,} vertices, spacing there {coarse:.2f} to "
+            "{fine:.2f} mm; press Solve",
+            hand=refined.hand_name,
+            product=", ".join(refined.part_names),
+            before=before,
+            after=after,
+            coarse=coarse,
+            fine=fine,
         )
         self.report({"INFO"}, text)
         if bpy.ops.thenar.look_back.poll():

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import languages
 from ..hand import bonemap, reading, roles
 from ..hand.operators import can_pose
 from ..operators import running
@@ -81,7 +82,7 @@ class THENAR_OT_join_bones(bpy.types.Operator):
         joined = running.attempt(self, join, context, context.scene.thenar.hand)
         if joined is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{joined} bones joined")
+        self.report({"INFO"}, languages.report("{count} bones joined", count=joined))
         return {"FINISHED"}
 
 

@@ -5,6 +5,7 @@ from bpy.props import EnumProperty
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
+from .. import languages
 from ..hand import bonemap, reading, roles
 from ..hand.operators import can_pose
 from ..operators import running
@@ -31,7 +32,8 @@ class THENAR_OT_assign_digit(bpy.types.Operator):
         found = running.attempt(self, self._assign, context)
         if not found:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{self.digit.capitalize()}: {', '.join(found.values())}")
+        digit = languages.report(self.digit.capitalize())
+        self.report({"INFO"}, f"{digit}: {', '.join(found.values())}")
         return {"FINISHED"}
 
     def _assign(self, context):
@@ -106,7 +108,9 @@ class THENAR_OT_pick_digits(bpy.types.Operator):
 
     def _prompt(self, context):
         if self._waiting:
-            context.workspace.status_text_set(f"Click the {self._waiting[0]}    Enter: done    Esc: cancel")
+            digit = languages.iface(self._waiting[0])
+            words = languages.iface("Click the {digit}    Enter: done    Esc: cancel", digit=digit)
+            context.workspace.status_text_set(words)
         context.area.tag_redraw()
 
     def _end(self, context, result):

@@ -7,6 +7,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
 from ..hand import reading
+from ..languages import iface
 from ..scene.checks import Refusal
 from . import assigning
 
@@ -57,7 +58,7 @@ def _draw():
         blf.shadow(0, 3, 0.0, 0.0, 0.0, 1.0)
         blf.color(0, *COLORS[digit])
         blf.position(0, places[-1].x + 6, places[-1].y + 6, 0)
-        blf.draw(0, digit.capitalize())
+        blf.draw(0, iface(digit.capitalize()))
         blf.disable(0, blf.SHADOW)
 
 

@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 
+from .. import languages
 from ..hand import normals, reading, roles
 from ..hand.operators import can_pose
 from ..operators import running
@@ -75,7 +76,8 @@ class THENAR_OT_regions_from_bones(bpy.types.Operator):
         found = running.attempt(self, from_bones, context, hand)
         if found is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"{len(found)} regions from the bones of '{hand.name}'")
+        words = "{count} regions from the bones of '{name}'"
+        self.report({"INFO"}, languages.report(words, count=len(found), name=hand.name))
         return {"FINISHED"}
 
 

@@ -4,7 +4,7 @@ import re
 
 import bpy
 
-from .. import names, status
+from .. import languages, names, status
 from ..operators import running
 from ..scene import sizes
 from ..scene.parts import product_parts
@@ -35,7 +35,8 @@ class THENAR_OT_copy_debug_info(bpy.types.Operator):
     def execute(self, context):
         text = written(context)
         context.window_manager.clipboard = text
-        self.report({"INFO"}, f"Copied {len(text.splitlines())} lines; paste them into the report")
+        words = "Copied {count} lines; paste them into the report"
+        self.report({"INFO"}, languages.report(words, count=len(text.splitlines())))
         running.redraw(context)
         return {"FINISHED"}
 

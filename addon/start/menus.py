@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..languages import iface
 from ..looks import operators as looks
 
 
@@ -20,7 +21,7 @@ class THENAR_MT_object(bpy.types.Menu):
             layout.separator()
         layout.operator("thenar.show_pressure")
         for kind, title, _, _ in looks.KINDS:
-            layout.operator("thenar.look", text=f"Look At {title}").kind = kind
+            layout.operator("thenar.look", text=iface("Look At {side}", side=iface(title))).kind = kind
         layout.operator("thenar.look_back")
         layout.separator()
         layout.operator("thenar.copy_debug_info")

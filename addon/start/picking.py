@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import languages
 from ..hand import bonemap, reading
 from ..hand.rig_axes import RigError
 from ..hand_shape import framing
@@ -37,7 +38,8 @@ def take(operator, context, hand):
     level, found = _detect(hand)
     framing.frame(context, hand)
     running.redraw(context)
-    operator.report({level}, f"'{hand.name}' is the hand, {len(hand.data.vertices):,} vertices{found}")
+    words = "'{name}' is the hand, {vertices:,} vertices"
+    operator.report({level}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)) + found)
 
 
 def hand_of(context, obj):
@@ -69,7 +71,8 @@ def _detect(hand):
         bpy.ops.thenar.guess_bones()
     except RuntimeError as error:
         return "WARNING", f"; {str(error).removeprefix('Error: ').strip()}"
-    return "INFO", f", with {len(bonemap.get_map(armature))} bones and {len(hand.thenar.materials)} regions"
+    bones, regions = len(bonemap.get_map(armature)), len(hand.thenar.materials)
+    return "INFO", languages.report(", with {bones} bones and {regions} regions", bones=bones, regions=regions)
 
 
 def _is_hand(context, mesh):

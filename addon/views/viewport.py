@@ -10,6 +10,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 from mathutils import Vector
 
+from ..languages import iface
 from . import legend
 
 _STEPS = 96
@@ -91,7 +92,7 @@ def _draw_layout(plan, look):
         blf.size(0, size)
         blf.color(0, 0.95, 0.95, 0.95, 1.0)
         blf.position(0, x, y, 0)
-        blf.draw(0, text)
+        blf.draw(0, iface(text))
 
 
 def _quads(shader, boxes):

@@ -1,0 +1,165 @@
+"""Every string of the interface that Blender or the add-on translates: from registered classes, and from the sources.
+
+As a script: prints for each language what is missing and what no longer occurs, as entries of its PO file; with
+`--write` it takes the latter out, puts all entries in order, and keeps the file.
+"""
+
+import ast
+import functools
+import re
+import sys
+from pathlib import Path
+
+import shown_in_sources
+
+ROOT = Path(__file__).resolve().parents[3]
+LETTER = "addon/diagnosis/letter.py", "addon/diagnosis/wording.py"
+"""Files whose sentences stay English: the letter is the library's report."""
+
+
+def of_classes():
+    """(context, string) -> where it stands, of all registered classes of the add-on."""
+    import bpy
+
+    out = {}
+
+    def put(text, where, context="*"):
+        if text and shown_in_sources.is_words(text):
+            out.setdefault((context or "*", text), where)
+
+    for cls in _below(bpy.types.Operator):
+        module, _, name = cls.bl_idname.partition(".")
+        rna = getattr(getattr(bpy.ops, module), name).get_rna_type()
+        put(rna.name, cls.__name__, rna.translation_context)
+        put(rna.description, cls.__name__)
+        _put_properties(put, cls, rna)
+    for base in (bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler):
+        for cls in _below(base):
+            put(cls.bl_label, cls.__name__, getattr(cls, "bl_translation_context", "*"))
+    for base in (bpy.types.PropertyGroup, bpy.types.AddonPreferences):
+        for cls in _below(base):
+            _put_properties(put, cls, cls.bl_rna)
+    return out
+
+
+def _put_properties(put, cls, rna):
+    own = {name for base in cls.__mro__ if _is_ours(base) for name in vars(base).get("__annotations__", ())}
+    for prop in rna.properties:
+        name, where, context = prop.identifier, f"{cls.__name__}.{prop.identifier}", prop.translation_context
+        if name not in own or prop.is_hidden or prop.name == name:
+            continue
+        put(prop.name, where, context)
+        put(prop.description, where)
+        for item in prop.enum_items_static if prop.type == "ENUM" else ():
+            put(item.name, f"{where}.{item.identifier}", context)
+            put(item.description, f"{where}.{item.identifier}")
+
+
+def _is_ours(cls):
+    return cls.__module__.startswith("thenar_blender")
+
+
+def _below(base):
+    for cls in base.__subclasses__():
+        yield from _below(cls)
+        if _is_ours(cls) and cls.is_registered:
+            yield cls
+
+
+def of_data():
+    """Names that code makes of identifiers: effects and their numbers, regions, digits, grades, map units, stages."""
+    from thenar_blender import effect_settings, grades, languages, maps, sentences
+    from thenar_blender.grasp import samples
+    from thenar_blender.hand import roles
+    from thenar_blender.panels import lists
+    from thenar_blender.rigs import skin_regions
+
+    out = {}
+    for row in effect_settings.offered().values():
+        names = [row["name"], *(each["name"] for each in (*row["shape"], *row["choices"]))]
+        names += [option for choice in row["choices"] for option in choice["options"]]
+        out |= dict.fromkeys(map(effect_settings.title, names), f"effect {row['name']}")
+    for name in skin_regions.NAMES:
+        out |= dict.fromkeys((sentences.region_title(name), lists.brief(name)), f"region {name}")
+    for digit in ("thumb", *roles.FINGERS, "wrist", "palm"):
+        out |= dict.fromkeys((digit.capitalize(), digit), "digits")
+    for grade in grades.ORDER:
+        out |= dict.fromkeys((grade, grades.title(grade)), "grades")
+    for view in maps.MAPS.values():
+        out |= {view.title: view.kind, view.meaning: view.kind, view.missing: view.kind}
+        if " " in view.unit:
+            out[view.unit] = view.kind
+    out |= dict.fromkeys(grades._HEADINGS.values(), "reasons of grades")
+    out |= dict.fromkeys((sample.label for sample in samples.SAMPLES.values()), "samples")
+    out |= dict.fromkeys(("Power", "Pinch"), "kinds of grasps")
+    out |= dict.fromkeys((*stages(), *map(str.capitalize, _timed())), "stage")
+    of_bones = {(languages.BONE, role.rpartition("_")[2].capitalize()): "bones" for role in roles.ROLES}
+    return {**of_bones, **{("*", text): where for text, where in out.items()}}
+
+
+def stages():
+    """Names of stages that computations report, from the sources in Rust and Python."""
+    found = {"read"}
+    for path in (*ROOT.glob("rust/*/src/**/*.rs"), *ROOT.glob("addon/**/*.py")):
+        found |= set(re.findall(r"""(?:control\s*\.step|[^_.\w]progress)\(\s*"([a-z ]+)",""", path.read_text("utf-8")))
+    return sorted(found)
+
+
+def _timed():
+    """Stages whose seconds are listed under Quality and Time."""
+    texts = [path.read_text("utf-8") for path in ROOT.glob("rust/contact/src/**/*.rs")]
+    return sorted({name for text in texts for name in re.findall(r'add_time\([^"()]*"([a-z ]+)"', text)})
+
+
+@functools.cache
+def of_sources(root=ROOT):
+    """((context, string) -> where, [composed f-strings]) of all Python files of the add-on."""
+    files = {}
+    for path in sorted((root / "addon").rglob("*.py")):
+        name = path.relative_to(root).as_posix()
+        if name not in LETTER:
+            files[name] = shown_in_sources.Sources(ast.parse(path.read_text("utf-8")))
+    polled = set().union(*(source.polled for source in files.values()))
+    out, composed = {}, []
+    for name, source in files.items():
+        source.returned(polled)
+        for line, text in source.found:
+            out.setdefault(("*", text), f"{name}:{line}")
+        composed += [f"{name}:{line}: {text}" for line, text in source.composed]
+    return out, composed
+
+
+@functools.cache
+def everything():
+    """(context, string) -> where it stands: classes, sources, names made of data. Thenar must be registered."""
+    return {**of_data(), **of_sources()[0], **of_classes()}
+
+
+def main():
+    """Print what is missing in each language and what is left over; with `--write` bring the files into line."""
+    import bpy
+    import tables
+    import thenar_blender
+    from thenar_blender import languages
+    from thenar_blender.languages import po
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    thenar_blender.register()
+    wanted = everything()
+    thenar_blender.unregister()
+    for name in languages.LANGUAGES:
+        path, table = languages.FOLDER / f"{name}.po", tables.entries(name)
+        missing, unused = tables.compared(wanted, table)
+        print(f"# {name}.po: {len(missing)} missing, {len(unused)} no longer used")
+        for (context, text), where in missing.items():
+            lines = [f"#: {where}", *po.lines(context, text, "")]
+            print("", *lines, sep="\n")
+        print(*(f"# no longer used: {text}" for _, text in unused), sep="\n")
+        if "--write" in sys.argv:
+            kept = {**dict.fromkeys(missing, ""), **{key: text for key, text in table.items() if key not in unused}}
+            head = [line[2:] for line in path.read_text("utf-8").splitlines() if line.startswith("# ")]
+            po.write(path, head, dict(sorted(kept.items(), key=tables.place)))
+
+
+if __name__ == "__main__":
+    main()
