@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, StringProperty
 
-from . import names, native
+from . import languages, names, native
 
 _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
@@ -73,7 +73,12 @@ class ThenarEffectChoice(bpy.types.PropertyGroup):
     """One choice of an effect among `options` (words with blanks between); `name` is the library's."""
 
     options: StringProperty()
-    value: EnumProperty(name="Choice", description="Which law the effect follows", items=_options)
+    value: EnumProperty(
+        name="Choice",
+        description="Which law the effect follows",
+        items=_options,
+        translation_context=languages.LAW,
+    )
 
 
 class ThenarEffect(bpy.types.PropertyGroup):

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
-from . import languages, maps, status
+from . import maps, status
 
 
 def _look_changed(_self, context):
@@ -27,12 +27,7 @@ KINDS = tuple((row.kind, row.title, row.meaning, place) for place, row in enumer
 class ThenarMaps(bpy.types.PropertyGroup):
     """`scene.thenar.maps`: the map on the skin, and the tops of the ranges of all maps but the pressure's."""
 
-    shown: EnumProperty(
-        name="Map",
-        description="Quantity that the colors on the skin show",
-        items=KINDS,
-        translation_context=languages.OWN,
-    )
+    shown: EnumProperty(name="Map", description="Quantity that the colors on the skin show", items=KINDS)
     contour: BoolProperty(
         name="Contour",
         description="Draw a thin line where contact ends, in Material Preview, renders and bakes",

@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import bake_settings, comfort_settings, effect_settings, languages, map_settings, names, status
+from . import bake_settings, comfort_settings, effect_settings, map_settings, names, status
 from .material_settings import ThenarMaterial
 from .soft_grip import settings as grip_settings
 
@@ -182,7 +182,6 @@ class ThenarScene(bpy.types.PropertyGroup):
     model: EnumProperty(
         name="Model",
         description="Contact model of the skin",
-        translation_context=languages.OWN,
         items=(
             ("LAYER", "Layer on bone", "Coupled soft-tissue layer of finite thickness on bone, nearly incompressible"),
             ("PAPER", "Paper", "Xie, Kanai & Date as published: independent regions, half space, swelling"),

@@ -73,19 +73,11 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     palm_mm: _depth("palm")
     place: EnumProperty(name="Start", items=PLACES, default="LAY")
     moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
-    digits: EnumProperty(
-        name="Digits",
-        items=DIGITS,
-        options={"ENUM_FLAG"},
-        default={digit[0] for digit in DIGITS},
-        translation_context=languages.OWN,
-    )
+    digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
     )
-    kind: EnumProperty(
-        name="Kind", description="How the hand holds the product", items=KINDS, translation_context=languages.OWN
-    )
+    kind: EnumProperty(name="Kind", description="How the hand holds the product", items=KINDS)
     end: EnumProperty(name="Thumb At", description="Which end of the handle the thumb is at", items=ENDS)
 
     @classmethod
@@ -229,7 +221,6 @@ class THENAR_OT_add_sample(bpy.types.Operator):
 
     kind: EnumProperty(
         name="Sample",
-        translation_context=languages.OWN,
         items=[(kind, sample.label, "") for kind, sample in samples.SAMPLES.items()],
         default="cylinder_48",
     )

@@ -63,12 +63,7 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
     bl_label = "Apply Pose"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: EnumProperty(
-        name="Pose",
-        items=[(name, label, "") for name, label in LABELS.items()],
-        default="relaxed",
-        translation_context=languages.OWN,
-    )
+    name: EnumProperty(name="Pose", items=[(name, label, "") for name, label in LABELS.items()], default="relaxed")
 
     @classmethod
     def poll(cls, context):

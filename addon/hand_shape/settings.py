@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty, StringProperty
 
-from .. import languages, native
+from .. import native
 from ..operators.running import sentence
 from ..scene.checks import Refusal
 from . import built, editing, skin_look
@@ -105,7 +105,6 @@ class ThenarHandShape(bpy.types.PropertyGroup):
     )
     age: FloatProperty(
         name="Age",
-        translation_context=languages.OWN,
         description="Years; deepens creases and wrinkles, roughens the skin and spots the back of the hand",
         min=18.0,
         max=100.0,

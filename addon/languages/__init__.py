@@ -1,6 +1,7 @@
 """The interface in other languages: tables brought to Blender, and sentences composed in the user's language."""
 
 import functools
+import inspect
 import re
 from pathlib import Path
 
@@ -17,7 +18,9 @@ FORCE = "Thenar: force"
 """Context of words that mean the strength of a grasp: Light is weak there, not bright."""
 BONE = "Thenar: bone"
 """Context of the parts of a finger: Middle is the bone between two others there, not the finger."""
-CONTEXTS = ("*", "Operator", OWN, FORCE, BONE)
+LAW = "Thenar: law"
+"""Context of the laws of an effect: Power is a power law there, not a power grip."""
+CONTEXTS = ("*", "Operator", OWN, FORCE, BONE, LAW)
 """Contexts in which an entry without one holds: Blender's default, its operators, ours."""
 
 _FRAME, _FORCED = re.compile(r"frame (\d+) of (\d+), (.*)"), re.compile(r"Force (\d+) N")
@@ -73,8 +76,39 @@ def table(name):
 
 def register():
     """Read the tables and give them to Blender."""
+    claim()
     held = {locale: table(name) for name, locales in LANGUAGES.items() for locale in locales}
     bpy.app.translations.register(__package__, held)
+
+
+def claim():
+    """Give all classes and properties of ours, before they are registered, our context where they name none."""
+    for base in (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu):
+        for cls in _below(base):
+            if not hasattr(cls, "bl_translation_context"):
+                cls.bl_translation_context = OWN
+    for base in (bpy.types.Operator, bpy.types.PropertyGroup, bpy.types.AddonPreferences):
+        for cls in _below(base):
+            _claim_properties(cls)
+
+
+def _below(base):
+    """Classes of the add-on below a class of Blender."""
+    for cls in base.__subclasses__():
+        yield from _below(cls)
+        if _is_ours(cls):
+            yield cls
+
+
+def _claim_properties(cls):
+    for owner in filter(_is_ours, cls.__mro__):
+        for declared in inspect.get_annotations(owner).values():
+            if hasattr(declared, "keywords"):
+                declared.keywords.setdefault("translation_context", OWN)
+
+
+def _is_ours(cls):
+    return cls.__module__.startswith(__package__.removesuffix("languages"))
 
 
 def unregister():

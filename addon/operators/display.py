@@ -154,12 +154,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
     bl_label = "Show Map"
     bl_options = {"REGISTER", "UNDO"}
 
-    kind: bpy.props.EnumProperty(
-        name="Map",
-        description="Quantity that the colors show",
-        items=map_settings.KINDS,
-        translation_context=languages.OWN,
-    )
+    kind: bpy.props.EnumProperty(name="Map", description="Quantity that the colors show", items=map_settings.KINDS)
 
     @classmethod
     def description(cls, context, properties):

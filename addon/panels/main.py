@@ -70,6 +70,7 @@ class THENAR_PT_main(Tab, bpy.types.Panel):
     """What is to be pressed, and the button that presses."""
 
     bl_label = "Thenar"
+    bl_translation_context = "*"  # the name of the extension; in its own context it is the ball of the thumb
 
     def draw(self, context):
         layout = self.layout
@@ -276,6 +277,7 @@ class THENAR_PT_physics(Physics, bpy.types.Panel):
     """The sidebar's main panel in the physics properties."""
 
     bl_label = "Thenar"
+    bl_translation_context = "*"
     draw = THENAR_PT_main.draw
 
 

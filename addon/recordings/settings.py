@@ -12,7 +12,6 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..languages import OWN
 from ..settings import ThenarText
 
 STUDY, MAP, PRINT = "STUDY", "MAP", "PRINT"
@@ -121,7 +120,6 @@ class ThenarPrint(bpy.types.PropertyGroup):
     ink: EnumProperty(
         name="Ink",
         description="Whether ink is darker or lighter than the paper",
-        translation_context=OWN,
         items=(
             ("AUTO", "Automatic", "The paper's brightness is taken from the edge of the image"),
             ("DARK", "Dark", "Dark ink on light paper"),

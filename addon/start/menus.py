@@ -11,6 +11,7 @@ class THENAR_MT_object(bpy.types.Menu):
 
     bl_idname = "THENAR_MT_object"
     bl_label = "Thenar"
+    bl_translation_context = "*"
 
     def draw(self, context):
         layout = self.layout

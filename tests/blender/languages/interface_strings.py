@@ -6,11 +6,12 @@ As a script: prints for each language what is missing and what no longer occurs,
 
 import ast
 import functools
+import inspect
 import re
 import sys
 from pathlib import Path
 
-import shown_in_sources
+import source_strings
 
 ROOT = Path(__file__).resolve().parents[3]
 LETTER = "addon/diagnosis/letter.py", "addon/diagnosis/wording.py"
@@ -24,7 +25,7 @@ def of_classes():
     out = {}
 
     def put(text, where, context="*"):
-        if text and shown_in_sources.is_words(text):
+        if text and source_strings.is_words(text):
             out.setdefault((context or "*", text), where)
 
     for cls in _below(bpy.types.Operator):
@@ -43,7 +44,7 @@ def of_classes():
 
 
 def _put_properties(put, cls, rna):
-    own = {name for base in cls.__mro__ if _is_ours(base) for name in vars(base).get("__annotations__", ())}
+    own = {name for base in cls.__mro__ if _is_ours(base) for name in inspect.get_annotations(base)}
     for prop in rna.properties:
         name, where, context = prop.identifier, f"{cls.__name__}.{prop.identifier}", prop.translation_context
         if name not in own or prop.is_hidden or prop.name == name:
@@ -74,11 +75,12 @@ def of_data():
     from thenar_blender.panels import lists
     from thenar_blender.rigs import skin_regions
 
-    out = {}
+    out, laws = {}, {}
     for row in effect_settings.offered().values():
         names = [row["name"], *(each["name"] for each in (*row["shape"], *row["choices"]))]
-        names += [option for choice in row["choices"] for option in choice["options"]]
         out |= dict.fromkeys(map(effect_settings.title, names), f"effect {row['name']}")
+        options = [effect_settings.title(option) for choice in row["choices"] for option in choice["options"]]
+        laws |= dict.fromkeys(((languages.LAW, option) for option in options), f"effect {row['name']}")
     for name in skin_regions.NAMES:
         out |= dict.fromkeys((sentences.region_title(name), lists.brief(name)), f"region {name}")
     for digit in ("thumb", *roles.FINGERS, "wrist", "palm"):
@@ -94,7 +96,7 @@ def of_data():
     out |= dict.fromkeys(("Power", "Pinch"), "kinds of grasps")
     out |= dict.fromkeys((*stages(), *map(str.capitalize, _timed())), "stage")
     of_bones = {(languages.BONE, role.rpartition("_")[2].capitalize()): "bones" for role in roles.ROLES}
-    return {**of_bones, **{("*", text): where for text, where in out.items()}}
+    return {**of_bones, **laws, **{(languages.OWN, text): where for text, where in out.items()}}
 
 
 def stages():
@@ -118,7 +120,7 @@ def of_sources(root=ROOT):
     for path in sorted((root / "addon").rglob("*.py")):
         name = path.relative_to(root).as_posix()
         if name not in LETTER:
-            files[name] = shown_in_sources.Sources(ast.parse(path.read_text("utf-8")))
+            files[name] = source_strings.Sources(ast.parse(path.read_text("utf-8")))
     polled = set().union(*(source.polled for source in files.values()))
     out, composed = {}, []
     for name, source in files.items():

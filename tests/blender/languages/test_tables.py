@@ -4,9 +4,10 @@ import ast
 import re
 from types import SimpleNamespace
 
+import bpy
 import interface_strings
 import pytest
-import shown_in_sources
+import source_strings
 import tables
 from thenar_blender import languages
 from thenar_blender.languages import po
@@ -44,7 +45,7 @@ def test_translations_fill_in_what_the_english_does(name):
 def test_translations_are_in_the_script_of_their_language(name):
     for (_, english), text in tables.entries(name).items():
         plain = re.sub(r"\{[^}]*\}", "", text)
-        if text == english or not shown_in_sources.is_words(plain):
+        if text == english or not source_strings.is_words(plain):
             continue
         if name == "de":
             assert not (KANA.search(text) or HAN.search(text)), text
@@ -91,7 +92,7 @@ def test_sentences_are_composed_of_templates(scene):
 
 
 def of_source(text):
-    found = shown_in_sources.Sources(ast.parse(text))
+    found = source_strings.Sources(ast.parse(text))
     found.returned(found.polled)
     return [words for _, words in found.found], [words for _, words in found.composed]
 
@@ -193,6 +194,7 @@ def test_blender_gets_every_language_in_every_context_and_gives_it_back(monkeypa
     held = {}
     said = SimpleNamespace(register=held.__setitem__, unregister=held.pop)
     monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=said)))
+    monkeypatch.setattr(languages, "claim", lambda: None)
     languages.register()
     (given,) = held.values()
     assert set(given) == {"ja_JP", "de_DE", "zh_HANS", "zh_CN"}
@@ -202,3 +204,16 @@ def test_blender_gets_every_language_in_every_context_and_gives_it_back(monkeypa
     assert given["de_DE"]["*", "Light"] == "Hell" and given["de_DE"][languages.FORCE, "Light"] == "Leicht"
     languages.unregister()
     assert not held
+
+
+def test_words_that_mean_something_else_in_blender_are_looked_up_in_our_context(scene):
+    """*Age* is a time that has passed in Blender's Japanese, *Index* a number, *Fast* an insertion in its German."""
+    assert scene.thenar.bl_rna.properties["hand"].translation_context == languages.OWN
+    solve = bpy.ops.thenar.solve.get_rna_type()
+    assert solve.translation_context == languages.OWN
+    assert solve.properties["show_map"].translation_context == languages.OWN
+    fit = bpy.ops.thenar.fit_grasp.get_rna_type().properties
+    assert fit["strength"].translation_context == languages.FORCE
+    assert fit["digits"].translation_context == languages.OWN
+    held = languages.table("de")
+    assert held["*", "Thenar"] == "Thenar" and held[languages.OWN, "Thenar"] == "Daumenballen"
