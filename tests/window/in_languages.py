@@ -8,9 +8,9 @@ Prints how many labels of Thenar's operators Blender shows in each language.
 import sys
 
 LANGUAGES = ("ja_JP", "de_DE", "zh_HANS")
-SCALES = {1.0: 5, 1.7: 9}
+SCALES = {1.0: 5, 1.7: 8}
 """Scale of the interface, and how many pictures of the sidebar, each a page further down."""
-WHEEL = 18
+WHEEL = 24
 """Turns of the wheel from page to page."""
 LIGHT = "Blender_Light.xml"
 
@@ -59,12 +59,12 @@ def drive(bpy, ui):
 
 
 def turn(ui, steps):
-    """Turn the wheel over the sidebar, down for steps above 0."""
-    for place in (1440, 1450):
-        ui.move(place, 500)
+    """Turn the wheel over the sidebar, below its tabs, where no list takes it; down for steps above 0."""
+    for place in (1586, 1590):
+        ui.move(place, 960)
         yield 0.4
     for number in range(abs(steps)):
-        ui.click(1450, 500, button=5 if steps > 0 else 4)
+        ui.click(1590, 960, button=5 if steps > 0 else 4)
         if number % 6 == 5:
             yield 0.05
     yield 1.0

@@ -215,5 +215,5 @@ def test_words_that_mean_something_else_in_blender_are_looked_up_in_our_context(
     fit = bpy.ops.thenar.fit_grasp.get_rna_type().properties
     assert fit["strength"].translation_context == languages.FORCE
     assert fit["digits"].translation_context == languages.OWN
-    held = languages.table("de")
-    assert held["*", "Thenar"] == "Thenar" and held[languages.OWN, "Thenar"] == "Daumenballen"
+    held = languages.table("ja")
+    assert held["*", "Thenar"] == "Thenar" and held[languages.OWN, "Thenar"] == "母指球"
