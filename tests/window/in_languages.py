@@ -8,8 +8,8 @@ Prints how many labels of Thenar's operators Blender shows in each language.
 import sys
 
 LANGUAGES = ("ja_JP", "de_DE", "zh_HANS")
-SCALES = {1.0: 5, 1.7: 8}
-"""Scale of the interface, and how many pictures of the sidebar, each a page further down."""
+SCALES = {1.0: (1566, 6), 1.7: (1540, 7)}
+"""Scale of the interface: where its sidebar has room right of lists (pixels), and how many pictures, page by page."""
 WHEEL = 24
 """Turns of the wheel from page to page."""
 LIGHT = "Blender_Light.xml"
@@ -41,15 +41,15 @@ def drive(bpy, ui):
         shown = bpy.app.translations.pgettext_iface("Solve Contact", "Operator")
         print("LANGUAGE", language, bpy.app.translations.locale, shown)
         assert shown != "Solve Contact"
-        for scale, pages in SCALES.items():
+        for scale, (x, pages) in SCALES.items():
             bpy.context.preferences.view.ui_scale = scale
             yield 2
             ui.sidebar("Thenar")
             yield 1
-            yield from turn(ui, -70)
+            yield from turn(ui, x, -90)
             for page in range(pages):
                 ui.shot(f"{language}_{scale:g}_{page}")
-                yield from turn(ui, WHEEL)
+                yield from turn(ui, x, WHEEL)
     bpy.context.preferences.view.ui_scale = 1.0
     theme = next(path for path in bpy.utils.preset_paths("interface_theme"))
     bpy.ops.script.execute_preset(filepath=f"{theme}/{LIGHT}", menu_idname="USERPREF_MT_interface_theme_presets")
@@ -58,13 +58,13 @@ def drive(bpy, ui):
     ui.shot("ja_JP_light")
 
 
-def turn(ui, steps):
-    """Turn the wheel over the sidebar, below its tabs, where no list takes it; down for steps above 0."""
-    for place in (1586, 1590):
-        ui.move(place, 960)
+def turn(ui, x, steps):
+    """Turn the wheel over the sidebar, right of its lists, which would take it; down for steps above 0."""
+    for place in (x - 1, x):
+        ui.move(place, 900)
         yield 0.4
     for number in range(abs(steps)):
-        ui.click(1590, 960, button=5 if steps > 0 else 4)
+        ui.click(x, 900, button=5 if steps > 0 else 4)
         if number % 6 == 5:
             yield 0.05
     yield 1.0

@@ -5,7 +5,9 @@ import re
 
 import pytest
 import tables
-from thenar_blender.panels import text
+from thenar_blender import languages
+from thenar_blender.panels import lists, text
+from thenar_blender.rigs import skin_regions
 
 OPENS, CLOSES = "「（“", "、。，；：」）”"
 
@@ -40,3 +42,20 @@ def test_lines_of_every_translation_fit_and_lose_nothing(name, letters):
         for before, after in zip(lines, lines[1:], strict=False):
             if ord(before[-1]) > 0x2E80 or ord(after[0]) > 0x2E80:
                 assert before[-1] not in OPENS and after[0] not in CLOSES, (before, after)
+
+
+@pytest.mark.parametrize("name", ["de", "ja", "zh"])
+def test_names_of_regions_fit_next_to_their_numbers(name):
+    """13 Latin letters of Blender's font fit there at the sidebar's default width: "Middle distal" does in English."""
+    held = languages.table(name)
+    names = [held[languages.OWN, lists.brief(region)] for region in skin_regions.NAMES]
+    assert not [each for each in names if text.room(each) > 13]
+
+
+@pytest.mark.parametrize("name", ["de", "ja", "zh"])
+def test_names_of_results_fit_next_to_their_numbers(name):
+    held = languages.table(name)
+    rows = ["Force", "Contact area", "Peak pressure", "Peak over 24 mm²", "Mean pressure", "Max. overlap"]
+    rows += ["Product offset", "Grip yields", "Shear force", "Peak shear", "Slipping area", "Max. shear force"]
+    rows += ["Penetration", "Write-back error", "Complementarity", "Slip dissipation", "Work on skin"]
+    assert not [held[languages.OWN, row] for row in rows if text.room(held[languages.OWN, row]) > 18]
