@@ -269,7 +269,13 @@ class THENAR_PT_quality(OfResult, bpy.types.Panel):
         _pair(box, "Model", result.model.capitalize())
         box = layout.box().column(align=True)
         for stage in result.stages:
-            _pair(box, stage.name.capitalize(), f"{stage.seconds * 1000:.0f} ms")
+            _pair(box, _stage(stage.name), f"{stage.seconds * 1000:.0f} ms")
+
+
+def _stage(name):
+    """A stage's name, `read`, or `press: solve` for a part of the press, in the user's language."""
+    whole, _, part = name.partition(": ")
+    return iface("Press: {stage}", stage=iface(part)) if part else iface(whole.capitalize())
 
 
 CLASSES = (

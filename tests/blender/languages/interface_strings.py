@@ -94,7 +94,7 @@ def of_data():
     out |= dict.fromkeys(grades._HEADINGS.values(), "reasons of grades")
     out |= dict.fromkeys((sample.label for sample in samples.SAMPLES.values()), "samples")
     out |= dict.fromkeys(("Power", "Pinch"), "kinds of grasps")
-    out |= dict.fromkeys((*stages(), *map(str.capitalize, _timed())), "stage")
+    out |= dict.fromkeys((*stages(), *_timed(), "Layer"), "stage or model")
     of_bones = {(languages.BONE, role.rpartition("_")[2].capitalize()): "bones" for role in roles.ROLES}
     return {**of_bones, **laws, **{(languages.OWN, text): where for text, where in out.items()}}
 
@@ -103,14 +103,21 @@ def stages():
     """Names of stages that computations report, from the sources in Rust and Python."""
     found = {"read"}
     for path in (*ROOT.glob("rust/*/src/**/*.rs"), *ROOT.glob("addon/**/*.py")):
-        found |= set(re.findall(r"""(?:control\s*\.step|[^_.\w]progress)\(\s*"([a-z ]+)",""", path.read_text("utf-8")))
+        found |= set(
+            re.findall(
+                r"""(?:control\s*\.step|[^_.\w]progress|control\.progress\))\(\s*"([a-z ]+)",""",
+                path.read_text("utf-8"),
+            )
+        )
     return sorted(found)
 
 
 def _timed():
-    """Stages whose seconds are listed under Quality and Time."""
+    """Stages whose seconds are listed under Quality and Time: whole ones of `addon/workflow.py`, parts from Rust."""
+    whole = re.findall(r'job\.seconds\["(\w+)"\]', (ROOT / "addon/workflow.py").read_text("utf-8"))
     texts = [path.read_text("utf-8") for path in ROOT.glob("rust/contact/src/**/*.rs")]
-    return sorted({name for text in texts for name in re.findall(r'add_time\([^"()]*"([a-z ]+)"', text)})
+    parts = {name for text in texts for name in re.findall(r'(?:add_time\([^"()]*|seconds[^"\n]*)"([a-z ]+)"', text)}
+    return [*map(str.capitalize, whole), *sorted(parts)]
 
 
 @functools.cache
