@@ -86,6 +86,8 @@ BAKE_MODIFIER = "Thenar Bake"
 BAKE_FOLDER = "thenar_cache"
 LEGEND_IMAGE = "Thenar Legend"
 LEGEND_NODES = ("Thenar Legend Image", "Thenar Legend Over")
+LEGEND_TREE = "thenar_legend"
+"""Custom property that marks the node tree of the legend's own compositor effect (Blender 5.3 and later)."""
 
 FRICTION = "friction"
 """The effect that answers to a slide."""

@@ -12,7 +12,7 @@ class Tree:
 
     def __init__(self, name):
         self.material = bpy.data.materials.new(name)
-        if hasattr(self.material, "use_nodes") and self.material.node_tree is None:
+        if self.material.node_tree is None:  # before Blender 5.0; later ones have nodes from the start
             self.material.use_nodes = True
         self.nodes = self.material.node_tree.nodes
         self.links = self.material.node_tree.links

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from .. import names
-from . import legend
+from . import compositor_trees, legend
 
 _SETTINGS = (
     ("view_settings", "view_transform", "Standard"),
@@ -40,11 +40,11 @@ def restore_preset(scene):
 
 
 def add_legend(scene):
-    """Lay the legend over the render by the compositor, before whatever stands there hands the picture on."""
+    """Lay the legend over the render by the compositor, after whatever else it does to the picture."""
     remove_legend(scene)
-    tree = _tree(scene)
+    tree = compositor_trees.for_legend(scene)
     image_name, over_name = names.LEGEND_NODES
-    target = _picture_input(tree)
+    target = compositor_trees.picture_input(tree)
     image = tree.nodes.new("CompositorNodeImage")
     image.name, image.image = image_name, _legend_image(scene)
     over = tree.nodes.new("CompositorNodeAlphaOver")
@@ -52,38 +52,47 @@ def add_legend(scene):
     image.location = (target.node.location.x - 400, target.node.location.y - 250)
     over.location = (target.node.location.x - 200, target.node.location.y)
     background, foreground = [socket for socket in over.inputs if socket.type == "RGBA"]
-    source = target.links[0].from_socket if target.is_linked else _render_layers(tree, scene).outputs["Image"]
+    is_linked = target.is_linked
+    source = target.links[0].from_socket if is_linked else compositor_trees.render_layers(tree, scene).outputs["Image"]
     tree.links.new(source, background)
     tree.links.new(image.outputs["Image"], foreground)
     tree.links.new(over.outputs[0], target)
 
 
 def remove_legend(scene):
-    """Take the legend's nodes out again and join what they parted."""
-    tree = _existing_tree(scene)
-    over = tree.nodes.get(names.LEGEND_NODES[1]) if tree is not None else None
-    if over is not None:
-        background = next(socket for socket in over.inputs if socket.type == "RGBA")
-        targets = [link.to_socket for link in over.outputs[0].links]
-        source = background.links[0].from_socket if background.is_linked else None
-        for target in targets if source is not None else ():
-            tree.links.new(source, target)
-        tree.nodes.remove(over)
-        image = tree.nodes.get(names.LEGEND_NODES[0])
-        if image is not None:
-            tree.nodes.remove(image)
+    """Take the legend's nodes out of every tree that has them, join what they parted, and drop a tree made for them."""
+    for tree in _with_legend(scene):
+        _take_out(tree)
+    compositor_trees.drop_own(scene)
+
+
+def _take_out(tree):
+    image_name, over_name = names.LEGEND_NODES
+    over = tree.nodes[over_name]
+    background = next(socket for socket in over.inputs if socket.type == "RGBA")
+    targets = [link.to_socket for link in over.outputs[0].links]
+    source = background.links[0].from_socket if background.is_linked else None
+    for target in targets if source is not None else ():
+        tree.links.new(source, target)
+    tree.nodes.remove(over)
+    image = tree.nodes.get(image_name)
+    if image is not None:
+        tree.nodes.remove(image)
 
 
 def has_legend(scene):
     """Whether renders of the scene carry the legend."""
-    tree = _existing_tree(scene)
-    return tree is not None and names.LEGEND_NODES[1] in tree.nodes
+    return bool(_with_legend(scene))
 
 
 def update_legend(scene):
     """Paint the legend anew after range, colours, result or picture size changed."""
-    if has_legend(scene):
-        _existing_tree(scene).nodes[names.LEGEND_NODES[0]].image = _legend_image(scene)
+    for tree in _with_legend(scene):
+        tree.nodes[names.LEGEND_NODES[0]].image = _legend_image(scene)
+
+
+def _with_legend(scene):
+    return [tree for tree in compositor_trees.trees(scene) if names.LEGEND_NODES[1] in tree.nodes]
 
 
 def _present(scene):
@@ -109,41 +118,3 @@ def picture_size(scene):
     """Width and height of the render, pixels."""
     factor = scene.render.resolution_percentage / 100.0
     return int(scene.render.resolution_x * factor), int(scene.render.resolution_y * factor)
-
-
-def _existing_tree(scene):
-    if hasattr(scene, "compositing_node_group"):
-        return scene.compositing_node_group
-    return scene.node_tree if scene.use_nodes else None
-
-
-def _tree(scene):
-    tree = _existing_tree(scene)
-    if tree is not None:
-        return tree
-    if not hasattr(scene, "compositing_node_group"):
-        scene.use_nodes = True
-        return scene.node_tree
-    tree = bpy.data.node_groups.new("Thenar Compositing", "CompositorNodeTree")
-    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    leave = tree.nodes.new("NodeGroupOutput")
-    tree.links.new(_render_layers(tree, scene).outputs["Image"], leave.inputs["Image"])
-    scene.compositing_node_group = tree
-    return tree
-
-
-def _picture_input(tree):
-    kinds = ("NodeGroupOutput", "CompositorNodeComposite")
-    for node in tree.nodes:
-        if node.bl_idname in kinds:
-            return next(socket for socket in node.inputs if socket.type == "RGBA")
-    return tree.nodes.new("CompositorNodeComposite").inputs["Image"]
-
-
-def _render_layers(tree, scene):
-    for node in tree.nodes:
-        if node.bl_idname == "CompositorNodeRLayers":
-            return node
-    node = tree.nodes.new("CompositorNodeRLayers")
-    node.scene = scene
-    return node

@@ -97,6 +97,28 @@ def test_render_preset_is_taken_back():
     assert scene.view_settings.view_transform == "AgX" and scene.cycles.use_denoising
 
 
+def test_legend_is_laid_over_a_compositor_without_nodes():
+    stage.scene()
+    stage.solve()
+    scene = bpy.context.scene
+    if hasattr(scene, "compositing_node_group"):
+        scene.compositing_node_group = tree = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+    else:
+        scene.use_nodes = True
+        tree = scene.node_tree
+        tree.nodes.clear()
+    bpy.ops.thenar.render_preset()
+    over = tree.nodes["Thenar Legend Over"]
+    layers = next(node for node in tree.nodes if node.bl_idname == "CompositorNodeRLayers")
+    assert [link.to_node.bl_idname for link in over.outputs[0].links] in (
+        ["NodeGroupOutput"],
+        ["CompositorNodeComposite"],
+    )
+    assert [link.to_node for link in layers.outputs["Image"].links] == [over]
+    bpy.ops.thenar.render_preset(restore=True)
+    assert "Thenar Legend Over" not in tree.nodes and len(layers.outputs["Image"].links) == 1
+
+
 def rendered(path, **options):
     scene = bpy.context.scene
     scene.render.engine, scene.cycles.samples = "CYCLES", 4

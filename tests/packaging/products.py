@@ -11,12 +11,15 @@ VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package
 WHEEL = TARGET / f"wheels/thenar-{VERSION}-cp311-abi3-manylinux_2_28_x86_64.whl"
 ZIP = TARGET / f"dist/thenar-{VERSION}-linux_x64.zip"
 BLENDERS = {"venv": "5.0", "venv45": "4.5"}
+MATRIX = {"4.2": "venv42", "4.3": "venv43", "4.4": "venv44", "4.5": "venv45", "5.0": "venv"}
+MATRIX |= {"5.1": "venv51", "5.2": "venv52", "5.3": "venv53"}
+"""Every Blender module of PyPI that Thenar supports, by its version: its environment below `target`."""
 
 
 def blender_scripts(environment):
     """Blender's own scripts inside the bpy wheel of an environment."""
-    packages = TARGET / environment / "lib/python3.11/site-packages"
-    return packages / "bpy" / BLENDERS[environment] / "scripts"
+    version = next(version for version, name in MATRIX.items() if name == environment)
+    return next(TARGET.glob(f"{environment}/lib/python3.*/site-packages/bpy/{version}/scripts"))
 
 
 def run(environment, arguments, seconds=120, **variables):

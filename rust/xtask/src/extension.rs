@@ -13,11 +13,13 @@ use std::process::{Command, ExitCode};
 const SCRIPT: &str = "bpy/5.0/scripts/addons_core/bl_pkg/cli/blender_ext.py";
 const TAGS: &str = "bpy/5.0/scripts/modules/_bpy_internal/extensions/tags.py";
 
-/// The wheel tags that this project ships and Blender's names for them.
-const PLATFORMS: [(&str, &str); 3] = [
-    ("-manylinux_2_28_x86_64.whl", "linux-x64"),
-    ("-win_amd64.whl", "windows-x64"),
-    ("_arm64.whl", "macos-arm64"),
+/// Beginning and end of the platform tag of the wheels that this project ships, and Blender's names for them.
+const PLATFORMS: [(&str, &str, &str); 5] = [
+    ("manylinux_2_28_", "x86_64", "linux-x64"),
+    ("manylinux_2_28_", "aarch64", "linux-arm64"),
+    ("win_", "amd64", "windows-x64"),
+    ("win_", "arm64", "windows-arm64"),
+    ("macosx_", "_arm64", "macos-arm64"),
 ];
 
 /// The template that is filled in rather than copied.
@@ -171,8 +173,15 @@ fn stage(places: &Places, wheels: &[PathBuf]) -> Result<PathBuf> {
 fn manifest(template: &str, wheels: &[String]) -> Result<String> {
     let mut platforms = Vec::new();
     for wheel in wheels {
-        let platform = PLATFORMS.iter().find(|(suffix, _)| wheel.ends_with(suffix));
-        let (_, platform) = platform
+        let tag = wheel
+            .trim_end_matches(".whl")
+            .rsplit('-')
+            .next()
+            .unwrap_or_default();
+        let platform = PLATFORMS
+            .iter()
+            .find(|(start, end, _)| tag.starts_with(start) && tag.ends_with(end));
+        let (_, _, platform) = platform
             .with_context(|| format!("{wheel} is for no platform that Thenar ships for"))?;
         ensure!(
             wheel.contains("-cp311-abi3-"),
@@ -258,12 +267,15 @@ mod tests {
     fn manifest_names_version_platforms_and_wheels() {
         let wheels = names(&[
             "cp311-abi3-manylinux_2_28_x86_64",
+            "cp311-abi3-manylinux_2_28_aarch64",
             "cp311-abi3-win_amd64",
+            "cp311-abi3-win_arm64",
             "cp311-abi3-macosx_11_0_arm64",
         ]);
         let text = manifest(TEMPLATE, &wheels).unwrap();
         assert!(text.contains(&format!("version = \"{}\"\n", env!("CARGO_PKG_VERSION"))));
-        assert!(text.contains("platforms = [\"linux-x64\", \"windows-x64\", \"macos-arm64\"]"));
+        let platforms = "platforms = [\"linux-x64\", \"linux-arm64\", \"windows-x64\", \"windows-arm64\", \"macos-arm64\"]";
+        assert!(text.contains(platforms), "{text}");
         assert!(text.contains("\"./wheels/thenar-1.2.3-cp311-abi3-win_amd64.whl\""));
         assert_eq!(
             text.matches("version = ").count(),
@@ -277,6 +289,7 @@ mod tests {
         let error =
             |template: &str, tag: &str| manifest(template, &names(&[tag])).unwrap_err().to_string();
         assert!(error(TEMPLATE, "cp311-abi3-linux_riscv64").contains("no platform"));
+        assert!(error(TEMPLATE, "cp311-abi3-macosx_10_12_x86_64").contains("no platform"));
         assert!(error(TEMPLATE, "cp311-cp311-win_amd64").contains("not a cp311-abi3"));
         assert!(
             error(

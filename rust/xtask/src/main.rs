@@ -8,6 +8,7 @@ mod wheel;
 mod extension;
 mod manual;
 mod setup;
+mod blenders;
 mod testing;
 mod tally;
 mod demo;
@@ -21,8 +22,10 @@ const USAGE: &str = "cargo xtask COMMAND
 
   setup     wheel, extension zip, target/venv with bpy, target/blender, target/release/thenar
   demo      solve and render the sample grasp into target/demo
-  test      every test: Rust, Python, Blender, architecture, packaging, docs, lint
-  samples   make blend-samples anew from code
+  test      every test: Rust, Python, Blender, architecture, packaging, docs, lint; `--blenders all` (or `4.2,5.3`):
+            the whole life of the extension in these Blender modules of PyPI too, besides 4.5 and 5.0
+  blenders [VERSION...]  only the whole life of the extension, in every Blender module of PyPI or in those named
+  samples   make blend-samples from code, in the oldest Blender
   prove     the blind trial of the diagnosis: table of verdicts against sealed labels (`-- --help`: options)
   bench     benchmarks, each as a ratio against a peer in the same run
   bundle WHEEL...  one extension zip per platform from ready wheels (for releases)";
@@ -47,7 +50,8 @@ fn dispatch(arguments: &[String]) -> Result<ExitCode> {
     match command {
         "setup" => setup::run(&places),
         "demo" => demo::demo(&places, rest),
-        "test" => testing::run(&places),
+        "test" => testing::run(&places, rest),
+        "blenders" => testing::live(&places, rest),
         "samples" => demo::samples(&places),
         "bench" => demo::bench(&places, rest),
         "prove" => prove::run(&places, rest),

@@ -41,13 +41,30 @@ impl Places {
 
     /// The interpreter of the environment `name` (`tools`, `venv`, `venv45`, ...).
     pub fn python(&self, name: &str) -> PathBuf {
-        self.target.join(name).join("bin/python")
+        interpreter(&self.target.join(name))
     }
 
     /// Blender's user folder with the extension installed.
     pub fn blender_resources(&self) -> PathBuf {
         self.target.join("blender")
     }
+}
+
+/// The interpreter of the environment in `folder`.
+pub fn interpreter(folder: &Path) -> PathBuf {
+    folder.join(if cfg!(windows) {
+        "Scripts/python.exe"
+    } else {
+        "bin/python"
+    })
+}
+
+/// Makes `link` point to the folder `to`. Windows allows it to administrators and in its developer mode.
+pub fn link_folder(to: &Path, link: &Path) -> std::io::Result<()> {
+    #[cfg(windows)]
+    return std::os::windows::fs::symlink_dir(to, link);
+    #[cfg(not(windows))]
+    return std::os::unix::fs::symlink(to, link);
 }
 
 /// A path as the user would type it from the top of the repository.

@@ -170,6 +170,13 @@ fn forward(pipe: impl Read + Send + 'static, sender: mpsc::Sender<String>) {
 
 /// Kills `id` and its descendants, parents first so that none is started anew.
 fn kill_tree(id: u32) {
+    if cfg!(windows) {
+        Command::new("taskkill")
+            .args(["/T", "/F", "/PID", &id.to_string()])
+            .status()
+            .ok();
+        return;
+    }
     let mut doomed = vec![id];
     let mut next = 0;
     while next < doomed.len() {

@@ -1,6 +1,6 @@
 //! CPython 3.11 and the environments made with it: found, filled and swapped in only when whole.
 
-use crate::places::Places;
+use crate::places::{Places, interpreter, link_folder};
 use crate::process;
 use crate::stamp::{self, Key};
 use anyhow::{Context, Result, bail};
@@ -89,16 +89,17 @@ pub fn find(version: &str) -> Result<PathBuf> {
         format!("cpython {version} True True"),
         format!("cpython {version} True False"),
     );
-    if let Some(chosen) = std::env::var_os("THENAR_PYTHON").filter(|_| version == "3.11") {
+    let variable = variable(version);
+    if let Some(chosen) = std::env::var_os(&variable) {
         let chosen = PathBuf::from(chosen);
         return match probe(&chosen) {
             Some(found) if found == whole => Ok(chosen),
             Some(found) => bail!(
-                "THENAR_PYTHON is {}, which is '{found}', not a 64-bit CPython {version} with venv and ensurepip",
+                "{variable} is {}, which is '{found}', not a 64-bit CPython {version} with venv and ensurepip",
                 chosen.display()
             ),
             None => bail!(
-                "THENAR_PYTHON is {}, which does not run as Python",
+                "{variable} is {}, which does not run as Python",
                 chosen.display()
             ),
         };
@@ -119,8 +120,16 @@ pub fn find(version: &str) -> Result<PathBuf> {
     }
     bail!(
         "CPython {version} was not found; install it (for example `uv python install {version}` or \
-         `apt install python{version} python{version}-venv`) so that `python{version}` runs, or set THENAR_PYTHON to its path"
+         `apt install python{version} python{version}-venv`) so that `python{version}` runs, or set {variable} to its path"
     )
+}
+
+/// The variable that names an interpreter: `THENAR_PYTHON` for 3.11, `THENAR_PYTHON_3_13` for 3.13.
+fn variable(version: &str) -> String {
+    match version {
+        "3.11" => "THENAR_PYTHON".to_string(),
+        other => format!("THENAR_PYTHON_{}", other.replace('.', "_")),
+    }
 }
 
 /// Commands to try, then what pyenv and uv keep outside the search path.
@@ -185,13 +194,13 @@ pub fn make(places: &Places, environment: &Environment) -> Result<()> {
         Command::new(python).args(["-m", "venv"]).arg(&folder),
         "making a Python environment",
     )?;
-    pip(&folder.join("bin/python"), environment.packages)?;
+    pip(&interpreter(&folder), environment.packages)?;
     if environment
         .packages
         .iter()
         .any(|package| package.starts_with("bpy=="))
     {
-        check_blender(&folder.join("bin/python"))?;
+        check_blender(&interpreter(&folder))?;
     }
     stamp::write(&ready, &key)?;
     point(&link, &folder)?;
@@ -246,7 +255,7 @@ fn probe(python: &Path) -> Option<String> {
 
 /// The interpreter that the environment was made from may have been removed since.
 fn runs(folder: &Path) -> bool {
-    probe(&folder.join("bin/python")).is_some()
+    probe(&interpreter(folder)).is_some()
 }
 
 /// Makes `link` point to `folder` in one step.
@@ -262,7 +271,7 @@ fn point(link: &Path, folder: &Path) -> Result<()> {
     }
     let partial = link.with_extension("partial");
     stamp::remove(&partial)?;
-    std::os::unix::fs::symlink(folder, &partial)
+    link_folder(folder, &partial)
         .and_then(|()| std::fs::rename(&partial, link))
         .with_context(|| format!("cannot link {}", link.display()))
 }

@@ -105,7 +105,7 @@ fn binary(places: &Places) -> Result<()> {
 }
 
 /// Two set-ups in one target folder would break each other: the second waits.
-fn lock(places: &Places) -> Result<File> {
+pub fn lock(places: &Places) -> Result<File> {
     let path = places.target.join(".setup-lock");
     let file = File::create(&path).with_context(|| format!("cannot make {}", path.display()))?;
     file.lock()

@@ -1,11 +1,12 @@
 //! `cargo xtask test`: every check as a step with a time limit, and one honest sum at the end.
 
+use crate::blenders;
 use crate::places::Places;
 use crate::process::{self, Output, Watched};
 use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
 use crate::setup::{self, cargo};
 use crate::tally::{self, Tally};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -22,6 +23,12 @@ const LANES: usize = 2;
 
 /// Folders of `tests` for which there are steps of their own.
 const NOT_PLAIN: [&str; 1] = ["blender"];
+
+/// Blender modules of the whole life of the extension by default: their environments are made for other tests anyway.
+const LIVED_IN: [&str; 2] = ["4.5", "5.0"];
+
+/// The variable that says to `tests/packaging/test_whole_life.py` which versions it is to live in.
+const VERSIONS: &str = "THENAR_BLENDERS";
 
 /// The plain folder that takes longest; it starts early, so that no lane ends long after the others.
 const LONGEST: &str = "trial";
@@ -47,16 +54,26 @@ struct Done {
     note: &'static str,
 }
 
-/// Sets up, runs every step, prints the sum.
+/// Sets up, runs every step, prints the sum. `--blenders all` or `--blenders 4.2,5.3` names further Blender modules for
+/// the whole life of the extension.
 ///
 /// # Errors
-/// If the set-up fails; a failed step is an exit code.
-pub fn run(places: &Places) -> Result<ExitCode> {
+/// If an argument is unknown or the set-up fails; a failed step is an exit code.
+pub fn run(places: &Places, arguments: &[String]) -> Result<ExitCode> {
+    let further = match arguments {
+        [] => &[],
+        [option, words @ ..] if option == "--blenders" && !words.is_empty() => words,
+        _ => {
+            bail!("`cargo xtask test` takes `--blenders all` or `--blenders 4.2,5.3`, nothing else")
+        }
+    };
+    let versions = blenders::chosen(&[further, &LIVED_IN.map(str::to_string)].concat())?;
     setup::test_environment(places)?;
+    blenders::make(places, &versions)?;
     let mut steps = rust_steps(places);
     steps.extend(lint_steps(places));
     steps.extend(type_steps(places));
-    let python_steps = python_steps(places)?;
+    let python_steps = python_steps(places, &versions.join(" "))?;
     let mut done = Vec::new();
     match advisory_step(places) {
         Some(step) => steps.push(step),
@@ -76,6 +93,19 @@ pub fn run(places: &Places) -> Result<ExitCode> {
     }
     done.extend(run_in_lanes(python_steps));
     Ok(report(&done))
+}
+
+/// `cargo xtask blenders [VERSION...]`: the whole life of the extension in these versions, without the other tests.
+///
+/// # Errors
+/// If a version is unknown or the set-up fails; a failed test is an exit code.
+pub fn live(places: &Places, words: &[String]) -> Result<ExitCode> {
+    let versions = blenders::chosen(words)?;
+    setup::user_environment(places)?;
+    blenders::make(places, &versions)?;
+    let mut step = pytest(places, "packaging/test_whole_life.py", BLENDER_50.name);
+    step.command.env(VERSIONS, versions.join(" "));
+    Ok(report(&[run_step(step, Output::AsItComes)]))
 }
 
 fn rust_steps(places: &Places) -> Vec<Step> {
@@ -167,7 +197,7 @@ fn deny(places: &Places, arguments: &[&str]) -> Command {
     command
 }
 
-fn python_steps(places: &Places) -> Result<Vec<Step>> {
+fn python_steps(places: &Places, versions: &str) -> Result<Vec<Step>> {
     let tests = places.root.join("tests");
     let mut folders: Vec<String> = std::fs::read_dir(&tests)
         .with_context(|| format!("cannot list {}", tests.display()))?
@@ -187,6 +217,9 @@ fn python_steps(places: &Places) -> Result<Vec<Step>> {
             .iter()
             .map(|folder| pytest(places, folder, BLENDER_50.name)),
     );
+    for step in &mut steps {
+        step.command.env(VERSIONS, versions);
+    }
     if tests.join("python").is_dir() && python::find(PLAIN_313.version).is_ok() {
         steps.push(pytest(places, "python", PLAIN_313.name));
     }
@@ -215,7 +248,7 @@ fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
             places
                 .target
                 .join("test-blender")
-                .join(format!("{environment}-{folder}")),
+                .join(format!("{environment}-{}", folder.replace(['/', '.'], "-"))),
         );
     step(
         &format!("pytest tests/{folder} ({environment})"),

@@ -1,6 +1,6 @@
 //! The native wheel (cp311-abi3, manylinux_2_28) and its installation into an environment.
 
-use crate::places::Places;
+use crate::places::{Places, link_folder};
 use crate::process;
 use crate::python;
 use crate::stamp::{self, Key};
@@ -126,8 +126,7 @@ fn link_add_on(places: &Places, name: &str) -> Result<()> {
         return Ok(());
     }
     stamp::remove(&link)?;
-    std::os::unix::fs::symlink(&source, &link)
-        .with_context(|| format!("cannot link {}", link.display()))
+    link_folder(&source, &link).with_context(|| format!("cannot link {}", link.display()))
 }
 
 fn site_packages(places: &Places, name: &str) -> Result<PathBuf> {
