@@ -27,7 +27,7 @@ class THENAR_PT_grasp(Tab, bpy.types.Panel):
             button = row.operator("thenar.fit_grasp", text=text)
             button.place, button.strength = "KEEP", strength
         if stored.found:
-            choices.draw(layout, stored)
+            choices.draw(layout, context)
         box = layout.column()
         box.use_property_split = True
         box.use_property_decorate = False

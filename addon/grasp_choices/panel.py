@@ -2,44 +2,48 @@
 
 import bpy.utils.previews
 
+from ..panels import text
 from . import picture, reasons
 
 _held = {"previews": None}
-_SCALE = 4.2
-"""Size of a picture in the panel, in buttons."""
+_SCALE, _SHARE = 4.0, 0.38
+"""Size of a picture in the panel, in buttons, and its share of the width."""
 
 
-def draw(layout, stored):
+def draw(layout, context):
     """A box for each grasp of the scene's `thenar_grasps`, best first, and a button that looks for others."""
+    stored = context.scene.thenar_grasps
     best = stored.found[0]
     column = layout.column(align=True)
     for index, row in enumerate(stored.found):
-        box = column.box().row(align=True)
-        number = icon(row.picture)
+        box = column.box().column(align=True)
+        number, words = icon(row.picture), box
         if number:
-            box.template_icon(icon_value=number, scale=_SCALE)
-        words = box.column(align=True)
-        holds = row.friction <= stored.friction
-        words.label(text=f"{index + 1}: {reasons.title(row)}", icon="CHECKMARK" if holds else "ERROR")
+            head = box.split(factor=_SHARE)
+            head.template_icon(icon_value=number, scale=_SCALE)
+            words = head.column(align=True)
+        words.label(text=f"{index + 1}: {reasons.title(row)}")
         words.label(text=reasons.numbers(row))
-        words.label(text="Best" if index == 0 else reasons.why(row, best, stored.friction))
-        is_shown = stored.shown == index
-        text = "Taken" if is_shown else "Take"
-        words.operator("thenar.use_grasp", text=text, depress=is_shown).index = index
+        words.label(text=reasons.friction_of(row))
+        is_shown, holds = stored.shown == index, row.friction <= stored.friction
+        words.operator("thenar.use_grasp", text="Taken" if is_shown else "Take", depress=is_shown).index = index
+        why = "Holds: the best one" if index == 0 and holds else reasons.why(row, best, stored.friction)
+        if why:
+            text.paragraph(box, context, why, "CHECKMARK" if holds else "ERROR")
     layout.operator("thenar.more_grasps", icon="VIEWZOOM")
 
 
-def icon(text):
+def icon(packed):
     """Blender's number of the picture that a text holds, made when it is asked for first; 0 where it holds none."""
-    if not text:
+    if not packed:
         return 0
     if _held["previews"] is None:
         _held["previews"] = bpy.utils.previews.new()
-    name = str(hash(text))
+    name = str(hash(packed))
     if name not in _held["previews"]:
         preview = _held["previews"].new(name)
         preview.image_size = (picture.SIZE, picture.SIZE)
-        preview.image_pixels_float = picture.colored(picture.unpacked(text)).ravel()
+        preview.image_pixels_float = picture.colored(picture.unpacked(packed)).ravel()
     return _held["previews"][name].icon_id
 
 

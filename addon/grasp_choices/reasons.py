@@ -18,6 +18,11 @@ def numbers(row):
     return f"{row.total_n:.0f} N, {row.net_n:.0f} N left over"
 
 
+def friction_of(row):
+    """The friction that holds what a row leaves over."""
+    return f"Friction {row.friction:.2f}" if row.friction < 10.0 else "No friction holds it"
+
+
 def why(row, best, friction):
     """Why `row` ranks below `best`, rows of the scene; `friction`: what is there. Empty where nothing is kept."""
     if not row.facts or not best.facts:
@@ -35,7 +40,7 @@ def why(row, best, friction):
 
 def _words(cause, own, other, friction):
     row, facts = own
-    if cause == "touch" and facts["clear"] > 0:
+    if cause == "touch" and facts["clear"] * other["pads"] > other["clear"] * facts["pads"]:
         return f"{facts['clear']} of {facts['pads']} pads hang clear (best: {other['clear']} of {other['pads']})"
     return {
         "touch": "its pads lie less deep than wanted",

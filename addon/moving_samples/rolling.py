@@ -5,8 +5,9 @@ from mathutils import Matrix
 
 ROLL_DEG = 32.0
 """How far the finger turns about its own axis to either side."""
-FRAMES, EVERY = 48, 3
-"""The roll begins and ends upright; at 24 frames a second it lasts 2 s. A key stands at each third frame."""
+FRAMES = 48
+"""The roll begins and ends upright; at 24 frames a second it lasts 2 s. Every frame has its key, in the
+Euler angles nearest to those before: others of the same turn throw the finger off the ball between two keys."""
 
 
 def roll(context, rig, product, bone):
@@ -15,9 +16,12 @@ def roll(context, rig, product, bone):
     The ball's middle is its object's origin. The scene's range becomes that of the roll.
     """
     scene, start = context.scene, np.array(rig.matrix_world)
-    for frame in range(1, FRAMES + 2, EVERY):
+    turn = rig.rotation_euler.copy()
+    for frame in range(1, FRAMES + 2):
         angle = np.radians(ROLL_DEG) * np.sin(2.0 * np.pi * (frame - 1) / FRAMES)
         rig.matrix_world = Matrix((motion(rig, start, (product, bone), angle) @ start).tolist())
+        turn = rig.matrix_world.to_euler("XYZ", turn)
+        rig.rotation_euler = turn
         for path in ("location", "rotation_euler"):
             rig.keyframe_insert(path, frame=frame)
     rig.matrix_world = Matrix(start.tolist())

@@ -48,9 +48,9 @@ def test_row_without_a_picture_has_no_icon():
     assert panel.icon("") == 0
 
 
-def row(kind="POWER", score=1.0, **counted):
+def row(kind="POWER", score=1.0, clear=4, **counted):
     causes = dict.fromkeys(("touch", "balance", "sum", "peak", "deep", "slips", "thumb", "place"), 0.0) | counted
-    said = {"asked_n": 200.0, "net_share": 0.3, "peak_kpa": 700.0, "clear": 4, "pads": 19, "end": 1}
+    said = {"asked_n": 200.0, "net_share": 0.3, "peak_kpa": 700.0, "clear": clear, "pads": 19, "end": 1}
     facts = json.dumps({"counted": causes, **said})
     return SimpleNamespace(kind=kind, score=score, facts=facts, total_n=120.0, net_n=36.0, friction=0.9)
 
@@ -69,7 +69,12 @@ def row(kind="POWER", score=1.0, **counted):
     ],
 )
 def test_the_largest_cause_is_named(cause, words):
-    assert words in reasons.why(row(score=3.0, **{cause: 2.0, "place": 0.1 + 2.0 * (cause == "place")}), row(), 0.38)
+    own = row(score=3.0, **{cause: 2.0, "place": 0.1 + 2.0 * (cause == "place")})
+    assert words in reasons.why(own, row(clear=1), 0.38)
+
+
+def test_as_many_clear_pads_are_no_reason():
+    assert "less deep" in reasons.why(row(score=3.0, touch=2.0), row(), 0.38)
 
 
 def test_an_unfinished_way_is_said_to_be_one():
