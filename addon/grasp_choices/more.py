@@ -6,14 +6,14 @@ from functools import partial
 import bpy
 import numpy as np
 
-from .. import native, workflow
+from .. import languages, native, workflow
 from ..grasp import fitting, search, settings
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_pose
 from ..operators import computing, polling
 from ..scene.checks import Refusal
-from . import panel
+from . import panel, reasons
 
 FINGERS = ("index", "little", "middle", "ring")
 KINDS = (("POWER", None), ("PINCH", None), ("HOOK", FINGERS))
@@ -53,17 +53,22 @@ class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
             except (Refusal, native.module.SolveError) as refusal:
                 if "cancelled" in str(refusal):
                     raise
-                refused.append(kind.lower())
+                refused.append(kind)
                 continue
             rows.append(_row(fitting.rows_of(context, found[:1])[0], kind, fit))
         _add(stored, rows)
-        return [row["kind"].lower() for row in rows], refused
+        return [row["kind"] for row in rows], refused
 
     def _report(self, context, outcome):
-        added, refused = outcome
-        parts = [f"added: {', '.join(added)}"] if added else []
-        parts += [f"no {' and no '.join(refused)} grip holds the product"] if refused else []
-        self.report({"INFO"}, ("; ".join(parts) or "all kinds are in the list already").capitalize())
+        added, refused = (", ".join(languages.inside(reasons.KINDS[kind]) for kind in kinds) for kinds in outcome)
+        if added and refused:
+            text = languages.report("Added: {added}; does not hold: {refused}", added=added, refused=refused)
+        elif added or refused:
+            words = "Added: {kinds}" if added else "Nothing added; does not hold: {kinds}"
+            text = languages.report(words, kinds=added or refused)
+        else:
+            text = languages.report("All kinds are in the list already")
+        self.report({"INFO"}, text)
         return {"FINISHED"}
 
 

@@ -2,6 +2,7 @@
 
 import bpy.utils.previews
 
+from ..languages import iface
 from ..panels import text
 from . import picture, reasons
 
@@ -22,12 +23,13 @@ def draw(layout, context):
             head = box.split(factor=_SHARE)
             head.template_icon(icon_value=number, scale=_SCALE)
             words = head.column(align=True)
-        words.label(text=f"{index + 1}: {reasons.title(row)}")
+        words.label(text=reasons.title(row, index + 1))
         words.label(text=reasons.numbers(row))
         words.label(text=reasons.friction_of(row))
         is_shown, holds = stored.shown == index, row.friction <= stored.friction
-        words.operator("thenar.use_grasp", text="Taken" if is_shown else "Take", depress=is_shown).index = index
-        why = "Holds: the best one" if index == 0 and holds else reasons.why(row, best, stored.friction)
+        taking = iface("Taken") if is_shown else iface("Take")
+        words.operator("thenar.use_grasp", text=taking, depress=is_shown).index = index
+        why = iface("Holds: the best one") if index == 0 and holds else reasons.why(row, best, stored.friction)
         if why:
             text.paragraph(box, context, why, "CHECKMARK" if holds else "ERROR")
     layout.operator("thenar.more_grasps", icon="VIEWZOOM")

@@ -59,13 +59,14 @@ def row(kind="POWER", score=1.0, clear=4, **counted):
     ("cause", "words"),
     [
         ("touch", "4 of 19 pads hang clear"),
-        ("balance", "leaves 30% of its forces over"),
-        ("sum", "carries 120 of 200 N"),
-        ("peak", "presses up to 700 kPa"),
+        ("balance", "Leaves 30% of its forces over"),
+        ("sum", "Carries 120 of 200 N"),
+        ("peak", "Presses up to 700 kPa"),
         ("slips", "needs a friction of 0.90 where 0.38 is there"),
-        ("thumb", "the thumb's pad faces away"),
+        ("thumb", "The thumb's pad faces away"),
         ("place", "suits the hand less"),
         ("deep", "too deep"),
+        ("bare", "Leaves thumb and palm out"),
     ],
 )
 def test_the_largest_cause_is_named(cause, words):
@@ -78,12 +79,12 @@ def test_as_many_clear_pads_are_no_reason():
 
 
 def test_an_unfinished_way_is_said_to_be_one():
-    assert "not balanced to the end" in reasons.why(row(score=3.0), row(), 0.38)
-    assert reasons.why(row(score=1.0), row(), 0.38) == "about as good"
+    assert "Not balanced to the end" in reasons.why(row(score=3.0), row(), 0.38)
+    assert reasons.why(row(score=1.0), row(), 0.38) == "About as good"
 
 
 def test_better_score_of_another_kind_is_explained():
-    assert "power goes first" in reasons.why(row("PINCH", 0.5), row(score=2.0), 0.38)
+    assert "Power goes first" in reasons.why(row("PINCH", 0.5), row(score=2.0), 0.38)
 
 
 def test_rows_of_older_files_have_no_reason():
