@@ -20,6 +20,7 @@ from . import (
     settings,
     start,
 )
+from .grasp_choices import more as more_grasps
 from .views import viewport
 
 _MODULES = (
@@ -32,6 +33,7 @@ _MODULES = (
     hand,
     rigging,
     grasp,
+    more_grasps,
     hand_shape,
     picture_sets,
     recordings,

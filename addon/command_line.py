@@ -109,13 +109,15 @@ def _parser():
     demo.add_argument("--out", default="target/demo", metavar="DIR")
     demo.add_argument("--frames", action="store_true", help="solve it at least, mean and greatest force (Xie Fig. 21)")
     demo.set_defaults(run=_demo)
+    kinds = ("grip_and_print", "comfort_card", "turntable", "unrolled", "on_glass", "live_film")
     picture = commands.add_parser("picture", help="make a picture of the result that a file holds")
     picture.add_argument("blend", metavar="FILE.blend")
-    picture.add_argument("--kind", choices=("grip_and_print", "comfort_card", "turntable", "unrolled"))
+    picture.add_argument("--kind", choices=kinds)
     picture.add_argument("--out", metavar="FILE", help="where to: .png, for a film .mp4; a card is written as .pdf too")
     picture.add_argument("--height", type=int, default=1080, metavar="PIXELS")
     picture.add_argument("--samples", type=int, default=8, help="rays per pixel")
-    picture.add_argument("--rate", type=int, default=24, help="frames a second of a film")
+    picture.add_argument("--rate", type=int, default=24, help="frames a second of a turntable")
+    picture.add_argument("--frames", type=int, default=48, help="most frames of a live film")
     picture.add_argument(
         "--percentiles", action="store_true", help="on a card: hands of three sizes that grasp the product"
     )

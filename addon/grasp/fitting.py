@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native, workflow
+from ..grasp_choices import facts
 from ..grasp_fit import fitter, walls
 from ..grasp_fit.task import Goal, Task
 from ..hand import capsules, normals, pads, reading, roles
@@ -158,7 +159,13 @@ def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
 
 def keep(context, fit, found):
     """Keep the grasps found in the scene, best first."""
-    rows = [
+    settings.keep(context.scene, named(fit), rows_of(context, found))
+
+
+def rows_of(context, found):
+    """Values of the scene's rows for `search.Found` grasps."""
+    friction = context.scene.thenar_grasps.friction
+    return [
         {
             "pose": settings.packed(*one.pose),
             "kind": one.way.kind,
@@ -166,13 +173,13 @@ def keep(context, fit, found):
             "net_n": float(np.linalg.norm(one.state.net_n)),
             "friction": min(one.friction, MOST_FRICTION),
             "score": one.score,
+            **facts.row_of(one, friction),
         }
         for one in found
     ]
-    settings.keep(context.scene, _named(fit), rows)
 
 
-def _named(fit):
+def named(fit):
     """What a grasp is kept for: the hand with its count of vertices, which goes with its size, and the product."""
     hand, _, parts = fit.names
     return f"{hand} of {len(fit.hand.rig.vertices)} vertices", "\n".join(parts)
@@ -185,7 +192,7 @@ def use(context, index):
     if not 0 <= index < len(stored.found):
         raise checks.Refusal(f"there are {len(stored.found)} grasps; there is no grasp {index + 1}")
     fit = prepare(context, chosen.hand, parts, fitter.Wish(pads.FIRM_MM, is_placed=True))
-    if _named(fit) != (stored.hand, stored.product):
+    if named(fit) != (stored.hand, stored.product):
         raise checks.Refusal("the grasps were found for another hand or product; press Grasp again")
     angles, place = settings.unpacked(stored.found[index].pose)
     if angles.shape != fit.wish.angles.shape:

@@ -150,9 +150,9 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         for text in best.grasp.warnings:
             self.report({"WARNING"}, running.sentence(text))
         level, text = words.held(best.state, (best.friction, context.scene.thenar_grasps.friction), best.asked_n)
-        words = "{held}; the best of {ways} ways to hold it, {seconds:.1f} s"
-        words = "{held}; 1 way to hold it, {seconds:.1f} s" if len(found) == 1 else words
-        self.report({level}, languages.report(words, held=text, ways=len(found), seconds=best.grasp.seconds))
+        said = "{held}; the best of {ways} ways to hold it, {seconds:.1f} s"
+        said = "{held}; 1 way to hold it, {seconds:.1f} s" if len(found) == 1 else said
+        self.report({level}, languages.report(said, held=text, ways=len(found), seconds=best.grasp.seconds))
         return {"FINISHED"}
 
 

@@ -11,6 +11,7 @@ from mathutils import Matrix, Vector
 from ..grasp_fit import fitter
 from ..hand import build, pads, poses, posing, products, reading, roles, studio
 from ..hand.skinning import skin
+from ..moving_samples import rolling
 from ..scene.units import mm_per_unit
 from . import fitting
 
@@ -148,6 +149,24 @@ def _let_down(hand, rig, digits, targets_mm):
     return place
 
 
+def _rolled(meet, bone):
+    """The same on top of a ball, after which the finger of a distal bone rolls over it."""
+
+    def meet_and_roll(context, hand, rig, product):
+        product.location.z = -0.5 * max(product.dimensions)
+        context.view_layer.update()
+        meet(context, hand, rig, product)
+        rolling.roll(context, rig, product, bone)
+
+    return meet_and_roll
+
+
+def _ball(radius_mm):
+    """A ball around its origin, meshed as fine as other products."""
+    angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 40)[1:-1]
+    return products.turned(radius_mm * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+
+
 def _part(pad):
     return "palm" if pad.kind == "palm" else pad.role.partition("_")[0]
 
@@ -245,6 +264,30 @@ SAMPLES = {
         ),
         (90, 0, 0),
         (158.0, 4.0, 520.0),
+    ),
+    "hand_on_glass": Sample(
+        "Hand on glass",
+        "Glass Plate",
+        lambda: _aside(products.plate(225.0, 250.0, 8.0, 2.2), -12.0),
+        lambda: studio.clear("Clear Plate", (0.93, 0.97, 0.98, 1.0)),
+        _press(
+            "palm_press",
+            ("palm", "thumb", "index", "middle", "ring", "little"),
+            {"palm": 2.0, "proximal": 1.2, "middle": 1.2, "distal": 2.0},
+            (0, 0, 0),
+        ),
+        (90, 0, 0),
+        (176.0, 3.0, 560.0),
+    ),
+    "finger_on_ball": Sample(
+        "Finger rolls on ball",
+        "Ball",
+        lambda: _ball(20.0),
+        _satin("Ball", (0.62, 0.13, 0.09, 1.0), 0.3),
+        _rolled(_press("fingertip_press", ("index",), {"distal": 2.8}, (12, 0, 0)), "index_distal"),
+        (0, 0, 0),
+        (-58.0, 9.0, 235.0),
+        aim=("index_distal", "index_distal", "index_middle"),
     ),
     "cylinder_48": _cylinder(48, 337.0, (-74.0, 13.0, 430.0)),
     "cylinder_60": _cylinder(60, 260.0, (-80.0, 13.0, 440.0)),

@@ -14,7 +14,7 @@ WEIGHT_MOST_N = 500.0
 
 class ThenarGrasp(bpy.types.PropertyGroup):
     """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; `kind` POWER or PINCH;
-    the rest says what it carries when it is pressed."""
+    `facts` and `picture` are of `grasp_choices`; the rest says what it carries when it is pressed."""
 
     pose: StringProperty()
     kind: StringProperty()
@@ -22,6 +22,11 @@ class ThenarGrasp(bpy.types.PropertyGroup):
     net_n: FloatProperty()
     friction: FloatProperty()
     score: FloatProperty()
+    facts: StringProperty()
+    picture: StringProperty()
+
+
+FIELDS = ("pose", "kind", "total_n", "net_n", "friction", "score", "facts", "picture")
 
 
 class ThenarGrasps(bpy.types.PropertyGroup):

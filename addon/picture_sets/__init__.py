@@ -36,7 +36,7 @@ def run(options):
         process.serve(wanted, drawing.draw)
         return
     wanted = order.Order(options.kind.upper(), options.out, options.height, options.samples)
-    wanted.with_percentiles, wanted.rate = options.percentiles, options.rate
+    wanted.with_percentiles, wanted.rate, wanted.frames = options.percentiles, options.rate, options.frames
     wanted.is_stale = workflow.is_out_of_date(context)
     if not options.overwrite:
         order.refuse_to_overwrite(wanted)

@@ -5,7 +5,7 @@ from pathlib import Path
 from .. import export
 from ..picture_stage import laying, page, pdf, pixels
 from ..scene.checks import Refusal
-from . import card, grip_and_print, turntable, unrolled
+from . import card, grip_and_print, live_film, on_glass, turntable, unrolled
 from . import order as orders
 
 
@@ -18,6 +18,8 @@ def draw(order, context):
     if not context.scene.thenar.result.is_valid:
         raise Refusal("there is no result to show; press Solve first")
     order.tell("read", 0.0)
+    if order.kind == orders.LIVE:
+        return live_film.draw(order, context)
     subject = laying.gather(context)
     if order.kind == orders.TURN:
         return turntable.draw(order, subject, context)
@@ -39,4 +41,9 @@ def _written(order, sheet):
     return paths
 
 
-_PAGES = {orders.GRIP: grip_and_print.draw, orders.CARD: card.draw, orders.UNROLLED: unrolled.draw}
+_PAGES = {
+    orders.GRIP: grip_and_print.draw,
+    orders.CARD: card.draw,
+    orders.UNROLLED: unrolled.draw,
+    orders.GLASS: on_glass.draw,
+}

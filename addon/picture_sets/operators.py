@@ -34,7 +34,10 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
     samples: IntProperty(
         name="Samples", description="Rays per pixel; what is left of noise is removed", min=1, default=orders.SAMPLES
     )
-    rate: IntProperty(name="Rate", description="Frames a second of a film", min=1, max=60, default=24)
+    rate: IntProperty(name="Rate", description="Frames a second of a Turntable", min=1, max=60, default=24)
+    frames: IntProperty(
+        name="Frames", description="Most frames of a Live Film; 0: as set under Pictures", min=0, max=2000, default=0
+    )
     overwrite: BoolProperty(name="Overwrite", description="Replace the file if it exists", default=False)
 
     @classmethod
@@ -67,6 +70,7 @@ class THENAR_OT_picture(computing.Computing, bpy.types.Operator):
             self.samples,
             with_percentiles=chosen.with_percentiles,
             rate=self.rate,
+            frames=self.frames or chosen.film_frames,
         )
         if not order.target:
             order.target = str(orders.free_path(_folder(chosen), self.kind, context.scene.thenar.result.product_name))

@@ -11,6 +11,7 @@ import bpy
 from ..scene.checks import Refusal
 
 GRIP, CARD, TURN, UNROLLED = "GRIP_AND_PRINT", "COMFORT_CARD", "TURNTABLE", "UNROLLED"
+GLASS, LIVE = "ON_GLASS", "LIVE_FILM"
 KINDS = (
     (GRIP, "Grip and Print", "The hand on the product, and the same hand opened with its pressure, in one scale (PNG)"),
     (
@@ -26,8 +27,27 @@ KINDS = (
         "has no FFmpeg). 96 frames: takes minutes to an hour",
     ),
     (UNROLLED, "Wrapped and Unrolled", "The product in the hand, and its surface unrolled with the pressure (PNG)"),
+    (
+        GLASS,
+        "On Glass",
+        "The hand seen through the product as glass, skin pale where blood is pressed out of it, and the same with its "
+        "pressure; for products pressed from one side, as a plate (PNG)",
+    ),
+    (
+        LIVE,
+        "Live Film",
+        "A film of the scene's animation at its own frame rate, every frame solved, seen through the product drawn "
+        "clear, with running numbers (MP4; numbered PNG where Blender has no FFmpeg). Takes minutes to an hour",
+    ),
 )
-SUFFIXES = {GRIP: (".png",), CARD: (".png", ".pdf"), TURN: (".mp4",), UNROLLED: (".png",)}
+SUFFIXES = {
+    GRIP: (".png",),
+    CARD: (".png", ".pdf"),
+    TURN: (".mp4",),
+    UNROLLED: (".png",),
+    GLASS: (".png",),
+    LIVE: (".mp4",),
+}
 LEAST, MOST = 64, 4320
 """Pixels of a picture's height."""
 SAMPLES = 8
@@ -46,6 +66,8 @@ class Order:
     rate: int = 24
     """Frames a second of a film."""
     scene: str = ""
+    frames: int = 48
+    """Most frames of a film of the scene's animation."""
     tell: Callable = field(default=lambda stage, share: None)
     """Called with what is under way and how far it is, 0 to 1."""
 
@@ -95,6 +117,8 @@ def check(order):
         raise Refusal(f"a picture {order.height} pixels high cannot be made; give {LEAST} to {MOST}")
     if not 1 <= order.rate <= 60:
         raise Refusal(f"a film of {order.rate} frames a second cannot be made; give 1 to 60")
+    if order.frames < 2:
+        raise Refusal(f"a film of {order.frames} frames cannot be made; give 2 or more")
     suffix = Path(order.target).suffix.lower()
     if suffix not in SUFFIXES[order.kind]:
         raise Refusal(f"'{Path(order.target).name}' has an unknown extension; give {SUFFIXES[order.kind][0]}")

@@ -6,7 +6,14 @@ from .. import status
 from ..panels.main import Tab
 from . import operators, order
 
-_ICONS = {order.GRIP: "IMAGE_DATA", order.CARD: "FILE_TEXT", order.TURN: "FILE_MOVIE", order.UNROLLED: "UV"}
+_ICONS = {
+    order.GRIP: "IMAGE_DATA",
+    order.CARD: "FILE_TEXT",
+    order.TURN: "FILE_MOVIE",
+    order.UNROLLED: "UV",
+    order.GLASS: "VIEW_PAN",
+    order.LIVE: "PLAY",
+}
 
 
 class THENAR_PT_pictures(Tab, bpy.types.Panel):
@@ -32,6 +39,7 @@ class THENAR_PT_pictures(Tab, bpy.types.Panel):
         column.prop(chosen, "folder")
         column.prop(chosen, "height")
         column.prop(chosen, "with_percentiles")
+        column.prop(chosen, "film_frames")
         if operators.last_made():
             layout.operator("thenar.open_picture", icon="HIDE_OFF")
 

@@ -26,6 +26,13 @@ class ThenarPictures(bpy.types.PropertyGroup):
         name="5th, 50th, 95th Percentile",
         description="On a comfort card, hands of three sizes grasp the product and are solved: takes minutes more",
     )
+    film_frames: IntProperty(
+        name="Film Frames",
+        description="Most frames of a Live Film, from the scene's first frame on; 48 are 2 s at 24 a second",
+        min=2,
+        max=2000,
+        default=48,
+    )
 
 
 CLASSES = (ThenarPictures,)

@@ -1,18 +1,10 @@
 """The film *Turntable*: hand and product turn once in 4 s; the product is drawn clear, so that the map shows."""
 
-import shutil
-import tempfile
-from contextlib import contextmanager
-from pathlib import Path
-
-import bpy
 import numpy as np
 
-from .. import export
 from ..hand import studio
 from ..picture_stage import page, pixels, stage, views
-from ..scene.checks import Refusal
-from . import grip_and_print
+from . import film, grip_and_print
 from . import order as orders
 
 SECONDS = 4
@@ -22,33 +14,12 @@ _CLEAR = (0.90, 0.94, 0.95, 1.0)
 
 def draw(order, subject, context):
     """Write the film, or without FFmpeg its frames as numbered PNG. Returns the paths. Raises `Refusal`."""
-    target = orders.targets(order)[0]
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix="thenar-", ignore_cleanup_errors=True) as folder:
-            frames = _frames(order, subject, context, Path(folder))
-            if not has_ffmpeg():
-                return [_put(frame, target.with_name(f"{target.stem}-{frame.name}")) for frame in frames]
-            return [_put(filmed(frames, order.rate), target)]
-    except OSError as error:
-        raise Refusal(f"'{target}' cannot be written ({error.strerror}); choose another folder") from None
-
-
-def has_ffmpeg():
-    """Whether this Blender writes films."""
-    return bool(bpy.app.build_options.codec_ffmpeg)
-
-
-def _put(made, target):
-    export.replace_file(target, lambda partial: shutil.copyfile(made, partial))
-    return target
+    return film.written(order, order.rate, lambda folder: _frames(order, subject, context, folder))
 
 
 def _frames(order, subject, context, folder):
     """The frames as PNG in `folder`. Returns their paths."""
-    for part in subject.product:
-        part.mesh.materials.clear()
-        part.mesh.materials.append(studio.clear("Thenar Picture Clear", _CLEAR))
+    draw_clear(subject)
     view, number, paths = views.of_grip(context, subject), SECONDS * order.rate, []
     pivot, window, floor = _whole(order, subject, view)
     for frame in range(number):
@@ -67,6 +38,13 @@ def _frames(order, subject, context, folder):
         paths.append(folder / f"{frame + 1:04}.png")
         pixels.save_png(paths[-1], page.painted(sheet, order.factor))
     return paths
+
+
+def draw_clear(subject):
+    """Let the product be seen through."""
+    for part in subject.product:
+        part.mesh.materials.clear()
+        part.mesh.materials.append(studio.clear("Thenar Picture Clear", _CLEAR))
 
 
 def _about_up(angle):
@@ -89,42 +67,3 @@ def _whole(order, subject, view):
         for solid in subject.gripped()
     )
     return view.T @ middle, window, depth
-
-
-def filmed(frames, rate):
-    """The PNG `frames` as an MP4 film (H.264) of so many a second in their folder. Returns its path."""
-    path = frames[0].with_name("film.mp4")
-    with _film_scene(frames, rate) as scene:
-        scene.render.filepath = str(path)
-        bpy.ops.render.render(scene=scene.name, animation=True)
-    return path
-
-
-@contextmanager
-def _film_scene(frames, rate):
-    scene = bpy.data.scenes.new("Thenar Film")
-    try:
-        editor = scene.sequence_editor_create()
-        strips = editor.strips if hasattr(editor, "strips") else editor.sequences
-        strip = strips.new_image("Film", str(frames[0]), 1, 1)
-        for frame in frames[1:]:
-            strip.elements.append(frame.name)
-        if hasattr(strip, "frame_final_duration"):
-            strip.frame_final_duration = len(frames)
-        image = bpy.data.images.load(str(frames[0]))
-        render = scene.render
-        render.resolution_x, render.resolution_y = (size - size % 2 for size in image.size)
-        bpy.data.images.remove(image)
-        render.resolution_percentage, render.fps, render.fps_base = 100, rate, 1.0
-        scene.frame_start, scene.frame_end = 1, len(frames)
-        if hasattr(render.image_settings, "media_type"):  # Blender 5.0 and later
-            render.image_settings.media_type = "VIDEO"
-        render.image_settings.file_format = "FFMPEG"
-        render.ffmpeg.format, render.ffmpeg.codec = "MPEG4", "H264"
-        render.ffmpeg.constant_rate_factor, render.ffmpeg.gopsize = "HIGH", 12
-        render.ffmpeg.audio_codec = "NONE"
-        render.use_sequencer, render.use_file_extension = True, False
-        scene.view_settings.view_transform = "Standard"
-        yield scene
-    finally:
-        bpy.data.scenes.remove(scene)

@@ -55,6 +55,9 @@ class Shot:
     floor_mm: float | None = None
     """Height of the sheet in the view's frame; None: under what lies on it."""
     samples: int = SAMPLES
+    perspective: tuple | None = None
+    """Height in the view's frame of the plane in which the window's mm hold, and how far above it the eye is, mm; None:
+    seen from infinitely far."""
     on_progress: object = field(default=lambda share: None)
 
 
@@ -76,6 +79,8 @@ def take(shot):
         sheet = _sheet(scene, shot, undo)
         _light(scene, undo)
         light = _rendered(scene, shot)
+        if not any(solid.has_map for solid in shot.solids):
+            return _feathered(np.clip(colormap_srgb(light), 0.0, 1.0))
         mapped, bare = values.material(shot.look), values.nothing()
         for obj, solid in placed:
             _bare(obj, mapped if solid.has_map else bare)
@@ -113,10 +118,14 @@ def _place(scene, shot, undo):
     scene.camera = camera
     low, high = _depth(shot)
     window, reach = shot.window, high - low + 1.0
-    data.type = "ORTHO"
-    data.ortho_scale = window.mm * max(window.size) / shot.scale
+    width, eye = window.mm * max(window.size), high + reach
+    if shot.perspective is None:
+        data.type, data.ortho_scale = "ORTHO", width / shot.scale
+    else:
+        plane, away = shot.perspective
+        data.lens, eye, reach = data.sensor_width * away / width, plane + away, reach + away
     data.clip_start, data.clip_end = 0.1 * reach / shot.scale, 20.0 * reach / shot.scale
-    camera.location = Vector((*window.middle, high + reach)) / shot.scale
+    camera.location = Vector((*window.middle, eye)) / shot.scale
     return placed
 
 

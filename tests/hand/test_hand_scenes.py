@@ -9,8 +9,8 @@ from thenar_blender.grasp_fit import walls
 from thenar_blender.hand import build, pads, reading
 
 SAMPLE_KINDS = (
-    "fingertip_on_plate", "palm_on_plate", "cylinder_48", "cylinder_60", "cylinder_100", "handlebar", "bottle",
-    "held_bottle",
+    "fingertip_on_plate", "palm_on_plate", "hand_on_glass", "finger_on_ball", "cylinder_48", "cylinder_60",
+    "cylinder_100", "handlebar", "bottle", "held_bottle",
 )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ import stage as scenes
 import whole_state
 from thenar_blender import grades
 from thenar_blender.operators import computing
-from thenar_blender.picture_sets import card, drawing, grip_and_print, operators, process, sizes, turntable
+from thenar_blender.picture_sets import card, drawing, film, grip_and_print, operators, process, sizes
 from thenar_blender.picture_sets import order as orders
 from thenar_blender.picture_stage import facts, laying, pdf
 from thenar_blender.picture_stage import page as pages
@@ -260,7 +260,7 @@ def test_film_opens_in_another_reader(solved, tmp_path):
 
 
 def test_without_ffmpeg_a_film_is_numbered_pictures(solved, tmp_path, monkeypatch):
-    monkeypatch.setattr(turntable, "has_ffmpeg", lambda: False)
+    monkeypatch.setattr(film, "has_ffmpeg", lambda: False)
     made = drawing.draw(orders.Order(orders.TURN, str(tmp_path / "turn.mp4"), rate=1, **SMALL), bpy.context)
     assert [path.name for path in made] == [f"turn-{number:04}.png" for number in range(1, 5)]
     assert sorted(tmp_path.iterdir()) == made

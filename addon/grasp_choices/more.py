@@ -1,0 +1,116 @@
+"""The operator that looks for grasps of other kinds, and adds them to those found. The hand stays where it is."""
+
+import json
+from functools import partial
+
+import bpy
+import numpy as np
+
+from .. import languages, native, workflow
+from ..grasp import fitting, search, settings
+from ..grasp_fit import fitter
+from ..hand import pads
+from ..hand.operators import can_pose
+from ..operators import computing, polling
+from ..scene.checks import Refusal
+from . import panel, reasons
+
+FINGERS = ("index", "little", "middle", "ring")
+KINDS = (("POWER", None), ("PINCH", None), ("HOOK", FINGERS))
+"""Kinds of grasps that are sought, and the digits that take part; None: all, and the palm."""
+_BARE = 3.0
+"""What counts against a grasp that leaves out parts of the hand, for the share of pads left out: as for pads that hang
+clear."""
+
+
+class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
+    """Look for grasps of the other kinds, power, pinch and hook, and add them to the list; the hand stays as it is"""
+
+    bl_idname = "thenar.more_grasps"
+    bl_label = "Look for Other Kinds"
+    bl_options = {"REGISTER", "UNDO"}
+    noun = "Search"
+
+    @classmethod
+    def poll(cls, context):
+        found = getattr(context.scene, "thenar_grasps", None)
+        problem = "" if found is not None and found.found else "no grasp was found yet; press Grasp first"
+        return polling.allows(cls, polling.no_product(context), problem) and can_pose(cls, context)
+
+    def steps(self, context):
+        stored, parts = context.scene.thenar_grasps, workflow.product_parts(context.scene.thenar)
+        have, rows, refused = {row.kind for row in stored.found}, [], []
+        first = json.loads(stored.found[0].facts or "{}")
+        for kind, digits in KINDS:
+            if kind in have:
+                continue
+            wish = fitter.Wish(pads.FIRM_MM, digits)
+            fit = fitting.prepare(context, context.scene.thenar.hand, parts, wish)
+            _refuse_another(stored, fit)
+            asked = search.Asked(*_sums(first, kind), kind="PINCH" if kind == "PINCH" else "POWER")
+            try:
+                found = yield partial(fitting.search_all, fit, asked)
+            except (Refusal, native.module.SolveError) as refusal:
+                if "cancelled" in str(refusal):
+                    raise
+                refused.append(kind)
+                continue
+            rows.append(_row(fitting.rows_of(context, found[:1])[0], kind, fit))
+        _add(stored, rows)
+        return [row["kind"] for row in rows], refused
+
+    def _report(self, context, outcome):
+        added, refused = (", ".join(languages.inside(reasons.KINDS[kind]) for kind in kinds) for kinds in outcome)
+        if added and refused:
+            text = languages.report("Added: {added}; does not hold: {refused}", added=added, refused=refused)
+        elif added or refused:
+            words = "Added: {kinds}" if added else "Nothing added; does not hold: {kinds}"
+            text = languages.report(words, kinds=added or refused)
+        else:
+            text = languages.report("All kinds are in the list already")
+        self.report({"INFO"}, text)
+        return {"FINISHED"}
+
+
+def _refuse_another(stored, fit):
+    if fitting.named(fit) != (stored.hand, stored.product):
+        raise Refusal("the grasps were found for another hand or product; press Grasp again")
+
+
+def _sums(first, kind):
+    """The sums of a power grip and a pinch, N, as strong as the first grasp of the list was asked to be."""
+    asked = first.get("asked_n")
+    if asked is None:
+        return fitting.sums_of("FIRM")
+    light = "LIGHT" if asked <= fitting.TOTALS_N["LIGHT"] else "FIRM"
+    return fitting.sums_of(light)
+
+
+def _row(row, kind, fit):
+    """The row of a grasp of that kind; what the hand leaves out counts against it."""
+    bare = _BARE * float(np.isnan(fitter.wanted_depths(fit.hand.pads, fit.wish)).mean())
+    if kind != "HOOK":
+        return row
+    facts = json.loads(row["facts"])
+    facts["counted"]["bare"] = round(bare, 4)
+    return row | {"kind": kind, "score": row["score"] + bare, "facts": json.dumps(facts)}
+
+
+def _add(stored, rows):
+    """Add rows to those of the scene: Auto's choice first, then by score; the grasp that is shown stays so."""
+    old = [{name: getattr(row, name) for name in settings.FIELDS} for row in stored.found]
+    shown = old[stored.shown]["pose"] if 0 <= stored.shown < len(old) else None
+    rows = [old[0], *sorted([*old[1:], *rows], key=lambda row: row["score"])]
+    settings.keep(bpy.context.scene, (stored.hand, stored.product), rows)
+    stored.shown = next((number for number, row in enumerate(rows) if row["pose"] == shown), -1)
+
+
+def register():
+    """Register the operator."""
+    bpy.utils.register_class(THENAR_OT_more_grasps)
+
+
+def unregister():
+    """Unregister it, and drop the pictures."""
+    panel.forget()
+    bpy.utils.unregister_class(THENAR_OT_more_grasps)
