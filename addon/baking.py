@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from . import following, native, workflow
+from . import following, names, native, workflow
 from .contact_fields import written
 from .scene import baked, checks, copies, moving, own, units
 from .soft_grip import covering
@@ -20,11 +20,14 @@ class Bake:
 
     first: int
     last: int
+    take: str
     stem: object
     frame_before: int
     course: following.Course
     follows: bool = False
     done: list = field(default_factory=list)
+    resumed: int = 0
+    """Frames that a bake had solved which ended in a crash."""
 
     @property
     def frame(self):
@@ -37,8 +40,8 @@ class Bake:
         return self.frame > self.last
 
 
-def begin(context, frame_start, frame_end):
-    """Check the scene and the range. Raises `Refusal`."""
+def begin(context, frame_start, frame_end, take=""):
+    """Check the scene and the range; a `take` without a name gets the next one. Raises `Refusal`."""
     if frame_end < frame_start:
         raise checks.Refusal(f"the bake ends at frame {frame_end} before it starts at {frame_start}; swap them")
     hand, parts = workflow.check(context)
@@ -47,7 +50,10 @@ def begin(context, frame_start, frame_end):
         moving.check_movable(context, parts)
     render = context.scene.render
     course = following.Course(render.fps_base / render.fps)
-    return Bake(frame_start, frame_end, baked.folder_of(hand), context.scene.frame_current, course)
+    take = take.strip() or baked.free_name(hand)
+    if len(f"{names.BAKE_MODIFIER}: {take}".encode()) > 63:
+        raise checks.Refusal(f"the take's name '{take}' is too long for a modifier; give it at most 40 letters")
+    return Bake(frame_start, frame_end, take, baked.stem_of(hand, take), context.scene.frame_current, course)
 
 
 def read_frame(context, bake):
@@ -88,9 +94,10 @@ def publish(context, bake):
     for number, frame in enumerate(bake.done):
         frame["work_mj"] = course.work_mj[number] if bake.follows else 0.0
         frame["slip_loss_mj"] = course.slip_loss_mj[number] if bake.follows else 0.0
-    baked.publish(settings.hand, bake.stem, bake.first, bake.done)
-    _sum_up(settings.hand.thenar.bake, bake)
-    for part in workflow.product_parts(settings):
+    parts = workflow.product_parts(settings)
+    take = baked.Take(bake.take, bake.stem, bake.first, _sums(bake))
+    baked.publish(settings.hand, take, bake.done, [part for part in parts if part.name in bake.done[0]["parts"]])
+    for part in parts:
         moving.send_home(part)
         if part.name in bake.done[0]["parts"]:
             copies.remove_copy(part.name)  # frames are shown on the part itself
@@ -98,16 +105,23 @@ def publish(context, bake):
     settings.result.state_hash, settings.result.reference.is_valid = "", False
 
 
-def _sum_up(told, bake):
-    told.frame_start, told.frame_end, told.follows = bake.first, bake.last, bake.follows
-    told.peak_kpa = max(frame["peak_kpa"] for frame in bake.done)
-    told.peak_force_n = max(frame["force_n"] for frame in bake.done)
-    told.peak_shear_n = max(frame["shear_n"] for frame in bake.done)
-    told.work_mj, told.slip_loss_mj = bake.done[-1]["work_mj"], bake.done[-1]["slip_loss_mj"]
+def _sums(bake):
+    """What the frames of a bake have together, by the names of `hand.thenar.bake`."""
     found = following.cycles(bake.course.force_n, bake.course.work_mj) if bake.follows else []
-    loss, work = np.sum(found, axis=0) if found else (0.0, 0.0)
-    told.cycles, told.cycle_loss_mj = len(found), loss / max(len(found), 1)
-    told.cycle_loss_share = loss / work if work > 0.0 else 0.0
+    loss, work = (float(total) for total in np.sum(found, axis=0)) if found else (0.0, 0.0)
+    return {
+        "frame_start": bake.first,
+        "frame_end": bake.last,
+        "follows": bake.follows,
+        "peak_kpa": max(frame["peak_kpa"] for frame in bake.done),
+        "peak_force_n": max(frame["force_n"] for frame in bake.done),
+        "peak_shear_n": max(frame["shear_n"] for frame in bake.done),
+        "work_mj": float(bake.done[-1]["work_mj"]),
+        "slip_loss_mj": float(bake.done[-1]["slip_loss_mj"]),
+        "cycles": len(found),
+        "cycle_loss_mj": loss / max(len(found), 1),
+        "cycle_loss_share": loss / work if work > 0.0 else 0.0,
+    }
 
 
 def leave(context, bake):
@@ -115,24 +129,33 @@ def leave(context, bake):
     context.scene.frame_set(bake.frame_before)
 
 
-def steps(context, frame_start, frame_end):
+def steps(context, frame_start, frame_end, take=""):
     """A whole bake as the steps of a computation. Returns the `Bake`; the current frame stays what it was.
 
-    Raises `Refusal` and the native module's errors, which name the frame; then nothing is written.
+    Frames that a crashed bake of this take has solved from the same input are taken over, unless frames follow one
+    another. Raises `Refusal` and the native module's errors, which name the frame; then nothing is written.
     """
-    bake = begin(context, frame_start, frame_end)
+    bake = begin(context, frame_start, frame_end, take)
     try:
         while not bake.is_complete:
             job = read_frame(context, bake)
             if not bake.done:
                 bake.follows = following.is_needed(job)
+            kept = None if bake.follows else baked.kept_frame(bake.stem, job.input_hash)
+            if kept is not None:
+                bake.done.append(kept)
+                bake.resumed += 1
+                continue
             try:
                 contact = yield partial(_compute, bake, job)
             except (checks.Refusal, *native.error_types()) as error:
                 raise type(error)(f"at frame {bake.frame}, {error}") from None
             keep_frame(bake, job, contact)
+            if not bake.follows:
+                baked.keep_frame(bake.stem, job.input_hash, bake.done[-1])
         publish(context, bake)
     finally:
+        baked.forget_frames(bake.stem)  # only a crash leaves them, for the next bake of these frames
         leave(context, bake)
     return bake
 

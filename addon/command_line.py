@@ -18,7 +18,7 @@ def main(arguments):
     except SystemExit as leave:
         return leave.code or 0
     try:
-        options.run(options)
+        code = options.run(options) or 0
     except OSError as error:
         print(f"thenar: '{error.filename2 or error.filename}': {error.strerror}", file=sys.stderr, flush=True)
         return 2
@@ -26,7 +26,7 @@ def main(arguments):
         text = " ".join(str(error).split())
         print(f"thenar: {text}", file=sys.stderr, flush=True)
         return 2
-    return 0
+    return code
 
 
 def _solve(options):
@@ -54,7 +54,13 @@ def _batch(options):
     from . import batch
 
     by = batch.By(options.workers, options.scheduler, options.part)
-    batch.run(Path(options.jobs), Path(options.out), by)
+    try:
+        with batch.by_signals():
+            batch.run(Path(options.jobs), Path(options.out), by)
+    except batch.Stopped as stopped:
+        print(f"thenar: {stopped}", file=sys.stderr, flush=True)
+        return stopped.code
+    return 0
 
 
 def _worker(_options):

@@ -89,7 +89,7 @@ def product_tables(context):
 
 def replace_file(path, write_to):
     """Write a file as a whole or not at all: `write_to(temporary path)`, then one rename."""
-    partial = path.with_name(f".{path.name}.partial")
+    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
         write_to(partial)
         os.replace(partial, path)

@@ -27,12 +27,15 @@ def save_file(path):
     """Save the open file as a copy at `path`, whole or not at all."""
     target = Path(path).resolve()
     target.parent.mkdir(parents=True, exist_ok=True)
-    partial = target.with_name(f".{target.stem}.partial.blend")
+    partial = target.with_name(f".{target.stem}.{os.getpid()}.partial.blend")
     try:
         bpy.ops.wm.save_as_mainfile(filepath=str(partial), copy=True, compress=True)
         os.replace(partial, target)
+    except RuntimeError as error:
+        raise Refusal(f"'{target}' cannot be written: {' '.join(str(error).split())}") from None
     finally:
         partial.unlink(missing_ok=True)
+        partial.with_name(partial.name + "@").unlink(missing_ok=True)  # what Blender writes first
 
 
 def save_json(path, values):

@@ -15,6 +15,9 @@ from .views import compositor
 SAMPLES = 24
 WIDEST = 640
 """Pixels: a picture of a result is no larger, so that a processor renders it in a minute or so."""
+HIGHEST = 2 * WIDEST
+LONGEST_S = 300.0
+"""Seconds after which the rays of a picture end, whatever the scene holds; what they found so far is denoised."""
 _FILL = (1.5, 1.1)
 """Width and height of the picture over those of what it shows; the legend stands in the rest of the width."""
 _LEGEND_SHIFT = 0.1
@@ -106,8 +109,9 @@ def _prepare(context, undo, kind=None):
         (scene.render, "use_file_extension", False),
     ):
         _set(undo, owner, name, value)
-    share = min(1.0, WIDEST / scene.render.resolution_x)
-    _set(undo, scene.render, "resolution_percentage", round(100 * share))
+    share = min(1.0, WIDEST / scene.render.resolution_x, HIGHEST / scene.render.resolution_y)
+    _set(undo, scene.render, "resolution_percentage", max(1, round(100 * share)))
+    _set(undo, scene.cycles, "time_limit", LONGEST_S)
     _set(undo, scene.cycles, "samples", SAMPLES)
     _set(undo, scene.cycles, "max_bounces", 3)
     _set(undo, scene.cycles, "adaptive_threshold", 0.03)

@@ -2,5 +2,6 @@
 
 from .conductor import By, run
 from .jobs import read_jobs
+from .stopping import Stopped, by_signals
 
-__all__ = ["By", "read_jobs", "run"]
+__all__ = ["By", "Stopped", "by_signals", "read_jobs", "run"]

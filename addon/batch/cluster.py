@@ -5,6 +5,7 @@ Python that runs Dask, or what the variable THENAR_WORKER says there, such as `b
 """
 
 import hashlib
+import re
 import time
 from concurrent.futures import CancelledError
 
@@ -12,8 +13,12 @@ from ..scene.checks import Refusal
 from . import child
 from .here import SPAN_S, threads
 
+FIRST_S = 8.0
+"""How long a scheduler may take to answer for the first time, s: a wrong address is to be known soon."""
 PATIENCE_S = 300.0
-"""How long a scheduler may stay away before the batch gives up; a later run goes on from there."""
+"""How long a scheduler that has answered may stay away before the batch gives up; a later run goes on from there."""
+ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss|ucx)://)?(?:\[[0-9a-fA-F:.]+\]|[\w.-]+):(\d{1,5})")
+"""An address of Dask with its port."""
 GROUP_S, LEAST_S = 1.0, 0.1
 """Seconds of solving that are sent at once as a group, and the least at the end of a batch: what Dask takes for a task
 is then little beside it, little is lost with a worker, and all end together."""
@@ -32,8 +37,14 @@ CALM_S = 2.0
 def answers(tasks, address):
     """Yield (name, answer) for every task, as they come.
 
-    Raises `Refusal` where Dask is missing, or the scheduler stays away for `PATIENCE_S`.
+    Raises `Refusal` for what is no address, where Dask is missing, where no scheduler answers within `FIRST_S`, and
+    where it then stays away for `PATIENCE_S`.
     """
+    found = ADDRESS.fullmatch(address)
+    if not found or not 0 < int(found[1]) < 65536:
+        raise Refusal(
+            f"'{address}' is no address of a scheduler; give it as tcp://HOST:PORT, for example tcp://farm:8786"
+        )
     try:
         import cloudpickle
         import distributed
@@ -45,17 +56,17 @@ def answers(tasks, address):
     cloudpickle.register_pickle_by_value(child)
     left = {task["case"]["name"]: task for task in tasks}
     environment = threads(tasks)
-    seen = time.monotonic()
+    seen, patience_s = time.monotonic(), 0.0
     while left:
         try:
-            with distributed.Client(address, timeout=10, set_as_default=False, name="thenar batch") as client:
-                seen = time.monotonic()
+            with distributed.Client(address, timeout=FIRST_S, set_as_default=False, name="thenar batch") as client:
+                seen, patience_s = time.monotonic(), PATIENCE_S
                 for name, answer in _session(client, left, environment):
                     del left[name]
                     seen = time.monotonic()
                     yield name, answer
-        except (OSError, TimeoutError, RuntimeError) as error:
-            if time.monotonic() - seen > PATIENCE_S:
+        except (OSError, TimeoutError, RuntimeError, ValueError) as error:
+            if time.monotonic() - seen > patience_s:
                 raise Refusal(
                     f"no scheduler answers at {address} ({error}); {len(left)} cases are left, which the same "
                     "command will run once it does"

@@ -2,18 +2,25 @@
 
 import json
 import re
+import threading
 import time
+from contextlib import contextmanager
 from dataclasses import dataclass
 
-from .. import export
+from .. import export, names
 from ..scene.checks import Refusal
-from . import cluster, here, rows, sheet
-from .jobs import case_hash, read_jobs, stem
+from . import cluster, depends, here, rows, sheet
+from .case_files import file_of
+from .child import is_answer
+from .jobs import case_hash, read_entries
+from .stopping import Signalled, Stopped
 
 SAVED_EVERY_S = 10.0
 """How often the table is written while cases come in, s; the cases themselves are written at once."""
 SAVING_SHARE = 0.01
 """Most of the time that this may take: a table of many cases is written less often."""
+BEAT_S = 30.0
+"""Where no case ends for as long, a line says that the batch goes on, s."""
 
 
 @dataclass(frozen=True)
@@ -28,81 +35,156 @@ class By:
     part: str | None = None
 
 
+class Table:
+    """The entries of a batch in order, each with its digest and its row, None while it has none."""
+
+    def __init__(self, entries, out):
+        self.entries, self.out = entries, out
+        self.known = {}
+        self.hashes = [None if each.refusal else case_hash(each.case, self.known) for each in entries]
+        pairs = zip(entries, self.hashes, strict=True)
+        self.rows = [self._refused(each) or self._kept(each, digest) for each, digest in pairs]
+
+    def left(self):
+        """Places of the entries that have no row yet."""
+        return [place for place, row in enumerate(self.rows) if row is None]
+
+    def task(self, place):
+        """What a worker is given for an entry."""
+        entry = self.entries[place]
+        stem = str(self.out / entry.stem)
+        return {"case": entry.case, "stem": stem, "hash": self.hashes[place], "thenar": names.VERSION}
+
+    def take(self, place, answer):
+        """Write what a worker answered for an entry; what cannot be written is an error of this entry alone."""
+        entry, digest = self.entries[place], self.hashes[place]
+        if not is_answer(answer):
+            answer = {"error": "the worker's answer holds no result"}
+        if "summary" in answer:
+            text = json.dumps({**answer["summary"], "case": entry.case, "case_hash": digest}, indent=1)
+            path = file_of(self.out / entry.stem, ".json")
+            try:
+                export.replace_file(path, lambda partial: partial.write_text(text, encoding="utf-8"))
+            except OSError as error:
+                answer = {"error": f"'{path.name}' cannot be written: {error.strerror}"}
+        self.rows[place] = rows.row(entry.case, digest, answer)
+        return self.rows[place]
+
+    def save(self):
+        """Write the tables of the entries that have a row."""
+        rows.save(self.out, [row for row in self.rows if row is not None])
+
+    def _refused(self, entry):
+        return rows.row({"name": entry.case["name"]}, "", {"error": entry.refusal}) if entry.refusal else None
+
+    def _kept(self, entry, wanted):
+        """The row of a case that an earlier run has done and whose files are what they were, or None."""
+        try:
+            summary = json.loads(file_of(self.out / entry.stem, ".json").read_text(encoding="utf-8"))
+        except (OSError, ValueError, RecursionError):
+            return None
+        if not is_answer({"summary": summary}) or summary.get("case_hash") != wanted or not self._has_files(entry):
+            return None
+        if not depends.are_unchanged(summary.get("files"), self.known):
+            return None
+        return rows.row(entry.case, wanted, {"summary": summary})
+
+    def _has_files(self, entry):
+        """Whether the file and picture that the case asks for are still there."""
+        wanted = {".blend": entry.case.get("save", True), ".png": entry.case.get("render", False)}
+        return all(file_of(self.out / entry.stem, each).is_file() for each, is_wanted in wanted.items() if is_wanted)
+
+
 def run(jobs, out, by=None):
     """Run the cases of `jobs`; `NAME.json` for each, tables and a contact sheet go to `out`. Returns the rows.
 
     Cases whose `NAME.json` is of the same content are kept. Workers of a cluster must see `out` and the cases' files
-    under the same paths. Raises `Refusal` for a job file that cannot be read, for a scheduler that stays away, and at
-    the end if any case failed.
+    under the same paths. Raises `Refusal` for a job file that cannot be read, a folder that cannot be written, a
+    scheduler that stays away, a worker of another version, and at the end if any case failed; `Stopped` after a signal.
     """
     by = by or By()
-    cases = _part(read_jobs(jobs), by.part)
+    entries = _part(read_entries(jobs), by.part)
     out = out.resolve()
-    out.mkdir(parents=True, exist_ok=True)
-    files = {}
-    hashes = {case["name"]: case_hash(case, files) for case in cases}
-    table = {case["name"]: _kept(case, out, hashes[case["name"]]) for case in cases}
-    left = [case for case in cases if table[case["name"]] is None]
-    if len(left) < len(cases):
-        print(f"{len(cases) - len(left)} of {len(cases)} cases kept from an earlier run", flush=True)
     try:
-        _answer(cases, left, (out, hashes, table), by)
-    finally:
-        _save(out, cases, table, by)
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Refusal(f"no results can be written to '{out}': {error.strerror}; give another folder") from None
+    table = Table(entries, out)
+    count, left = len(entries), table.left()
+    kept = count - len(left) - sum(bool(each.refusal) for each in entries)
+    if kept:
+        print(f"{kept} of {count} cases kept from an earlier run", flush=True)
+    for row in table.rows:
+        if row is not None and row["status"] == "failed":
+            _tell(row)
+    try:
+        _answer(table, left, by)
+    except Signalled as signalled:
+        _save(table, by)
+        done = sum(row is not None and row["status"] == "done" for row in table.rows)
+        text = f"stopped by {signalled}; {done} of {count} cases are done, the same command goes on from there"
+        raise Stopped(text, 128 + signalled.number) from None
+    except BaseException:
+        _save(table, by)
+        raise
+    _save(table, by)
     if by.part is None:
-        sheet.make(
-            out, [(case["name"], table[case["name"]]) for case in cases], stems={c["name"]: stem(c) for c in cases}
-        )
-    failed = [name for name, row in table.items() if row["status"] == "failed"]
+        sheet.make(out, [(each.stem, row) for each, row in zip(entries, table.rows, strict=True)])
+    failed = [row["name"] for row in table.rows if row["status"] == "failed"]
     if failed:
-        raise Refusal(
-            f"{len(failed)} of {len(cases)} cases failed ({', '.join(failed[:5])}); see {out / 'results.csv'}"
-        )
-    return list(table.values())
+        listed = printable(", ".join(failed[:5]))
+        raise Refusal(f"{len(failed)} of {count} cases failed ({listed}); see {out / 'results.csv'}")
+    return table.rows
 
 
-def _answer(cases, left, where, by):
-    out, hashes, table = where
-    by_name = {case["name"]: case for case in left}
-    tasks = [{"case": case, "stem": str(out / stem(case)), "hash": hashes[case["name"]]} for case in left]
-    if not tasks:
+def printable(text):
+    """A text without what moves a terminal's cursor or colors it."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
+
+
+def _answer(table, left, by):
+    if not left:
         return
-    coming = _by(tasks, by)
+    places = {table.entries[place].case["name"]: place for place in left}
     next_save = time.monotonic() + SAVED_EVERY_S
-    for name, answer in coming:
-        case = by_name[name]
-        if "summary" in answer:
-            content = {**answer["summary"], "case": case, "case_hash": hashes[name]}
-            text = json.dumps(content, indent=1)
-            export.replace_file(_json(case, out), lambda path, text=text: path.write_text(text, encoding="utf-8"))
-        table[name] = rows.row(case, hashes[name], answer)
-        print(f"{name}: {table[name]['status']} {table[name]['message']}".rstrip(), flush=True)
-        began = time.monotonic()
-        if began > next_save:
-            _save(out, cases, table, by)
-            span_s = time.monotonic() - began
-            next_save = began + max(SAVED_EVERY_S, span_s / SAVING_SHARE)
+    with _beat(len(left)) as beat:
+        for name, answer in _by([table.task(place) for place in left], by):
+            if "refused" in answer:
+                raise Refusal(f"{answer['refused']}; {len(places)} cases are left, which the same command will run")
+            _tell(table.take(places.pop(name), answer))
+            beat()
+            began = time.monotonic()
+            if began > next_save:
+                _save(table, by, is_last=False)
+                span_s = time.monotonic() - began
+                next_save = began + max(SAVED_EVERY_S, span_s / SAVING_SHARE)
 
 
-def _kept(case, out, wanted):
-    """The row of a case that an earlier run has done, or None."""
+def _tell(row):
+    print(printable(f"{row['name']}: {row['status']} {row['message']}".rstrip()), flush=True)
+
+
+@contextmanager
+def _beat(total):
+    """Gives a function to call after each case; where none ends for `BEAT_S`, a line says how far the batch is."""
+    ended, state = threading.Event(), {"done": 0, "at": time.monotonic()}
+    began = time.monotonic()
+
+    def more():
+        state["done"] += 1
+        state["at"] = time.monotonic()
+
+    def watch():
+        while not ended.wait(BEAT_S):
+            now = time.monotonic()
+            if now - state["at"] >= BEAT_S:
+                print(f"{state['done']} of {total} cases solved, {now - began:.0f} s", flush=True)
+
+    threading.Thread(target=watch, daemon=True).start()
     try:
-        summary = json.loads(_json(case, out).read_text(encoding="utf-8"))
-    except (OSError, json.JSONDecodeError):
-        return None
-    if summary.get("case_hash") != wanted or not _has_files(case, out):
-        return None
-    return rows.row(case, wanted, {"summary": summary})
-
-
-def _has_files(case, out):
-    """Whether the file and picture that the case asks for are still there."""
-    wanted = {".blend": case.get("save", True), ".png": case.get("render", False)}
-    return all((out / (stem(case) + suffix)).is_file() for suffix, is_wanted in wanted.items() if is_wanted)
-
-
-def _json(case, out):
-    return out / (stem(case) + ".json")
+        yield more
+    finally:
+        ended.set()
 
 
 def _by(tasks, by):
@@ -111,16 +193,25 @@ def _by(tasks, by):
     return here.answers(tasks, here.workers_of(by.workers))
 
 
-def _part(cases, part):
+def _part(entries, part):
     if part is None:
-        return cases
+        return entries
     found = re.fullmatch(r"(\d+)/(\d+)", part)
     number, parts = (int(text) for text in found.groups()) if found else (0, 0)
     if not 1 <= number <= parts:
-        raise Refusal(f"the part '{part}' is none; give it as I/N with I from 1 to N, as 2/5")
-    return cases[number - 1 :: parts]
+        raise Refusal(f"the part '{printable(part)}' is none; give it as I/N with I from 1 to N, as 2/5")
+    return entries[number - 1 :: parts]
 
 
-def _save(out, cases, table, by):
-    if by.part is None:
-        rows.save(out, [table[case["name"]] for case in cases if table[case["name"]] is not None])
+def _save(table, by, is_last=True):
+    """Write the tables. What cannot be written while cases come in is tried again later; then it is refused."""
+    if by is not None and by.part is not None:
+        return
+    try:
+        table.save()
+    except OSError as error:
+        if is_last:
+            raise Refusal(
+                f"the tables cannot be written to '{table.out}': {error.strerror}; what is solved is kept in its own "
+                "files, and the same command goes on from there"
+            ) from None

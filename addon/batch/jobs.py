@@ -3,18 +3,18 @@
 import hashlib
 import itertools
 import json
-import re
-import tomllib
-from pathlib import Path
+from dataclasses import dataclass
 
 from .. import names
 from ..scene.checks import Refusal
 from ..soft_grip import settings as grip_settings
+from . import case_files, depends, job_text
 
-_TEXT, _NUMBER, _WHOLE, _FLAG = "a text in quotes", "a number above zero", "a whole number", "true or false"
+_NAME, _TEXT, _NUMBER = "a text or a number", "a text in quotes", "a number above zero"
+_WHOLE, _FLAG = "a whole number", "true or false"
 _GRIPS = ("rigid", *grip_settings.PRESETS)
 KEYS = {
-    "name": _TEXT,
+    "name": _NAME,
     "blend": _TEXT,
     "hand": _TEXT,
     "product": _TEXT,
@@ -30,19 +30,35 @@ KEYS = {
     "grip_thickness_mm": _NUMBER,
     "grip_youngs_mpa": _NUMBER,
     "grip_shore_a": _NUMBER,
-    "out": _TEXT,
+    "out": _NAME,
     "save": _FLAG,
     "render": _FLAG,
 }
 """What a case may say, and what is admissible. `stiffness` is a factor on every modulus of the skin; a grip covers
 every part of the product."""
 
-_GRIP_RANGES = {"grip_shore_a": (20, 80), "grip_youngs_mpa": (0.001, 1e5), "grip_thickness_mm": (0.1, 1000)}
-"""What the properties of a grip hold."""
+_RANGES = {
+    "force_n": (1e-6, 1e6),
+    "frame": (-1_048_574, 1_048_574),
+    "stiffness": (1e-4, 1e4),
+    "grip_shore_a": (20, 80),
+    "grip_youngs_mpa": (0.001, 1e5),
+    "grip_thickness_mm": (0.1, 1000),
+}
+"""What Blender's frames and the properties of a grip hold; what a force and a factor can be."""
 
 NOT_SWEPT = ("name", "out", "save", "render")
 _PATHS = ("blend",)
 MOST_CASES = 1_000_000
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A case as the job file has it, the name of its files without a suffix, and why it is refused, if it is."""
+
+    case: dict
+    stem: str
+    refusal: str = ""
 
 
 def read_jobs(path):
@@ -51,19 +67,36 @@ def read_jobs(path):
     A table `[[sweep]]` gives lists of values and stands for every combination of them, the last list running fastest.
     Raises `Refusal` naming the case, the key and what is admissible.
     """
-    try:
-        jobs = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError:
-        raise Refusal(f"there is no job file '{path}'") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise Refusal(f"'{path}' is not TOML: {error}") from None
+    entries = read_entries(path)
+    for entry in entries:
+        if entry.refusal:
+            raise Refusal(entry.refusal)
+    return [entry.case for entry in entries]
+
+
+def read_entries(path):
+    """An `Entry` for each case of a job file. Raises `Refusal` for a file without cases, and where none is sound."""
+    jobs = job_text.parse(path)
     listed, sweeps = jobs.pop("case", []), jobs.pop("sweep", [])
-    if not isinstance(listed, list) or not isinstance(sweeps, list) or not (listed or sweeps):
+    if not (_are_tables(listed) and _are_tables(sweeps)) or not (listed or sweeps):
         raise Refusal(f"'{path}' lists no case; add one [[case]] for each, or a [[sweep]] with lists of values")
     cases = [{"name": f"case-{number:03}", **jobs, **own} for number, own in enumerate(listed, 1)]
     for number, own in enumerate(sweeps, 1):
         cases.extend({**jobs, **case} for case in _swept(own, f"sweep-{number}"))
-    return [_checked(case, path) for case in _named_apart(cases, path)]
+    refusals = [_refusal(case, path) for case in cases]
+    for case in cases:
+        case["name"] = str(case["name"])
+    taken = set()
+    for place, case in enumerate(cases):
+        if case["name"] in taken:
+            refusals[place] = refusals[place] or f"case {case['name']} has the name of another; give each its own"
+        taken.add(case["name"])
+    if all(refusals):
+        raise Refusal(refusals[0])
+    pairs = list(zip(cases, refusals, strict=True))
+    wanted = [(str(case.get("out", case["name"])), case["name"]) for case, refusal in pairs if not refusal]
+    stems = iter(case_files.stems(wanted))
+    return [Entry(case, "" if refusal else next(stems), refusal) for case, refusal in pairs]
 
 
 def check(case, name):
@@ -74,7 +107,10 @@ def check(case, name):
         wanted = KEYS[key]
         if not _fits(value, wanted):
             told = " or ".join(f'"{word}"' for word in wanted) if isinstance(wanted, tuple) else wanted
-            raise Refusal(f"case {name}: {key} is {value!r}, but must be {told}")
+            raise Refusal(f"case {name}: {key} is {_short(value)}, but must be {told}")
+        low, high = _RANGES.get(key, (value, value))
+        if not low <= value <= high:
+            raise Refusal(f"case {name}: {key} is {_short(value)}, but must be {low:g} to {high:g}")
     if "blend" not in case:
         raise Refusal(f'case {name} names no file; add blend = "FILE.blend"')
     for key in ("hand_percentile", "hand_sex"):
@@ -91,29 +127,18 @@ def _check_grip(case, name):
     kinds = [key for key in ("grip", "grip_youngs_mpa", "grip_shore_a") if key in case]
     if len(kinds) > 1:
         raise Refusal(f"case {name} says both {kinds[0]} and {kinds[1]}, which are two grips; keep one")
-    for key, (low, high) in _GRIP_RANGES.items():
-        if not low <= case.get(key, low) <= high:
-            raise Refusal(f"case {name}: {key} is {case[key]}, but must be {low:g} to {high:g}")
 
 
-def case_hash(case, files):
-    """Digest of all that a case's result depends on: its settings, its file's bytes, Thenar's version.
+def case_hash(case, known):
+    """Digest of a case's settings, its file's bytes and Thenar's version; `known` is that of `depends.digest`.
 
-    `files` is a dictionary that remembers the digests of files within a run.
+    What its file reads besides is known once it is open: a worker gives the digests of these files with the result.
     """
     digest = hashlib.blake2b(digest_size=16)
     digest.update(json.dumps({key: case[key] for key in sorted(case)}, default=str).encode())
     digest.update(names.VERSION.encode())
-    if case["blend"] not in files:
-        path = Path(case["blend"])
-        files[case["blend"]] = hashlib.blake2b(path.read_bytes() if path.is_file() else b"").digest()
-    digest.update(files[case["blend"]])
+    digest.update(depends.digest(case["blend"], known).encode())
     return digest.hexdigest()
-
-
-def stem(case):
-    """Name of a case's files, without a suffix, fit for every file system."""
-    return re.sub(r"[^\w.+-]", "_", str(case.get("out", case["name"])))
 
 
 def _swept(own, default):
@@ -139,20 +164,28 @@ def _swept(own, default):
         yield {"name": f"{title}-{number:0{width}}", **fixed, **dict(zip(lists, values, strict=True))}
 
 
-def _named_apart(cases, path):
-    taken = {}
-    for case in cases:
-        case["name"] = str(case["name"])
-        for what, key in (("name", case["name"]), ("file name", stem(case))):
-            if taken.setdefault((what, key), case) is not case:
-                raise Refusal(f"two cases of '{path}' have the same {what} '{key}'; give each its own")
-    return cases
+def _refusal(case, path):
+    """Why a case is refused, empty where it is sound; then its paths are made absolute."""
+    try:
+        check(case, _short(case["name"]) if not _fits(case["name"], _NAME) else case["name"])
+        case.update({key: str((path.parent / case[key]).resolve()) for key in _PATHS})
+    except Refusal as refusal:
+        return str(refusal)
+    except (OSError, ValueError, RuntimeError) as error:  # a NUL in a path, a loop of links
+        return f"case {case['name']}: '{case['blend']}' is no path ({error})"
+    return ""
 
 
-def _checked(case, path):
-    check(case, case["name"])
-    case.update({key: str((path.parent / case[key]).resolve()) for key in _PATHS})
-    return case
+def _are_tables(values):
+    return isinstance(values, list) and all(isinstance(each, dict) for each in values)
+
+
+def _short(value):
+    """A value as it may stand in a message."""
+    if isinstance(value, int) and abs(value) >= 10**15:
+        return f"a number of {len(str(abs(value)))} digits"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def _fits(value, wanted):
@@ -160,7 +193,8 @@ def _fits(value, wanted):
         return value in wanted
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return {
-        _TEXT: isinstance(value, str) or is_number,
+        _NAME: isinstance(value, str) or is_number,
+        _TEXT: isinstance(value, str),
         _NUMBER: is_number and 0.0 < value < float("inf"),
         _WHOLE: isinstance(value, int) and not isinstance(value, bool),
         _FLAG: isinstance(value, bool),

@@ -1,6 +1,7 @@
 """The tables of a batch: one row a case, as CSV and Parquet, and a sheet of what the swept settings did."""
 
 import csv
+import re
 import statistics
 
 from .. import export, native
@@ -91,6 +92,8 @@ def _column(name, values):
 
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """Beginnings of a cell that spreadsheets compute."""
+_CONTROL = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
+"""Signs that move a terminal's cursor or color its text; tabs and ends of lines are a text's own."""
 
 
 def _write_csv(path, columns, rows):
@@ -101,5 +104,8 @@ def _write_csv(path, columns, rows):
 
 
 def cell(value):
-    """A text that a spreadsheet would take for a formula, with an apostrophe before it; all else as it is."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+    """A text that a spreadsheet would take for a formula, with an apostrophe before it; control signs as escapes."""
+    if not isinstance(value, str):
+        return value
+    text = _CONTROL.sub(lambda found: ascii(found[0])[1:-1], value)
+    return f"'{text}" if text.startswith(FORMULA) else text

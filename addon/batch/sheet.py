@@ -16,13 +16,15 @@ MOST_PICTURES = 400
 """The sheet shows the first so many: a picture larger than 32,000 pixels opens nowhere."""
 
 
-def make(out, table, stems):
-    """Write `sheet.png` into `out` from the pictures of the rows, (name, row) in order; nothing where there is none."""
-    shown = [(out / f"{stems[name]}.png", name, row) for name, row in table if row is not None]
+def make(out, table):
+    """Write `sheet.png` into `out` from the pictures of (file's stem, row) in order; nothing where there is none."""
+    shown = [(out / f"{stem}.png", row["name"], row) for stem, row in table if row is not None]
     shown = [each for each in shown if each[0].is_file()][:MOST_PICTURES]
     if not shown:
         return
-    tiles = [_tile(path, name, row) for path, name, row in shown]
+    tiles = [tile for tile in (_tile(path, name, row) for path, name, row in shown) if tile is not None]
+    if not tiles:
+        return
     height, width = max(tile.shape[0] for tile in tiles) + _GAP, _WIDTH + _GAP
     columns = math.ceil(math.sqrt(len(tiles) * height / width))
     lines = math.ceil(len(tiles) / columns)
@@ -36,9 +38,11 @@ def make(out, table, stems):
 
 
 def _tile(path, name, row):
-    """A picture (rows from below) shrunk to the sheet's width, on its caption."""
+    """A picture (rows from below) shrunk to the sheet's width, on its caption; None for what is no picture."""
     image = bpy.data.images.load(str(path))
     try:
+        if 0 in image.size:
+            return None
         image.scale(_WIDTH, max(1, round(image.size[1] * _WIDTH / image.size[0])))
         flat = np.empty(image.size[0] * image.size[1] * 4, np.float32)
         image.pixels.foreach_get(flat)

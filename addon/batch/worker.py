@@ -10,13 +10,15 @@ from pathlib import Path
 
 import bpy
 
-from .. import headless, native, workflow
+from .. import headless, names, native, workflow
 from .. import result as results
 from ..grasp import fitting, search
 from ..grasp_fit import fitter
 from ..hand import build, pads, posing
 from ..scene.checks import Refusal
 from ..soft_grip import settings as grip_settings
+from . import depends
+from .case_files import file_of
 from .jobs import check
 from .processors import Own
 
@@ -28,17 +30,22 @@ def serve():
     own = Own()
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
+    answers.write(json.dumps({"thenar": names.VERSION, "ready": True}) + "\n")
+    answers.flush()
+    known = {}
     for number, line in enumerate(sys.stdin.buffer, 1):
         began, used = time.monotonic(), time.process_time()
-        answers.write(json.dumps(_answer(line, number)) + "\n")
+        answers.write(json.dumps(_answer(line, number, known)) + "\n")
         answers.flush()
         own.took(time.monotonic() - began, time.process_time() - used)
 
 
-def _answer(line, number):
+def _answer(line, number, known):
     try:
         task = _task(line, number)
-        return {"summary": solve(task["case"], Path(task["stem"]))}
+        headless.open_file(task["case"]["blend"])
+        files = depends.of_open_file(known)
+        return {"summary": {**solve(task["case"], Path(task["stem"])), "files": files}}
     except (Refusal, *native.error_types()) as error:
         return {"error": " ".join(str(error).split())}
     except Exception as error:  # one bad case must not take the worker with it
@@ -59,11 +66,10 @@ def _task(line, number):
 
 
 def solve(case, stem):
-    """Solve one case from its file; pictures and files go to `stem` with their suffixes. Returns the result's values.
+    """Solve one case, whose file is open; pictures and files go to `stem` with their suffixes.
 
-    Raises `Refusal` or the native module's errors.
+    Returns the result's values. Raises `Refusal` or the native module's errors.
     """
-    headless.open_file(case["blend"])
     context = bpy.context
     options = Namespace(
         frame=case.get("frame"),
@@ -84,9 +90,9 @@ def solve(case, stem):
     _cover(context, case)
     workflow.solve(context)
     if case.get("save", True):
-        headless.save_file(stem.with_suffix(".blend"))
+        headless.save_file(file_of(stem, ".blend"))
     if case.get("render", False):
-        _render(context, stem.with_suffix(".png"))
+        _render(context, file_of(stem, ".png"))
     return results.as_dict(context.scene.thenar.result)
 
 
@@ -145,14 +151,20 @@ def _fit(context, strength):
 
 def _stiffen(hand, factor):
     for material in tuple(hand.thenar.materials) or (hand.thenar.default_material,):
-        material.g0_kpa *= factor
-        material.g_lim_kpa *= factor
+        for name in ("g0_kpa", "g_lim_kpa"):
+            wanted = getattr(material, name) * factor
+            setattr(material, name, wanted)
+            if abs(getattr(material, name) - wanted) > 1e-4 * wanted:
+                raise Refusal(
+                    f"stiffness {factor:g} gives a modulus of {wanted:.3g} kPa, which no skin has; "
+                    f"the nearest is {getattr(material, name):.3g} kPa"
+                )
 
 
 def _render(context, path):
     from .. import pictures
 
-    partial = path.with_name(f".{path.stem}.partial.png")
+    partial = path.with_name(f".{path.name.removesuffix('.png')}.{os.getpid()}.partial.png")
     try:
         pictures.render_scene(context, partial)
         os.replace(partial, path)

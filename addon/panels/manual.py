@@ -20,7 +20,7 @@ _OPERATORS = (
     ("region_add region_remove region_preset assign_regions", "guide.html#materials"),
     ("effect_add effect_remove", "guide.html#effects"),
     ("picture open_picture", "guide.html#pictures"),
-    ("bake export export_bake", "guide.html#bake--export"),
+    ("bake play_take export export_bake", "guide.html#bake--export"),
     (
         "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
         "guide.html#recordings",
@@ -41,7 +41,7 @@ _TYPES = (
     ("thenargrip", "guide.html#soft-grip"),
     ("thenareffect thenareffectnumber thenareffectchoice", "guide.html#effects"),
     ("thenarpictures", "guide.html#pictures"),
-    ("thenarbake", "guide.html#bake--export"),
+    ("thenarbake thenarbakedpart", "guide.html#bake--export"),
     ("thenarplacing thenarprint thenarrecording thenarrecordings", "guide.html#recordings"),
     ("thenarcomparison thenarmeasure thenarworst", "guide.html#recordings"),
     ("thenarnewstudy thenarstudyfile thenarstudyprotocol thenarstudycolumns", "guide.html#new-study"),

@@ -4,6 +4,8 @@ import bpy
 
 from .. import grades, maps, status
 from ..languages import iface
+from ..scene import baked
+from ..scene.parts import product_parts
 from . import text
 from .lists import SHARE, brief, columns
 from .main import Physics, Tab, draw_looks, has_result
@@ -208,8 +210,19 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
         return hand is not None and bool(hand.thenar.bake_path)
 
     def draw(self, context):
-        layout, told = self.layout, context.scene.thenar.hand.thenar.bake
+        layout, hand = self.layout, context.scene.thenar.hand
+        told, takes = hand.thenar.bake, baked.take_names(hand)
+        for note in baked.notes(hand, product_parts(context.scene.thenar)):
+            text.paragraph(layout, context, note, "ERROR")
+        if len(takes) > 1:
+            column = layout.column(align=True)
+            for take in takes:
+                icon = "RADIOBUT_ON" if baked.is_playing(hand, take) else "RADIOBUT_OFF"
+                column.operator("thenar.play_take", text=take or "Bake", icon=icon).take = take
         box = layout.box().column(align=True)
+        _pair(box, "Force", f"{told.force_n:.1f} N")
+        _pair(box, "Contact area", f"{told.area_mm2 / 100:.2f} cm²")
+        _pair(box, "Peak pressure", f"{told.frame_peak_kpa:.0f} kPa")
         _pair(box, "Frames", iface("{first} to {last}", first=told.frame_start, last=told.frame_end))
         _pair(box, "History kept", "yes" if told.follows else "no")
         _pair(box, "Max. force", f"{told.peak_force_n:.1f} N")

@@ -127,7 +127,7 @@ def check(order):
 def targets(order):
     """The paths that an order writes."""
     path = Path(order.target)
-    return [path.with_suffix(suffix) for suffix in SUFFIXES[order.kind]]
+    return [path.with_name(path.stem + suffix) for suffix in SUFFIXES[order.kind]]
 
 
 def refuse_to_overwrite(order):

@@ -1,14 +1,19 @@
 """A baked contact: positions as PC2 played by a Mesh Cache modifier, fields as NPZ played on frame changes."""
 
+import hashlib
+import json
 import os
+import shutil
 import struct
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, TypeAlias
+from zipfile import BadZipFile
 
 import bpy
 import numpy as np
-from bpy.types import Object, PropertyGroup, Scene
+from bpy.types import Modifier, Object, PropertyGroup, Scene
 
 from .. import names
 from . import attributes, colors, correction, moving, own, units, write
@@ -25,6 +30,10 @@ DEFORMERS = {
 """Modifiers that keep every vertex; the bake stands behind the last of the leading ones."""
 
 _NUMBERS = ("force_n", "area_mm2", "peak_kpa", "shear_n", "work_mj", "slip_loss_mj")
+_GROUPS = ("fields", "parts", "part_edges")
+"""What of a `Frame` is a dictionary itself."""
+_LONGEST = 120
+"""Most bytes of a file's name before its digest; file systems take 255."""
 _UNTOUCHED = {names.SLIP_MARGIN: 1.0}
 """What a field says where nothing touches, if that is not 0."""
 _OF_ONE_PRESS = (
@@ -48,37 +57,154 @@ def place_in_stack(hand: Object) -> int:
     return next((index for index, modifier in enumerate(others) if modifier.type not in DEFORMERS), len(others))
 
 
-def folder_of(hand: Object) -> Path:
-    """The bake's folder beside the saved file, made where missing. Raises `Refusal` for an unsaved file."""
+def stem_of(hand: Object, take: str) -> Path:
+    """Path of a take's files without their suffix, in the folder beside the saved file, which is made where missing.
+
+    A digest tells names apart that differ by what no file name holds. Raises `Refusal` for an unsaved file.
+    """
     if not bpy.data.filepath:
         raise Refusal("a bake is saved next to the file; save the file first")
     folder = Path(bpy.data.filepath).parent / names.BAKE_FOLDER
-    folder.mkdir(exist_ok=True)
-    return folder / str(bpy.path.clean_name(f"{Path(bpy.data.filepath).stem}-{hand.name}"))
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise Refusal(f"a bake is saved next to the file, but '{folder}' cannot be made: {error.strerror}") from None
+    parts = Path(bpy.data.filepath).stem, hand.name, take
+    digest = hashlib.blake2b("\0".join(parts).encode(), digest_size=4).hexdigest()
+    plain = str(bpy.path.clean_name("-".join(parts))).encode()[:_LONGEST].decode(errors="ignore")
+    return folder / f"{plain}-{digest}"
 
 
-def publish(hand: Object, stem: Path, first_frame: int, frames: Sequence[Frame]) -> None:
-    """Write the baked `frames` and hang them on the hand; files are whole or not there at all.
+@dataclass(frozen=True)
+class Take:
+    """A bake of one name: its files' path without suffix, first frame, and `sums`, the values of `hand.thenar.bake`."""
+
+    name: str
+    stem: Path
+    first_frame: int
+    sums: dict[str, Any]
+
+
+def take_names(hand: Object) -> list[str]:
+    """Names of the hand's takes, oldest first."""
+    return [_take_name(modifier) for modifier in reversed(own.bake_modifiers(hand))]
+
+
+def is_playing(hand: Object, take: str) -> bool:
+    """Whether the take of this name plays."""
+    playing = _playing(hand)
+    return playing is not None and _take_name(playing) == take
+
+
+def free_name(hand: Object) -> str:
+    """The first of `Take 1`, `Take 2`, ... that no take has."""
+    taken, number = set(take_names(hand)), 1
+    while f"Take {number}" in taken:
+        number += 1
+    return f"Take {number}"
+
+
+def publish(hand: Object, take: Take, frames: Sequence[Frame], parts: Sequence[Object]) -> None:
+    """Write the baked `frames` and hang them on the hand; files are whole or not there at all. Other takes stay.
 
     `frames`: dicts with `local` (n, 3) positions in object space, `fields` {attribute: (n)} of the hand, `parts` and
     `part_edges` {name: kPa, mm (k)}, the numbers of `_NUMBERS`, and `offset` (3), how far the product moves, world,
     Blender units.
     """
-    pc2, npz = stem.with_name(stem.name + ".pc2"), stem.with_name(stem.name + ".npz")
-    _replace(pc2, lambda file: _write_pc2(file, first_frame, frames))
-    _replace(npz, lambda file: np.savez_compressed(file, **_tables(first_frame, frames)))
+    pc2, npz = (take.stem.with_name(take.stem.name + suffix) for suffix in (".pc2", ".npz"))
+    keys = _keys_of(hand, parts)
+    _replace(pc2, lambda file: _write_pc2(file, take.first_frame, frames))
+    _replace(npz, lambda file: np.savez_compressed(file, **_tables(take, frames, keys)))
     for modifier in own.bake_modifiers(hand):
-        hand.modifiers.remove(modifier)
+        if _take_name(modifier) == take.name:
+            hand.modifiers.remove(modifier)
     correction.remove(hand)
     index = place_in_stack(hand)
-    cache = hand.modifiers.new(names.BAKE_MODIFIER, "MESH_CACHE")
+    cache = hand.modifiers.new(f"{names.BAKE_MODIFIER}: {take.name}", "MESH_CACHE")
     cache.cache_format, cache.filepath = "PC2", bpy.path.relpath(str(pc2))
-    cache.frame_start, cache.deform_mode, cache.interpolation = first_frame, "OVERWRITE", "LINEAR"
+    cache.frame_start, cache.deform_mode, cache.interpolation = take.first_frame, "OVERWRITE", "LINEAR"
+    cache.frame_scale = 1.0 / _stretch(bpy.context.scene)
     cache.forward_axis, cache.up_axis = "POS_Y", "POS_Z"
     hand.modifiers.move(len(hand.modifiers) - 1, index)
     hand.thenar.bake_path = bpy.path.relpath(str(npz))
     attributes.remove(hand.data, [name for name in _OF_ONE_PRESS if name not in _field_names(frames)])
     _loaded.clear()
+    choose(hand, take.name)
+
+
+def keep_frame(stem: Path, digest: str, frame: Frame) -> None:
+    """Keep a solved frame until its bake ends, under the `digest` of what it was solved from."""
+    place = _frame_place(stem, digest)
+    place.parent.mkdir(exist_ok=True)
+    grouped = {f"{group}/{name}": values for group in _GROUPS for name, values in frame[group].items()}
+    plain = {name: value for name, value in frame.items() if name not in _GROUPS}
+    _replace(place, lambda file: np.savez(file, **grouped, **plain))
+
+
+def kept_frame(stem: Path, digest: str) -> Frame | None:
+    """The frame that a bake kept which ended in a crash; None where there is none, or it is not whole."""
+    try:
+        with np.load(_frame_place(stem, digest), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+    except (OSError, ValueError, EOFError, BadZipFile):
+        return None
+    frame: Frame = {group: {} for group in _GROUPS}
+    for name, values in arrays.items():
+        group, slash, key = name.partition("/")
+        if slash:
+            frame[group][key] = values
+        else:
+            frame[name] = values if values.ndim else float(values)
+    return frame
+
+
+def forget_frames(stem: Path) -> None:
+    """Remove the frames that were kept while a bake ran."""
+    shutil.rmtree(_frame_place(stem, "").parent, ignore_errors=True)
+
+
+def choose(hand: Object, take: str) -> None:
+    """Let the hand play the take of this name. Raises `Refusal` where there is none, or its file is gone."""
+    modifiers = {_take_name(modifier): modifier for modifier in own.bake_modifiers(hand)}
+    if take not in modifiers:
+        raise Refusal(f"'{hand.name}' has no take '{take}'; it has {', '.join(modifiers) or 'none'}")
+    for name, modifier in modifiers.items():
+        modifier.show_viewport = modifier.show_render = name == take
+    tables = _load(hand)
+    if tables is None:
+        raise Refusal(f"the file of take '{take}' is missing: '{_path(hand)}'; bake it again")
+    if "sums_json" in tables:
+        for name, value in json.loads(str(tables["sums_json"])).items():
+            setattr(hand.thenar.bake, name, value)
+    own.remove_bake_curves(hand)
+    first, stretch = int(tables["first_frame"]), _stretch(bpy.context.scene)
+    for name, column in own.BAKE_CURVES.items():
+        for row, value in enumerate(tables[column]):
+            setattr(hand.thenar.bake, name, float(value))
+            hand.keyframe_insert(f"thenar.bake.{name}", frame=(first + row) * stretch, group=names.BAKE_MODIFIER)
+
+
+def notes(hand: Object, parts: Sequence[Object]) -> list[str]:
+    """What of the take that plays is missing or no longer fits, a sentence each."""
+    playing = _playing(hand)
+    if playing is None:
+        return ["no take is shown; choose one, or switch its modifier on"]
+    tables = _load(hand)
+    if tables is None:
+        return [f"its file is missing: '{_path(hand)}'; put it back, or bake again"]
+    found = []
+    pressure = tables.get(f"hand/{names.PRESSURE_KPA}", tables.get("hand"))
+    if pressure is not None and len(pressure[0]) != len(hand.data.vertices):
+        found.append(f"'{hand.name}' had {len(pressure[0])} vertices when it was baked; bake again")
+    if playing.time_mode != "FRAME":
+        found.append("the modifier counts time otherwise than in frames: pressure plays by frames; set it back")
+    for part in parts:
+        values = tables.get(f"part/{_key_of(hand, part)}")
+        if values is None and part.type == "MESH":
+            found.append(f"'{part.name}' is not in this bake and shows no pressure of it")
+        elif values is not None and len(values[0]) != len(part.data.vertices):
+            found.append(f"'{part.name}' had {len(values[0])} vertices when it was baked; bake again")
+    return found
 
 
 def hand_fields(fields: write.Fields) -> dict[str, Floats]:
@@ -103,19 +229,23 @@ def play(scene: Scene, find_parts: Callable[[PropertyGroup], Sequence[Object]]) 
     tables = _load(hand)
     if tables is None:
         return
-    row = int(np.clip(scene.frame_current - int(tables["first_frame"]), 0, len(tables["force_n"]) - 1))
-    fields = {name.removeprefix("hand/"): table[row] for name, table in tables.items() if name.startswith("hand/")}
-    _show(hand, fields or {names.PRESSURE_KPA: tables["hand"][row]}, scene.thenar, colors.SKIN)
+    moment = _moment(hand, scene, len(tables["force_n"]))
+    fields = {
+        name.removeprefix("hand/"): _at(rows, moment) for name, rows in tables.items() if name.startswith("hand/")
+    }
+    _show(hand, fields or {names.PRESSURE_KPA: _at(tables["hand"], moment)}, scene.thenar, colors.SKIN)
     parts = find_parts(scene.thenar)
     for part in parts:
-        values = tables.get(f"part/{part.name}")
+        key = _key_of(hand, part)
+        values = tables.get(f"part/{key}")
         if values is not None and part.type == "MESH" and part.mode != "EDIT":
-            edges = tables.get(f"edge/{part.name}")
-            shown = {names.PRESSURE_KPA: values[row]} | ({} if edges is None else {names.EDGE_MM: edges[row]})
+            edges = tables.get(f"edge/{key}")
+            shown = {names.PRESSURE_KPA: _at(values, moment)}
+            shown |= {} if edges is None else {names.EDGE_MM: _at(edges, moment)}
             _show(part, shown, scene.thenar, colors.BARE)
     offsets = tables["offset"]
     for part in own.roots(parts) if np.any(offsets) else ():
-        moving.shift(part, offsets[row])
+        moving.shift(part, _at(offsets, moment))
 
 
 def curves(hand: Object) -> dict[str, Any] | None:
@@ -129,7 +259,7 @@ def curves(hand: Object) -> dict[str, Any] | None:
 
 def is_missing(hand: Object) -> bool:
     """Whether the hand's bake names a file that is not there."""
-    return bool(hand.thenar.bake_path) and not os.path.exists(bpy.path.abspath(hand.thenar.bake_path))
+    return bool(hand.thenar.bake_path) and not os.path.exists(_path(hand))
 
 
 def forget() -> None:
@@ -148,7 +278,7 @@ def _show(obj: Object, fields: dict[str, Floats], look: PropertyGroup, bare: col
 
 
 def _load(hand: Object) -> dict[str, Floats] | None:
-    path = bpy.path.abspath(hand.thenar.bake_path)
+    path = _path(hand)
     if path not in _loaded:
         _loaded.clear()
         if not os.path.exists(path):
@@ -158,14 +288,84 @@ def _load(hand: Object) -> dict[str, Floats] | None:
     return _loaded[path]
 
 
-def _tables(first_frame: int, frames: Sequence[Frame]) -> dict[str, Any]:
-    tables: dict[str, Any] = {"first_frame": np.int32(first_frame)}
+def _frame_place(stem: Path, digest: str) -> Path:
+    name = hashlib.blake2b(digest.encode(), digest_size=16).hexdigest()
+    return stem.with_name(f"{stem.name}.frames") / f"{name}.npz"
+
+
+def _playing(hand: Object) -> Modifier | None:
+    """The modifier that plays the shape, or None."""
+    return next((modifier for modifier in own.bake_modifiers(hand) if modifier.show_viewport), None)
+
+
+def _path(hand: Object) -> str:
+    """The file of the fields: beside that of the shape, which Blender keeps right when the file is saved elsewhere."""
+    playing = _playing(hand)
+    path = hand.thenar.bake_path
+    if playing is not None and playing.filepath.endswith(".pc2"):
+        path = playing.filepath.removesuffix(".pc2") + ".npz"
+    return str(bpy.path.abspath(path, library=hand.library))
+
+
+def _take_name(modifier: Modifier) -> str:
+    """A take's name; that of bakes of earlier versions is empty."""
+    return str(modifier.name.removeprefix(names.BAKE_MODIFIER).removeprefix(": "))
+
+
+def _stretch(scene: Scene) -> float:
+    """By how much the scene's time stretching slows its animation: the frame that is evaluated over the frame shown."""
+    return float(scene.render.frame_map_old / scene.render.frame_map_new)
+
+
+def _moment(hand: Object, scene: Scene, count: int) -> float:
+    """Which of the `count` baked frames plays, counted from 0: as the modifier has it that plays the shape."""
+    playing = _playing(hand)
+    moment = scene.frame_current_final
+    if playing is not None:
+        moment = playing.frame_scale * moment - playing.frame_start
+        if playing.play_mode == "CUSTOM":
+            moment = playing.eval_frame
+        if playing.interpolation == "NONE":
+            moment = np.floor(moment + 0.5)
+    return float(np.clip(moment, 0, count - 1))
+
+
+def _at(rows: Floats, moment: float) -> Floats:
+    """The row at a moment, between two rows in proportion."""
+    before = int(moment)
+    share = moment - before
+    row: Floats = rows[before]
+    if share >= 1e-4:
+        row = ((1.0 - share) * row + share * rows[before + 1]).astype(rows.dtype)
+    return row
+
+
+def _keys_of(hand: Object, parts: Sequence[Object]) -> dict[str, str]:
+    """The key of every part in a bake's files, by the part's present name; new parts get a row with their own."""
+    known = hand.thenar.bake.parts
+    for part in parts:
+        if all(row.object != part for row in known):
+            taken, key = {row.name for row in known}, part.name
+            while key in taken:
+                key += "'"
+            row = known.add()
+            row.name, row.object = key, part
+    return {part.name: _key_of(hand, part) for part in parts}
+
+
+def _key_of(hand: Object, part: Object) -> str:
+    """The key of a part in a bake's files: the name that it had when it was baked first."""
+    return str(next((row.name for row in hand.thenar.bake.parts if row.object == part), part.name))
+
+
+def _tables(take: Take, frames: Sequence[Frame], keys: dict[str, str]) -> dict[str, Any]:
+    tables: dict[str, Any] = {"first_frame": np.int32(take.first_frame), "sums_json": np.array(json.dumps(take.sums))}
     for name in _field_names(frames):
         plain = np.full(len(frames[0]["local"]), _UNTOUCHED.get(name, 0.0), np.float32)
         tables[f"hand/{name}"] = np.stack([frame["fields"].get(name, plain) for frame in frames])
     for name in frames[0]["parts"]:
-        tables[f"part/{name}"] = np.stack([frame["parts"][name] for frame in frames])
-        tables[f"edge/{name}"] = np.stack([frame["part_edges"][name] for frame in frames])
+        tables[f"part/{keys[name]}"] = np.stack([frame["parts"][name] for frame in frames])
+        tables[f"edge/{keys[name]}"] = np.stack([frame["part_edges"][name] for frame in frames])
     for name in (*_NUMBERS, "offset"):
         tables[name] = np.array([frame[name] for frame in frames])
     return tables

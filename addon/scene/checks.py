@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from itertools import chain
 from math import hypot, isfinite
+from typing import Any
 
 import numpy as np
 from bpy.types import Context, LayerCollection, Object, Scene
@@ -70,7 +71,7 @@ def check_writable(hand: Object | None) -> None:
 def check_visible(context: Context, obj: Object, role: str) -> None:
     """Refuse what the view layer does not evaluate: Blender would hand back its rest shape without a word."""
     layer = context.view_layer
-    if layer.objects.get(obj.name) != obj:
+    if not _holds(layer.objects, obj):
         raise Refusal(
             f"the {role} '{obj.name}' is not in the view layer '{layer.name}'; "
             "link it to the scene or tick its collection in the Outliner"
@@ -145,10 +146,15 @@ def _check_matrix(obj: Object) -> None:
         raise Refusal(f"the scale of '{obj.name}' is zero along an axis; give it a size again")
 
 
+def _holds(objects: Any, obj: Object) -> bool:
+    """Whether a collection holds the object; a linked one may have the name of a local one, which is found first."""
+    return objects.get(obj.name) == obj or obj in objects.values()
+
+
 def _is_evaluated(layer_collection: LayerCollection, obj: Object) -> bool:
     collection = layer_collection.collection
     if layer_collection.exclude or collection.hide_viewport:
         return False
-    if collection.objects.get(obj.name) == obj:
+    if _holds(collection.objects, obj):
         return True
     return any(_is_evaluated(child, obj) for child in layer_collection.children)

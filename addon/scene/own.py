@@ -3,6 +3,7 @@
 from collections.abc import Container, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
+import bpy
 from bpy.types import Context, Depsgraph, Modifier, Object, ShapeKey
 
 from .. import names
@@ -18,6 +19,31 @@ def contact_key(obj: Object) -> ShapeKey | None:
 def bake_modifiers(obj: Object) -> list[Modifier]:
     """The modifiers that play a bake on this hand."""
     return [modifier for modifier in obj.modifiers if modifier.name.startswith(names.BAKE_MODIFIER)]
+
+
+BAKE_CURVES = {"force_n": "force_n", "area_mm2": "area_mm2", "frame_peak_kpa": "peak_kpa"}
+"""Properties of `hand.thenar.bake` that are keyed in every frame of the take that plays, and their columns."""
+
+
+def remove_bake_curves(obj: Object) -> None:
+    """Take the F-curves of a bake's numbers off the hand, and its action where it holds nothing else."""
+    data = obj.animation_data
+    if data is None or data.action is None:
+        return
+    action = data.action
+    if hasattr(action, "fcurves"):
+        bags = [action]
+    else:  # Blender 5.0: curves stand in the layers of an action
+        strips = [strip for layer in action.layers for strip in layer.strips]
+        bags = [bag for strip in strips if (bag := strip.channelbag(data.action_slot)) is not None]
+    for bag in bags:
+        for curve in list(bag.fcurves):
+            if curve.data_path in {f"thenar.bake.{name}" for name in BAKE_CURVES}:
+                bag.fcurves.remove(curve)
+    if not any(len(bag.fcurves) for bag in bags) and action.users == 1 and action.library is None:
+        data.action = None
+        bpy.data.actions.remove(action)
+        obj.animation_data_clear()
 
 
 def live_modifier(obj: Object) -> Modifier | None:

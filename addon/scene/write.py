@@ -219,6 +219,8 @@ def clear(context: Context, hand: Object, parts: Sequence[Object]) -> None:
         hand.modifiers.remove(modifier)
     correction.remove(hand)
     hand.thenar.bake_path = ""
+    own.remove_bake_curves(hand)
+    hand.thenar.bake.parts.clear()
     key.remove_key(hand)
     attributes.remove(hand.data, (*names.HAND_ATTRIBUTES, names.LIVE_OFFSET))
     hand.data.update()

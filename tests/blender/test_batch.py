@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -16,7 +17,7 @@ import numpy as np
 import pytest
 import stage
 import thenar
-from thenar_blender import batch, command_line
+from thenar_blender import batch, command_line, names
 from thenar_blender.batch import child
 from thenar_blender.scene.checks import Refusal
 
@@ -121,9 +122,9 @@ def test_a_killed_worker_process_loses_no_case(grip, tmp_path):
 
 
 def test_a_case_that_kills_its_process_twice_is_a_failed_case():
-    told = child.solve({}, ([sys.executable, "-c", "import sys; sys.exit('no such hand')"], {}), {}, 60.0)
+    told = child.Children().solve(([sys.executable, "-c", "import sys; sys.exit('no such hand')"], {}), {}, 60.0)
     assert told == {"error": "the process ended with code 1: no such hand, 2 times"}
-    told = child.solve({}, ([sys.executable, "-c", "import time; time.sleep(60)"], {}), {}, 0.5)
+    told = child.Children().solve(([sys.executable, "-c", "import time; time.sleep(60)"], {}), {}, 0.5)
     assert told == {"error": "it took longer than 0.5 s, 2 times"}
 
 
@@ -146,7 +147,8 @@ def test_a_worker_answers_every_line_and_goes_on(grip, tmp_path):
         env=dask_cluster.environment(),
         timeout=120,
     )
-    answers = [json.loads(line) for line in told.stdout.splitlines()]
+    first, *answers = [json.loads(line) for line in told.stdout.splitlines()]
+    assert first == {"thenar": names.VERSION, "ready": True}
     assert told.returncode == 0 and len(answers) == len(lines) + 1
     for answer, (_, sentence) in zip(answers, lines, strict=False):
         assert sentence in answer["error"] and "Traceback" not in answer["error"], answer
@@ -157,7 +159,7 @@ def test_a_task_that_the_process_never_took_does_not_break_its_end():
     deaf = "import os, time; os.close(0); print('deaf', flush=True); time.sleep(1)"
     process = child.Child([sys.executable, "-c", deaf], {})
     process._start()
-    assert process._answers.get(timeout=30) == "deaf\n"
+    assert process._lines.get(timeout=30) == "deaf\n"
     with pytest.raises(child.ChildDied, match="ended with code 0"):
         process.solve({"case": 1}, 30.0)
 
@@ -172,7 +174,7 @@ def test_a_task_that_the_process_never_took_does_not_break_its_end():
         ('[[case]]\nblend = "a"\nforce_n = -2', "force_n is -2, but must be a number above zero"),
         ('[[case]]\nblend = "a"\nmodel = "clay"', 'must be "layer" or "paper"'),
         ('[[case]]\nblend = "a"\nhand_percentile = 95', 'add fit = "firm"'),
-        ('[[case]]\nblend = "a"\nname = "x y"\n[[case]]\nblend = "a"\nname = "x_y"', "the same file name 'x_y'"),
+        ('[[case]]\nblend = "a"\nname = "x"\n[[case]]\nblend = "a"\nname = "x"', "case x has the name of another"),
         ('[[sweep]]\nblend = "a"', "holds no list"),
         ('[[sweep]]\nblend = "a"\nforce_n = []', "an empty list for force_n"),
         ('[[sweep]]\nblend = "a"\nsave = [true, false]', "cannot run through save"),
@@ -229,15 +231,14 @@ def test_tables_that_are_none():
         thenar.parquet({"b": [1.0, "x"]})
 
 
-def test_without_a_scheduler_the_batch_says_so(grip, tmp_path, monkeypatch):
+def test_without_a_scheduler_the_batch_says_so(grip, tmp_path):
     pytest.importorskip("distributed")
-    from thenar_blender.batch import cluster
-
-    monkeypatch.setattr(cluster, "PATIENCE_S", 0.0)
     jobs = tmp_path / "jobs.toml"
     jobs.write_text(SWEEP)
+    began = time.monotonic()
     with pytest.raises(Refusal, match="no scheduler answers at tcp://127.0.0.1:9 .*8 cases are left"):
         batch.run(jobs, tmp_path / "out", batch.By(scheduler="tcp://127.0.0.1:9"))
+    assert time.monotonic() - began < 10.0
 
 
 def test_dask_with_a_killed_worker_and_a_new_scheduler(grip, tmp_path):

@@ -1,6 +1,6 @@
 //! What a file holds: a text, or a workbook, each of whose sheets is read as the text that it holds.
 
-use crate::detection::{Format, HEAD, Kind, kind_of};
+use crate::detection::{Format, HEAD, Kind, asked, kind_of};
 use crate::fault::{Fault, shown};
 use crate::lines::Lines;
 use crate::pressure_map::Source;
@@ -20,6 +20,10 @@ pub(crate) fn read_text(
     (named, rows): (&Columns, Rows),
 ) -> Result<RecordingFile, Fault> {
     match format {
+        // A curve of AFM Workshop is a table as well: a user may name its columns.
+        Format::AfmWorkshop if !named.is_empty() => {
+            read_text(lines, Format::CurveTable, (named, rows))
+        }
         Format::CurveTable => {
             let curves = tables::curves::read(lines, named, rows)?;
             Ok(RecordingFile::of_curves(format, curves))
@@ -48,9 +52,14 @@ fn read_sheets(bytes: Vec<u8>, named: &Columns) -> Result<RecordingFile, Fault> 
     let mut book = Book::open(bytes)?;
     let mut file = RecordingFile::of_curves(Format::Workbook, Vec::new());
     let (mut passed, mut faults) = (Vec::new(), Vec::<Fault>::new());
+    let mut open = None;
     for name in book.names() {
         let text = book.text(&name)?;
-        let Ok(Kind::Text(format)) = kind_of(&text[..text.len().min(HEAD)], named) else {
+        let head = &text[..text.len().min(HEAD)];
+        let Ok(Kind::Text(format)) = kind_of(head, named) else {
+            if named.is_empty() {
+                open = open.or_else(|| asked(head).map(|fault| fault.in_sheet(&name)));
+            }
             if !text.is_empty() {
                 passed.push(shown(name.as_bytes()));
             }
@@ -63,7 +72,8 @@ fn read_sheets(bytes: Vec<u8>, named: &Columns) -> Result<RecordingFile, Fault> 
         }
     }
     if file.curves.is_empty() && file.maps.is_empty() {
-        return Err(faults.into_iter().next().unwrap_or_else(|| nothing(named)));
+        let first = faults.into_iter().next();
+        return Err(first.or(open).unwrap_or_else(|| nothing(named)));
     }
     let left_out = faults
         .iter()

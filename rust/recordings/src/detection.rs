@@ -3,6 +3,7 @@
 use crate::fault::Fault;
 use crate::fields::{Separator, value};
 use crate::lines::{Line, Lines};
+use crate::makers::AFM_WORKSHOP;
 use crate::tables::head::{Found, Search, question};
 use crate::tables::mapping::Columns;
 
@@ -34,6 +35,8 @@ pub enum Format {
     Aurora,
     /// Optics11 Chiaro or Piuma, text.
     Optics11,
+    /// AFM Workshop force-distance curve, CSV.
+    AfmWorkshop,
     /// JPK force curve, exported as text.
     JpkText,
     /// JPK force curve, `.jpk-force`.
@@ -60,6 +63,7 @@ impl Format {
             Format::Mach1 => "Mach-1",
             Format::Aurora => "Aurora DMC",
             Format::Optics11 => "Optics11 Chiaro or Piuma",
+            Format::AfmWorkshop => "AFM Workshop force-distance curve",
             Format::JpkText => "JPK text",
             Format::JpkArchive => "JPK force curve",
             Format::Workbook => "testing machine workbook",
@@ -95,6 +99,9 @@ pub(crate) fn kind_of(head: &[u8], named: &Columns) -> Result<Kind, Fault> {
         let problem = "the text is saved as UTF-16".to_string();
         return Err(Fault::line(1, problem, "save it as UTF-8 or Latin-1"));
     }
+    if let Some(fault) = foreign(head) {
+        return Err(fault);
+    }
     // The last line of the head may be cut.
     let whole = match memchr::memrchr2(b'\n', b'\r', head) {
         Some(end) if head.len() == HEAD => &head[..end],
@@ -114,6 +121,75 @@ pub(crate) fn kind_of(head: &[u8], named: &Columns) -> Result<Kind, Fault> {
                 .unwrap_or_else(not_known),
             false => not_named(named),
         })
+}
+
+/// What is to be asked of a table whose columns have units and names that say nothing.
+pub(crate) fn asked(head: &[u8]) -> Option<Fault> {
+    question(&first_lines(head))
+}
+
+/// First bytes of files that laboratories have and that are not read, what they are, and what to do.
+const FOREIGN: &[(&[u8], &str, &str)] = &[
+    (b"\x89HDF\r\n", "an HDF5 file", FROM_PROGRAM),
+    (
+        b"\\*Force file list",
+        "a Bruker Nanoscope force file",
+        FROM_PROGRAM,
+    ),
+    (b"\\*EC File list", "a Bruker Nanoscope file", FROM_PROGRAM),
+    (b"\\*File list", "a Bruker Nanoscope picture", FROM_PROGRAM),
+    (
+        b"II*\0",
+        "a TIFF picture, as JPK's images are",
+        FROM_PROGRAM,
+    ),
+    (
+        b"MM\0*",
+        "a TIFF picture, as JPK's images are",
+        FROM_PROGRAM,
+    ),
+    (
+        b"\x1F\x8B",
+        "packed with gzip, as Zwick's .zs2",
+        "unpack it, or export the curves as a workbook or as text",
+    ),
+    (b"%PDF", "a PDF report", FROM_PROGRAM),
+    (
+        b"\x89PNG",
+        "a picture",
+        "a handprint is read as one; a recording is text or a workbook",
+    ),
+    (
+        b"\xFF\xD8\xFF",
+        "a picture",
+        "a handprint is read as one; a recording is text or a workbook",
+    ),
+];
+const FROM_PROGRAM: &str = "export the curves or frames as text or CSV from the maker's program";
+
+/// The fault of a file whose first bytes say that it is of a kind that is not read.
+fn foreign(head: &[u8]) -> Option<Fault> {
+    let of = |what: &str, remedy: &'static str| {
+        Fault::file(format!("this is {what}, which is not read"), remedy)
+    };
+    let known = FOREIGN.iter().find(|(mark, ..)| head.starts_with(mark));
+    known.map(|(_, what, remedy)| of(what, remedy)).or_else(|| {
+        is_igor(head).then(|| of("an Igor binary wave, as Asylum writes it", FROM_PROGRAM))
+    })
+}
+
+/// Igor's version stands first, and the words of its header sum up to zero (WaveMetrics, Technical Note 3).
+fn is_igor(head: &[u8]) -> bool {
+    let sums = |length: usize, word: fn([u8; 2]) -> u16, version: u16| {
+        let header = head.get(..length).unwrap_or(&[]);
+        let words = header.chunks_exact(2).map(|pair| word([pair[0], pair[1]]));
+        header.len() == length
+            && word([head[0], head[1]]) == version
+            && words.fold(0, u16::wrapping_add) == 0
+    };
+    [u16::from_le_bytes, u16::from_be_bytes]
+        .into_iter()
+        .any(|word| sums(384, word, 5) || sums(126, word, 2))
 }
 
 /// XSENSOR's table with a row for each frame, which holds no pressures.
@@ -145,7 +221,7 @@ fn bare_numbers(lines: &[String]) -> Option<Fault> {
 fn not_known() -> Fault {
     Fault::line(
         1,
-        "this is no recording format that is known (Tekscan, Novel, XSENSOR, footscan, Aurora, Optics11, JPK, Mach-1, testing machine, CSV)"
+        "this is no recording format that is known (Tekscan, Novel, XSENSOR, footscan, Aurora, Optics11, JPK, AFM Workshop, Mach-1, testing machine, CSV)"
             .into(),
         "export it as text from the maker's program, or as CSV with columns such as time_s, depth_mm, force_n",
     )
@@ -205,6 +281,7 @@ const MARKS: &[(Format, Mark)] = &[
     (Format::Optics11, |lines| {
         any(lines, &["Tip radius ("]) && any(lines, &["k (N/m)"])
     }),
+    (Format::AfmWorkshop, |lines| first(lines) == AFM_WORKSHOP),
     (Format::JpkText, |lines| {
         any(lines, &["# columns:"]) && any(lines, &["# units:"])
     }),

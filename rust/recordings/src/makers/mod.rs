@@ -1,5 +1,6 @@
 //! A reader for each maker's format; each keeps what the file says and invents nothing.
 
+mod afm_workshop;
 mod aurora;
 mod emed;
 mod footscan;
@@ -19,6 +20,7 @@ use crate::fault::Fault;
 use crate::lines::Lines;
 use crate::recording_file::RecordingFile;
 
+pub(crate) use afm_workshop::FIRST as AFM_WORKSHOP;
 pub(crate) use mach1::read as mach1;
 
 /// Most rows or columns of a mat; the largest on the market have 256.
@@ -41,6 +43,7 @@ pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFi
         Format::InsoleLogger => insole_logger::read(lines).map(maps),
         Format::Aurora => aurora::read(lines).map(curves),
         Format::Optics11 => optics11::read(lines).map(curves),
+        Format::AfmWorkshop => afm_workshop::read(lines).map(curves),
         Format::JpkText => jpk::text::read(lines).map(curves),
         Format::Mach1
         | Format::JpkArchive

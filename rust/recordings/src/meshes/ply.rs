@@ -102,7 +102,6 @@ fn read_vertices(element: &Element, values: &mut Values, mesh: &mut MeshFile) ->
 }
 
 fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Result<(), Fault> {
-    let is_corners = |name: &[u8]| name == b"vertex_indices" || name == b"vertex_index";
     if !element
         .properties
         .iter()
@@ -116,25 +115,55 @@ fn read_faces(element: &Element, values: &mut Values, faces: &mut Faces) -> Resu
         ));
     }
     let mut corners = Vec::new();
+    let mut longer = None;
     for _ in 0..element.count {
-        for property in &element.properties {
-            let times = property
-                .count
-                .map_or(Ok(1), |count| values.next_whole(count))?;
-            if !is_corners(&property.name) {
-                (0..times).try_for_each(|_| values.next(property.item).map(drop))?;
-                continue;
-            }
-            corners.clear();
-            for _ in 0..times {
-                corners.push(values.next_whole(property.item)?);
-            }
-            if corners.len() < 3 {
-                let problem = format!("a face with {} corners, expected 3 or more", corners.len());
-                return Err(values.fault(problem, "delete loose edges and export again"));
-            }
-            faces.push(&corners);
+        if let Err(fault) = read_face(element, values, &mut corners, faces) {
+            // What went wrong first is the row that holds more than the header says.
+            let Some(line) = longer else {
+                return Err(fault);
+            };
+            let problem = format!(
+                "the row of a face holds more values than the header names from line {} on",
+                element.line
+            );
+            return Err(Fault::line(
+                line,
+                problem,
+                "export the mesh again, as binary or from another program",
+            ));
         }
+        longer = longer.or_else(|| values.unread_line());
+    }
+    Ok(())
+}
+
+fn is_corners(name: &[u8]) -> bool {
+    name == b"vertex_indices" || name == b"vertex_index"
+}
+
+fn read_face(
+    element: &Element,
+    values: &mut Values,
+    corners: &mut Vec<u32>,
+    faces: &mut Faces,
+) -> Result<(), Fault> {
+    for property in &element.properties {
+        let times = property
+            .count
+            .map_or(Ok(1), |count| values.next_whole(count))?;
+        if !is_corners(&property.name) {
+            (0..times).try_for_each(|_| values.next(property.item).map(drop))?;
+            continue;
+        }
+        corners.clear();
+        for _ in 0..times {
+            corners.push(values.next_whole(property.item)?);
+        }
+        if corners.len() < 3 {
+            let problem = format!("a face with {} corners, expected 3 or more", corners.len());
+            return Err(values.fault(problem, "delete loose edges and export again"));
+        }
+        faces.push(corners);
     }
     Ok(())
 }

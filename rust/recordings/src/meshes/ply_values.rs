@@ -31,6 +31,14 @@ impl<'a> Values<'a> {
         self.bytes.len() - self.at
     }
 
+    /// The line, if more stands on it behind the value read last: rows of a text end with their line.
+    pub fn unread_line(&self) -> Option<usize> {
+        let mut rest = self.bytes[self.at..].iter();
+        let next = rest.find(|byte| !matches!(byte, b' ' | b'\t'))?;
+        let is_text = matches!(self.encoding, Encoding::Ascii);
+        (is_text && !next.is_ascii_whitespace()).then_some(self.line)
+    }
+
     /// A fault at the value read last.
     pub fn fault(&self, problem: String, remedy: &'static str) -> Fault {
         Fault::at(self.last, problem, remedy)

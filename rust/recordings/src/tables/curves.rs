@@ -5,7 +5,7 @@ use super::head::{Found, Head, Search, is_units};
 use super::mapping::Columns;
 use super::run::{Run, divided};
 use crate::curve::Curve;
-use crate::fault::Fault;
+use crate::fault::{Fault, shown};
 use crate::fields::{DAMAGED, MOST_VALUES, value};
 use crate::lines::{Line, Lines};
 use crate::units::unit;
@@ -151,6 +151,10 @@ impl Table {
         let padding = row.iter().skip(self.columns).all(|field| field.is_empty());
         let is_strict = self.rows == Rows::Whole;
         let is_short = row.len() < self.columns && self.runs.len() == 1;
+        if is_strict && row.len() == 1 && row.len() < self.columns && value(&row[0]).is_err() {
+            let problem = format!("the line {} is no sample", shown(row[0].as_bytes()));
+            return Err(line.fault(problem, "take the line out of the file"));
+        }
         if is_strict && (is_short || !padding) {
             let problem = format!(
                 "the row holds {} values, expected {}",

@@ -82,6 +82,12 @@ pub const AURORA: &str = "DMCv5.3 Data File\nSample Frequency (Hz): 1000\nRefere
     Test Data in Volts:\n\nSample\tAI0\tAI1\tAI2\tAO1\tStim\n0\t0.5\t0.1\t9\t0.2\t0\n1\t1.0\t0.2\t9\t0.2\t0\n";
 
 /// Latin-1 micro, a line end LF CR, and one sample more than nothing.
+/// Three samples in, two out; the cantilever's stiffness stands in the header.
+pub const AFM_WORKSHOP: &str = "Force-Distance Curve\r\nFile Format:\t3\r\n\r\nDate:\tFriday, March 1, 2024\r\nMode:\tSingle\r\n\
+    X, um:\t25.000000\r\nForce Constant, nN/nm:\t2.000000\r\nZ Rate, nm/s:\t500.000000\r\n\r\n\
+    Extend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)\r\n\
+    1000.0,4.0,1200.0,40.0\r\n1100.0,4.0,1100.0,0.0\r\n1200.0,44.0,,\r\n";
+
 pub fn optics11() -> Vec<u8> {
     let text = "Date\t12/05/2024\tTime\t11:20:38\tStatus\tOK\r\nJo Doe\r\nX (#)\t1\n\rX-position (um)\t1\r\nk (N/m)\t0.5\r\n\
         Tip radius (um)\t25.000\r\nDevice:\tChiaro\r\nControl mode: Peak Load Poking\nMax load (µN)\t0.050\r\nPiezo speed (µm/s)\t7.000\n\
@@ -239,6 +245,10 @@ pub fn texts() -> Vec<(&'static str, Vec<u8>)> {
     let mut all: Vec<_> = fixed
         .map(|(name, text)| (name, text.as_bytes().to_vec()))
         .into();
-    all.extend([("emed", emed()), ("optics11", optics11())]);
+    all.extend([
+        ("emed", emed()),
+        ("optics11", optics11()),
+        ("afm_workshop", AFM_WORKSHOP.into()),
+    ]);
     all
 }

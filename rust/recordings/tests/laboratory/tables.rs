@@ -302,7 +302,7 @@ fn a_number_between_units_is_no_note() {
 
 #[test]
 fn columns_of_force_and_length_under_other_names_are_asked_for() {
-    let table = "Force-Distance Curve\nX, um:\t25\n\nExtend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)\n\
+    let table = "Approach and retreat\nX, um:\t25\n\nExtend Z-Sense(nm),Extend Force(nN),Retract Z-Sense(nm),Retract Force(nN)\n\
         4129,0.5,5345,0.7\n4130,0.6,5344,0.6\n4131,0.8,5343,0.5\n";
     assert_eq!(
         refused(table.as_bytes()),
@@ -316,6 +316,13 @@ fn columns_of_force_and_length_under_other_names_are_asked_for() {
     assert!((force[2] - 0.8e-9).abs() < 1e-20);
     let travel = named.curves[0].channel("travel_mm").unwrap();
     assert!((travel[0] - 4.129e-3).abs() < 1e-12 && (travel[2] - 4.131e-3).abs() < 1e-12);
+    let afm = table.replace("Approach and retreat", "Force-Distance Curve");
+    let named = with(afm.as_bytes(), &answers, None).unwrap();
+    assert_eq!(
+        named.curves[0].channel("travel_mm").unwrap(),
+        travel,
+        "AFM Workshop's own file"
+    );
 }
 
 #[test]

@@ -241,3 +241,28 @@ fn notes_that_people_keep_to_the_right_of_a_table_cost_nothing() {
         curve.warnings
     );
 }
+
+#[test]
+fn columns_of_a_sheet_whose_names_say_nothing_are_asked_for() {
+    let sheet = under(&[&["t (s)", "Z (mm)", "P (N)", "Q (N)"]]);
+    let notes: Rows = vec![row(&["Operator", "J. D."])];
+    let book = workbook(&[("Notes", notes.clone()), ("Data", sheet)]);
+    let told = refused(&book);
+    assert!(
+        told.contains("sheet 'Data'")
+            && told.contains("which of its columns")
+            && told.contains("'P (N)'"),
+        "{told}"
+    );
+    let file = with(
+        &book,
+        &[("force", "P"), ("travel", "Z"), ("time", "t")],
+        None,
+    )
+    .unwrap();
+    assert_eq!(file.curves[0].samples(), 20);
+    // A sheet without units leaves nothing to ask for.
+    assert!(
+        refused(&workbook(&[("Notes", notes)])).contains("no sheet of the workbook holds columns")
+    );
+}

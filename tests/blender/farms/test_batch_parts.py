@@ -7,7 +7,10 @@ import sys
 
 import pytest
 import stage
-from thenar_blender.batch import child, cluster, conductor, here, jobs, processors, rows, worker
+import stub_worker
+from thenar_blender.batch import child, cluster, conductor, depends, here, jobs, processors, rows, worker
+
+SUMMARY = {name: 21.0 for name in child.NUMBERS}
 
 
 @pytest.fixture
@@ -26,22 +29,36 @@ def test_the_digest_depends_on_settings_and_on_the_file(case, tmp_path):
 
 
 def test_a_case_is_done_once_all_it_asks_for_is_there(case, tmp_path):
-    summary = {"case_hash": "h", "force_n": 2.0, "warnings": []}
-    (tmp_path / "grip.json").write_text(json.dumps(summary))
     wanted = case | {"save": False, "render": True}
-    assert conductor._kept(wanted, tmp_path, "h") is None, "its picture is missing"
+    texture = tmp_path / "texture.png"
+    texture.write_bytes(b"grain")
+    files = {str(texture): depends.digest(texture, {}), str(tmp_path / "gone.abc"): ""}
+    summary = {**SUMMARY, "case_hash": jobs.case_hash(wanted, {}), "files": files, "warnings": []}
+    whole = json.dumps(summary)
+
+    def kept(of=wanted):
+        return conductor.Table([jobs.Entry(of, "grip")], tmp_path).rows[0]
+
+    (tmp_path / "grip.json").write_text(whole)
+    assert kept() is None, "its picture is missing"
     (tmp_path / "grip.png").write_bytes(b"picture")
-    assert conductor._kept(wanted, tmp_path, "h")["status"] == "done"
-    assert conductor._kept(wanted, tmp_path, "other") is None
-    (tmp_path / "grip.json").write_text("{")
-    assert conductor._kept(wanted, tmp_path, "h") is None, "it was cut off while it was written"
+    assert kept()["status"] == "done"
+    assert kept(wanted | {"force_n": 3.0}) is None, "another force"
+    for odd in ("{", "[]", "5", '{"case_hash": "h"}', whole.replace("21.0", '"21"'), "[" * 100_000, "\xff"):
+        (tmp_path / "grip.json").write_bytes(odd.encode("latin-1"))
+        assert kept() is None, odd[:20]
+    (tmp_path / "grip.json").write_text(whole)
+    (tmp_path / "gone.abc").write_bytes(b"waves")
+    assert kept() is None, "a file that was missing is there now"
+    (tmp_path / "gone.abc").unlink()
+    texture.write_bytes(b"grids")
+    assert kept() is None, "a texture was painted since"
 
 
 def test_a_process_is_replaced_after_so_many_cases(monkeypatch):
     monkeypatch.setattr(child, "MOST_CASES", 2)
-    tell = "import os, sys, json\nfor line in sys.stdin: print(json.dumps(os.getpid()), flush=True)"
-    process = child.Child([sys.executable, "-c", tell], {})
-    numbers = [process.solve({}, 30.0) for _ in range(5)]
+    process = child.Child(stub_worker.command("os.getpid()"), {})
+    numbers = [process.solve(stub_worker.TASK, 30.0)["error"] for _ in range(5)]
     process.close()
     assert numbers[0] == numbers[1] != numbers[2] == numbers[3] != numbers[4]
 
@@ -49,14 +66,13 @@ def test_a_process_is_replaced_after_so_many_cases(monkeypatch):
 @pytest.mark.skipif(sys.platform != "linux", reason="processors are set on Linux")
 def test_a_process_starts_on_one_processor_where_it_is_to():
     allowed = os.sched_getaffinity(0)
-    told = f"[len(os.sched_getaffinity(0)), os.environ.get({child.PROCESSORS!r})]"
-    command = [sys.executable, "-c", f"import os, json\nwhile input(): print(json.dumps({told}), flush=True)"]
+    command = stub_worker.command(f"[len(os.sched_getaffinity(0)), os.environ.get({child.PROCESSORS!r})]")
     for wish, count, told in (
         ({child.PROCESSORS: "one"}, 1, ",".join(map(str, sorted(allowed)))),
         ({}, len(allowed), None),
     ):
         process = child.Child(command, wish)
-        assert process.solve({}, 30.0) == [count, told]
+        assert process.solve(stub_worker.TASK, 30.0) == {"error": str([count, told])}
         process.close()
     assert os.sched_getaffinity(0) == allowed
 
@@ -85,14 +101,13 @@ def test_workers_keep_a_processor_each_and_leave_one_that_is_shared(monkeypatch)
 
 
 def test_a_process_of_other_variables_is_replaced():
-    tell = "import os, sys, json\nfor line in sys.stdin: print(json.dumps(os.environ['COLOUR']), flush=True)"
-    command, children = [sys.executable, "-c", tell], {}
+    command, children = stub_worker.command("os.environ['COLOUR']"), child.Children()
     try:
-        told = [child.solve(children, (command, {"COLOUR": name}), {}, 30.0) for name in ("red", "red", "blue")]
+        wanted = ("red", "red", "blue")
+        told = [children.solve((command, {"COLOUR": name}), stub_worker.TASK, 30.0) for name in wanted]
     finally:
-        for process in children.values():
-            process.close()
-    assert told == ["red", "red", "blue"]
+        children.close()
+    assert [each["error"] for each in told] == ["red", "red", "blue"]
 
 
 def test_no_cell_of_a_table_is_computed_by_a_spreadsheet(tmp_path):
@@ -121,17 +136,17 @@ def test_the_table_is_written_now_and_then_and_less_often_where_that_takes_long(
             clock[0] += 1.0
             yield task["case"]["name"], {"error": "spilled coffee"}
 
-    def save(*given):
+    def save(*given, **named):
         clock[0] += save_s
         saves.append(clock[0])
 
     monkeypatch.setattr(conductor.time, "monotonic", lambda: clock[0])
     monkeypatch.setattr(conductor, "_by", come)
     monkeypatch.setattr(conductor, "_save", save)
-    cases = [{"name": f"case {number}"} for number in range(200)]
-    hashes, table = {case["name"]: "" for case in cases}, {}
-    conductor._answer(cases, cases, (tmp_path, hashes, table), None)
-    assert len(table) == 200
+    entries = [jobs.Entry({"name": f"case {number}", "blend": "none.blend"}, f"case_{number}") for number in range(200)]
+    table = conductor.Table(entries, tmp_path)
+    conductor._answer(table, table.left(), None)
+    assert [row["message"] for row in table.rows] == ["spilled coffee"] * 200
     assert most - 3 <= len(saves) <= most
     assert max(later - earlier for earlier, later in zip(saves, saves[1:], strict=False)) >= conductor.SAVED_EVERY_S
 
@@ -158,16 +173,17 @@ def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
     distributed = pytest.importorskip("distributed")
     asked = []
 
-    def answer(children, start, task, limit_s):
-        asked.append(task["case"]["name"])
-        if asked[-1] == "case 13":
-            raise ValueError("spilled coffee")
-        return {"summary": asked[-1]}
+    class Stub:
+        def solve(self, start, task, limit_s):
+            asked.append(task["case"]["name"])
+            if asked[-1] == "case 13":
+                raise ValueError("spilled coffee")
+            return {"summary": asked[-1]}
 
     left = {f"case {n}": {"hash": f"h{n}", "case": {"name": f"case {n}"}} for n in range(40)}
     here = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with distributed.LocalCluster(**here) as workers, distributed.Client(workers) as client:
-        next(iter(workers.workers.values())).__dict__["thenar_children"] = (answer, {})
+        next(iter(workers.workers.values())).__dict__["thenar_children"] = Stub()
         told = dict(cluster._session(client, left, {}))
     assert told.pop("case 13")["error"].startswith("the worker failed: ValueError('spilled coffee')")
     assert told == {name: {"summary": name} for name in left if name != "case 13"}
