@@ -3,6 +3,7 @@
 from . import (
     diagnosis,
     grasp,
+    grasp_data,
     hand,
     hand_shape,
     handlers,
@@ -32,6 +33,7 @@ _MODULES = (
     hand,
     rigging,
     grasp,
+    grasp_data,
     hand_shape,
     picture_sets,
     recordings,

@@ -24,6 +24,7 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row.operator("thenar.make_hand", icon="VIEW_PAN")
         row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
         layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
+        layout.operator("thenar.load_hand_pose", icon="IMPORT")
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):

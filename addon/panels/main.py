@@ -317,6 +317,7 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
             rate = scene.render.fps / scene.render.fps_base
             column.label(text=iface("Frames keep history, {rate:g} fps", rate=rate), icon="TIME")
         layout.operator("thenar.export", icon="EXPORT")
+        layout.operator("thenar.export_contact_map", icon="EXPORT")
         column = layout.column(align=True)
         column.active = False
         column.label(text=iface("Shape key: {name}", name=names.SHAPE_KEY))

@@ -20,6 +20,8 @@ _OPERATORS = (
     ("region_add region_remove region_preset assign_regions", "guide.html#materials"),
     ("effect_add effect_remove", "guide.html#effects"),
     ("picture open_picture", "guide.html#pictures"),
+    ("load_hand_pose", "grasp_data.html#poses-of-mano-and-smpl-x"),
+    ("export_contact_map", "grasp_data.html#contact-maps"),
     ("bake export export_bake", "guide.html#bake--export"),
     (
         "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
