@@ -4,6 +4,7 @@ import bpy
 
 from .. import effect_settings, grades, maps, names, status
 from ..languages import iface
+from ..presets import kinds, menus
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
 from . import manual, start, text
@@ -248,6 +249,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             line = layout.row(align=True)
             line.prop(*place)
             line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
+        menus.draw_row(layout, kinds.LOOK)
         layout.prop(settings, "palette")
         layout.prop(settings.maps, "contour")
         layout.prop(settings, "show_legend")

@@ -19,6 +19,7 @@ _OPERATORS = (
     ("reset_range render_preset", "guide.html#display"),
     ("region_add region_remove region_preset assign_regions", "guide.html#materials"),
     ("effect_add effect_remove", "guide.html#effects"),
+    ("preset_save preset_apply preset_remove preset_import preset_export", "guide.html#presets"),
     ("picture open_picture", "guide.html#pictures"),
     ("load_hand_pose", "grasp_data.html#poses-of-mano-and-smpl-x"),
     ("export_contact_map", "grasp_data.html#contact-maps"),
