@@ -68,7 +68,13 @@ class Layout:
         return _Properties(kind)
 
     def operator_menu_enum(self, name, prop, text="", icon="NONE"):
-        assert prop in self.operator(name, text).kind.properties
+        button = self.operator(name, text)
+        assert prop in button.kind.properties
+        return button
+
+    def menu(self, name, text="", icon="NONE"):
+        assert hasattr(bpy.types, name), name
+        self._say(text, icon)
 
     def prop(self, data, name, text=None, index=-1, **_):
         assert name in data.bl_rna.properties, f"{data} has no '{name}'"
