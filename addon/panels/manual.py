@@ -13,6 +13,7 @@ _OPERATORS = (
     ("solve clear apply grasp_lighter show_place select_place", "guide.html#thenar"),
     ("refine_skin", "guide.html#finer-skin"),
     ("fit_grasp settle_grasp use_grasp apply_pose", "guide.html#grasp"),
+    ("add_pose_library blend_pose", "guide.html#pose-library"),
     ("guess_bones join_bones assign_digit pick_digits regions_from_bones show_regions", "guide.html#bones"),
     ("look look_back report show_pressure show_map select_region", "guide.html#result"),
     ("certify paint_thickness", "guide.html#reference"),

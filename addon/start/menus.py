@@ -30,7 +30,7 @@ class THENAR_MT_object(bpy.types.Menu):
 
 _GROUPS = (
     ("add_sample", "add_product", "make_hand", "add_hand", "pick_hand", "pick", "guess_bones", "assign_regions"),
-    ("load_hand_pose",),
+    ("blend_pose", "add_pose_library", "load_hand_pose"),
     ("fit_grasp", "settle_grasp", "solve", "refine_skin", "certify", "clear", "apply"),
     ("bake", "export", "export_contact_map", "export_bake", "load_recording", "new_study", "compare", "diagnose"),
 )

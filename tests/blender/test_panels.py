@@ -110,7 +110,7 @@ class Context:
     """Blender's context as the sidebar has it."""
 
     region = SimpleNamespace(width=SIDEBAR)
-    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), filepaths=SimpleNamespace(asset_libraries=()))
 
     def __getattr__(self, name):
         return getattr(bpy.context, name)
