@@ -60,6 +60,7 @@ class THENAR_OT_blend_pose(bpy.types.Operator):
         return can_pose(cls, context)
 
     def invoke(self, context, event):
+        self.factor = 0.0  # the popup computes nothing before the slider moves
         return context.window_manager.invoke_props_popup(self, event)
 
     def execute(self, context):
