@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import export, names, native
 from .. import result as results
+from ..batch.rows import cell
 from ..scene import attributes, copies, mesh, units
 from ..scene.checks import Refusal
 from ..scene.parts import product_parts
@@ -157,7 +158,7 @@ def _save_csv(path, table):
         writer = csv.writer(file)
         writer.writerow(columns)
         texts = [
-            values.tolist() if values.dtype.kind in "iuU" else np.char.mod("%.7g", values).tolist()
+            list(map(cell, values.tolist())) if values.dtype.kind in "iuU" else np.char.mod("%.7g", values).tolist()
             for values in columns.values()
         ]
         writer.writerows(zip(*texts, strict=True))

@@ -80,6 +80,14 @@ def test_a_table_holds_the_same_rows(tmp_path):
     assert {row["part"] for row in rows} == {"Plate"} and {row["region"] for row in rows} == {"Whole skin"}
 
 
+def test_no_name_becomes_a_formula_in_a_spreadsheet(tmp_path):
+    _, product = stage.scene()
+    product.name = "=2+3"
+    stage.solve()
+    bpy.ops.thenar.export_contact_map(filepath=str(tmp_path / "map.csv"))
+    assert {row["part"] for row in csv.DictReader((tmp_path / "map.csv").open())} == {"'=2+3"}
+
+
 @pytest.mark.parametrize(("name", "sentence"), [("a.xyz", "no suffix of a contact map"), ("no/a.npz", "no folder")])
 def test_places_that_are_refused(tmp_path, name, sentence):
     stage.scene()
