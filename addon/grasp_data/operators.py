@@ -6,6 +6,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
+from .. import languages
 from ..hand.operators import can_pose
 from ..operators import polling, running, selecting
 from . import contact_map, containers, posing
@@ -66,14 +67,15 @@ class THENAR_OT_load_hand_pose(bpy.types.Operator, ImportHelper):
         done = running.attempt(self, posing.apply, context, Path(bpy.path.abspath(self.filepath)), wish)
         if done is None:
             return {"CANCELLED"}
-        text = f"{done.keyed} frames of '{done.key}' keyed" if done.keyed else f"Posed by '{done.key}'"
+        text = languages.report("Posed by '{key}'", key=done.key)
+        if done.keyed:
+            text = languages.report("{count} frames of '{key}' keyed", count=done.keyed, key=done.key)
         self.report({"WARNING" if done.remark else "INFO"}, text + (f"; {done.remark}" if done.remark else ""))
         return {"FINISHED"}
 
 
 class THENAR_OT_export_contact_map(bpy.types.Operator, ExportHelper):
-    """Write the contact as grasp data sets do (.npz, .csv): a row per pressed vertex with region, object point, normal
-    and pressure"""
+    """Write the contact as grasp data sets do (.npz, .csv): region, object point, normal, pressure by pressed vertex"""
 
     bl_idname = "thenar.export_contact_map"
     bl_label = "Export Contact Map"
@@ -94,7 +96,7 @@ class THENAR_OT_export_contact_map(bpy.types.Operator, ExportHelper):
         if written is None:
             return {"CANCELLED"}
         path, count = written
-        self.report({"INFO"}, f"Wrote {count:,} contact points to {path.name}")
+        self.report({"INFO"}, languages.report("Wrote {count:,} contact points to {file}", count=count, file=path.name))
         return {"FINISHED"}
 
 

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-from .. import status
+from .. import languages, status
 from ..hand.operators import can_pose
 from ..hand.poses import LABELS
 from ..operators import polling, running
@@ -28,8 +28,11 @@ class THENAR_OT_add_pose_library(bpy.types.Operator):
         count, bare = done
         if bpy.ops.asset.library_refresh.poll():
             bpy.ops.asset.library_refresh()
-        text = f"{count} poses are in the asset library '{library.NAME}'"
-        self.report({"WARNING" if bare else "INFO"}, text + (f"; without a picture: {', '.join(bare)}" if bare else ""))
+        text = languages.report("{count} poses are in the asset library '{name}'", count=count, name=library.NAME)
+        self.report(
+            {"WARNING" if bare else "INFO"},
+            text + (languages.report("; without a picture: {poses}", poses=", ".join(bare)) if bare else ""),
+        )
         return {"FINISHED"}
 
 

@@ -8,6 +8,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
+from .. import languages
 from ..export import replace_file
 from ..operators import polling, running
 from ..scene.checks import Refusal
@@ -72,7 +73,7 @@ class THENAR_OT_preset_save(bpy.types.Operator):
         path = running.attempt(self, self._save, context)
         if path is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Saved '{path.stem}' in {path.parent}")
+        self.report({"INFO"}, languages.report("Saved '{name}' in {folder}", name=path.stem, folder=path.parent))
         return {"FINISHED"}
 
     def _save(self, context):
@@ -100,7 +101,7 @@ class THENAR_OT_preset_apply(bpy.types.Operator):
         remark = running.attempt(self, self._apply, context)
         if remark is None:
             return {"CANCELLED"}
-        text = f"'{self.name}' applied" + (f"; {remark}" if remark else "")
+        text = languages.report("'{name}' applied", name=self.name) + (f"; {remark}" if remark else "")
         self.report({"WARNING" if remark else "INFO"}, text)
         return {"FINISHED"}
 
@@ -130,7 +131,7 @@ class THENAR_OT_preset_remove(bpy.types.Operator):
         done = running.attempt(self, self._remove)
         if done is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Removed '{self.name}'")
+        self.report({"INFO"}, languages.report("Removed '{name}'", name=self.name))
         return {"FINISHED"}
 
     def _remove(self):
@@ -157,7 +158,10 @@ class THENAR_OT_preset_import(bpy.types.Operator, ImportHelper):
         if path is None:
             return {"CANCELLED"}
         title = next(item[1] for item in kinds.ITEMS if item[0].lower() == path.parent.name)
-        self.report({"INFO"}, f"Imported '{path.stem}' as a preset of {title}")
+        self.report(
+            {"INFO"},
+            languages.report("Imported '{name}' as a preset: {title}", name=path.stem, title=languages.iface(title)),
+        )
         return {"FINISHED"}
 
     def _import(self, context):
@@ -188,7 +192,7 @@ class THENAR_OT_preset_export(bpy.types.Operator, ExportHelper):
         path = running.attempt(self, self._export)
         if path is None:
             return {"CANCELLED"}
-        self.report({"INFO"}, f"Wrote {path.name}")
+        self.report({"INFO"}, languages.report("Wrote {files}", files=path.name))
         return {"FINISHED"}
 
     def _export(self):
