@@ -81,6 +81,12 @@ def _picture(options):
     picture_sets.run(options)
 
 
+def _pose_pictures(options):
+    from .pose_library import pictures
+
+    pictures.render(options.out)
+
+
 def _samples(options):
     try:
         maker = importlib.import_module(".grasp.samples", __package__)
@@ -130,6 +136,9 @@ def _parser():
     picture.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
     picture.add_argument("--order", metavar="JSON", help=argparse.SUPPRESS)
     picture.set_defaults(run=_picture)
+    poses = commands.add_parser("pose_pictures", help="make the pictures of the pose library again")
+    poses.add_argument("--out", required=True, metavar="DIR")
+    poses.set_defaults(run=_pose_pictures)
     samples = commands.add_parser("samples", help="make the sample files again")
     samples.add_argument("--out", required=True, metavar="DIR")
     samples.set_defaults(run=_samples)

@@ -4,6 +4,7 @@ import bpy
 
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
+from ..pose_library import panel as library
 from . import roles
 
 
@@ -23,7 +24,11 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("thenar.make_hand", icon="VIEW_PAN")
         row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
-        layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
+        row = layout.row(align=True)
+        row.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
+        row.operator("thenar.blend_pose", text="Blend")
+        library.draw_button(layout, context)
+        layout.operator("thenar.load_hand_pose", icon="IMPORT")
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):

@@ -4,6 +4,7 @@ import bpy
 
 from .. import effect_settings, maps, names, sentences
 from ..languages import iface
+from ..presets import kinds, menus
 from .main import OfHand
 
 NAME_SHARE = 0.72
@@ -40,6 +41,7 @@ class THENAR_PT_effects(OfHand, bpy.types.Panel):
         side = row.column(align=True)
         side.operator_menu_enum("thenar.effect_add", "kind", text="", icon="ADD")
         side.operator("thenar.effect_remove", text="", icon="REMOVE")
+        menus.draw_row(layout, kinds.EFFECTS)
         if not state.effects:
             return
         layout.use_property_split = True

@@ -3,6 +3,7 @@
 import bpy
 
 from ..languages import iface
+from ..presets import kinds, menus
 from ..scene.parts import product_parts
 from ..soft_grip import settings as grip_settings
 from . import text
@@ -35,6 +36,7 @@ class THENAR_PT_grip(Tab, bpy.types.Panel):
 
 def _draw_grip(column, part, context):
     grip = part.thenar.grip
+    menus.draw_row(column, kinds.GRIP, part.name)
     column.prop(grip, "material")
     if grip.material == grip_settings.RIGID:
         return

@@ -4,6 +4,7 @@ import bpy
 
 from .. import effect_settings, grades, maps, names, status
 from ..languages import iface
+from ..presets import kinds, menus
 from ..scene.parts import product_parts
 from ..scene.units import mm_per_unit
 from . import manual, start, text
@@ -248,6 +249,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
             line = layout.row(align=True)
             line.prop(*place)
             line.operator("thenar.reset_range", text="", icon="FULLSCREEN_EXIT")
+        menus.draw_row(layout, kinds.LOOK)
         layout.prop(settings, "palette")
         layout.prop(settings.maps, "contour")
         layout.prop(settings, "show_legend")
@@ -317,6 +319,7 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
             rate = scene.render.fps / scene.render.fps_base
             column.label(text=iface("Frames keep history, {rate:g} fps", rate=rate), icon="TIME")
         layout.operator("thenar.export", icon="EXPORT")
+        layout.operator("thenar.export_contact_map", icon="EXPORT")
         column = layout.column(align=True)
         column.active = False
         column.label(text=iface("Shape key: {name}", name=names.SHAPE_KEY))

@@ -3,6 +3,7 @@
 import bpy
 
 from .. import maps, material_settings
+from ..presets import kinds, menus
 from . import text
 from .main import OfHand
 
@@ -36,6 +37,7 @@ class THENAR_PT_materials(OfHand, bpy.types.Panel):
 def _draw_material(layout, material, context):
     layout.use_property_split = True
     layout.use_property_decorate = False
+    menus.draw_row(layout, kinds.SKIN)
     layout.prop(material, "preset")
     text.faint(layout, context, material.bl_rna.properties["preset"].enum_items[material.preset].description)
     column = layout.column(align=True)

@@ -82,6 +82,7 @@ class ThenarPreferences(bpy.types.AddonPreferences):
             for name in fields:
                 column.prop(self, name)
         layout.use_property_split = False
+        layout.operator("thenar.add_pose_library", icon="ASSET_MANAGER")
         draw_state(layout, context)
 
 

@@ -30,8 +30,9 @@ class THENAR_MT_object(bpy.types.Menu):
 
 _GROUPS = (
     ("add_sample", "add_product", "make_hand", "add_hand", "pick_hand", "pick", "guess_bones", "assign_regions"),
+    ("blend_pose", "add_pose_library", "load_hand_pose"),
     ("fit_grasp", "settle_grasp", "solve", "refine_skin", "certify", "clear", "apply"),
-    ("bake", "export", "export_bake", "load_recording", "new_study", "compare", "diagnose"),
+    ("bake", "export", "export_contact_map", "export_bake", "load_recording", "new_study", "compare", "diagnose"),
 )
 """Operators by what they are for."""
 
@@ -44,6 +45,7 @@ def _draw_add(self, context):
 def _draw_import(self, context):
     self.layout.operator("thenar.add_product", text="Product for Thenar (.stl, .obj, .ply, .glb, .usd, .fbx)")
     self.layout.operator("thenar.add_hand", text="Rigged Hand for Thenar (.glb, .fbx, .usd, .blend)")
+    self.layout.operator("thenar.load_hand_pose", text="Hand Pose of MANO or SMPL-X (.npz, .npy, .json, .pkl)")
     self.layout.operator("thenar.load_recording", text="Pressure Recording or Study (Thenar)")
     self.layout.operator("thenar.new_study", text="New Study from Recordings (Thenar)")
 

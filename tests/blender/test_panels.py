@@ -68,7 +68,13 @@ class Layout:
         return _Properties(kind)
 
     def operator_menu_enum(self, name, prop, text="", icon="NONE"):
-        assert prop in self.operator(name, text).kind.properties
+        button = self.operator(name, text)
+        assert prop in button.kind.properties
+        return button
+
+    def menu(self, name, text="", icon="NONE"):
+        assert hasattr(bpy.types, name), name
+        self._say(text, icon)
 
     def prop(self, data, name, text=None, index=-1, **_):
         assert name in data.bl_rna.properties, f"{data} has no '{name}'"
@@ -104,7 +110,7 @@ class Context:
     """Blender's context as the sidebar has it."""
 
     region = SimpleNamespace(width=SIDEBAR)
-    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0), filepaths=SimpleNamespace(asset_libraries=()))
 
     def __getattr__(self, name):
         return getattr(bpy.context, name)

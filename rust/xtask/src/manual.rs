@@ -6,10 +6,11 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// Pages in the order of the contents line, with their titles there.
-const PAGES: [(&str, &str); 5] = [
+const PAGES: [(&str, &str); 6] = [
     ("guide", "Panels"),
     ("effects", "Models and effects"),
     ("study_format", "Study format"),
+    ("grasp_data", "Grasp data"),
     ("batch_and_farms", "Batches and farms"),
     ("troubleshooting", "Troubleshooting"),
 ];

@@ -39,7 +39,7 @@ def entries(draw):
 def test_blenders_menus_hold_the_entries():
     found = {place: entries(draw) for place, draw in menus._PLACES}
     assert found["VIEW3D_MT_mesh_add"] == ["thenar.make_hand"]
-    imports = ["add_product", "add_hand", "load_recording", "new_study"]
+    imports = ["add_product", "add_hand", "load_hand_pose", "load_recording", "new_study"]
     assert found["TOPBAR_MT_file_import"] == [f"thenar.{name}" for name in imports]
     assert found["VIEW3D_MT_object"] == ["THENAR_MT_object"]
     for place, draw in menus._PLACES:

@@ -1,0 +1,78 @@
+"""Turns of bones over frames written to an armature: as its pose, or as keyframes."""
+
+import numpy as np
+from mathutils import Matrix
+
+
+def pose(armature, turns):
+    """Set basis rotations, bone name -> (3, 3); location and scale of those bones are reset."""
+    for name, turn in turns.items():
+        armature.pose.bones[name].matrix_basis = Matrix(turn.tolist()).to_4x4()
+
+
+def key(armature, turns, frames):
+    """Keyframe basis rotations, bone name -> (f, 3, 3), at scene frames (f,) in rising order.
+
+    Keys of these bones' rotations between the first and the last frame are replaced; others stay.
+    """
+    for name, matrices in turns.items():
+        bone = armature.pose.bones[name]
+        path, rows = _channels(bone, matrices)
+        bone.keyframe_insert(path, frame=float(frames[0]))
+        whole = bone.path_from_id(path)
+        for index in range(rows.shape[1]):
+            curve = next(c for c in curves(armature) if c.data_path == whole and c.array_index == index)
+            _fill(curve, np.asarray(frames, np.float64), rows[:, index])
+
+
+def curves(armature):
+    """F-curves of the armature's own action."""
+    animation = armature.animation_data
+    action, slot = animation.action, getattr(animation, "action_slot", None)
+    if slot is None:
+        return list(action.fcurves)
+    strips = [strip for layer in action.layers for strip in layer.strips]
+    bags = [strip.channelbag(slot) for strip in strips]
+    return [curve for bag in bags if bag is not None for curve in bag.fcurves]
+
+
+def _channels(bone, matrices):
+    """The bone's rotation property, and its values (f, k) without leaps between frames."""
+    rows, last = [], None
+    for turn in matrices:
+        matrix = Matrix(turn.tolist())
+        if bone.rotation_mode in {"QUATERNION", "AXIS_ANGLE"}:
+            value = matrix.to_quaternion()
+            if last is not None:
+                value.make_compatible(last)
+        else:
+            value = (
+                matrix.to_euler(bone.rotation_mode, last) if last is not None else matrix.to_euler(bone.rotation_mode)
+            )
+        last = value
+        rows.append(_axis_angle(value) if bone.rotation_mode == "AXIS_ANGLE" else tuple(value))
+    names = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
+    return names.get(bone.rotation_mode, "rotation_euler"), np.array(rows)
+
+
+def _axis_angle(quaternion):
+    axis, angle = quaternion.to_axis_angle()
+    return angle, *axis
+
+
+def _fill(curve, frames, values):
+    """Replace the keys between the first and the last frame by these, with lines between them."""
+    points = curve.keyframe_points
+    held = np.empty(2 * len(points))
+    points.foreach_get("co", held)
+    held = held.reshape(-1, 2)
+    outside = held[(held[:, 0] < frames[0] - 1e-3) | (held[:, 0] > frames[-1] + 1e-3)]
+    rows = np.concatenate([outside, np.stack([frames, values], axis=1)])
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    points.add(max(len(rows) - len(points), 0))
+    while len(points) > len(rows):
+        points.remove(points[-1], fast=True)
+    points.foreach_set("co", rows.ravel())
+    for point in points:
+        point.interpolation = "LINEAR"
+    curve.update()

@@ -1,0 +1,17 @@
+"""Poses of the made hand as an asset library with pictures, and a blend toward each. Registration only."""
+
+import bpy
+
+from . import operators
+
+
+def register():
+    """Register the operators."""
+    for cls in operators.CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    """Unregister them again."""
+    for cls in reversed(operators.CLASSES):
+        bpy.utils.unregister_class(cls)
