@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..hand_shape import thumb_range
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
 from . import roles
@@ -24,6 +25,10 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row.operator("thenar.make_hand", icon="VIEW_PAN")
         row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
         layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
+        armature = armature_of(context)
+        note = "" if armature is None else thumb_range.note_of(armature)
+        if note:
+            layout.label(text=note, icon="INFO")
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):
