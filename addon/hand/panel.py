@@ -26,9 +26,8 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row.operator_menu_enum("thenar.add_sample", "kind", text="Sample", icon="SCENE_DATA")
         layout.operator_menu_enum("thenar.apply_pose", "name", text="Pose", icon="ARMATURE_DATA")
         armature = armature_of(context)
-        note = "" if armature is None else thumb_range.note_of(armature)
-        if note:
-            layout.label(text=note, icon="INFO")
+        if armature is not None and thumb_range.is_widened(armature):
+            layout.label(text="Older file: the thumb may now turn further inward", icon="INFO")
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):

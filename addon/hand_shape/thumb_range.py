@@ -35,9 +35,9 @@ def bring_up_to_date(armature):
     return True
 
 
-def note_of(armature):
-    """A line for the panel where the thumb of `armature` was given today's range since the file was opened, else ""."""
-    return "Thumb of an older file: it may now turn inward as far as today" if armature.name in _widened else ""
+def is_widened(armature):
+    """Whether the thumb of `armature` was given today's range since the file was opened."""
+    return armature.name in _widened
 
 
 def forget():

@@ -45,8 +45,8 @@ def test_an_older_hand_gets_todays_range_and_keeps_its_pose(hand, tmp_path):
     rig = reopened(tmp_path)
     assert ends_of(rig) == pytest.approx(NEW, abs=1e-3)
     assert shown(rig) == pytest.approx(before, abs=1e-6)
-    assert thumb_range.note_of(rig)
-    assert not thumb_range.note_of(reopened(tmp_path))
+    assert thumb_range.is_widened(rig)
+    assert not thumb_range.is_widened(reopened(tmp_path))
 
 
 def test_a_left_hand_is_widened_to_its_own_side(blender, tmp_path):
@@ -74,4 +74,4 @@ def test_limits_of_the_users_own_stay(hand, tmp_path):
     as_older(hand[1], (-20.0, 25.0))
     rig = reopened(tmp_path)
     assert ends_of(rig) == pytest.approx([-20.0, 25.0], abs=1e-3)
-    assert not thumb_range.note_of(rig)
+    assert not thumb_range.is_widened(rig)
