@@ -10,6 +10,13 @@ from thenar_blender.hand_shape import thumb_range
 OLD, NEW = (-20.0, 30.0), (-40.0, 16.0)
 
 
+@pytest.fixture
+def hand(blender):
+    """A made hand: `(mesh object, armature object)`."""
+    bpy.ops.thenar.make_hand(percentile=50)
+    return bpy.context.scene.thenar.hand, bpy.data.objects["Hand Rig"]
+
+
 def as_older(rig, ends):
     limit = rig.pose.bones["thumb_metacarpal"].constraints["Joint limits"]
     limit.min_y, limit.max_y = (math.radians(end) for end in ends)
