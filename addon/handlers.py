@@ -4,6 +4,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import cache, command_line, material_settings, native, status, workflow
+from .hand_shape import thumb_range
 from .operators import running
 from .scene import baked
 
@@ -25,6 +26,7 @@ def _scene_changed(scene, depsgraph=None):
 def _file_loaded(*_):
     status.forget()
     baked.forget()
+    thumb_range.forget()
     _objects_came()
     if bpy.context.scene is not None:
         _scene_changed(bpy.context.scene)
@@ -34,6 +36,8 @@ def _file_loaded(*_):
 def _objects_came(*_):
     for hand in bpy.data.objects:
         material_settings.bring_up_to_date(hand)
+        if thumb_range.bring_up_to_date(hand):
+            print(f"Thenar: the thumb of '{hand.name}' may now turn inward as far as in a new hand")
 
 
 @persistent

@@ -12,7 +12,6 @@ from .. import native
 from ..grasp_fit import fitter, thumb
 from ..grasp_fit.least_squares import minimize
 from ..grasp_fit.task import Task
-from ..hand.skinning import pose_matrices, skin, skin_normals
 from ..scene.checks import Refusal
 from . import polishing, settling, ways
 from .settings import FRICTION
@@ -134,9 +133,20 @@ def _best(ready, aim, watch):
                 fitter.leave_if_cancelled(watch)
         out[place] = one
     out.sort(key=lambda found: in_steps(found.score))
+    out[0] = _faced(out[0], aim, watch)
     _refuse_what_does_not_hold(out[0].state)
     averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
     return [replace(one, score=one.score - averted) for one in out]
+
+
+def _faced(one, aim, watch):
+    """A grasp found with its thumb turned to the index finger, where that leaves it settled."""
+    try:
+        state = polishing.face(one.way.stage, one.state, replace(aim, bar=one.way.bar), watch)
+    except (Refusal, native.module.SolveError):
+        fitter.leave_if_cancelled(watch)
+        return one
+    return one if state is one.state else _found(state, aim, one.way)
 
 
 def _settled(stage, state, aim, watch):
@@ -186,11 +196,7 @@ def _averted(way, grasp):
     """What the cosine between the thumb pad's facing and the way to the index finger's pad lacks; 0 in a pinch."""
     if way.bar is None:
         return 0.0
-    rig = way.stage.hand.rig.moved(grasp.place)
-    posed = pose_matrices(rig, grasp.angles)
-    if rig.normals is None:
-        return 0.0
-    return max(thumb.FACING - thumb.cosine_of(way.stage.hand, skin(rig, posed), skin_normals(rig, posed)), 0.0)
+    return max(thumb.FACING - polishing.opposed(way.stage, grasp), 0.0)
 
 
 def _finished(one, seconds):

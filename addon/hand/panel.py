@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..hand_shape import thumb_range
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
 from ..pose_library import panel as library
@@ -29,6 +30,9 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
         row.operator("thenar.blend_pose", text="Blend")
         library.draw_button(layout, context)
         layout.operator("thenar.load_hand_pose", icon="IMPORT")
+        armature = armature_of(context)
+        if armature is not None and thumb_range.is_widened(armature):
+            layout.label(text="Older file: the thumb may now turn further inward", icon="INFO")
 
 
 class THENAR_PT_bones(Tab, bpy.types.Panel):

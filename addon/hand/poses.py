@@ -35,35 +35,39 @@ POSES = {
         **_fingers((0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0)),
         **_thumb((-10, 0, 0), 0, 0),
     },
+    "open": {
+        **_fingers((-5, 10, 8, 5), (0, 10, 8, 5), (5, 10, 8, 5), (11, 10, 8, 5)),
+        **_thumb((0, 18, -14), 8, 10),
+    },
     "relaxed": {
         **_fingers((0, 22, 30, 16), (0, 28, 34, 18), (0, 32, 36, 19), (0, 34, 36, 18)),
-        **_thumb((6, 0, 4), 14, 18),
+        **_thumb((8, 4, -14), 16, 18),
         **_cup(3, 6),
     },
     "power_48": {
-        **_fingers((10, 27, 74, 39), (19, 43, 77, 49), (20, 45, 79, 45), (20, 44, 72, 26)),
-        **_thumb((11, 9, -20), 42, 41),
-        **_cup(2, 1),
+        **_fingers((-12, 47, 72, 28), (-3, 43, 68, 36), (2, 41, 64, 37), (8, 40, 54, 26)),
+        **_thumb((13, 8, -40), 0, 36),
+        **_cup(4, 6),
     },
     "power_60": {
-        **_fingers((9, 16, 61, 30), (17, 33, 64, 43), (20, 32, 66, 42), (20, 32, 59, 24)),
-        **_thumb((7, 8, -16), 15, 6),
-        **_cup(3, 3),
+        **_fingers((-10, 40, 63, 25), (-3, 52, 62, 34), (5, 45, 55, 36), (14, 39, 42, 20)),
+        **_thumb((6, 14, -40), 2, 28),
+        **_cup(4, 5),
     },
     "power_100": {
-        **_fingers((-3, 5, 33, 14), (7, 16, 35, 23), (11, 13, 39, 27), (10, 17, 36, 16)),
-        **_thumb((7, 9, -12), -10, -15),
-        **_cup(3, 1),
+        **_fingers((-20, 12, 36, 21), (-9, 36, 40, 36), (-7, 32, 43, 34), (0, 30, 34, 18)),
+        **_thumb((-8, 18, -40), -9, 31),
+        **_cup(10, 17),
     },
     "pinch": {
-        **_fingers((2, 46, 48, 20), (0, 34, 38, 20), (0, 36, 40, 22), (0, 38, 40, 22)),
-        **_thumb((14, -12, 14), 14, 16),
+        **_fingers((2, 64, 36, 18), (0, 36, 38, 20), (0, 38, 40, 22), (0, 40, 40, 22)),
+        **_thumb((20, 4, -39), 4, -10),
         **_cup(4, 8),
     },
     "precision": {
-        **_fingers((3, 44, 38, 16), (0, 48, 42, 18), (0, 44, 46, 22), (0, 42, 46, 24)),
-        **_thumb((12, -14, 16), 12, 14),
-        **_cup(4, 9),
+        **_fingers((-4, 60, 28, 16), (2, 55, 42, 22), (2, 50, 48, 24), (4, 48, 48, 24)),
+        **_thumb((36, -6, -40), -7, -12),
+        **_cup(6, 12),
     },
     "fingertip_press": {
         **_fingers((0, 28, 18, 3), (0, 6, 26, 14), (0, 8, 32, 16), (0, 12, 34, 16)),
@@ -75,11 +79,13 @@ POSES = {
         **_thumb((-16, -16, -6), -4, 0),
     },
 }
-"""Name -> role -> {angle: anatomical degrees}. The three power grasps are the fitter's own results on the cylinders
-of the paper (48, 60, 100 mm) for a median hand, rounded to a degree: starting points, to be fitted to a product."""
+"""Name -> role -> {angle: anatomical degrees}. The power grasps are near what *Grasp* finds on 48, 60, 100 mm
+thick cylinders with a median hand, with less bent knuckles on 48 mm: starting points, to be fitted to a product.
+In a pinch the thumb's pad faces the index finger's; a precision grip waits for an object about 10 mm thick."""
 
 LABELS = {
     "flat": "Flat",
+    "open": "Open",
     "relaxed": "Relaxed",
     "power_48": "Power grasp, 48 mm",
     "power_60": "Power grasp, 60 mm",
@@ -95,7 +101,8 @@ OPEN = {
     **_thumb((0, 18, 12), 8, 10),
 }
 """The open hand from which a grasp closes: fingers parallel, as they run together when they flex (index 11, ring 9,
-little 19 degrees to the middle finger), the thumb out of the palm and opposite the fingers."""
+little 19 degrees to the middle finger), the thumb out of the palm and opposite the fingers. The samples of Xie Table 6
+were fitted from here, so the thumb keeps the twist outward that the pose *Open* does not have."""
 
 PINCHED = {
     **_fingers((2, 18, 84, 42), (0, 18, 86, 42), (-2, 18, 84, 42), (-4, 18, 82, 42)),

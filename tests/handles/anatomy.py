@@ -38,13 +38,22 @@ def _back(bones, finger):
 
 
 def _thumb_off(hand, points, triangles):
-    thumb, index = (_rows(hand, f"{digit}_distal_pad") for digit in ("thumb", "index"))
+    return facing(hand, (points, triangles), "thumb", ("index",))[0]
+
+
+def facing(hand, surface, digit, others):
+    """Angle between the direction in which a digit's last pad faces and the way to the middle of the last pads of
+    `others`; and the distance from it to the nearest of those. `surface`: points (n, 3), triangles (m, 3)."""
+    points, triangles = surface
+    own, *against = (_rows(hand, f"{name}_distal_pad") for name in (digit, *others))
     corners = points[triangles]
     normals = np.zeros_like(points)
     np.add.at(normals, triangles, np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, None])
-    facing = normals[thumb].sum(axis=0)
-    way = points[index].mean(axis=0) - points[thumb].mean(axis=0)
-    return float(np.degrees(np.arccos(facing @ way / np.linalg.norm(facing) / np.linalg.norm(way))))
+    direction = normals[own].sum(axis=0)
+    way = np.mean([points[rows].mean(axis=0) for rows in against], axis=0) - points[own].mean(axis=0)
+    angle = np.degrees(np.arccos(direction @ way / np.linalg.norm(direction) / np.linalg.norm(way)))
+    apart = np.linalg.norm(points[own][:, None] - points[np.concatenate(against)][None], axis=2)
+    return float(angle), float(apart.min())
 
 
 def _rows(hand, name):

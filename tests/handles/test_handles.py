@@ -29,6 +29,7 @@ CASES = {
     "thin, 5, made": (lambda: turned(THIN, 1.0), 5.0, "made"),
     "tube, 50, made": (shapes.tube, 50.0, "made"),
     "door knob, 50, made": (shapes.door_knob, 50.0, "made"),
+    "steering wheel, 95, made": (shapes.steering_wheel, 95.0, "made"),
     "pistol grip, 50, made": (shapes.pistol_grip, 50.0, "made"),
     "toothbrush, 50, made": (shapes.toothbrush, 50.0, "made"),
     "phone, 50, tilted": (everyday.SHAPES["phone"], 50.0, "tilted"),
@@ -57,7 +58,7 @@ def test_grasp_is_sound_or_refused(name, rows):
     assert grasping.faults(rows[name]) == [], rows[name]
 
 
-@pytest.mark.parametrize("name", ["bulb, 50, made", "tube, 50, made"])
+@pytest.mark.parametrize("name", ["bulb, 50, made", "tube, 50, made", "steering wheel, 95, made"])
 def test_the_thumb_opposes_the_index_finger(name, rows):
     """In a power grip the thumb's pad faces the index finger's within 25 degrees; no last joint is bent back."""
     assert rows[name]["force_n"] > 45.0, rows[name]
