@@ -45,6 +45,10 @@ pub fn sentence(
                 next.first().map_or(String::new(), advised)
             )
         }
+        Verdict::Instrument if findings.is_empty() => {
+            "It is the instrument, not the skin: what stands out in the maps stays with the sensels."
+                .into()
+        }
         Verdict::Instrument => {
             format!(
                 "It is the instrument: {names} ({:.0} % sure).",
@@ -97,6 +101,12 @@ fn advised(next: &Suggestion) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_instrument_without_a_name_is_given_neither_a_name_nor_a_share() {
+        let said = sentence(Verdict::Instrument, (&[], None), (&[], &[], &[]), "");
+        assert!(said.contains("instrument") && !said.contains('%'), "{said}");
+    }
 
     fn said(probability: Option<f64>) -> String {
         advised(&Suggestion {
