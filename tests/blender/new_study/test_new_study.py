@@ -211,7 +211,7 @@ def test_numbers_without_names_are_refused_with_file_line_and_remedy_and_nothing
     ("content", "words"),
     [
         (b"", "empty"),
-        (b"\x89PNG\r\n\x1a\n" + bytes(64), "no recording format"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(64), "this is a picture"),
         (b"time_s,row,col,pressure_kpa\n0,0,0,1\n0,0,1,2\n", "holds a pressure map"),
     ],
 )
