@@ -16,6 +16,8 @@ from .units import Floats, Ints
 
 NO_BONE_MM = 1000.0
 """What stands for tissue without bone in the thickness attribute: the thickest that the library admits."""
+MOST_NAMED = 3
+"""Parts that a sentence names; a product may have thousands."""
 
 
 @dataclass(frozen=True)
@@ -203,14 +205,26 @@ def _yielded(fields: Fields, mine: slice) -> Floats | None:
 
 
 def _notes(product: read.ProductReading) -> Iterator[str]:
+    """What stands in for parts of the product; one sentence a reason, however many parts there are."""
+    copied: dict[str, list[str]] = {}
+    finer = [record.name for record in product.parts if not record.reason and record.refinement is not None]
     for record in product.parts:
         if record.reason:
-            yield f"a copy of '{record.name}' in '{names.RESULTS_COLLECTION}' carries the pressure: {record.reason}"
-        elif record.refinement is not None:
-            yield (
-                f"a finer copy of '{record.name}' in '{names.RESULTS_COLLECTION}' shows the pressure: "
-                "its own triangles are long where it is touched"
-            )
+            copied.setdefault(record.reason, []).append(record.name)
+    for reason, parts in copied.items():
+        yield f"a copy of {_listed(parts)} in '{names.RESULTS_COLLECTION}' carries the pressure: {reason}"
+    if finer:
+        yield (
+            f"a finer copy of {_listed(finer)} in '{names.RESULTS_COLLECTION}' shows the pressure: "
+            "its own triangles are long where it is touched"
+        )
+
+
+def _listed(parts: list[str]) -> str:
+    """Names in quotes; of many the first two, and how many more."""
+    shown = parts if len(parts) <= MOST_NAMED else parts[:2]
+    more = f" and {len(parts) - len(shown)} others" if len(shown) < len(parts) else ""
+    return ", ".join(f"'{name}'" for name in shown) + more
 
 
 def clear(context: Context, hand: Object, parts: Sequence[Object]) -> None:

@@ -1,5 +1,7 @@
 //! Why the binary ends without a result, and the exit code that says so.
 
+use std::io::Write;
+
 use thenar_contact::ContactError;
 use thenar_inference::InferenceError;
 use thenar_recordings::RecordingError;
@@ -26,6 +28,21 @@ impl Fault {
             Fault::Other(_) => 1,
         }
     }
+
+    /// Writes why the work failed; a standard error that is closed or full changes nothing, least of all the exit code.
+    pub fn complain(&self) {
+        let _ = writeln!(
+            std::io::stderr(),
+            "thenar: {}",
+            printable(&self.to_string())
+        );
+    }
+}
+
+/// The text without what moves a terminal's cursor or changes its state: names out of files stand in it.
+pub fn printable(text: &str) -> String {
+    let safe = |c: char| if c.is_control() && c != '\n' { '?' } else { c };
+    text.chars().map(safe).collect()
 }
 
 impl std::fmt::Display for Fault {

@@ -24,7 +24,7 @@ pub fn watch() -> Result<(), Fault> {
         let is_written = IS_WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
         if !*is_written {
             let fault = Fault::cancelled();
-            eprintln!("thenar: {fault}");
+            fault.complain();
             exit(fault.code());
         }
     };

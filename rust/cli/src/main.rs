@@ -18,7 +18,7 @@ mod threads;
 
 use arguments::{Command, Thenar};
 use clap::Parser;
-use fault::Fault;
+use fault::{Fault, printable};
 use std::io::Write;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(fault) => {
-            eprintln!("thenar: {}", printable(&fault.to_string()));
+            fault.complain();
             ExitCode::from(fault.code() as u8)
         }
     }
@@ -74,10 +74,4 @@ fn run() -> Result<(), Fault> {
 /// Writes to the terminal; a reader that has gone away (`thenar ... | head`) is no fault.
 fn tell(text: &str) {
     let _ = std::io::stdout().write_all(printable(text).as_bytes());
-}
-
-/// The text without what moves a terminal's cursor or changes its state: names out of files stand in it.
-fn printable(text: &str) -> String {
-    let safe = |c: char| if c.is_control() && c != '\n' { '?' } else { c };
-    text.chars().map(safe).collect()
 }

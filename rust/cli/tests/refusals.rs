@@ -201,3 +201,14 @@ fn bad_materials_are_refused_by_line() {
         );
     }
 }
+
+/// `/dev/full` takes nothing: each write to it fails.
+#[test]
+fn exit_code_of_a_refusal_stays_where_standard_error_is_full() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+    let end = std::process::Command::new(env!("CARGO_BIN_EXE_thenar"))
+        .args(["read", "/there/is/no/such/file"])
+        .stderr(full.unwrap())
+        .status();
+    assert_eq!(end.unwrap().code(), Some(2));
+}
