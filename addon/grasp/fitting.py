@@ -159,12 +159,11 @@ def settle_here(fit, weight_n, total_n, cancel=None, progress=None):
 
 def keep(context, fit, found):
     """Keep the grasps found in the scene, best first."""
-    settings.keep(context.scene, named(fit), rows_of(context, found))
+    settings.keep(context.scene, named(fit), rows_of(found))
 
 
-def rows_of(context, found):
+def rows_of(found):
     """Values of the scene's rows for `search.Found` grasps."""
-    friction = context.scene.thenar_grasps.friction
     return [
         {
             "pose": settings.packed(*one.pose),
@@ -173,7 +172,7 @@ def rows_of(context, found):
             "net_n": float(np.linalg.norm(one.state.net_n)),
             "friction": min(one.friction, MOST_FRICTION),
             "score": one.score,
-            **facts.row_of(one, friction),
+            **facts.row_of(one),
         }
         for one in found
     ]

@@ -62,7 +62,7 @@ class Asked:
 class Found:
     """A grasp of the search with what was found of it, and the `way` it began. `score` counts against it; `friction`
     suffices to hold it; `pose` is angles (b, 3) and place (4, 4) in the product's own frame; `asked_n` the sum of
-    forces that was asked for."""
+    forces that was asked for; `causes` what the score is the sum of, by cause."""
 
     grasp: fitter.Grasp
     state: settling.State
@@ -71,6 +71,7 @@ class Found:
     friction: float
     pose: tuple
     asked_n: float | None
+    causes: dict
 
 
 def search(fit, watch=fitter.ALONE, asked=None):
@@ -186,10 +187,13 @@ def _refuse_what_does_not_hold(state):
 def _found(state, aim, way):
     """A grasp as a way led to it, with its score and what its holding takes."""
     held = settling.friction_of(way.stage, state, aim)
-    score = score_of(state, aim) + way.spot.cost + (SLIPS if held > FRICTION else 0.0)
-    score += OPPOSED * _averted(way, state.grasp)
+    causes = causes_of(state, aim) | {
+        "slips": SLIPS if held > FRICTION else 0.0,
+        "thumb": OPPOSED * _averted(way, state.grasp),
+        "place": float(way.spot.cost),
+    }
     pose = state.grasp.angles, state.grasp.place
-    return Found(state.grasp, state, score, way, held, pose, aim.total_n)
+    return Found(state.grasp, state, sum(causes.values()), way, held, pose, aim.total_n, causes)
 
 
 def _averted(way, grasp):
@@ -205,20 +209,31 @@ def _finished(one, seconds):
 
 
 def score_of(state, aim):
-    """What counts against a grasp, mm-like: pads that hang clear, imbalance, a missed sum, hard spots, sunk skin."""
+    """What counts against a grasp, mm-like: the sum of its `causes_of`."""
+    return sum(causes_of(state, aim).values())
+
+
+def causes_of(state, aim):
+    """What counts against a grasp by cause, mm-like: pads that hang clear (`touch`), forces and moments left over
+    (`balance`), a missed `sum`, hard spots (`peak`), skin and bone too `deep`, what is not `settled`, and what nobody
+    should use (`refused`)."""
     grasp = state.grasp
     misses = [max(want - grasp.depths_mm[name], 0.0) for name, want in grasp.targets_mm.items()]
     clear = [grasp.depths_mm[name] <= 0.0 for name in grasp.targets_mm]
-    score = float(np.mean(np.minimum(misses, 5.0))) + 3.0 * float(np.mean(clear))
-    score += 8.0 * min(state.imbalance, 1.0) + 3.0 * min(state.lever, 1.0)
-    if aim.total_n is not None:
-        score += 3.0 * min(abs(state.total_n / aim.total_n - 1.0), 1.0)
-    score += 2.0 * max(float(state.peaks_mpa.max()) / settling.MOST_MPA - 1.0, 0.0)
-    score += 0.3 * max(grasp.deepest_body_mm - 1.0, 0.0) + 5.0 * (fitter.CROSSED_TEXT in grasp.warnings)
-    score += settling.SUNK * state.sunk_mm
+    short = 0.0 if aim.total_n is None else min(abs(state.total_n / aim.total_n - 1.0), 1.0)
+    deep = 0.3 * max(grasp.deepest_body_mm - 1.0, 0.0) + 5.0 * (fitter.CROSSED_TEXT in grasp.warnings)
+    missed = 0.0
     if not settling.is_settled(state, aim):
-        score += UNSETTLED + OFF_BALANCE * (settling.cost_of(state, aim) - settling.LEAST_COST)
-    return score + (10.0 if state.contact.grade == "do not use" else 0.0)
+        missed = UNSETTLED + OFF_BALANCE * (settling.cost_of(state, aim) - settling.LEAST_COST)
+    return {
+        "touch": float(np.mean(np.minimum(misses, 5.0))) + 3.0 * float(np.mean(clear)),
+        "balance": 8.0 * min(state.imbalance, 1.0) + 3.0 * min(state.lever, 1.0),
+        "sum": 3.0 * short,
+        "peak": 2.0 * max(float(state.peaks_mpa.max()) / settling.MOST_MPA - 1.0, 0.0),
+        "deep": deep + settling.SUNK * state.sunk_mm,
+        "settled": missed,
+        "refused": 10.0 if state.contact.grade == "do not use" else 0.0,
+    }
 
 
 def _rough(ready, watch):

@@ -55,7 +55,7 @@ class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
                     raise
                 refused.append(kind)
                 continue
-            rows.append(_row(fitting.rows_of(context, found[:1])[0], kind, fit))
+            rows.append(_row(fitting.rows_of(found[:1])[0], kind, fit))
         _add(stored, rows)
         return [row["kind"] for row in rows], refused
 

@@ -39,8 +39,7 @@ def why(row, best, friction):
     more = {name: own_counts.get(name, 0.0) - counts.get(name, 0.0) for name in {**counts, **own_counts}}
     cause = max(more, key=more.get)
     if more[cause] < _LEAST:
-        rest = row.score - best.score - sum(more.values())
-        return iface("Not balanced to the end, as the best one is") if rest > _LEAST else iface("About as good")
+        return iface("About as good")
     return _words(cause, (row, own), other, friction)
 
 
@@ -66,6 +65,8 @@ def _words(cause, own, other, friction):
 _PLAIN = {
     "touch": "Its pads lie less deep than wanted",
     "deep": "Presses skin or bone too deep",
+    "settled": "Not balanced to the end, as the best one is",
+    "refused": "Its result is not to be used",
     "thumb": "The thumb's pad faces away from the index finger's",
     "bare": "Leaves thumb and palm out",
     "place": "Holds a part that suits the hand less",
