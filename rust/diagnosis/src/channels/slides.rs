@@ -192,6 +192,16 @@ fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
     (list.len() >= LEAST).then(|| median(&mut list))
 }
 
+/// Whether friction is named beside what was said before. An instrument at fault has no finding where only a place of maps speaks for it,
+/// which says nothing of slides.
+fn is_open(verdict: Verdict, findings: &[Finding]) -> bool {
+    match verdict {
+        Verdict::NothingMissing | Verdict::Parameters | Verdict::MissingPhysics => true,
+        Verdict::Instrument => findings.is_empty(),
+        Verdict::CannotTell | Verdict::Unlisted | Verdict::InsufficientData => false,
+    }
+}
+
 /// Adds friction to the diagnosis, alone or with what else is missing.
 pub fn add_friction(study: &Study, found: &mut Diagnosis) {
     let Some(seen) = slides(study) else {
@@ -217,11 +227,7 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
         ratio + 1.645 * error
     );
     found.notes.push(sentence);
-    let is_open = matches!(
-        found.verdict,
-        Verdict::NothingMissing | Verdict::Parameters | Verdict::MissingPhysics
-    );
-    if !is_open {
+    if !is_open(found.verdict, &found.findings) {
         return;
     }
     found.verdict = Verdict::MissingPhysics;
@@ -262,4 +268,16 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
             true,
         )],
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_that_stays_with_the_sensels_does_not_silence_a_slide() {
+        assert!(is_open(Verdict::Instrument, &[]));
+        assert!(is_open(Verdict::NothingMissing, &[]));
+        assert!(!is_open(Verdict::CannotTell, &[]));
+    }
 }
