@@ -26,7 +26,7 @@ def stem(name):
 
 
 def marked(kept, name, digits):
-    """A file name that is told apart by a digest of the case's own `name`."""
+    """A file name that a digest of the case's own `name` sets apart."""
     digest = hashlib.blake2b(name.encode("utf-8", "surrogatepass"), digest_size=16).hexdigest()
     return f"{kept or 'case'}-{digest[:digits]}"
 

@@ -212,7 +212,7 @@ def solve_on_node(tasks, environment, limit_s):
     from distributed import get_worker
 
     command = words(os.environ.get("THENAR_WORKER", "")) or [sys.executable, "-m", "thenar_blender", "worker"]
-    # This function comes anew with every task; the first one's object stays, so that its errors are known to it.
+    # This function comes again with every task; the first one's object stays, so that its errors are known to it.
     children = get_worker().__dict__.setdefault("thenar_children", Children())
     began = time.monotonic()
     answers = [children.solve((command, environment), task, limit_s) for task in tasks]

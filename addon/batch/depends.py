@@ -49,7 +49,7 @@ def are_unchanged(files, known):
     """Whether every file of `{path: digest}` is what it was; also False for what is no such table."""
     if not isinstance(files, dict):
         return False
-    return all(digest(path, known) == told for path, told in files.items())
+    return all(digest(path, known) == kept for path, kept in files.items())
 
 
 def _of_object(obj):

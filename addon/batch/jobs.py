@@ -106,8 +106,8 @@ def check(case, name):
             raise Refusal(f"case {name} has the unknown key '{key}'; known: {', '.join(sorted(KEYS))}")
         wanted = KEYS[key]
         if not _fits(value, wanted):
-            told = " or ".join(f'"{word}"' for word in wanted) if isinstance(wanted, tuple) else wanted
-            raise Refusal(f"case {name}: {key} is {_short(value)}, but must be {told}")
+            choices = " or ".join(f'"{word}"' for word in wanted) if isinstance(wanted, tuple) else wanted
+            raise Refusal(f"case {name}: {key} is {_short(value)}, but must be {choices}")
         low, high = _RANGES.get(key, (value, value))
         if not low <= value <= high:
             raise Refusal(f"case {name}: {key} is {_short(value)}, but must be {low:g} to {high:g}")

@@ -31,15 +31,15 @@ class THENAR_OT_bake(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, bake):
         display.refresh(context)
-        told, count = context.scene.thenar.hand.thenar.bake, len(bake.done)
+        stored, count = context.scene.thenar.hand.thenar.bake, len(bake.done)
         words = "Baked {count} frames; max. pressure {kpa:.0f} kPa"
         if count == 1:
             words = "Baked 1 frame; max. pressure {kpa:.0f} kPa"
-        text = languages.report(words, count=count, kpa=told.peak_kpa)
+        text = languages.report(words, count=count, kpa=stored.peak_kpa)
         if bake.resumed:
             text += languages.report("; {count} were solved before a crash", count=bake.resumed)
-        if told.cycles:
-            text += languages.report("; {loss_mj:.3g} mJ lost per cycle", loss_mj=told.cycle_loss_mj)
+        if stored.cycles:
+            text += languages.report("; {loss_mj:.3g} mJ lost per cycle", loss_mj=stored.cycle_loss_mj)
         self.report({"INFO"}, text)
         return {"FINISHED"}
 

@@ -116,8 +116,8 @@ def _draw_state(layout, context):
     column.label(text=iface(about, vertices=len(hand.data.vertices), count=count), icon="MESH_DATA")
     column.label(text=iface("1 unit = {mm:g} mm", mm=mm_per_unit(context.scene)), icon="DRIVER_DISTANCE")
     if settings.live:
-        told = status.live.get(context.scene.name)
-        waits = told is not None and told.problem
+        follower = status.live.get(context.scene.name)
+        waits = follower is not None and follower.problem
         column.label(text="Live paused" if waits else "Live running", icon="PAUSE" if waits else "CHECKMARK")
     elif hand.thenar.bake_path:
         column.label(text="Playing a bake", icon="RENDER_ANIMATION")
@@ -207,16 +207,16 @@ AT_REST = 1e-3
 
 def _draw_live(layout, context):
     scene = context.scene
-    told = status.live.get(scene.name)
+    follower = status.live.get(scene.name)
     row = layout.row()
     row.use_property_split = False
     row.prop(scene.thenar, "live", toggle=True, icon="RADIOBUT_ON" if scene.thenar.live else "RADIOBUT_OFF")
-    if not scene.thenar.live or told is None:
+    if not scene.thenar.live or follower is None:
         return
-    if told.problem:
-        text.alert(layout, context, told.problem)
+    if follower.problem:
+        text.alert(layout, context, follower.problem)
     else:
-        words = iface("{rate:.0f} updates/s, {ms:.0f} ms each", rate=told.rate, ms=told.ms)
+        words = iface("{rate:.0f} updates/s, {ms:.0f} ms each", rate=follower.rate, ms=follower.ms)
         layout.label(text=words, icon="TIME")
 
 

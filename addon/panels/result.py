@@ -211,7 +211,7 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
 
     def draw(self, context):
         layout, hand = self.layout, context.scene.thenar.hand
-        told, takes = hand.thenar.bake, baked.take_names(hand)
+        stored, takes = hand.thenar.bake, baked.take_names(hand)
         for note in baked.notes(hand, product_parts(context.scene.thenar)):
             text.paragraph(layout, context, note, "ERROR")
         if len(takes) > 1:
@@ -220,28 +220,28 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
                 icon = "RADIOBUT_ON" if baked.is_playing(hand, take) else "RADIOBUT_OFF"
                 column.operator("thenar.play_take", text=take or "Bake", icon=icon).take = take
         box = layout.box().column(align=True)
-        _pair(box, "Force", f"{told.force_n:.1f} N")
-        _pair(box, "Contact area", f"{told.area_mm2 / 100:.2f} cm²")
-        _pair(box, "Peak pressure", f"{told.frame_peak_kpa:.0f} kPa")
-        _pair(box, "Frames", iface("{first} to {last}", first=told.frame_start, last=told.frame_end))
-        _pair(box, "History kept", "yes" if told.follows else "no")
-        _pair(box, "Max. force", f"{told.peak_force_n:.1f} N")
-        _pair(box, "Max. pressure", f"{told.peak_kpa:.0f} kPa")
-        if told.follows:
-            _draw_energy(box, told)
+        _pair(box, "Force", f"{stored.force_n:.1f} N")
+        _pair(box, "Contact area", f"{stored.area_mm2 / 100:.2f} cm²")
+        _pair(box, "Peak pressure", f"{stored.frame_peak_kpa:.0f} kPa")
+        _pair(box, "Frames", iface("{first} to {last}", first=stored.frame_start, last=stored.frame_end))
+        _pair(box, "History kept", "yes" if stored.follows else "no")
+        _pair(box, "Max. force", f"{stored.peak_force_n:.1f} N")
+        _pair(box, "Max. pressure", f"{stored.peak_kpa:.0f} kPa")
+        if stored.follows:
+            _draw_energy(box, stored)
         layout.operator("thenar.export_bake", icon="EXPORT")
 
 
-def _draw_energy(box, told):
-    if told.peak_shear_n:
-        _pair(box, "Max. shear force", f"{told.peak_shear_n:.1f} N")
-        _pair(box, "Slip dissipation", f"{told.slip_loss_mj:.3g} mJ")
-    _pair(box, "Work on skin", f"{told.work_mj:.3g} mJ")
-    if told.cycles:
+def _draw_energy(box, stored):
+    if stored.peak_shear_n:
+        _pair(box, "Max. shear force", f"{stored.peak_shear_n:.1f} N")
+        _pair(box, "Slip dissipation", f"{stored.slip_loss_mj:.3g} mJ")
+    _pair(box, "Work on skin", f"{stored.work_mj:.3g} mJ")
+    if stored.cycles:
         _pair(
             box,
-            iface("Loss per cycle ({cycles})", cycles=told.cycles),
-            f"{told.cycle_loss_mj:.3g} mJ, {told.cycle_loss_share:.0%}",
+            iface("Loss per cycle ({cycles})", cycles=stored.cycles),
+            f"{stored.cycle_loss_mj:.3g} mJ, {stored.cycle_loss_share:.0%}",
         )
 
 

@@ -153,10 +153,10 @@ def _draw_measures(layout, context, state):
 
 def _numbers(split, texts):
     row = split.row()
-    for told in texts:
+    for entry in texts:
         cell = row.row()
         cell.alignment = "RIGHT"
-        cell.label(text=iface(told))
+        cell.label(text=iface(entry))
 
 
 class THENAR_PT_comparison_notes(Tab, bpy.types.Panel):

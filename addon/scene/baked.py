@@ -58,7 +58,7 @@ def place_in_stack(hand: Object) -> int:
 
 
 def stem_of(hand: Object, take: str) -> Path:
-    """Path of a take's files without their suffix, in the folder beside the saved file, which is made where missing.
+    """Path of a take's files without their suffix, in the folder next to the saved file, which is made where missing.
 
     A digest tells names apart that differ by what no file name holds. Raises `Refusal` for an unsaved file.
     """
@@ -299,7 +299,7 @@ def _playing(hand: Object) -> Modifier | None:
 
 
 def _path(hand: Object) -> str:
-    """The file of the fields: beside that of the shape, which Blender keeps right when the file is saved elsewhere."""
+    """The file of the fields: next to that of the shape, which Blender keeps right when the file is saved elsewhere."""
     playing = _playing(hand)
     path = hand.thenar.bake_path
     if playing is not None and playing.filepath.endswith(".pc2"):

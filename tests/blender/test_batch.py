@@ -43,8 +43,8 @@ def start(*arguments):
 
 def run(*arguments):
     process = start("thenar_blender", "batch", *arguments)
-    told, _ = process.communicate(timeout=240)
-    return process.returncode, told
+    output, _ = process.communicate(timeout=240)
+    return process.returncode, output
 
 
 def rows_of(out):
@@ -66,8 +66,8 @@ def test_batch_resumes_and_survives_a_bad_case(grip, tmp_path):
         'blend = "grip.blend"\nsave = false\n[[case]]\nname = "posed"\nrender = true\n'
         '[[case]]\nname = "two newtons"\nforce_n = 2.0\n[[case]]\nname = "bad"\nhand = "Paw"\n'
     )
-    code, told = run(jobs, "--out", out, "--workers", 1)
-    assert code == 2 and "1 of 3 cases failed (bad)" in told
+    code, output = run(jobs, "--out", out, "--workers", 1)
+    assert code == 2 and "1 of 3 cases failed (bad)" in output
     rows = rows_of(out)
     assert [row["status"] for row in rows.values()] == ["done", "done", "failed"]
     assert float(rows["two newtons"]["force_n"]) == pytest.approx(2.0, rel=0.02)
@@ -76,8 +76,8 @@ def test_batch_resumes_and_survives_a_bad_case(grip, tmp_path):
     sheet = bpy.data.images.load(str(out / "sheet.png"))
     assert 320 <= sheet.size[0] < 360 and np.ptp(np.array(sheet.pixels[:]).reshape(-1, 4)[:, :3]) > 0.3
     jobs.write_text(jobs.read_text().replace("2.0", "3.0").replace("Paw", "Pad"))
-    code, told = run(jobs, "--out", out, "--workers", 1)
-    assert code == 0 and "1 of 3 cases kept" in told, told
+    code, output = run(jobs, "--out", out, "--workers", 1)
+    assert code == 0 and "1 of 3 cases kept" in output, output
     rows = rows_of(out)
     assert [row["status"] for row in rows.values()] == ["done"] * 3
     assert float(rows["two newtons"]["force_n"]) == pytest.approx(3.0, rel=0.02)
@@ -88,8 +88,8 @@ def test_sweep_gives_the_same_bytes_with_one_worker_and_with_two(grip, tmp_path)
     jobs = tmp_path / "jobs.toml"
     jobs.write_text(SWEEP)
     for out, workers in (("one", 1), ("two", 2)):
-        code, told = run(jobs, "--out", tmp_path / out, "--workers", workers)
-        assert code == 0, told
+        code, output = run(jobs, "--out", tmp_path / out, "--workers", workers)
+        assert code == 0, output
     for name in ("results.csv", "results.parquet", "summary.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
     rows = rows_of(tmp_path / "one")
@@ -122,10 +122,10 @@ def test_a_killed_worker_process_loses_no_case(grip, tmp_path):
 
 
 def test_a_case_that_kills_its_process_twice_is_a_failed_case():
-    told = child.Children().solve(([sys.executable, "-c", "import sys; sys.exit('no such hand')"], {}), {}, 60.0)
-    assert told == {"error": "the process ended with code 1: no such hand, 2 times"}
-    told = child.Children().solve(([sys.executable, "-c", "import time; time.sleep(60)"], {}), {}, 0.5)
-    assert told == {"error": "it took longer than 0.5 s, 2 times"}
+    output = child.Children().solve(([sys.executable, "-c", "import sys; sys.exit('no such hand')"], {}), {}, 60.0)
+    assert output == {"error": "the process ended with code 1: no such hand, 2 times"}
+    output = child.Children().solve(([sys.executable, "-c", "import time; time.sleep(60)"], {}), {}, 0.5)
+    assert output == {"error": "it took longer than 0.5 s, 2 times"}
 
 
 def test_a_worker_answers_every_line_and_goes_on(grip, tmp_path):
@@ -140,16 +140,16 @@ def test_a_worker_answers_every_line_and_goes_on(grip, tmp_path):
         (b'{"case": {"blend": "a", "colour": 1, "name": "odd"}, "stem": "x"}', "case odd has the unknown key 'colour'"),
         (b'{"case": {"blend": "a", "force_n": "2"}, "stem": "x"}', "must be a number above zero"),
     ]
-    told = subprocess.run(
+    output = subprocess.run(
         [sys.executable, "-m", "thenar_blender", "worker"],
         input=b"\n".join([*(line for line, _ in lines), good]) + b"\n",
         capture_output=True,
         env=dask_cluster.environment(),
         timeout=120,
     )
-    first, *answers = [json.loads(line) for line in told.stdout.splitlines()]
+    first, *answers = [json.loads(line) for line in output.stdout.splitlines()]
     assert first == {"thenar": names.VERSION, "ready": True}
-    assert told.returncode == 0 and len(answers) == len(lines) + 1
+    assert output.returncode == 0 and len(answers) == len(lines) + 1
     for answer, (_, sentence) in zip(answers, lines, strict=False):
         assert sentence in answer["error"] and "Traceback" not in answer["error"], answer
     assert answers[-1]["summary"]["force_n"] > 0.0
@@ -191,14 +191,14 @@ def test_parts_deal_out_the_cases_and_the_whole_gathers_them(grip, tmp_path):
     jobs, out = tmp_path / "jobs.toml", tmp_path / "out"
     jobs.write_text(SWEEP.replace("[1.0, 1.5, 2.0, 2.5]", "[1.0]"))
     for part in ("1/2", "2/2"):
-        code, told = run(jobs, "--out", out, "--workers", 1, "--part", part)
-        assert code == 0, told
+        code, output = run(jobs, "--out", out, "--workers", 1, "--part", part)
+        assert code == 0, output
         assert not (out / "results.csv").exists()
-    code, told = run(jobs, "--out", out)
-    assert code == 0 and "2 of 2 cases kept" in told
+    code, output = run(jobs, "--out", out)
+    assert code == 0 and "2 of 2 cases kept" in output
     assert [row["status"] for row in rows_of(out).values()] == ["done", "done"]
-    code, told = run(jobs, "--out", out, "--part", "3/2")
-    assert code == 2 and "the part '3/2' is none" in told
+    code, output = run(jobs, "--out", out, "--part", "3/2")
+    assert code == 2 and "the part '3/2' is none" in output
 
 
 def test_flamenco_job_type_deals_out_parts():
@@ -264,7 +264,7 @@ def test_dask_with_a_killed_worker_and_a_new_scheduler(grip, tmp_path):
     assert sorted(line.split(":")[0] for line in lines if line.startswith("push-")) == [
         f"push-{number}" for number in range(1, 9)
     ]
-    code, told = run(jobs, "--out", tmp_path / "here", "--workers", 1)
-    assert code == 0, told
+    code, output = run(jobs, "--out", tmp_path / "here", "--workers", 1)
+    assert code == 0, output
     for name in ("results.csv", "results.parquet"):
         assert (out / name).read_bytes() == (tmp_path / "here" / name).read_bytes()

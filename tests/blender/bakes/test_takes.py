@@ -133,10 +133,10 @@ def test_takes_are_kept_named_and_chosen(sinking, tmp_path):
     second = played(hand, product)
     assert baked.take_names(hand) == ["Take 1", "higher"] and baked.is_playing(hand, "higher")
     assert second[0][1].max() > 1.1 * first[0][1].max()
-    told = hand.thenar.bake.peak_kpa
+    stored = hand.thenar.bake.peak_kpa
     assert bpy.ops.thenar.play_take(take="Take 1") == {"FINISHED"}
     assert_same(played(hand, product), first)
-    assert hand.thenar.bake.peak_kpa < told
+    assert hand.thenar.bake.peak_kpa < stored
     bpy.ops.wm.save_mainfile()
     bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
     hand, product = bpy.data.objects["Pad"], bpy.data.objects["Plate"]
@@ -160,9 +160,9 @@ def test_force_area_and_peak_are_keyed_in_every_frame(sinking, tmp_path):
     rows = np.genfromtxt(tmp_path / "frames.csv", delimiter=",", names=True)
     for row, frame in enumerate(FRAMES):
         bpy.context.scene.frame_set(frame)
-        told = hand.thenar.bake
+        stored = hand.thenar.bake
         for name, column in (("force_n", "force_n"), ("area_mm2", "area_mm2"), ("frame_peak_kpa", "peak_kpa")):
-            assert getattr(told, name) == pytest.approx(rows[column][row], rel=1e-5), (name, frame)
+            assert getattr(stored, name) == pytest.approx(rows[column][row], rel=1e-5), (name, frame)
     assert rows["force_n"][0] > rows["force_n"][3] > 0.0
     bpy.ops.thenar.clear()
     assert hand.animation_data is None and not [each for each in bpy.data.actions if each.users == 0]
@@ -229,8 +229,8 @@ def test_the_panel_lists_takes_numbers_and_what_is_stale(sinking, tmp_path):
     drawn = test_panels.draw()
     said = [words for words, _ in drawn["THENAR_PT_bake"]]
     assert [words for words in said if words in ("Take 1", "higher")] == ["Take 1", "higher"]
-    told = hand.thenar.bake
-    assert f"{told.force_n:.1f} N" in said and f"{told.frame_peak_kpa:.0f} kPa" in said
+    stored = hand.thenar.bake
+    assert f"{stored.force_n:.1f} N" in said and f"{stored.frame_peak_kpa:.0f} kPa" in said
     assert not [row for row in test_panels.too_long(drawn) if row[0] == "THENAR_PT_bake"]
     shutil.rmtree(tmp_path / "one" / "thenar_cache")
     baked.forget()

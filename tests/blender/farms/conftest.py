@@ -26,11 +26,11 @@ def batch(tmp_path):
     def run(out, *more, **options):
         command = [sys.executable, "-m", "thenar_blender", "batch", tmp_path / "jobs.toml", "--out", out, *more]
         environment = dask_cluster.environment() | options.pop("environment", {})
-        told = subprocess.run(
+        output = subprocess.run(
             [str(part) for part in command], capture_output=True, text=True, env=environment, timeout=240, **options
         )
         table = out / "results.csv"
         rows = list(csv.DictReader(table.open(encoding="utf-8", newline=""))) if table.is_file() else []
-        return told.returncode, told.stdout + told.stderr, rows
+        return output.returncode, output.stdout + output.stderr, rows
 
     return run

@@ -67,12 +67,12 @@ def test_a_process_is_replaced_after_so_many_cases(monkeypatch):
 def test_a_process_starts_on_one_processor_where_it_is_to():
     allowed = os.sched_getaffinity(0)
     command = stub_worker.command(f"[len(os.sched_getaffinity(0)), os.environ.get({child.PROCESSORS!r})]")
-    for wish, count, told in (
+    for wish, count, output in (
         ({child.PROCESSORS: "one"}, 1, ",".join(map(str, sorted(allowed)))),
         ({}, len(allowed), None),
     ):
         process = child.Child(command, wish)
-        assert process.solve(stub_worker.TASK, 30.0) == {"error": str([count, told])}
+        assert process.solve(stub_worker.TASK, 30.0) == {"error": str([count, output])}
         process.close()
     assert os.sched_getaffinity(0) == allowed
 
@@ -104,10 +104,10 @@ def test_a_process_of_other_variables_is_replaced():
     command, children = stub_worker.command("os.environ['COLOUR']"), child.Children()
     try:
         wanted = ("red", "red", "blue")
-        told = [children.solve((command, {"COLOUR": name}), stub_worker.TASK, 30.0) for name in wanted]
+        output = [children.solve((command, {"COLOUR": name}), stub_worker.TASK, 30.0) for name in wanted]
     finally:
         children.close()
-    assert [each["error"] for each in told] == ["red", "red", "blue"]
+    assert [each["error"] for each in output] == ["red", "red", "blue"]
 
 
 def test_no_cell_of_a_table_is_computed_by_a_spreadsheet(tmp_path):
@@ -184,7 +184,7 @@ def test_cases_go_to_workers_in_groups_and_one_that_fails_takes_none_with_it():
     here = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
     with distributed.LocalCluster(**here) as workers, distributed.Client(workers) as client:
         next(iter(workers.workers.values())).__dict__["thenar_children"] = Stub()
-        told = dict(cluster._session(client, left, {}))
-    assert told.pop("case 13")["error"].startswith("the worker failed: ValueError('spilled coffee')")
-    assert told == {name: {"summary": name} for name in left if name != "case 13"}
+        output = dict(cluster._session(client, left, {}))
+    assert output.pop("case 13")["error"].startswith("the worker failed: ValueError('spilled coffee')")
+    assert output == {name: {"summary": name} for name in left if name != "case 13"}
     assert asked.count("case 0") == 1, "groups without it are solved once"

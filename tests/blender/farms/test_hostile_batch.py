@@ -17,8 +17,8 @@ def test_every_sound_case_is_done_once_and_each_bad_one_is_a_row(ball, batch, tm
     sound = len(hostile_jobs.ODD_NAMES)
     (tmp_path / "jobs.toml").write_text(hostile_jobs.job_file(hostile_jobs.BAD, sound), encoding="utf-8")
     before = set(tmp_path.iterdir())
-    code, told, rows = batch(tmp_path / "out", "--workers", 1)
-    assert code == 2 and "Traceback" not in told and "\x1b" not in told
+    code, output, rows = batch(tmp_path / "out", "--workers", 1)
+    assert code == 2 and "Traceback" not in output and "\x1b" not in output
     assert set(tmp_path.iterdir()) - before == {tmp_path / "out"}, "a file was written outside of the folder"
     done = [row for row in rows if row["status"] == "done"]
     failed = [row["message"] for row in rows if row["status"] == "failed"]
@@ -29,8 +29,8 @@ def test_every_sound_case_is_done_once_and_each_bad_one_is_a_row(ball, batch, tm
     assert not [path for path in (tmp_path / "out").iterdir() if path.name.startswith(".")]
     table = (tmp_path / "out" / "results.csv").read_bytes()
     assert b"\x1b" not in table
-    code, told, _ = batch(tmp_path / "out", "--workers", 1)
-    assert f"{sound} of {sound + len(hostile_jobs.BAD)} cases kept" in told
+    code, output, _ = batch(tmp_path / "out", "--workers", 1)
+    assert f"{sound} of {sound + len(hostile_jobs.BAD)} cases kept" in output
     assert (tmp_path / "out" / "results.csv").read_bytes() == table
 
 
@@ -43,12 +43,12 @@ def test_a_full_disk_costs_rows_and_a_second_run_mends_them(ball, batch, tmp_pat
     def bound():
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
 
-    code, told, _ = batch(tmp_path / "out", "--workers", 1, preexec_fn=bound)
-    assert code == 2 and "Traceback" not in told, told
-    assert "numbers: failed 'numbers.json' cannot be written" in told
-    assert "scene: failed" in told
+    code, output, _ = batch(tmp_path / "out", "--workers", 1, preexec_fn=bound)
+    assert code == 2 and "Traceback" not in output, output
+    assert "numbers: failed 'numbers.json' cannot be written" in output
+    assert "scene: failed" in output
     assert not list((tmp_path / "out").glob("*.json")) and not list((tmp_path / "out").glob(".*"))
-    code, told, rows = batch(tmp_path / "out", "--workers", 1)
+    code, output, rows = batch(tmp_path / "out", "--workers", 1)
     assert code == 0 and [row["status"] for row in rows] == ["done", "done"]
 
 
@@ -111,8 +111,8 @@ def test_a_pipe_or_a_device_is_no_job_file(tmp_path):
 def test_results_cannot_go_into_a_file(ball, batch, tmp_path):
     (tmp_path / "jobs.toml").write_text('blend = "ball.blend"\n[[case]]\nname = "a"\n')
     (tmp_path / "out").write_text("a letter")
-    code, told, _ = batch(tmp_path / "out")
-    assert code == 2 and "no results can be written" in told and "Traceback" not in told
+    code, output, _ = batch(tmp_path / "out")
+    assert code == 2 and "no results can be written" in output and "Traceback" not in output
     assert (tmp_path / "out").read_text() == "a letter"
 
 
@@ -144,5 +144,5 @@ def test_the_batch_starts_where_windows_has_no_modules_of_unix(tmp_path):
         "processors.Own().took(1.0, 1.0)\n"
         "print('sound')\n"
     )
-    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
-    assert told.stdout.strip().endswith("sound"), told.stderr
+    output = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert output.stdout.strip().endswith("sound"), output.stderr

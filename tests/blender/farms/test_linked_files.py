@@ -20,15 +20,15 @@ def test_a_changed_library_is_solved_again(batch, tmp_path):
     bpy.context.scene.thenar.product = wanted.objects[0]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "main.blend"))
     (tmp_path / "jobs.toml").write_text('blend = "main.blend"\nsave = false\n[[case]]\nname = "linked"\n')
-    code, told, first = batch(tmp_path / "out", "--workers", 1)
-    assert code == 0, told
-    code, told, _ = batch(tmp_path / "out", "--workers", 1)
-    assert "1 of 1 cases kept" in told
+    code, output, first = batch(tmp_path / "out", "--workers", 1)
+    assert code == 0, output
+    code, output, _ = batch(tmp_path / "out", "--workers", 1)
+    assert "1 of 1 cases kept" in output
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "lib.blend"))
     bpy.data.objects[name].location.z += -0.0002
     bpy.ops.wm.save_mainfile()
-    code, told, again = batch(tmp_path / "out", "--workers", 1)
-    assert code == 0 and "kept" not in told
+    code, output, again = batch(tmp_path / "out", "--workers", 1)
+    assert code == 0 and "kept" not in output
     _, _, fresh = batch(tmp_path / "fresh", "--workers", 1)
     assert again[0]["force_n"] == fresh[0]["force_n"] != first[0]["force_n"]
 

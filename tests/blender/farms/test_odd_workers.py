@@ -45,22 +45,22 @@ ODD_ANSWERS = [
 
 @pytest.mark.parametrize("line", ODD_ANSWERS)
 def test_nonsense_is_tried_again_and_then_the_row_fails(monkeypatch, line):
-    told = answer_of([line], monkeypatch)
-    assert "it answered nonsense" in told["error"] and told["error"].endswith("2 times")
+    output = answer_of([line], monkeypatch)
+    assert "it answered nonsense" in output["error"] and output["error"].endswith("2 times")
 
 
 @pytest.mark.parametrize("line", ["[]", "5", '"done"'])
 def test_nonsense_of_what_never_says_that_it_is_a_worker_fails_too(monkeypatch, line):
-    told = answer_of([line], monkeypatch, hello="")
-    assert "it answered nonsense" in told["error"] and told["error"].endswith("2 times")
+    output = answer_of([line], monkeypatch, hello="")
+    assert "it answered nonsense" in output["error"] and output["error"].endswith("2 times")
 
 
 def test_a_worker_of_another_version_is_refused_by_name(monkeypatch):
     older = """print('{"thenar": "0.0.9", "ready": true}', flush=True)"""
-    told = answer_of(["{}"], monkeypatch, older)
-    assert "of Thenar 0.0.9, this batch of Thenar " + names.VERSION in told["refused"]
-    told = answer_of([json.dumps({"summary": {"force_n": 123.0, "made_with": "Thenar 0.0.7"}})], monkeypatch, "")
-    assert "Thenar 0.0.7" in told["refused"], "it does not even say hello"
+    output = answer_of(["{}"], monkeypatch, older)
+    assert "of Thenar 0.0.9, this batch of Thenar " + names.VERSION in output["refused"]
+    output = answer_of([json.dumps({"summary": {"force_n": 123.0, "made_with": "Thenar 0.0.7"}})], monkeypatch, "")
+    assert "Thenar 0.0.7" in output["refused"], "it does not even say hello"
 
 
 def test_a_batch_ends_at_a_worker_of_another_version_and_keeps_what_is_done(ball, tmp_path, monkeypatch):
@@ -107,9 +107,9 @@ def test_a_signal_writes_the_tables_and_leaves_nothing_else(ball, tmp_path, numb
         if line.startswith("p-0005"):
             os.kill(process.pid, number)
             break
-    told, errors = process.communicate(timeout=60)
+    output, errors = process.communicate(timeout=60)
     assert process.returncode == 128 + number
-    assert f"stopped by {number.name}" in errors and "Traceback" not in told + errors
+    assert f"stopped by {number.name}" in errors and "Traceback" not in output + errors
     done = [path.name for path in out.glob("*.json")]
     rows = (out / "results.csv").read_text().splitlines()[1:]
     assert len(rows) == len(done) >= 4 and all(",done," in row for row in rows)

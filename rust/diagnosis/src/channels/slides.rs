@@ -192,7 +192,7 @@ fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
     (list.len() >= LEAST).then(|| median(&mut list))
 }
 
-/// Whether friction is named beside what was said before. An instrument at fault has no finding where only a place of maps speaks for it,
+/// Whether friction is named with what was said before. An instrument at fault has no finding where only a place of maps speaks for it,
 /// which says nothing of slides.
 fn is_open(verdict: Verdict, findings: &[Finding]) -> bool {
     match verdict {

@@ -77,13 +77,13 @@ fn afm_workshop_faults_name_their_line() {
         ("", "the first sample"),
     ];
     for (rows, words) in bad {
-        let told = refused(curve("", "Force(nN)", rows).as_bytes());
-        assert!(told.contains(words), "{told}");
+        let message = refused(curve("", "Force(nN)", rows).as_bytes());
+        assert!(message.contains(words), "{message}");
     }
-    let told = refused(curve("", "Sum(V)", ROWS).as_bytes());
+    let message = refused(curve("", "Sum(V)", ROWS).as_bytes());
     assert!(
-        told.contains("no two columns 'Extend Z-Sense(nm)'"),
-        "{told}"
+        message.contains("no two columns 'Extend Z-Sense(nm)'"),
+        "{message}"
     );
 }
 
@@ -120,8 +120,11 @@ fn files_of_other_makers_are_named() {
         (b"\x1f\x8b\x08....".to_vec(), "packed with gzip"),
         (b"%PDF-1.4".to_vec(), "a PDF report"),
     ] {
-        let told = refused(&bytes);
-        assert!(told.contains(words) && !told.contains("damaged"), "{told}");
+        let message = refused(&bytes);
+        assert!(
+            message.contains(words) && !message.contains("damaged"),
+            "{message}"
+        );
     }
 }
 

@@ -247,12 +247,12 @@ fn columns_of_a_sheet_whose_names_say_nothing_are_asked_for() {
     let sheet = under(&[&["t (s)", "Z (mm)", "P (N)", "Q (N)"]]);
     let notes: Rows = vec![row(&["Operator", "J. D."])];
     let book = workbook(&[("Notes", notes.clone()), ("Data", sheet)]);
-    let told = refused(&book);
+    let message = refused(&book);
     assert!(
-        told.contains("sheet 'Data'")
-            && told.contains("which of its columns")
-            && told.contains("'P (N)'"),
-        "{told}"
+        message.contains("sheet 'Data'")
+            && message.contains("which of its columns")
+            && message.contains("'P (N)'"),
+        "{message}"
     );
     let file = with(
         &book,
