@@ -21,7 +21,7 @@ pub(crate) mod timing;
 
 pub use mat::contact_loads::loads;
 pub(crate) use mat::contact_loads::loads_of;
-pub use mat::placement::Placement;
+pub use mat::placement::{Placement, Spot};
 pub use mat::{Mat, MatLayout, PointLoad};
 pub use observe::{check, observe};
 pub use signals::Signals;

@@ -1,9 +1,11 @@
 //! Levenberg-Marquardt with bounds, priors and Huber loss, for any model whose residuals can be whitened.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::least_squares::huber::huber;
-use crate::noise::whitening::{Whitened, Whitening};
+use crate::noise::whitening::{Whitened, Whitening, span};
 
 /// Most steps.
 const MOST_STEPS: usize = 60;
@@ -221,12 +223,8 @@ impl System {
         let whitened = whitening.derivatives(jacobian, &point.whitened);
         let residual = &point.whitened.residual;
         let weight = |r: f64| f64::min(1.0, point.threshold / r.abs().max(f64::MIN_POSITIVE));
-        let mut weighted = whitened.clone();
-        for (k, r) in residual.iter().enumerate() {
-            weighted.row_mut(k).scale_mut(weight(*r));
-        }
-        let mut normal = whitened.tr_mul(&weighted);
-        let mut downhill = weighted.tr_mul(&DVector::from_column_slice(residual));
+        let weights: Vec<f64> = residual.iter().map(|r| weight(*r)).collect();
+        let (mut normal, mut downhill) = weighted_products(&whitened, &weights, residual);
         for (k, one) in limits.iter().enumerate() {
             if let Some(sd) = one.prior {
                 normal[(k, k)] += 1.0 / (sd * sd);
@@ -287,4 +285,55 @@ impl System {
         let step = DVector::from_fn(from.len(), |k, _| to[k] - from[k]);
         2.0 * self.downhill.dot(&step) - (&self.normal * &step).dot(&step)
     }
+}
+
+/// `J^T W J` and `J^T W r`. Numbers of one recording or one tool leave most of a column 0: rows before its first and after its last that is not 0
+/// are passed over.
+fn weighted_products(
+    whitened: &DMatrix<f64>,
+    weights: &[f64],
+    residual: &[f64],
+) -> (DMatrix<f64>, DVector<f64>) {
+    let count = whitened.ncols();
+    let spans: Vec<Range<usize>> = (0..count)
+        .map(|column| span(column_of(whitened, column)))
+        .collect();
+    let (mut normal, mut downhill) = (DMatrix::zeros(count, count), DVector::zeros(count));
+    let mut weighted = vec![0.0; weights.len()];
+    for a in 0..count {
+        let rows = spans[a].clone();
+        let own = &column_of(whitened, a)[rows.clone()];
+        let each = own.iter().zip(&weights[rows.clone()]);
+        for (to, (value, weight)) in weighted[rows.clone()].iter_mut().zip(each) {
+            *to = value * weight;
+        }
+        downhill[a] = dot(&weighted[rows.clone()], &residual[rows.clone()]);
+        for b in 0..=a {
+            let both = rows.start.max(spans[b].start)..rows.end.min(spans[b].end);
+            if both.is_empty() {
+                continue;
+            }
+            let product = dot(&weighted[both.clone()], &column_of(whitened, b)[both]);
+            normal[(a, b)] = product;
+            normal[(b, a)] = product;
+        }
+    }
+    (normal, downhill)
+}
+
+fn column_of(matrix: &DMatrix<f64>, column: usize) -> &[f64] {
+    let rows = matrix.nrows();
+    &matrix.as_slice()[column * rows..(column + 1) * rows]
+}
+
+/// Sum of products, in eight sums side by side, which is as the processor adds.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut sums, whole) = ([0.0; 8], a.len() / 8 * 8);
+    for (x, y) in a.chunks_exact(8).zip(b.chunks_exact(8)) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    let rest = a[whole..].iter().zip(&b[whole..]);
+    sums.iter().sum::<f64>() + rest.map(|(x, y)| x * y).sum::<f64>()
 }

@@ -1,5 +1,7 @@
 //! Whitening: residuals as independent numbers of variance 1, censored samples included.
 
+use std::ops::Range;
+
 use nalgebra::DMatrix;
 
 use crate::distributions::{log_normal_cdf, log_normal_density};
@@ -113,7 +115,7 @@ impl Whitening {
         let n = self.len();
         let (mut residual, mut censored_slope) = (vec![0.0; n], vec![0.0; n]);
         let scaled = |k: usize| (self.measured[k] - simulated[k]) / self.sigma[k];
-        self.seen(&scaled, &mut |k, white| residual[k] = white);
+        self.seen((0..n, &scaled), &mut |k, white| residual[k] = white);
         for k in (0..n).filter(|&k| self.is_used[k]) {
             let sign = match self.censoring[k] {
                 Censoring::Seen => continue,
@@ -140,14 +142,20 @@ impl Whitening {
     /// Whitened derivatives of the residuals' simulated part: `L^-1 J`; columns by parameter.
     pub fn derivatives(&self, jacobian: &DMatrix<f64>, at: &Whitened) -> DMatrix<f64> {
         let mut whitened = DMatrix::zeros(jacobian.nrows(), jacobian.ncols());
-        for column in 0..jacobian.ncols() {
-            let scaled = |k: usize| jacobian[(k, column)] / self.sigma[k];
-            for k in (0..self.len()).filter(|&k| self.is_used[k]) {
+        if jacobian.is_empty() {
+            return whitened;
+        }
+        let columns = jacobian.as_slice().chunks_exact(jacobian.nrows());
+        let mut white = whitened.as_mut_slice().chunks_exact_mut(jacobian.nrows());
+        for (column, white) in columns.zip(&mut white) {
+            let set = span(column);
+            let scaled = |k: usize| column[k] / self.sigma[k];
+            for k in set.clone().filter(|&k| self.is_used[k]) {
                 if self.censoring[k] != Censoring::Seen {
-                    whitened[(k, column)] = -at.censored_slope[k] * scaled(k);
+                    white[k] = -at.censored_slope[k] * scaled(k);
                 }
             }
-            self.seen(&scaled, &mut |k, white| whitened[(k, column)] = white);
+            self.seen((set, &scaled), &mut |k, value| white[k] = value);
         }
         whitened
     }
@@ -167,18 +175,35 @@ impl Whitening {
         self.channel[k]
     }
 
-    /// Gives every seen sample in use with its whitened value.
-    fn seen(&self, scaled: &dyn Fn(usize) -> f64, give: &mut dyn FnMut(usize, f64)) {
-        for k in (0..self.len()).filter(|&k| self.is_used[k]) {
+    /// Gives every seen sample in use with its whitened value; those outside of the samples `set` are 0 before, and not given unless they
+    /// follow one of `set`.
+    fn seen(
+        &self,
+        (set, scaled): (Range<usize>, impl Fn(usize) -> f64),
+        give: &mut impl FnMut(usize, f64),
+    ) {
+        for k in set.clone().filter(|&k| self.is_used[k]) {
             if self.censoring[k] == Censoring::Seen && !IN_TIME.contains(&self.channel[k]) {
                 give(k, scaled(k));
             }
         }
         for series in &self.series {
+            let ends = series.samples.first().zip(series.samples.last());
+            if ends.is_none_or(|(first, last)| set.end <= *first || *last < set.start) {
+                continue;
+            }
             let innovations = series.filter.innovations(|k| scaled(series.samples[k]));
             for (k, innovation) in innovations.into_iter().enumerate() {
                 give(series.samples[k], innovation / series.deviation[k]);
             }
         }
     }
+}
+
+/// Samples from the first that is not 0 to behind the last.
+pub(crate) fn span(column: &[f64]) -> Range<usize> {
+    let is_set = |x: &f64| *x != 0.0;
+    let first = column.iter().position(is_set).unwrap_or(0);
+    let last = column.iter().rposition(is_set).map_or(0, |k| k + 1);
+    first..last.max(first)
 }

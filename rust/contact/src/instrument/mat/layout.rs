@@ -9,6 +9,8 @@ const AROUND: usize = 8;
 const NEAR: f64 = 1.5;
 /// And within this much of the direction, sideways over along.
 const ASIDE: f64 = 0.6;
+/// Sensels within this many pitches of one are listed: no usual load reaches farther.
+const CLOSE: f64 = 5.0;
 
 /// Turn of the normals below which the mat counts as flat between two sensels, rad.
 const FLAT: f64 = 1e-9;
@@ -27,10 +29,15 @@ pub struct SensorGrid {
     pub beside: Vec<[Option<u32>; 4]>,
     /// Sides of each sensel along the two directions, mm.
     pub sides: Vec<[f64; 2]>,
+    /// Sides of the sensel with the largest sum of them, mm.
+    pub largest: [f64; 2],
     /// Usual distance of neighbors in the two directions, mm; a row without neighbors takes the other's.
     pub pitch: [f64; 2],
     /// Place of each sensel on the unrolled mat, mm from its middle.
     pub flat: Vec<[f64; 2]>,
+    /// Sensels whose centers lie within `around_mm` of a sensel's, itself among them, in ascending order.
+    around: Vec<Vec<u32>>,
+    around_mm: f64,
 }
 
 impl SensorGrid {
@@ -63,14 +70,25 @@ impl SensorGrid {
             .collect();
         let ratio = (pitch[0] / pitch[1]).sqrt();
         let sides = |area: &f64| [area.sqrt() * ratio, area.sqrt() / ratio];
+        let most = areas.iter().fold(0.0, |most: f64, area| most.max(*area));
         let mut lie = SensorGrid {
             sides: areas.iter().map(sides).collect(),
+            largest: sides(&most),
             flat: vec![[0.0; 2]; centers.len()],
             normals,
             axes,
             beside,
+            around: Vec::new(),
+            around_mm: CLOSE * pitch[0].max(pitch[1]),
             pitch,
         };
+        let is_close = |(a, b): (&Vec3, &Vec3)| (a - b).norm_squared() <= lie.around_mm.powi(2);
+        let around = centers.iter().map(|from| {
+            let each = centers.iter().enumerate();
+            let close = each.filter(|(_, center)| is_close((center, from)));
+            close.map(|(k, _)| k as u32).collect()
+        });
+        lie.around = around.collect();
         for &(from, to) in &tree {
             let step = lie.apart(centers, (from, to));
             lie.flat[to] = [lie.flat[from][0] + step[0], lie.flat[from][1] + step[1]];
@@ -85,6 +103,14 @@ impl SensorGrid {
     /// Sensels beside a sensel, at most four.
     pub fn neighbors(&self, sensel: usize) -> impl Iterator<Item = usize> + '_ {
         self.beside[sensel].iter().flatten().map(|k| *k as usize)
+    }
+
+    /// Sensels that may lie within `reach` (mm) of a sensel, in ascending order: all of them where it is long.
+    pub fn within(&self, sensel: usize, reach: f64) -> impl Iterator<Item = usize> + '_ {
+        let is_long = reach > self.around_mm;
+        let all = if is_long { self.sides.len() } else { 0 };
+        let close: &[u32] = if is_long { &[] } else { &self.around[sensel] };
+        (0..all).chain(close.iter().map(|k| *k as usize))
     }
 
     /// From one sensel to another along the mat, in its two directions, mm: exact on planes and cylinders.

@@ -130,9 +130,27 @@ impl Mat {
 
     /// What the mat reads where it lies otherwise than it should, kPa.
     pub fn read_at(&self, loads: &[PointLoad], placement: &Placement) -> Vec<f64> {
+        self.read_located((loads, &self.locate(loads)), placement)
+    }
+
+    /// Where loads lie on the mat as it should be; None off it, and without force.
+    pub fn locate(&self, loads: &[PointLoad]) -> Vec<Option<Spot>> {
+        let spot = |load: &PointLoad| match load.force_n != 0.0 {
+            true => self.spot(&load.position),
+            false => None,
+        };
+        loads.iter().map(spot).collect()
+    }
+
+    /// The same as [`Mat::read_at`] of loads that were located before, which does not depend on the placement.
+    pub fn read_located(
+        &self,
+        (loads, spots): (&[PointLoad], &[Option<Spot>]),
+        placement: &Placement,
+    ) -> Vec<f64> {
         let mut force = vec![0.0; self.len()];
-        for load in loads.iter().filter(|load| load.force_n != 0.0) {
-            let Some(mut spot) = self.spot(&load.position) else {
+        for (load, spot) in loads.iter().zip(spots) {
+            let Some(mut spot) = *spot else {
                 continue;
             };
             if !placement.is_none() {
@@ -230,8 +248,10 @@ impl Mat {
         let half = (0.5 * load.area_mm2.sqrt()).max(POINT);
         let (from, off) = (self.centers[spot.sensel], spot.at[0].hypot(spot.at[1]));
         let mut shares: Vec<(usize, f64)> = Vec::new();
-        for (sensel, sides) in self.lie.sides.iter().enumerate() {
-            let reach = off + 0.75 * (sides[0] + sides[1]) + 1.5 * half;
+        let reach = |sides: &[f64; 2]| off + 0.75 * (sides[0] + sides[1]) + 1.5 * half;
+        let farthest = reach(&self.lie.largest);
+        for sensel in self.lie.within(spot.sensel, farthest) {
+            let (sides, reach) = (&self.lie.sides[sensel], reach(&self.lie.sides[sensel]));
             if (self.centers[sensel] - from).norm_squared() > reach * reach
                 || self.lie.normals[sensel].dot(&self.lie.normals[spot.sensel]) <= 0.0
             {

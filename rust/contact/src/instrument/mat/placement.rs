@@ -16,7 +16,9 @@ pub struct Placement {
 /// A place on the mat: the sensel nearest to it, and how far it is from there along the mat's two directions, mm.
 #[derive(Debug, Clone, Copy)]
 pub struct Spot {
+    /// Number of the sensel.
     pub sensel: usize,
+    /// mm along the two directions.
     pub at: [f64; 2],
 }
 

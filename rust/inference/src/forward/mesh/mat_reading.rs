@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use thenar_contact::ActiveEffect;
 use thenar_contact::effects::Effect;
-use thenar_contact::instrument::{Mat as Sensels, MatLayout, Placement, PointLoad};
+use thenar_contact::instrument::{Mat as Sensels, MatLayout, Placement, PointLoad, Spot};
 
 use crate::errors::InferenceError;
 use crate::forward::mesh::press_table::Basis;
@@ -15,9 +16,14 @@ use thenar_surface::Vec3;
 /// Readings kept for each recording.
 const MOST_KEPT: usize = 60;
 
+/// By part of a basis and rung, where each load lies.
+type Located = Vec<Vec<Vec<Option<Spot>>>>;
+
 /// A mat that reads presses.
 pub struct Reader {
     sensels: Sensels,
+    /// Where the loads of a ladder's rungs lie on the mat, that of the last ladder.
+    located: Option<(Arc<Basis>, Located)>,
     kept: Vec<(Arc<Basis>, Placement, Arc<Readings>)>,
 }
 
@@ -58,6 +64,7 @@ impl Reader {
         let sensels = Sensels::new(layout).map_err(InferenceError::of_contact(what))?;
         Ok(Reader {
             sensels,
+            located: None,
             kept: Vec::new(),
         })
     }
@@ -75,11 +82,24 @@ impl Reader {
         if let Some((_, _, readings)) = self.kept.iter().find(is_kept) {
             return readings.clone();
         }
-        let read = |loads: &Vec<PointLoad>| self.sensels.read_at(loads, &placement);
+        let sensels = &self.sensels;
+        if !matches!(&self.located, Some((of, _)) if Arc::ptr_eq(of, basis)) {
+            let of = |rungs: &Vec<Vec<PointLoad>>| {
+                let each = rungs.par_iter().map(|loads| sensels.locate(loads));
+                each.collect()
+            };
+            self.located = Some((basis.clone(), basis.loads.iter().map(of).collect()));
+        }
+        let located = self.located.iter().flat_map(|(_, located)| located);
         let presses: Vec<Vec<Vec<f64>>> = basis
             .loads
             .iter()
-            .map(|rungs| rungs.iter().map(read).collect())
+            .zip(located)
+            .map(|(rungs, spots)| {
+                let each = rungs.par_iter().zip(spots);
+                each.map(|(loads, spots)| sensels.read_located((loads, spots), &placement))
+                    .collect()
+            })
             .collect();
         let part = |mix: &Vec<f64>| -> Vec<Option<Table>> {
             (0..self.sensels.len())

@@ -78,7 +78,6 @@ impl Surrogate<'_> {
         let one = &self.courses[course];
         let table = &self.elastic.places[one.place];
         let depths = self.depths(model, set, (course, known));
-        let answer = self.answer(model, set, one.place);
         let elastic = |d: &f64| match *d > 0.0 {
             true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
             false => 0.0,
@@ -86,6 +85,7 @@ impl Surrogate<'_> {
         let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
         let (relaxation_branches, shares) = self.relaxation_branches(model, set, (one, &depths));
         if !relaxation_branches.is_empty() {
+            let answer = self.answer(model, set, one.place);
             let way = SpringHistory {
                 depths: &depths,
                 touches: &answer.touches,

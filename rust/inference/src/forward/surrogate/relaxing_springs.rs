@@ -36,27 +36,39 @@ pub(crate) fn branch_decay(steps: &[f64]) -> Vec<(f64, f64)> {
 
 /// By row, force over what elastic springs bear: `sum_j k_j (s_j - max(d - d_j, 0))`, with stiffness `springs` (N/mm).
 pub(crate) fn relaxation_loss(way: &SpringHistory<'_>, springs: &[f64]) -> Vec<f64> {
-    let rows = way.depths.len();
-    let mut all = vec![0.0; rows];
-    let mut left = vec![0.0; way.relaxation_branches.len()];
-    for (touch, k) in way.touches.iter().zip(springs) {
-        left.fill(0.0);
-        let mut last = 0.0;
-        for n in 0..rows {
-            let length = (way.depths[n] - touch).max(0.0);
-            let mut borne = length;
-            for (b, relaxation_branches) in way.relaxation_branches.iter().enumerate() {
-                let (decay, mean) = match n {
-                    0 => (0.0, 1.0),
-                    _ => relaxation_branches[n],
-                };
-                left[b] = left[b] * decay + (length - last) * mean;
-                borne -= way.shares[b] * (length - left[b]);
-            }
-            last = length;
-            // Skin that does not cling does not pull.
-            all[n] += k * (borne.max(0.0) - length);
+    let deepest = way.depths.iter().fold(0.0, |most: f64, d| most.max(*d));
+    // A spring that never touches bears nothing.
+    let touching = way.touches.iter().take(springs.len());
+    let touches: Vec<f64> = touching.copied().take_while(|t| *t < deepest).collect();
+    let count = touches.len();
+    let (mut last, mut length, mut borne) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+    let mut left = vec![vec![0.0; count]; way.relaxation_branches.len()];
+    let row = |(n, depth): (usize, &f64)| {
+        for ((length, borne), touch) in length.iter_mut().zip(&mut borne).zip(&touches) {
+            *length = (depth - touch).max(0.0);
+            *borne = *length;
         }
-    }
-    all
+        for ((branch, share), left) in way
+            .relaxation_branches
+            .iter()
+            .zip(way.shares)
+            .zip(&mut left)
+        {
+            let (decay, mean) = if n == 0 { (0.0, 1.0) } else { branch[n] };
+            let each = left
+                .iter_mut()
+                .zip(&mut borne)
+                .zip(length.iter().zip(&last));
+            for ((left, borne), (length, last)) in each {
+                *left = *left * decay + (length - last) * mean;
+                *borne -= share * (length - *left);
+            }
+        }
+        last.copy_from_slice(&length);
+        // Skin that does not cling does not pull.
+        let each = springs.iter().zip(&borne).zip(&length);
+        each.map(|((k, borne), length)| k * (borne.max(0.0) - length))
+            .sum()
+    };
+    way.depths.iter().enumerate().map(row).collect()
 }
