@@ -337,3 +337,29 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     let rest = a[whole..].iter().zip(&b[whole..]);
     sums.iter().sum::<f64>() + rest.map(|(x, y)| x * y).sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against the products of the whole matrices, with columns that are 0 before, after, nowhere and everywhere.
+    #[test]
+    fn products_of_parts_equal_those_of_the_whole() {
+        let spans = [0..41, 3..20, 20..41, 19..21, 7..7, 40..41, 0..1];
+        let value = |row: usize, column: usize| f64::sin((1 + row * (3 + column)) as f64);
+        let jacobian = DMatrix::from_fn(41, spans.len(), |row, column| {
+            match spans[column].contains(&row) {
+                true => value(row, column),
+                false => 0.0,
+            }
+        });
+        let weights: Vec<f64> = (0..41).map(|row| 0.1 + value(row, 11).abs()).collect();
+        let residual: Vec<f64> = (0..41).map(|row| value(row, 17)).collect();
+        let (normal, downhill) = weighted_products(&jacobian, &weights, &residual);
+        let weighted = DMatrix::from_diagonal(&DVector::from_vec(weights)) * &jacobian;
+        let off = normal - jacobian.transpose() * &weighted;
+        assert!(off.amax() < 1e-13, "{}", off.amax());
+        let off = downhill - weighted.transpose() * DVector::from_vec(residual);
+        assert!(off.amax() < 1e-13, "{}", off.amax());
+    }
+}

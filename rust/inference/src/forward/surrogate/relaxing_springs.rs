@@ -35,6 +35,7 @@ pub(crate) fn branch_decay(steps: &[f64]) -> Vec<(f64, f64)> {
 }
 
 /// By row, force over what elastic springs bear: `sum_j k_j (s_j - max(d - d_j, 0))`, with stiffness `springs` (N/mm).
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(crate) fn relaxation_loss(way: &SpringHistory<'_>, springs: &[f64]) -> Vec<f64> {
     let deepest = way.depths.iter().fold(0.0, |most: f64, d| most.max(*d));
     // A spring that never touches bears nothing.
