@@ -105,16 +105,16 @@ little 19 degrees to the middle finger), the thumb out of the palm and opposite 
 were fitted from here, so the thumb keeps the twist outward that the pose *Open* does not have."""
 
 PINCHED = {
-    **_fingers((2, 18, 84, 42), (0, 18, 86, 42), (-2, 18, 84, 42), (-4, 18, 82, 42)),
-    **_thumb((12, -26, -6), 30, -8),
+    **_fingers((-4, 70, 24, 12), (2, 62, 38, 20), (2, 55, 48, 24), (2, 55, 48, 24)),
+    **_thumb((34, -1, -39), -4, -13),
     **_cup(4, 9),
 }
 SPREAD = {
-    **_fingers((-2, 2, 40, 20), (0, 2, 40, 20), (2, 2, 40, 20), (4, 2, 40, 20)),
-    **_thumb((10, 6, -16), -4, -8),
+    **_fingers((-3, 10, 44, 24), (0, 14, 48, 25), (2, 14, 46, 24), (4, 14, 44, 22)),
+    **_thumb((-12, 18, -40), 0, 15),
 }
-"""A pinch begins between these two: pads together and far apart. Of the postures within the joint limits these turn the
-pads toward each other the most, with the thumb's twist down to -20."""
+"""A pinch begins between these two: pads together and far apart. The thumb pronates in both, and its pad faces those of
+index and middle finger within 21 degrees at every width of a median hand."""
 
 HELD_BOTTLE = {
     **_fingers(

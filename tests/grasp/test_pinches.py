@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 import thenar
-from handles import shapes
+from handles import anatomy, grasping, shapes
 from scipy.spatial.transform import Rotation
-from thenar_blender.grasp_fit import pinches, places, walls
+from thenar_blender.grasp import fitting
+from thenar_blender.grasp_fit import pinches, pinching, places, walls
+from thenar_blender.hand import reading
 
 PALM = {"thenar", "hypothenar", "palm_hollow", "distal_palm_radial", "distal_palm_ulnar"}
 
@@ -113,6 +115,21 @@ def test_a_tray_is_held_by_thumb_and_fingertips(blender, scene):
     carried = {row.name: row.force_n for row in result.regions if row.force_n > 0.01}
     assert "thumb_distal_pad" in carried and not PALM & set(carried)
     assert len(before) == len(hand.data.vertices)
+
+
+@pytest.mark.parametrize("width", [22.0, 40.0, 60.0, 75.0])
+def test_the_hand_opens_for_a_pinch_with_its_thumb_toward_the_fingertips(blender, width):
+    blender.ops.thenar.make_hand(percentile=50)
+    shown = blender.context.scene.thenar.hand
+    hand = fitting.read_hand(blender.context, shown)
+    reading.write_angles(shown.parent, hand.rig, hand.joints, pinching.opened(hand, width))
+    blender.context.view_layer.update()
+    points, triangles = grasping.seen(shown)
+    assert anatomy.facing(shown, (points, triangles), "thumb", ("index", "middle"))[0] <= 25.0
+    thumb, *fingers = (
+        points[anatomy._rows(shown, f"{digit}_distal_pad")].mean(axis=0) for digit in ("thumb", "index", "middle")
+    )
+    assert np.linalg.norm(thumb - np.mean(fingers, axis=0)) == pytest.approx(width, abs=2.0)
 
 
 def test_the_kind_is_the_users(blender, scene, bar):
