@@ -131,3 +131,41 @@ fn side_is_right_next_to_a_sliver_whose_normal_is_rounding() {
         }
     }
 }
+
+#[test]
+fn the_nearest_place_is_that_of_the_signed_distance_whatever_the_side() {
+    let mut random = Random(5);
+    let whole = sphere(7.0, 12, 17);
+    // Without its top it is open: there the side takes a winding number.
+    let bowl = whole.triangles().iter().copied();
+    let bowl = bowl
+        .filter(|t| t.iter().all(|&i| whole.positions()[i as usize].z < 4.0))
+        .collect();
+    let bowl = Mesh::new(whole.positions().to_vec(), bowl).unwrap();
+    for mesh in [whole, bowl] {
+        let product = Product::new(mesh.clone()).unwrap();
+        let points: Vec<Vec3> = (0..400).map(|_| random.within(11.0)).collect();
+        let limits = GapLimits {
+            cut_off_mm: f64::INFINITY,
+            max_depth_mm: 100.0,
+        };
+        let cut = 2.5;
+        let nearest = product.nearest(&points, cut);
+        let signed = product.gaps(&points, None, limits);
+        let mut beyond = 0;
+        for ((p, nearest), signed) in points.iter().zip(nearest).zip(signed) {
+            let signed = signed.unwrap();
+            let distance = brute_distance(&mesh, *p);
+            let Some(nearest) = nearest else {
+                assert!(distance > cut);
+                beyond += 1;
+                continue;
+            };
+            assert!((nearest.distance - distance).abs() < 1e-9 && distance <= cut);
+            assert_eq!(nearest.distance, signed.distance.abs());
+            assert_eq!(nearest.closest, signed.closest);
+            assert_eq!(nearest.triangle, signed.triangle);
+        }
+        assert!((100..350).contains(&beyond), "{beyond}");
+    }
+}

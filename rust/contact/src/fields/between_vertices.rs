@@ -210,8 +210,11 @@ impl Place<'_> {
             let nearest = (0..3).max_by(|a, b| weight(a).total_cmp(&weight(b)))?;
             is_beneath.then_some((depth, corners[nearest]))
         };
-        let gaps = surface.gaps(&samples, None, limits);
-        let depths = samples.iter().zip(gaps).filter_map(depth_of);
+        // On which side of the skin a sample is says nothing here; deep in it the search goes on in full.
+        let nearest = surface.nearest(&samples, MARGIN).into_iter();
+        let gaps = samples.iter().zip(nearest);
+        let gaps = gaps.map(|(p, gap)| (p, gap.or_else(|| surface.gap(*p, None, limits))));
+        let depths = gaps.filter_map(depth_of);
         depths.max_by(|a, b| a.0.total_cmp(&b.0))
     }
 

@@ -6,7 +6,7 @@ use crate::mesh::triangles::Vec3;
 use crate::reading::facing::{PosedSkin, Sight};
 use crate::reading::opposing_wall::{Facing, Turned};
 use crate::reading::through_walls::settle;
-use crate::solid::gap::{Gap, GapLimits, flipped};
+use crate::solid::gap::{Gap, GapLimits, Side, flipped};
 use crate::solid::product::Product;
 use crate::tree::nearest::Pending;
 
@@ -24,6 +24,18 @@ impl Product {
     pub fn gap(&self, point: Vec3, skin_normal: Option<Vec3>, limits: GapLimits) -> Option<Gap> {
         let how = (limits, Turned::Opposing);
         Facing::new(self, how, &mut Pending::default()).gap(point, skin_normal, None)
+    }
+
+    /// Distances of many points, mm, whichever side they are on, with the nearest place of the surface as read from outside; `None` beyond the
+    /// cut-off. Without the side, an open surface needs no winding number.
+    pub fn nearest(&self, points: &[Vec3], cut_off_mm: f64) -> Vec<Option<Gap>> {
+        let (mut pending, reach) = (Pending::default(), cut_off_mm.max(0.0).powi(2));
+        let place = |point: &Vec3| {
+            let query = self.tree.query(*point);
+            let hit = self.tree.nearest(&query, reach, &mut pending, |_, _| 1.0)?;
+            Some(self.reading(&query, &hit, Side::Outside))
+        };
+        points.iter().map(place).collect()
     }
 
     /// Signed distances of many points, as [`Product::gap`]; with skin normals also through thin walls, as far as the neighborhood agrees.

@@ -4,6 +4,7 @@ pub(crate) mod gap;
 pub(crate) mod orientation;
 pub(crate) mod cells;
 pub(crate) mod union;
+pub(crate) mod plain_faces;
 pub(crate) mod sign;
 pub(crate) mod interior;
 pub(crate) mod product;

@@ -166,7 +166,7 @@ impl Product {
                 Place::Inside => true,
                 Place::NearSurface => self.holds(query.point, pending),
             },
-            (None, Sign::Winding(winding)) if self.has_body => {
+            (None, Sign::Winding(winding, _)) if self.has_body => {
                 winding.number(&self.tree, query.point) > 0.5
             }
             _ => false,
@@ -178,7 +178,7 @@ impl Product {
         let query = self.tree.query(point);
         let winding = match (&self.sheets, &self.sign) {
             (Some(sheets), _) => sheets,
-            (None, Sign::Winding(winding)) => winding,
+            (None, Sign::Winding(winding, _)) => winding,
             (None, Sign::Normals(_)) => return false,
         };
         winding.number(&self.tree, query.point) > 0.5
@@ -201,7 +201,7 @@ impl Product {
     /// Whether a face has no normal that its corners could tell; there is none where pseudo-normals decide the side.
     pub(crate) fn is_sliver(&self, face: &Face) -> bool {
         let corners = [face.a, face.a + face.ab, face.a + face.ac];
-        matches!(self.sign, Sign::Winding(_)) && least_height(corners) * self.tree.shrink < SLIVER
+        matches!(self.sign, Sign::Winding(..)) && least_height(corners) * self.tree.shrink < SLIVER
     }
 
     /// The gap to a face found, on the given side.

@@ -4,15 +4,20 @@ use crate::mesh::closest_point::Feature;
 use crate::mesh::normals::add_angle_weighted;
 use crate::mesh::triangles::{Standing, Vec3};
 use crate::solid::orientation::Oriented;
+use crate::solid::plain_faces::PlainFaces;
 use crate::tree::bvh::Tree;
 use crate::tree::nearest::Hit;
 use crate::tree::winding_number::{Counted, Winding};
+
+/// Part of the product's extent from which a point is clear of the surface: nearer, rounding decides on which side of a face it is.
+const CLEAR: f64 = 1e-9;
 
 /// How a product tells inside from outside.
 #[derive(Debug, Clone)]
 pub(crate) enum Sign {
     Normals(PseudoNormals),
-    Winding(Winding),
+    /// And the faces of the tree that need none.
+    Winding(Winding, PlainFaces),
 }
 
 /// Normals of every face, edge and vertex that give the right sign (Baerentzen & Aanaes 2005).
@@ -36,7 +41,8 @@ impl Sign {
             } else {
                 Counted::All
             };
-            Sign::Winding(Winding::of(tree, counted))
+            let winding = Winding::of(tree, counted);
+            Sign::Winding(winding, PlainFaces::new(product, tree))
         }
     }
 
@@ -44,7 +50,11 @@ impl Sign {
     pub(crate) fn is_inside(&self, tree: &Tree, point: Vec3, hit: &Hit) -> bool {
         match self {
             Sign::Normals(normals) => (point - hit.on.point).dot(&normals.at(tree, hit)) < 0.0,
-            Sign::Winding(winding) => {
+            Sign::Winding(winding, plain) => {
+                let is_clear = hit.on.distance_squared > square(CLEAR / tree.shrink);
+                if is_clear && let Some(outward) = plain.outward((tree, winding), hit) {
+                    return (point - hit.on.point).dot(&outward) < 0.0;
+                }
                 hit.on.distance_squared > 0.0 && winding.number(tree, point) > 0.5
             }
         }
@@ -54,9 +64,13 @@ impl Sign {
     pub(crate) fn normal(&self, tree: &Tree, hit: &Hit) -> Vec3 {
         match self {
             Sign::Normals(normals) => normals.at(tree, hit),
-            Sign::Winding(_) => tree.faces[hit.slot as usize].normal,
+            Sign::Winding(..) => tree.faces[hit.slot as usize].normal,
         }
     }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
 }
 
 impl PseudoNormals {

@@ -273,7 +273,7 @@ impl Parts<'_> {
 }
 
 /// Whether two triangles may come within `thin` of each other: neither their boxes nor their planes part them.
-fn may_touch(a: &[Vec3; 3], b: &[Vec3; 3], thin: f64) -> bool {
+pub(crate) fn may_touch(a: &[Vec3; 3], b: &[Vec3; 3], thin: f64) -> bool {
     let parts = |a: &[Vec3; 3], b: &[Vec3; 3]| {
         let normal = normal_of(*a);
         let off = b.map(|p| normal.dot(&(p - a[0])));

@@ -160,9 +160,26 @@ impl Tree {
     /// Triangles of the mesh whose leaf boxes meet the box of `corners`.
     pub(crate) fn overlapping(&self, corners: &[Vec3; 3], found: &mut Vec<u32>) {
         found.clear();
-        let local = corners.map(|p| (p - self.center) * self.shrink);
+        let local = corners.map(|p| p - self.center);
         let low = local[0].inf(&local[1]).inf(&local[2]);
         let high = local[0].sup(&local[1]).sup(&local[2]);
+        self.visit_overlapping([low, high], |_, faces| {
+            found.extend(faces.iter().map(|f| f.id));
+        });
+    }
+
+    /// Faces whose leaf boxes meet a box, its lowest and highest corner about the tree's center.
+    pub(crate) fn slots_overlapping(&self, bounds: [Vec3; 2]) -> Vec<u32> {
+        let mut found = Vec::new();
+        self.visit_overlapping(bounds, |first, faces| {
+            found.extend((first as u32..).take(faces.len()));
+        });
+        found
+    }
+
+    /// Calls `visit` with the first index and the faces of every leaf whose box meets another, about the tree's center.
+    fn visit_overlapping(&self, bounds: [Vec3; 2], mut visit: impl FnMut(usize, &[Face])) {
+        let [low, high] = bounds.map(|p| p * self.shrink);
         let mut pending = vec![0usize];
         while let Some(at) = pending.pop() {
             let node = &self.nodes[at];
@@ -174,7 +191,10 @@ impl Tree {
                 match Child::of(node.child[lane]) {
                     _ if !meets => {}
                     Child::Node(below) => pending.push(below),
-                    Child::Leaf(leaf) => found.extend(self.leaf_faces(leaf).1.iter().map(|f| f.id)),
+                    Child::Leaf(leaf) => {
+                        let (first, faces) = self.leaf_faces(leaf);
+                        visit(first, faces);
+                    }
                 }
             }
         }

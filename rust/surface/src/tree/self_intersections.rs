@@ -38,7 +38,7 @@ pub fn self_intersections(mesh: &Mesh) -> usize {
 }
 
 /// Whether an edge of either triangle passes through the inside of the other.
-fn cross(a: &[Vec3; 3], b: &[Vec3; 3]) -> bool {
+pub(crate) fn cross(a: &[Vec3; 3], b: &[Vec3; 3]) -> bool {
     (0..3).any(|k| pierces(a[k], a[(k + 1) % 3], b))
         || (0..3).any(|k| pierces(b[k], b[(k + 1) % 3], a))
 }
