@@ -128,6 +128,8 @@ def _best(ready, aim, watch):
         one = out[place]
         own = replace(aim, bar=one.way.bar)
         for further in (_settled, polishing.polish, _with_thumb_freed):
+            if further is not _settled and _is_lost(one.state):
+                break
             try:
                 one = _found(further(one.way.stage, one.state, own, watch), aim, one.way)
             except (Refusal, native.module.SolveError):
@@ -138,6 +140,11 @@ def _best(ready, aim, watch):
     _refuse_what_does_not_hold(out[0].state)
     averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
     return [replace(one, score=one.score - averted) for one in out]
+
+
+def _is_lost(state):
+    """Whether small motions lead to no grasp: a finger stands in a thin wall, or bone deeper than they reach."""
+    return fitter.CROSSED_TEXT in state.grasp.warnings or state.sunk_mm > polishing.MOST_MM
 
 
 def _faced(one, aim, watch):

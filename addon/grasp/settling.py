@@ -75,13 +75,12 @@ class Aim:
 
 @dataclass(frozen=True)
 class State:
-    """A pressed grasp of the own frame: `contact`, `gap_mm` (n,) before it, sum, net force (3) with the weight, net
-    moment (3) about the aim, the greatest pressure of each pad (p,), MPa, and how much farther than its tissue is thick
-    the deepest skin is pressed, mm; 0: no bone is in the product."""
+    """A pressed grasp of the own frame: `contact`, sum, net force (3) with the weight, net moment (3) about the aim,
+    the greatest pressure of each pad (p,), MPa, and how much farther than its tissue is thick the deepest skin is
+    pressed, mm; 0: no bone is in the product."""
 
     grasp: fitter.Grasp
     contact: object
-    gap_mm: np.ndarray
     total_n: float
     net_n: np.ndarray
     moment_nmm: np.ndarray
@@ -107,16 +106,20 @@ def goal_of(wanted, bar, limits=None, load=None):
 def pressed(stage, found, aim, cancel=None):
     """The `State` of a grasp on a `Stage`. Raises `Refusal` where it cannot be pressed."""
     contact = stage.contact_of(found, cancel)
-    rig = stage.hand.rig.moved(found.place)
-    posed = pose_matrices(rig, found.angles)
-    gap = found.gauge.gaps(skin(rig, posed), skin_normals(rig, posed) if found.gauge.is_thin else None)
     forces, pressures = np.asarray(contact.force_n), np.asarray(contact.pressure_mpa)
     push = np.asarray(contact.total_force_n)
     moment = np.asarray(contact.total_moment_nmm) - np.cross(aim.about_mm, push)
     peaks = np.array([pressures[pad.rows].max() for pad in stage.hand.pads])
     depths = np.linalg.norm(contact.displacement_mm, axis=1)
     sunk = max(float(depths[pad.rows].max()) - pad.limit_mm / TISSUE_SHARE for pad in stage.hand.pads)
-    return State(found, contact, gap, float(forces.sum()), push + aim.weight_n, moment, peaks, max(sunk, 0.0))
+    return State(found, contact, float(forces.sum()), push + aim.weight_n, moment, peaks, max(sunk, 0.0))
+
+
+def gaps_of(stage, grasp):
+    """Gaps (n,) of the skin to the product as a grasp of the own frame is fitted, mm, before it is pressed."""
+    rig = stage.hand.rig.moved(grasp.place)
+    posed = pose_matrices(rig, grasp.angles)
+    return grasp.gauge.gaps(skin(rig, posed), skin_normals(rig, posed) if grasp.gauge.is_thin else None)
 
 
 def friction_of(stage, state, aim):
@@ -158,11 +161,12 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
         now = replace(aim, total_n=reach)
         own, whole = eased(state, now)
         wanted = wanted * np.clip(own * whole, LEAST_FACTOR, 1.0 / LEAST_FACTOR)
-        deepest = np.array([-state.gap_mm[pad.rows].min() for pad in stage.hand.pads])
+        gap = gaps_of(stage, state.grasp)
+        deepest = np.array([-gap[pad.rows].min() for pad in stage.hand.pads])
         limits = np.where(own < 1.0, np.minimum(limits, np.maximum(deepest, 0.3) * own), limits)
         share = np.clip((FAR - max(state.imbalance, state.lever)) / (FAR - NEAR), 0.0, 1.0)
         left = share * (left + np.concatenate([state.net_n, state.moment_nmm]))
-        goal = goal_of(wanted, aim.bar, limits, _load(stage, state, (now, left), areas))
+        goal = goal_of(wanted, aim.bar, limits, _load(stage, (state, gap), (now, left), areas))
         goal = replace(goal, facing_mm=aim.facing_mm)
         evaluations = EVALUATIONS if count == 0 else LATER_EVALUATIONS
         found = fitter.refit(stage.hand, found, replace(stage.fit.wish, evaluations=evaluations), watch, goal)
@@ -208,13 +212,13 @@ def eased(state, aim):
     return own, whole
 
 
-def _load(stage, state, aim, areas):
+def _load(stage, pressed_at, aim, areas):
     """What the next fit shall balance. What earlier rounds left over is added to it, or some of it would always stay:
     the fit weighs balance against depths."""
-    aim, left = aim
+    (state, gap), (aim, left) = pressed_at, aim
     most = MOST_LEFT * state.total_n
     left = np.clip(left, -most * LEVERS, most * LEVERS)
-    stiffness = loads.stiffness_of(stage.hand.pads, areas, state.gap_mm, np.asarray(state.contact.force_n))
+    stiffness = loads.stiffness_of(stage.hand.pads, areas, gap, np.asarray(state.contact.force_n))
     total = aim.total_n
     if total is None and state.total_n > MOST_N:
         total = 0.97 * MOST_N

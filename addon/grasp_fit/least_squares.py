@@ -70,5 +70,4 @@ def minimize(problem, start, evaluations=60, tolerance=1e-4, cancelled=None):
             damping *= 4.0
         if gained is None or gained < tolerance * cost:
             return Solution(x, cost, used, has_converged=True)
-        problem.residuals(x)
     return Solution(x, cost, used, has_converged=False)

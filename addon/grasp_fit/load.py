@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..hand.skinning import cross
+
 POWER = 1.6
 """Force of a pad over its depth: between a half-space's 1.5 and a stiffening layer's 2."""
 
@@ -63,7 +65,7 @@ class Load:
         force = self.stiffness[skin.rows] * np.maximum(-skin.gap, 0.0) ** POWER
         push = -skin.outward * force[:, None]
         net = push.sum(axis=0) + self.outer_n
-        moment = np.cross(skin.points - self.about_mm, push).sum(axis=0) + self.outer_moment_nmm
+        moment = cross(skin.points - self.about_mm, push).sum(axis=0) + self.outer_moment_nmm
         excess = 0.0 if self.wanted_n is None else force.sum() - self.wanted_n
         return self.weight_mm / self.reference_n * np.concatenate([net, moment / ARM_MM, [excess]])
 

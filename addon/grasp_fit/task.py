@@ -11,6 +11,7 @@ from ..hand.rotations import left_jacobian, rotation_of
 from ..hand.skinning import (
     ABDUCTION,
     FLEXION,
+    cross,
     descendants,
     joint_axes,
     pose_matrices,
@@ -90,6 +91,8 @@ class Task:
         self.place, self.first = place, angles
         self.dofs = [dof for dof in free_angles(hand.joints) if _moves(dof[2], wish)]
         self.rows, self.groups, self.limits = _groups(hand, goal)
+        sizes = [len(rows) for rows in self.groups]
+        self.floors, self.ends = np.repeat(-np.array(self.limits), sizes), np.cumsum(sizes)[:-1]
         self.part = self.rig.subset(self.rows)
         if gauge.is_thin:
             self.part = _with_normals_on(self.part, sum(len(pad.rows) for pad in hand.pads))
@@ -152,19 +155,23 @@ class Task:
         changes from step to step, and a fit stops where two are equally deep.
         """
         chosen, values, extra, extra_values = [], [], [], []
-        for k, (rows, limit) in enumerate(zip(self.groups, self.limits, strict=True)):
-            own = gap[rows]
+        too_deep = np.flatnonzero(gap < self.floors)
+        parts = np.split(too_deep, np.searchsorted(too_deep, self.ends))
+        for k, (rows, limit, deep) in enumerate(zip(self.groups, self.limits, parts, strict=True)):
             if k < len(self.wanted) and np.isfinite(self.wanted[k]):
-                picked = rows[pads_of_hand.deepest(own)]
+                picked = rows[pads_of_hand.deepest(gap[rows])]
                 chosen.append((picked, np.full(len(picked), -1.0 / len(picked))))
                 values.append(-gap[picked].mean() - self.wanted[k])
+            if not len(deep):
+                extra.append((deep, np.zeros(0)))
+                extra_values.append(0.0)
+                continue
+            if not self.goal.is_smooth:
+                deep = rows[gap[rows].argmin()][None]
             weight = WEIGHT_DEEP if k < len(self.wanted) else WEIGHT_BODY
-            deep = np.flatnonzero(own < -limit)
-            if len(deep) and not self.goal.is_smooth:
-                deep = own.argmin()[None]
-            excess = -own[deep] - limit
+            excess = -gap[deep] - limit
             size = float(np.sqrt(excess @ excess))
-            extra.append((rows[deep], -weight * excess / max(size, 1e-12)))
+            extra.append((deep, -weight * excess / max(size, 1e-12)))
             extra_values.append(weight * size)
         return chosen + extra, np.array(values + extra_values)
 
@@ -183,45 +190,46 @@ class Task:
             touched = np.flatnonzero((gap < 0.0) & (load.stiffness[self.rows] > 0.0))
             used = np.union1d(used, touched)
         moves = np.empty((len(used), len(self.dofs) + 6, 3))
-        bent = vertex_jacobian(self.part.subset(used), posed, angles, [dof[:2] for dof in self.dofs])
+        turning = joint_axes(self.rig, posed, angles)
+        bent = vertex_jacobian(self.part.subset(used), posed, turning, [dof[:2] for dof in self.dofs])
         moves[:, :-6] = bent @ turn.T
         moves[:, -6:-3] = np.eye(3)
         arms = points[used] - self.pivot - x[-6:-3]
-        moves[:, -3:] = np.cross(spin.T, arms[:, None])
+        moves[:, -3:] = cross(spin.T, arms[:, None])
         by_vertex = np.einsum("nkj,nj->nk", moves, slopes[used])
         depth = np.zeros((len(chosen), len(self.dofs) + 6))
         for row, (rows, factors) in enumerate(chosen):
             depth[row] = factors @ by_vertex[np.searchsorted(used, rows)]
         out = [
             depth,
-            self._apart(posed, angles, apart),
+            self._apart(turning, apart),
             self._soft_slope(),
-            self.thumb.slopes((posed, angles, points), (self.pivot, turn, x[-6:-3], spin), self.part, self.dofs),
+            self.thumb.slopes((posed, turning, points), (self.pivot, turn, x[-6:-3], spin), self.part, self.dofs),
         ]
         if load is not None:
             skin_there = Touched(self.rows[touched], points[touched], gap[touched], slopes[touched])
-            turning = self._turning(skin_there)
-            out.append(load.slopes(skin_there, moves[np.searchsorted(used, touched)], turning))
+            curved = self._curved(skin_there)
+            out.append(load.slopes(skin_there, moves[np.searchsorted(used, touched)], curved))
         return np.vstack(out)
 
-    def _turning(self, touched):
+    def _curved(self, touched):
         """How the product's outward direction changes with the place (k, 3, 3), 1 / mm, at `Touched` skin."""
         outward = touched.outward
         out = np.zeros((len(outward), 3, 3))
-        side = unit(np.cross(outward, np.eye(3)[np.abs(outward).argmin(axis=1)]))
-        for way in (side, np.cross(outward, side)):
+        side = unit(cross(outward, np.eye(3)[np.abs(outward).argmin(axis=1)]))
+        for way in (side, cross(outward, side)):
             there = self.gauge.read(touched.points + TURN_MM * way)[1]
             change = np.where((there * outward).sum(axis=1, keepdims=True) > TURN_COSINE, there - outward, 0.0)
             out += change[:, :, None] / TURN_MM * way[:, None]
         return out
 
-    def _apart(self, posed, angles, apart):
+    def _apart(self, turning, apart):
         overlap, contacts, direction = apart
         out = np.zeros((len(overlap), len(self.dofs) + 6))
         hit = np.flatnonzero(overlap > 0.0)
         if not len(hit):
             return out
-        origins, axes = joint_axes(self.rig, posed, angles)
+        origins, axes = turning
         origins = to_world(self.rig, origins)
         linear = self.rig.world_from_rig[:3, :3]
         mirror = np.sign(np.linalg.det(linear))
@@ -232,7 +240,7 @@ class Task:
             axis = mirror * axis / np.linalg.norm(axis)
             for side, sign in ((0, -1.0), (1, 1.0)):
                 carried = below[bone, bones[hit, side]]
-                speed = np.cross(axis, contacts[hit, side] - origins[bone])
+                speed = cross(axis, contacts[hit, side] - origins[bone])
                 out[hit, k] += sign * carried * (speed * direction[hit]).sum(axis=1)
         return WEIGHT_APART * out
 

@@ -6,7 +6,7 @@ Knows nothing of Blender. World mm, radians; each residual is a cosine that shal
 import numpy as np
 
 from ..hand import pads as pads_of_hand
-from ..hand.skinning import TWIST, descendants, joint_axes, to_world, vertex_jacobian
+from ..hand.skinning import TWIST, cross, descendants, to_world, vertex_jacobian
 
 WEIGHT_AROUND = 12.0
 AROUND = 0.7
@@ -49,42 +49,42 @@ class Thumb:
     def slopes(self, at, motion, part, dofs):
         """Rows (3, d + 6) of the Jacobian that go with `residuals`.
 
-        `at`: the posed bones, the angles (b, 3) and the points; `motion`: pivot, turn, shift, and the spin (3, 3) that
+        `at`: the posed bones, their `joint_axes` and the points; `motion`: pivot, turn, shift, and the spin (3, 3) that
         a change of the turn's vector makes.
         """
-        posed, angles, points = at
+        posed, turning, points = at
         out = np.zeros((3, len(dofs) + 6))
         if self.bone is None:
             return out
         pivot, turn, shift, spin = motion
-        spins = self._spins(posed, angles, motion, dofs)
+        spins = self._spins(turning, motion, dofs)
         inward, way, direction, by_pad = self._inward(posed, points, turn)
         facing, other, _, far = self._facing(posed, points, turn)
         if inward < INWARD or facing < FACING:
-            thumb, index = self._pad_slopes((posed, angles, part, dofs), turn)
+            thumb, index = self._pad_slopes((posed, turning, part, dofs), turn)
             out[0, :-6], out[1, :-6] = thumb @ by_pad, (index - thumb) @ (direction - facing * other) / far
             for k, (axis, _) in spins.items():
-                out[:2, k] += np.stack([way, other]) @ np.cross(axis, direction)
+                out[:2, k] += np.stack([way, other]) @ cross(axis, direction)
             arm = points[self.pads[0]].mean(axis=0) - pivot - shift if len(self.pads[0]) else np.zeros(3)
             out[0, -6:-3] = by_pad
-            out[0, -3:] = (np.cross(direction, way) + np.cross(arm, by_pad)) @ spin
+            out[0, -3:] = (cross(direction, way) + cross(arm, by_pad)) @ spin
             out[:2] *= [[inward < INWARD], [facing < FACING]]
         around, way, direction, head, by_head = self._around(posed, motion[:3])
         if around < AROUND:
             for k, (axis, origin) in spins.items():
-                out[2, k] = np.cross(axis, direction) @ way + np.cross(axis, head - origin) @ by_head
+                out[2, k] = cross(axis, direction) @ way + cross(axis, head - origin) @ by_head
             out[2, -6:-3] = by_head
-            out[2, -3:] = (np.cross(direction, way) + np.cross(head - pivot - shift, by_head)) @ spin
+            out[2, -3:] = (cross(direction, way) + cross(head - pivot - shift, by_head)) @ spin
         return -np.array(self._weights())[:, None] * out
 
     def _weights(self):
         return WEIGHT_INWARD * self.weight / WEIGHT_FACING, self.weight, WEIGHT_AROUND
 
-    def _spins(self, posed, angles, motion, dofs):
+    def _spins(self, turning, motion, dofs):
         """For each angle that turns the thumb's last bone: its axis (3) and where that passes (3), in the world."""
         pivot, turn, shift, _ = motion
         linear = turn @ self.rig.world_from_rig[:3, :3]
-        origins, axes = joint_axes(self.rig, posed, angles)
+        origins, axes = turning
         origins = (to_world(self.rig, origins) - pivot) @ turn.T + pivot + shift
         below = descendants(self.rig.parents)[:, self.bone]
         out = {}
@@ -125,12 +125,13 @@ class Thumb:
 
     def _pad_slopes(self, at, turn):
         """How the places of the two pads, thumb and index finger, change with each angle (2, d, 3)."""
-        posed, angles, part, dofs = at
+        posed, turning, part, dofs = at
         columns = [dof[:2] for dof in dofs]
         out = np.zeros((2, len(dofs), 3))
-        for k, rows in enumerate(self.pads):
-            if len(rows):
-                out[k] = vertex_jacobian(part.subset(rows), posed, angles, columns).mean(axis=0) @ turn.T
+        slopes = vertex_jacobian(part.subset(np.concatenate(self.pads)), posed, turning, columns)
+        for k, own in enumerate(np.split(slopes, [len(self.pads[0])])):
+            if len(own):
+                out[k] = own.mean(axis=0) @ turn.T
         return out
 
     def _around(self, posed, motion):
@@ -143,14 +144,14 @@ class Thumb:
             return 1.0, *np.zeros((4, 3))
         (center, axis), (pivot, turn, shift) = self.bar, motion
         head = turn @ (to_world(self.rig, posed[[self.bone], :3, 3])[0] - pivot) + pivot + shift
-        around = self.joints.side * np.cross(head - center, axis)
+        around = self.joints.side * cross(head - center, axis)
         far = max(np.linalg.norm(around), 1e-9)
         around = around / far
         direction = turn @ self.rig.world_from_rig[:3, :3] @ posed[self.bone, :3, :3]
         direction = direction @ self.rig.axes[self.bone, :, TWIST]
         direction = direction / np.linalg.norm(direction)
         cosine = float(direction @ around)
-        by_head = self.joints.side * np.cross(axis, direction - cosine * around) / far
+        by_head = self.joints.side * cross(axis, direction - cosine * around) / far
         return cosine, around, direction, head, by_head
 
 

@@ -51,7 +51,7 @@ def test_of_two_that_are_not_settled_the_one_nearer_to_balance_goes_first():
         )
         contact = SimpleNamespace(grade="read this")
         net = np.array([net_n, 0.0, 0.0])
-        state = settling.State(fit, contact, np.zeros(1), 200.0, net, np.zeros(3), np.array([0.1]))
+        state = settling.State(fit, contact, 200.0, net, np.zeros(3), np.array([0.1]))
         return search.score_of(state, settling.Aim(np.zeros(3), np.zeros(3), 200.0))
 
     assert scored(9.0, 0.9) < scored(23.0, 0.0)
