@@ -93,6 +93,7 @@ def report(rows):
         unsound = sum(bool(wrong[case]) for case in chosen)
         print(f"{name:<18}{len(chosen):>7}{refused:>9}{unsound:>9}" + "".join(f"{count[name]:>9}" for name in FAULTS))
     print("over the starts of a handle and a size, at most: " + _spread(rows))
+    print(_cost(rows))
     print(_anatomy(rows))
     texts = Counter(f"{row['refused']}: {row['text'][:140]}" for row in rows.values() if "refused" in row)
     for text, number in texts.most_common(12):
@@ -124,6 +125,16 @@ def _spread(rows):
     seconds = sorted(row["fit_s"] for row in rows.values() if "force_n" in row)
     middle = seconds[len(seconds) // 2] if seconds else 0.0
     return f"{100 * max(apart, default=0.0):.2f} % of force and area; a grasp took {middle:.1f} s in the middle"
+
+
+def _cost(rows):
+    """Seconds of CPU that *Grasp* took, by handle: the middle one."""
+    taken = {}
+    for case, row in rows.items():
+        if "fit_cpu_s" in row:
+            taken.setdefault(case.split(", ")[2], []).append(row["fit_cpu_s"])
+    middles = sorted((sorted(each)[len(each) // 2], handle) for handle, each in taken.items())
+    return "CPU of a grasp: " + (", ".join(f"{handle} {seconds:.1f}" for seconds, handle in middles) or "none") + " s"
 
 
 def _anatomy(rows):

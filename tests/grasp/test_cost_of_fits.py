@@ -36,7 +36,7 @@ def test_cross_products_have_the_bits_of_numpys(shapes):
     assert (skinning.cross(first, second) == np.cross(first, second)).all()
 
 
-def test_a_way_whose_finger_stands_in_a_wall_is_settled_but_not_polished(monkeypatch):
+def test_a_way_with_a_finger_in_a_wall_is_settled_but_not_polished(monkeypatch):
     grasp = SimpleNamespace(warnings=(fitter.CROSSED_TEXT,))
     state = SimpleNamespace(
         grasp=grasp, sunk_mm=0.0, imbalance=0.1, lever=0.3, peaks_mpa=np.array([0.2]), total_n=150.0

@@ -38,7 +38,7 @@ def grasp(mesh, percentile, start, dump=None):
     product = _add(mesh, STARTS[start])
     settings, row = bpy.context.scene.thenar, {}
     for step in ("make", "fit", "solve"):
-        started = time.monotonic()
+        started, cpu = time.monotonic(), time.process_time()
         try:
             if step == "make":
                 bpy.ops.thenar.make_hand(percentile=percentile)
@@ -54,6 +54,7 @@ def grasp(mesh, percentile, start, dump=None):
         except RuntimeError as error:
             return row | {"refused": step, "text": str(error).strip().splitlines()[0][:300]}
         row[f"{step}_s"] = round(time.monotonic() - started, 2)
+        row[f"{step}_cpu_s"] = round(time.process_time() - cpu, 2)
     return row | measured(settings.hand, before, product) | claimed(settings.result)
 
 
