@@ -142,8 +142,8 @@ pub enum ContactError {
     GripModel,
     /// Skin and grip did not settle on one pressure.
     #[error(
-        "the soft grip was not solved: after {presses} presses skin and grip still differ by {left_mm:.3} mm; round sharp \
-         edges of the product, press less deep, or give the grip a larger modulus"
+        "the soft grip was not solved: after {presses} presses skin and grip still differ by {left_mm:.3} mm; press \
+         less deep, or give the grip a larger thickness or modulus"
     )]
     GripUnsolved { left_mm: f64, presses: usize },
     /// A dense problem's arrays do not fit together.

@@ -14,6 +14,61 @@ pub const CUT_OFF: f64 = 8.0;
 /// Penetration beyond which no soft tissue of a hand can yield, mm.
 pub const MOST_DEPTH: f64 = 20.0;
 
+/// Where a product is pressed: moved by `shift` (mm), `along` a unit direction where one is known.
+#[derive(Clone, Copy)]
+pub struct Stand<'a> {
+    pub product: &'a Product,
+    pub shift: Vec3,
+    pub along: Option<Vec3>,
+}
+
+impl<'a> Stand<'a> {
+    /// The product where it was given, pressed along no known direction.
+    pub fn as_given(product: &'a Product) -> Self {
+        Stand {
+            product,
+            shift: Vec3::zeros(),
+            along: None,
+        }
+    }
+
+    /// The product moved by `offset` (mm) along a unit direction.
+    pub fn moved(product: &'a Product, along: Vec3, offset: f64) -> Self {
+        Stand {
+            product,
+            shift: along * offset,
+            along: Some(along),
+        }
+    }
+}
+
+/// Skin that reads the end of a thin tool, not its nearest side.
+#[derive(Clone)]
+pub struct UnderTool {
+    /// The way of the tool, unit.
+    along: Vec3,
+    /// Welded vertices, ascending.
+    vertices: Vec<u32>,
+}
+
+impl UnderTool {
+    /// Reads the tool's end again where `gaps` of these welded vertices, now at `points` (mm), show one of its sides.
+    pub fn read_again<'a>(
+        &self,
+        product: &Product,
+        readings: impl Iterator<Item = (usize, Vec3, &'a mut Option<Gap>)>,
+    ) {
+        for (vertex, point, gap) in readings {
+            if let Some(nearest) = gap.as_ref()
+                && self.vertices.binary_search(&(vertex as u32)).is_ok()
+                && let Some(end) = product.tool_end_again(point, nearest, self.along)
+            {
+                *gap = Some(end);
+            }
+        }
+    }
+}
+
 /// Gaps of the skin in one posture to one product.
 #[derive(Clone)]
 pub struct Detection {
@@ -29,6 +84,8 @@ pub struct Detection {
     pub distances: Vec<f64>,
     /// Largest penetration, by region, mm.
     pub max_penetration: Vec<f64>,
+    /// Skin under a thin tool; None where there is none.
+    pub under_tool: Option<UnderTool>,
 }
 
 impl Detection {
@@ -40,6 +97,53 @@ impl Detection {
                 *most = most.max(-self.distances[vertex as usize]);
             }
         }
+    }
+
+    /// Replaces what skin in a thin tool, pressed along a unit direction, reads of the tool's sides by what it reads of its end.
+    fn read_tool_ends(&mut self, skin: &Skin, product: &Product, along: Vec3) {
+        let mut ends = Vec::new();
+        for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+            let at = vertex as usize;
+            if self.distances[at] < 0.0
+                && skin.sites.is_skin(site)
+                && let Some(nearest) = &self.gaps[at]
+            {
+                let here = (self.positions[at], self.normals[at]);
+                ends.extend(
+                    product
+                        .tool_end(here, nearest, along)
+                        .map(|end| (vertex, end)),
+                );
+            }
+        }
+        if ends.is_empty() {
+            return;
+        }
+        let gaps = Arc::make_mut(&mut self.gaps);
+        for (vertex, end) in &ends {
+            self.distances[*vertex as usize] = end.distance;
+            gaps[*vertex as usize] = Some(*end);
+        }
+        let mut vertices: Vec<u32> = ends.iter().map(|(vertex, _)| *vertex).collect();
+        vertices.sort_unstable();
+        self.under_tool = Some(UnderTool { along, vertices });
+    }
+
+    /// What of the depths the skin bears where a soft grip yields by so much (mm, by site; empty for not at all).
+    pub fn relieved(&self, skin: &Skin, yields: &[f64]) -> Option<Detection> {
+        if yields.is_empty() {
+            return None;
+        }
+        let mut relieved = self.clone();
+        relieved.max_penetration.fill(0.0);
+        for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
+            let distance = &mut relieved.distances[vertex as usize];
+            if *distance < 0.0 {
+                *distance = (*distance + yields[site].max(0.0)).min(0.0);
+            }
+        }
+        relieved.deepen(skin);
+        Some(relieved)
     }
 
     /// Largest penetration of any region, mm.
@@ -58,16 +162,16 @@ pub fn limits() -> GapLimits {
     }
 }
 
-/// Measures the gaps of a posed mesh to a product that was moved by `shift` (mm).
+/// Measures the gaps of a posed mesh to a product. Where its way is known, depth in a thin tool is measured to the tool's end.
 ///
 /// # Errors
 /// [`ContactError::Swallowed`] if skin lies deeper than any tissue yields.
 pub fn detect(
     pressing: &mut Pressing<'_>,
     posed: &Mesh,
-    product: &Product,
-    shift: Vec3,
+    stand: &Stand<'_>,
 ) -> Result<Detection, ContactError> {
+    let &Stand { product, shift, .. } = stand;
     let positions: Vec<Vec3> = posed.positions().iter().map(|p| p - shift).collect();
     let skin = pressing.skin;
     let seen = &mut pressing.workspace.posture;
@@ -89,6 +193,19 @@ pub fn detect(
             distances[vertex] = f64::INFINITY;
         }
     }
+    let mut detection = Detection {
+        positions,
+        normals,
+        areas,
+        gaps,
+        distances,
+        max_penetration: Vec::new(),
+        under_tool: None,
+    };
+    if let Some(along) = stand.along {
+        detection.read_tool_ends(skin, product, along);
+    }
+    let distances = &detection.distances;
     let mut max_penetration = vec![0.0f64; skin.tissue.materials.len()];
     let mut deepest = (0.0, 0);
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
@@ -110,14 +227,8 @@ pub fn detect(
             limit_mm: MOST_DEPTH,
         });
     }
-    Ok(Detection {
-        positions,
-        normals,
-        areas,
-        gaps,
-        distances,
-        max_penetration,
-    })
+    detection.max_penetration = max_penetration;
+    Ok(detection)
 }
 
 /// The distances of gaps; infinite where there is none.

@@ -345,12 +345,13 @@ impl fmt::Display for Warning {
             ),
             Warning::GripRough { left } => write!(
                 f,
-                "skin and soft grip settled to {left:.3} mm only, as on a sharp edge: round the edge, or read the force alone"
+                "skin and soft grip settled to {left:.3} mm only, as where a grip is pressed as thin as it gets: take a thicker or \
+                 harder grip, or read the force alone"
             ),
             Warning::GripUnsolved { left } => write!(
                 f,
-                "the soft grip was not solved: skin and grip still differ by {left:.3} mm; round sharp edges of the product, \
-                 press less deep, or take a harder grip"
+                "the soft grip was not solved: skin and grip still differ by {left:.3} mm; press less deep, or take a \
+                 thicker or harder grip"
             ),
             Warning::ForceLeaps { asked, reached } => write!(
                 f,

@@ -87,7 +87,12 @@ pub fn displace(
         .iter()
         .map(|&v| gaps[v].as_ref().map_or(u32::MAX, |g| g.triangle))
         .collect();
-    let fresh = product.gaps_along(&points, Some(&normals), limits(), &hints);
+    let mut fresh = product.gaps_along(&points, Some(&normals), limits(), &hints);
+    if let Some(tool) = &truth.under_tool {
+        let places = near.iter().copied().zip(points.iter().copied());
+        let readings = places.zip(&mut fresh).map(|((v, p), gap)| (v, p, gap));
+        tool.read_again(product, readings);
+    }
     for (vertex, gap) in near.into_iter().zip(fresh) {
         gaps[vertex] = gap.or(gaps[vertex]);
     }
@@ -98,6 +103,7 @@ pub fn displace(
         distances: distances_of(&gaps),
         gaps: Arc::new(gaps),
         max_penetration: truth.max_penetration.clone(),
+        under_tool: truth.under_tool.clone(),
     };
     Ok(DisplacedPosture { detection, field })
 }

@@ -235,8 +235,8 @@ impl Walk {
                 return Ok((travel.offset, pressed));
             }
         };
-        let shift = direction * offset;
-        let pressed = press_at(pressing, &posed, (product, shift), watch)?;
+        let there = crate::detection::gaps::Stand::moved(product, direction, offset);
+        let pressed = press_at(pressing, &posed, &there, watch)?;
         Ok((offset, pressed))
     }
 

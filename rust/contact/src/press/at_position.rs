@@ -11,7 +11,7 @@ use super::relinearize::solve;
 use super::setting::SolveSetting;
 use super::solution::SolvedContact;
 use crate::detection::active_zone::{active_zone, check_resolution};
-use crate::detection::gaps::{Detection, detect};
+use crate::detection::gaps::{Detection, Stand, detect};
 use crate::history::displaced_posture::{DisplacedPosture, TruePosture, displace, restore};
 use crate::history::tissue_memory::MemoryStep;
 use crate::interface::adhesion::{AdhesionLaw, MOST_SOLVES};
@@ -34,14 +34,14 @@ struct Position<'a> {
     weight: &'a [f64],
 }
 
-/// Presses with the product moved by `shift` (mm).
+/// Presses the product where it stands.
 ///
 /// # Errors
 /// Those of a press; see [`Pressing::press`].
 pub(crate) fn press_at(
     pressing: &mut Pressing<'_>,
     posed: &Mesh,
-    (product, shift): (&Product, Vec3),
+    stand: &Stand<'_>,
     watch: Watch<'_, '_>,
 ) -> Result<Pressed, ContactError> {
     let Watch { control, seconds } = watch;
@@ -49,22 +49,25 @@ pub(crate) fn press_at(
     // Stage 1: detection.
     control.step("distances", 0.0)?;
     let started = Instant::now();
-    let detection = detect(pressing, posed, product, shift)?;
+    let detection = detect(pressing, posed, stand)?;
     add_time(seconds, "distances", started);
     // Stage 3 as far as it follows from the depths: moduli and response weights. Rows and couplings are made for the zone.
     let started = Instant::now();
-    let mut shear_modulus = region_moduli(skin, &detection);
+    let relieved = pressing.workspace.grip.as_ref();
+    let relieved = relieved.and_then(|grip| detection.relieved(skin, &grip.yields().taken));
+    let borne = relieved.as_ref().unwrap_or(&detection);
+    let mut shear_modulus = region_moduli(skin, borne);
     let recall = recall(pressing, &detection);
     if let Some(recall) = &recall {
         recall.soften(&mut shear_modulus);
     }
-    let mut response = site_response(skin, &shear_modulus, &detection);
+    let mut response = site_response(skin, &shear_modulus, borne);
     let attraction = AdhesionLaw::new(skin);
     add_time(seconds, "response", started);
     // Stages 2 to 4: active zone, coupling, solve; with adhesion until it settles.
     let started = Instant::now();
     let position = Position {
-        product,
+        product: stand.product,
         detection: &detection,
         recall: recall.as_ref(),
         weight: &response.weight,

@@ -10,6 +10,7 @@ use crate::far_field::FarFieldDisplacement;
 use crate::press::live::extrapolation::can_reach;
 use crate::response::assembly::Load;
 use crate::skin::prepare::Skin;
+use crate::soft_grip::yielding::{Covered, Place};
 use crate::solve::Accuracy;
 use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
@@ -57,7 +58,43 @@ pub fn field(
     for (site, u) in field.iter_mut().enumerate() {
         *u *= setting.weight[site] * skin.sites.follow[site];
     }
+    if let Some(grip) = &pressing.workspace.grip {
+        come_nearer(skin, setting, found, (grip, &mut field));
+    }
     Ok((field, certificate))
+}
+
+/// Lets the skin come nearer to a soft grip by what the grip yields: a press tells how skin and grip move against each other.
+fn come_nearer(
+    skin: &Skin,
+    setting: &SolveSetting<'_>,
+    found: &ZoneSolution<'_>,
+    (grip, field): (&Covered, &mut [Vec3]),
+) {
+    let detection = setting.detection;
+    let area = |site: u32| detection.areas[vertex(skin, site)];
+    let mut loads = Vec::new();
+    for (k, &site) in found.zone.iter().enumerate() {
+        if found.force[k] > 0.0 {
+            loads.push((grip.place(&found.touch[k], area(site)), found.force[k]));
+        }
+    }
+    let mut near: Vec<(u32, Gap)> = Vec::new();
+    for site in (0..field.len() as u32).filter(|&s| skin.sites.is_skin(s as usize)) {
+        let gap = match found.zone.binary_search(&site) {
+            Ok(k) => Some(found.touch[k]),
+            Err(_) => detection.gaps[vertex(skin, site)],
+        };
+        near.extend(gap.map(|gap| (site, gap)));
+    }
+    let place = |(site, gap): &(u32, Gap)| grip.place(gap, area(*site));
+    let places: Vec<Place> = near.iter().map(place).collect();
+    let mut yields = vec![0.0; field.len()];
+    for ((site, gap), depth) in near.iter().zip(grip.yield_at(&places, &loads)) {
+        field[*site as usize] += gap.normal * depth;
+        yields[*site as usize] = depth;
+    }
+    grip.yields().found = yields;
 }
 
 /// Field of the loads by update of the last live press's field; small changes of load are deferred.

@@ -7,7 +7,7 @@ use thenar_surface::{GapLimits, Mesh, Product, Vec3};
 use super::at_position::press_at;
 use super::pressed::{Pressed, Travel};
 use crate::api::ForceTarget;
-use crate::detection::gaps::limits;
+use crate::detection::gaps::{Stand, limits};
 use crate::skin::prepare::Skin;
 use crate::stage_times::Watch;
 use crate::workspace::Pressing;
@@ -135,7 +135,6 @@ struct Search<'a, 'c> {
 
 impl Search<'_, '_> {
     fn press(&mut self, offset: f64) -> Result<(f64, Pressed), ContactError> {
-        let shift = self.direction * offset;
         let control = Control {
             progress: &|_, _| {},
             ..*self.watch.control
@@ -144,8 +143,8 @@ impl Search<'_, '_> {
             control: &control,
             seconds: self.watch.seconds,
         };
-        let there = (self.product, shift);
-        let pressed = press_at(&mut self.pressing, self.posed, there, watch);
+        let there = Stand::moved(self.product, self.direction, offset);
+        let pressed = press_at(&mut self.pressing, self.posed, &there, watch);
         self.tell(pressed.as_ref().ok())?;
         let pressed = pressed?;
         // Without the travel: the surface is linearized as by a press from nothing, whose result this one repeats.

@@ -3,10 +3,12 @@
 use thenar_surface::Vec3;
 
 use super::live::extrapolation::OuterLoads;
-use super::setting::SolveSetting;
+use super::setting::{SolveSetting, vertex};
 use super::zone_state::ZoneState;
 use crate::response::assembly::compliance;
 use crate::response::near_field::directional::DirectionalNearField;
+use crate::soft_grip::joint_compliance::{GripRows, Joint};
+use crate::soft_grip::yielding::Place;
 use crate::solve::{Accuracy, Axes, Compliance, DirectionalCompliance, Part, solve_contact};
 use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
@@ -23,6 +25,8 @@ pub(crate) struct DirectionalProblem {
     near: Vec<i16>,
     /// Displacement of each along its direction by loads outside the coupling, over its weight; empty without such loads.
     push: Vec<f64>,
+    /// What a soft grip adds to the compliance.
+    grip: Option<GripRows>,
 }
 
 impl ZoneState {
@@ -49,6 +53,7 @@ impl ZoneState {
             likely: places.iter().map(likely).collect(),
             part: Part::default(),
             push: self.outer_displacement(pressing, (&places, &direction)),
+            grip: None,
             places,
         }
     }
@@ -90,6 +95,11 @@ impl ZoneState {
             |&k: &u32| setting.weight[self.zone[k as usize] as usize] * self.cosine[k as usize];
         problem.weight = problem.places.iter().map(weight).collect();
         let (skin, workspace) = (pressing.skin, &mut *pressing.workspace);
+        problem.grip = workspace.grip.as_ref().map(|grip| {
+            let area = |k: u32| setting.detection.areas[vertex(skin, self.zone[k as usize])];
+            let place = |&k: &u32| grip.place(&self.touch[k as usize], area(k));
+            grip.rows(&problem.places.iter().map(place).collect::<Vec<Place>>())
+        });
         let direction = |&k: &u32| match skin.model {
             Model::Layer => self.direction[k as usize],
             Model::Paper => Vec3::x(),
@@ -137,6 +147,18 @@ impl ZoneState {
     }
 
     fn solve_linear<M: Compliance>(
+        &mut self,
+        matrix: &M,
+        problem: &DirectionalProblem,
+        how: (Accuracy, &Control),
+    ) -> Result<(), ContactError> {
+        match &problem.grip {
+            None => self.solve_with(matrix, problem, how),
+            Some(grip) => self.solve_with(&Joint::new(matrix, grip), problem, how),
+        }
+    }
+
+    fn solve_with<M: Compliance>(
         &mut self,
         matrix: &M,
         problem: &DirectionalProblem,

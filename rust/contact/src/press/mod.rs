@@ -21,6 +21,7 @@ use std::time::Instant;
 use thenar_surface::Vec3;
 
 use crate::api::{Press, Start, Unsolved};
+use crate::detection::gaps::Stand;
 use crate::fields::merged_vertices::move_out_of_product;
 use crate::fields::result::Contact;
 use crate::fields::summary::summarize;
@@ -63,8 +64,8 @@ impl Pressing<'_> {
         };
         let (travel, mut pressed) = match press.force {
             None => {
-                let here = (press.product, Vec3::zeros());
-                let pressed = press_at(self, &posed, here, watch)?;
+                let here = Stand::as_given(press.product);
+                let pressed = press_at(self, &posed, &here, watch)?;
                 let direction = pressed
                     .force_on_skin()
                     .try_normalize(0.0)

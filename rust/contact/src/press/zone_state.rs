@@ -255,7 +255,12 @@ impl ZoneState {
         let fresh = setting
             .product
             .gaps_along(&written, Some(&normals), limits(), &hints);
-        let fresh = self.measured_without_limit(setting, &written, fresh);
+        let mut fresh = self.measured_without_limit(setting, &written, fresh);
+        if let Some(tool) = &setting.detection.under_tool {
+            let vertices = places.iter().map(|&k| vertex(skin, self.zone[k]));
+            let readings = vertices.zip(written).zip(&mut fresh);
+            tool.read_again(setting.product, readings.map(|((v, p), gap)| (v, p, gap)));
+        }
         for (k, gap) in places.into_iter().zip(fresh) {
             if let Some(gap) = gap {
                 self.touch[k] = gap;

@@ -22,6 +22,9 @@ use crate::skin::sites::Sites;
 const LATTICE: f64 = 3.900_264_920_001_956;
 /// The paper's r0, mm: nearer pairs answer as at this distance (Xie 3.1).
 pub const PAPER_R0: f64 = 0.5;
+/// r0 over the vertex spacing on meshes finer than 1 mm: a vertex then answers to its own force the more the less area it has, as a half
+/// space does, and the matrix stays definite.
+const R0_IN_SPACINGS: f64 = 0.5;
 /// Most distinct layers before thicknesses are interpolated.
 const EXACT_LAYERS: usize = 4;
 /// Ratio of neighboring thicknesses where they are interpolated.
@@ -33,6 +36,8 @@ const LADDER_RATIO: f64 = 1.3;
 #[derive(Debug, Clone)]
 pub struct Response {
     model: Model,
+    /// By patch, mm.
+    paper_r0: Vec<f64>,
     layers: Vec<Layer>,
     tables: KernelTables,
     /// Range of the response around each site, mm.
@@ -80,6 +85,7 @@ impl Response {
         let stiff = StiffSkin::new(&layers, (&geometry.sheets, sites), extent(sites));
         Response {
             model,
+            paper_r0: paper_r0(sites),
             layers,
             tables,
             reach,
@@ -155,8 +161,11 @@ impl Response {
             match self.model {
                 Model::Paper => {
                     let same = |i: usize| sites.region[i] == sites.region[j];
-                    let entry =
-                        |(i, r): (usize, &f64)| if same(i) { 1.0 / r.max(PAPER_R0) } else { 0.0 };
+                    let r0 = self.paper_r0[p as usize].min(self.paper_r0[patch]);
+                    let entry = |(i, r): (usize, &f64)| match same(i) {
+                        true => 1.0 / r.max(r0),
+                        false => 0.0,
+                    };
                     row.extend(there.zip(&distances).map(entry).map(|k| k as f32));
                 }
                 Model::Layer => {
@@ -354,6 +363,22 @@ fn per_region(of_region: &[Layer], sites: &Sites) -> (Vec<Layer>, Vec<Mix>) {
         }
     });
     (of_region.to_vec(), mix.collect())
+}
+
+/// The paper's r0 (mm) by patch of a skin: as published down to a vertex spacing of 1 mm. The spacing is that of the upper quartile of the
+/// vertices' areas, for those at a border have less.
+fn paper_r0(sites: &Sites) -> Vec<f64> {
+    let of_patch = |&(first, last): &(u32, u32)| {
+        let mut areas = sites.area[first as usize..last as usize].to_vec();
+        areas.sort_unstable_by(f64::total_cmp);
+        // Of a lattice of equal triangles.
+        let spacing = |area: &f64| (area * 2.0 / 3f64.sqrt()).sqrt();
+        let spacing = areas
+            .get(areas.len() * 3 / 4)
+            .map_or(f64::INFINITY, spacing);
+        PAPER_R0.min(R0_IN_SPACINGS * spacing)
+    };
+    sites.patch_range.iter().map(of_patch).collect()
 }
 
 /// Levels from the lowest to the highest positive one in equal ratios; zero (a half space) stays.

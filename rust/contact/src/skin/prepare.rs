@@ -13,7 +13,7 @@ use crate::response::kernel_grid::RANGE_IN_THICKNESSES;
 use crate::response::rows::{Response, extent};
 use crate::{ActiveEffect, ContactError, Control, Material, Model, SkinInput};
 
-/// Spacing below which the paper's r0 makes its matrix indefinite, mm.
+/// Spacing below which the paper's r0 would make its matrix indefinite, mm.
 pub(crate) const PAPER_SPACING: f64 = 0.8;
 
 /// A prepared skin: what presses only read. What they write is in a [`Workspace`](crate::Workspace).
@@ -361,8 +361,8 @@ fn title(names: &[String], region: usize) -> String {
 fn model_warnings(model: Model, spacing: f64) -> Option<String> {
     (model == Model::Paper && spacing < PAPER_SPACING).then(|| {
         format!(
-            "model paper: the vertex spacing is {spacing:.2} mm; below {PAPER_SPACING} mm the paper's r0 = 0.5 mm makes its \
-             matrix indefinite and forces unreliable; use a coarser mesh or model layer"
+            "model paper: the vertex spacing is {spacing:.2} mm; below {PAPER_SPACING} mm the paper's r0 = 0.5 mm would \
+             make its matrix indefinite, so that half the spacing is taken for r0 instead"
         )
     })
 }

@@ -1,60 +1,41 @@
 //! A press of the skin on a product with a soft grip.
+//!
+//! Skin and grip bear one pressure at each place, so that the compliance of the grip adds to the skin's, and the contact is solved as that of
+//! one skin which yields by the sum on the product as it was given. Afterwards the sum is shared out: the product's vertices go in by what the
+//! grip yields, and the skin lies on the product as it is then.
 
 use std::sync::Arc;
 
-use thenar_surface::{Product, Vec3};
+use thenar_surface::{Gap, Product, Vec3};
 
 use super::elastomer::SoftGrip;
-use super::fixed_point::Anderson;
-use super::yielding::Covered;
+use super::yielding::{Covered, Place};
 use crate::api::{Press, Start, Unsolved};
-use crate::detection::gaps::detect;
+use crate::detection::gaps::limits;
 use crate::fields::result::Contact;
-use crate::fields::summary::by_given_vertex;
 use crate::fields::warnings::Warning;
 use crate::skin::prepare::Skin;
 use crate::workspace::Pressing;
 use crate::{ContactError, Control, Model};
 
-/// Share of the deepest yield by which skin's and grip's answers may differ.
+/// Share of the deepest yield by which two presses may differ.
 const TOLERANCE: f64 = 1e-3;
 /// ... and this in addition, mm.
-const LEAST_TOLERANCE_MM: f64 = 1e-5;
+const LEAST_TOLERANCE_MM: f64 = 1e-3;
 /// Difference of a rough result that needs no word, mm.
-const UNSEEN_MM: f64 = 0.005;
-/// Largest difference of a rough result, mm: skin on a sharp edge of a soft grip rests on one face or the other, and that place
-/// settles no better.
+const UNSEEN_MM: f64 = 0.01;
+/// Largest difference of a rough result, mm.
 const ROUGH_MM: f64 = 0.1;
-/// The same for all vertices together, as a share of what they yield.
-const ROUGH_SHARE: f64 = 0.02;
-/// Presses without progress after which a rough result is taken.
-const MOST_STALLED: usize = 8;
 /// Presses before it is given up.
-const MOST_PRESSES: usize = 40;
-/// Share of the residual that is taken at every step.
-const MIXING: f64 = 0.5;
-/// Growth of the residual, over the least so far, at which the iteration begins again from there.
-const MOST_GROWTH: f64 = 4.0;
-/// Least share of the residual that is taken after that, of what is taken at first.
-const LEAST_SLOWNESS: f64 = 1.0 / 64.0;
-/// Most that a grip yields in the first step, as a share of the overlap.
-const FIRST_SHARE: f64 = 0.5;
+const MOST_PRESSES: usize = 24;
 /// No grip is pressed thinner than this share of itself.
 const LEAST_THICKNESS: f64 = 0.05;
+/// Share of the thickness by which a grip may be pressed beyond that.
+const BEYOND: f64 = 0.01;
 /// Deepest places at which the product is asked whether a core is left.
 const PROBED: usize = 12;
 /// Yield over thickness beyond which a linear elastomer answers for less and less.
 const FAIR_STRAIN: f64 = 0.25;
-
-/// What is pressed.
-struct Task<'a> {
-    press: &'a Press<'a>,
-    /// The grip on its product, and the product as given.
-    covered: Covered<'a>,
-    product: &'a Arc<Product>,
-    /// Posed positions of the skin, mm.
-    skin: Vec<Vec3>,
-}
 
 /// A contact with a soft grip.
 #[derive(Debug, Clone)]
@@ -84,7 +65,7 @@ impl Pressing<'_> {
         control: &Control,
     ) -> Result<GripContact, ContactError> {
         grip.validate(product.mesh().positions().len())?;
-        let covered = Covered::new(grip, product);
+        let covered = Arc::new(Covered::new(grip, product));
         if covered.soft().is_empty() {
             return Ok(GripContact {
                 contact: self.press(press, control)?,
@@ -95,143 +76,206 @@ impl Pressing<'_> {
         if self.skin.model == Model::Paper {
             return Err(ContactError::GripModel);
         }
-        let mut task = Task {
-            press,
-            covered,
-            product,
-            skin: as_given(self.skin, press.posed)?,
-        };
-        let (mut state, presses) = self.settle(&mut task, control)?;
-        let is_settled = state.is_settled();
-        let is_solved = is_settled || state.is_rough();
+        self.workspace.grip = Some(Arc::clone(&covered));
+        let settled = self.settle(press, &covered, control);
+        self.workspace.grip = None;
+        let Settled {
+            mut contact,
+            mut depth,
+            left,
+            presses,
+        } = settled?;
+        let is_solved = left <= ROUGH_MM;
         if !is_solved && press.unsolved == Unsolved::Refuse {
             return Err(ContactError::GripUnsolved {
-                left_mm: state.left,
+                left_mm: left,
                 presses,
             });
         }
-        if press.drag.is_some() || !state.contact.convergence.has_converged {
-            // Dragged, or refused as a press of the rigid product is.
-            let last = Press {
-                product: &state.product,
-                start: Start::Warm,
-                ..*press
-            };
-            state.contact = self.press(&last, control)?;
-        }
-        state.contact.gap = self.gap_as_given(&task, &state.contact)?;
-        let covered = &task.covered;
-        let GripState {
-            mut contact,
-            depth,
-            left,
-            product,
-            ..
-        } = state;
+        bound(&mut depth, &covered.thickness());
+        let displacement = covered.displacement(&depth);
+        self.share_out(press, &mut contact, (product, &displacement))?;
         if !is_solved {
             contact.warnings.push(Warning::GripUnsolved { left });
-        } else if !is_settled && left > UNSEEN_MM {
+        } else if left > UNSEEN_MM {
             contact.warnings.push(Warning::GripRough { left });
         }
         contact
             .warnings
             .extend(strained(&depth, &covered.thickness()));
-        contact.warnings.extend(without_core(covered, &depth));
+        contact.warnings.extend(without_core(&covered, &depth));
         Ok(GripContact {
+            product: Arc::new(moved(product, &displacement)?),
             contact,
-            displacement: covered.displacement(&depth),
-            product,
+            displacement,
         })
     }
 
-    /// Presses until skin and grip agree. Returns the state in which they did best, and how many presses it took.
+    /// Presses skin and grip as one, until the skin's moduli are those of what is left for the skin to yield, and no grip is pressed thinner
+    /// than it can be.
     fn settle(
         &mut self,
-        task: &mut Task<'_>,
+        press: &Press<'_>,
+        covered: &Covered,
         control: &Control,
-    ) -> Result<(GripState, usize), ContactError> {
-        let thickness = task.covered.thickness();
-        let (mut anderson, mut slow, mut stalled) = (Anderson::default(), 1.0, 0);
-        let mut best = self.press_yielded(
-            task,
-            (vec![0.0; thickness.len()], task.press.start),
-            control,
-        )?;
-        let softness = task.covered.softness(&best.contact, self.skin.spacing);
-        let mixing = MIXING.min(1.0 / (1.0 + softness));
-        let first = mixing.min(FIRST_SHARE * overlap(&best.contact) / best.left);
-        let mut next = anderson.next(&best.depth, &best.residual, first);
-        for presses in 1..MOST_PRESSES {
-            control.step("grip", presses as f64 / MOST_PRESSES as f64)?;
-            if best.is_settled() || (stalled >= MOST_STALLED && best.is_rough()) {
-                return Ok((best, presses));
-            }
-            bound(&mut next, &thickness);
-            let state = self.press_yielded(task, (next, Start::Warm), control)?;
-            if state.left > MOST_GROWTH * best.left {
-                // It runs away: from the best that was found, with what was learnt of the way there forgotten.
-                (anderson, slow) = (Anderson::default(), f64::max(0.5 * slow, LEAST_SLOWNESS));
-                next = anderson.next(&best.depth, &best.residual, slow * mixing);
-            } else {
-                next = anderson.next(&state.depth, &state.residual, slow * mixing);
-            }
-            stalled += 1;
-            if state.left < best.left {
-                (best, stalled) = (state, 0);
-            }
-        }
-        Ok((best, MOST_PRESSES))
-    }
-
-    /// Signed distances to the product as given, where it carries the contact, mm: overlap is that of skin and product before either yields.
-    fn gap_as_given(
-        &mut self,
-        task: &Task<'_>,
-        contact: &Contact,
-    ) -> Result<Vec<f64>, ContactError> {
-        let posed = self.skin.posed(task.press.posed)?;
-        let shift = contact.direction * contact.offset;
-        let detection = detect(self, &posed, task.product, shift)?;
-        Ok(by_given_vertex(self.skin, detection.distances))
-    }
-
-    /// Presses the product whose grip yields by `depth`, and finds by how much it would under that pressure.
-    fn press_yielded(
-        &mut self,
-        task: &mut Task<'_>,
-        (depth, start): (Vec<f64>, Start),
-        control: &Control,
-    ) -> Result<GripState, ContactError> {
-        let product = match deepest(&depth) > 0.0 {
-            true => Arc::new(moved(task.product, &task.covered.displacement(&depth))?),
-            false => Arc::clone(task.product),
-        };
-        let inner = Press {
-            product: &product,
-            drag: None,
-            start,
-            unsolved: Unsolved::Keep,
-            ..*task.press
-        };
+    ) -> Result<Settled, ContactError> {
         let quiet = Control {
             progress: &|_, _| {},
             ..*control
         };
-        let contact = self.press(&inner, &quiet)?;
-        let shift = contact.direction * contact.offset;
-        let mut answer = task
-            .covered
-            .yielding(&contact, &task.skin, (&product, shift));
-        bound(&mut answer, &task.covered.thickness());
-        let residual: Vec<f64> = answer.iter().zip(&depth).map(|(a, d)| a - d).collect();
-        Ok(GripState {
-            left: deepest(&residual),
-            contact,
-            depth,
-            residual,
-            product,
-        })
+        let thickness = covered.thickness();
+        let mut start = match press.start {
+            Start::Live => Start::Warm,
+            start => start,
+        };
+        for presses in 1.. {
+            let contact = self.press(&Press { start, ..*press }, &quiet)?;
+            let depth = covered.depth(&self.loads(press, covered, &contact)?);
+            let (beyond, depth) = (harden(covered, &depth, &thickness), depth);
+            let stale = renew(covered, self.skin);
+            let left = beyond.max(stale);
+            let deepest = depth.iter().fold(0.0, |most, d| f64::max(most, d.abs()));
+            if left <= TOLERANCE * deepest + LEAST_TOLERANCE_MM || presses == MOST_PRESSES {
+                return Ok(Settled {
+                    contact,
+                    depth,
+                    left,
+                    presses,
+                });
+            }
+            control.step("grip", presses as f64 / MOST_PRESSES as f64)?;
+            start = Start::Warm;
+        }
+        Err(ContactError::Cancelled)
     }
+
+    /// The forces (N) of a contact, and where they stand on the grip.
+    fn loads(
+        &self,
+        press: &Press<'_>,
+        covered: &Covered,
+        contact: &Contact,
+    ) -> Result<Vec<(Place, f64)>, ContactError> {
+        let mut loads = Vec::new();
+        for (vertex, gap) in self.touches(press, contact)? {
+            let force = contact.nodal_force[vertex];
+            if force > 0.0 {
+                let area = force / contact.pressure[vertex];
+                loads.push((covered.place(&gap, area), force));
+            }
+        }
+        Ok(loads)
+    }
+
+    /// Where skin that was moved by a contact lies on its product, by vertex of the hand as given.
+    fn touches(
+        &self,
+        press: &Press<'_>,
+        contact: &Contact,
+    ) -> Result<Vec<(usize, Gap)>, ContactError> {
+        let skin = self.skin;
+        let posed = skin.posed(press.posed)?;
+        let shift = contact.direction * contact.offset_of(press);
+        let (mut vertices, mut points, mut facing) = (Vec::new(), Vec::new(), Vec::new());
+        for site in (0..skin.sites.len()).filter(|&site| skin.sites.is_skin(site)) {
+            let welded = skin.sites.vertex[site] as usize;
+            let vertex = skin.merged.source[welded] as usize;
+            vertices.push(vertex);
+            points.push(posed.positions()[welded] + contact.displacement[vertex] - shift);
+            facing.push(-contact.normal[vertex]);
+        }
+        let gaps = press
+            .product
+            .gaps_along(&points, Some(&facing), limits(), &[]);
+        let found = vertices.into_iter().zip(gaps);
+        Ok(found.filter_map(|(v, gap)| Some((v, gap?))).collect())
+    }
+
+    /// Takes from the skin's displacement what the grip yields: the skin then lies on the product as it is pressed.
+    fn share_out(
+        &self,
+        press: &Press<'_>,
+        contact: &mut Contact,
+        (product, moved): (&Product, &[Vec3]),
+    ) -> Result<(), ContactError> {
+        let mut by = vec![Vec3::zeros(); contact.displacement.len()];
+        for (vertex, gap) in self.touches(press, contact)? {
+            let corners = product.mesh().triangles()[gap.triangle as usize];
+            for (corner, weight) in corners.into_iter().zip(gap.barycentric) {
+                by[vertex] += moved[corner as usize] * weight;
+            }
+        }
+        let merged = &self.skin.merged;
+        for (vertex, displacement) in contact.displacement.iter_mut().enumerate() {
+            let welded = match merged.merged() {
+                0 => vertex,
+                _ => merged.merged_of[vertex] as usize,
+            };
+            *displacement += by[merged.source[welded] as usize];
+        }
+        Ok(())
+    }
+}
+
+impl Contact {
+    /// The way that the product went along [`Contact::direction`], mm.
+    fn offset_of(&self, press: &Press<'_>) -> f64 {
+        press.force.map_or(0.0, |_| self.offset)
+    }
+}
+
+/// What presses of skin and grip as one end with.
+struct Settled {
+    /// Skin against product: its displacement holds what the grip yields.
+    contact: Contact,
+    /// By soft vertex, mm.
+    depth: Vec<f64>,
+    /// Largest difference from what the last press took for given, mm.
+    left: f64,
+    presses: usize,
+}
+
+/// Lets a grip give less where it is pressed thinner than it can be, and more again where it is not; returns by how much it is off, mm.
+fn harden(covered: &Covered, depth: &[f64], thickness: &[f64]) -> f64 {
+    let mut give = covered.give();
+    let mut most = 0.0;
+    for ((&vertex, depth), thickness) in covered.soft().iter().zip(depth).zip(thickness) {
+        let give = &mut give[vertex as usize];
+        let limit = (1.0 - LEAST_THICKNESS) * thickness;
+        if *give < 1.0 || depth.abs() > limit {
+            let wanted = (*give * (limit / depth.abs().max(1e-12)).sqrt()).min(1.0);
+            let is_off = depth.abs() > limit + BEYOND * thickness || wanted > *give;
+            if is_off {
+                most = f64::max(
+                    most,
+                    (depth.abs() - limit)
+                        .abs()
+                        .min((wanted - *give).abs() * limit),
+                );
+            }
+            *give = wanted;
+        }
+    }
+    most
+}
+
+/// Takes what the grip yielded in the last press out of the depths that the skin's moduli follow; returns the largest change, mm.
+///
+/// Where no modulus follows depth, nothing is taken.
+fn renew(covered: &Covered, skin: &Skin) -> f64 {
+    let mut yields = covered.yields();
+    let follows = |m: &crate::Material| m.stiffening > 0.0 || m.g0_mpa != m.g_lim_mpa;
+    if !skin.tissue.materials.iter().any(follows) {
+        return 0.0;
+    }
+    let before = std::mem::take(&mut yields.taken);
+    let was = |site: usize| before.get(site).copied().unwrap_or(0.0);
+    let changes = yields.found.iter().enumerate();
+    let change = changes.fold(0.0, |most, (site, y)| {
+        f64::max(most, (y.max(0.0) - was(site)).abs())
+    });
+    yields.taken = yields.found.iter().map(|y| y.max(0.0)).collect();
+    change
 }
 
 /// Keeps a grip from being pressed thinner, or from bulging farther, than it is thick.
@@ -240,48 +284,6 @@ fn bound(depth: &mut [f64], thickness: &[f64]) {
         let most = (1.0 - LEAST_THICKNESS) * thickness;
         *depth = depth.clamp(-most, most);
     }
-}
-
-/// One press of a grip that yields by `depth`.
-struct GripState {
-    contact: Contact,
-    product: Arc<Product>,
-    /// By soft vertex, mm.
-    depth: Vec<f64>,
-    /// What the grip would yield under the contact's pressure, less `depth`, mm, and its largest.
-    residual: Vec<f64>,
-    left: f64,
-}
-
-impl GripState {
-    fn is_settled(&self) -> bool {
-        self.left <= TOLERANCE * deepest(&self.depth) + LEAST_TOLERANCE_MM
-    }
-
-    /// Settled but for a few vertices.
-    fn is_rough(&self) -> bool {
-        self.left <= ROUGH_MM && norm(&self.residual) <= ROUGH_SHARE * norm(&self.depth)
-    }
-}
-
-/// Root of the sum of squares.
-fn norm(of: &[f64]) -> f64 {
-    of.iter().map(|d| d * d).sum::<f64>().sqrt()
-}
-
-/// The largest of these, signs aside.
-fn deepest(of: &[f64]) -> f64 {
-    of.iter().fold(0.0, |most, d| f64::max(most, d.abs()))
-}
-
-/// Posed positions of the hand as given, mm; zero at vertices that are merged into others, which bear nothing.
-fn as_given(skin: &Skin, posed: Option<&[Vec3]>) -> Result<Vec<Vec3>, ContactError> {
-    let mesh = skin.posed(posed)?;
-    let mut given = vec![Vec3::zeros(); skin.regions.len()];
-    for (&source, position) in skin.merged.source.iter().zip(mesh.positions()) {
-        given[source as usize] = *position;
-    }
-    Ok(given)
 }
 
 fn moved(product: &Product, by: &[Vec3]) -> Result<Product, ContactError> {
@@ -293,14 +295,6 @@ fn moved(product: &Product, by: &[Vec3]) -> Result<Product, ContactError> {
     Product::new(mesh).map_err(ContactError::Product)
 }
 
-/// Deepest overlap of skin and product, mm.
-fn overlap(contact: &Contact) -> f64 {
-    contact
-        .gap
-        .iter()
-        .fold(0.0, |most, gap| f64::max(most, -gap))
-}
-
 /// What there is to say of a grip that is pressed far.
 fn strained(depth: &[f64], thickness: &[f64]) -> Option<Warning> {
     let strain = depth.iter().zip(thickness).map(|(d, h)| d.abs() / h);
@@ -309,7 +303,7 @@ fn strained(depth: &[f64], thickness: &[f64]) -> Option<Warning> {
 }
 
 /// Whether the grip is thicker than half the product where it yields most.
-fn without_core(covered: &Covered<'_>, depth: &[f64]) -> Option<Warning> {
+fn without_core(covered: &Covered, depth: &[f64]) -> Option<Warning> {
     let mut deepest: Vec<usize> = (0..depth.len()).filter(|&k| depth[k] > 0.0).collect();
     deepest.sort_by(|&a, &b| depth[b].total_cmp(&depth[a]).then(a.cmp(&b)));
     let place = deepest

@@ -1,22 +1,22 @@
-//! How far every vertex of a grip yields under the forces of the skin.
+//! How far a grip yields under the forces of the skin: at places of a contact problem, and at the product's vertices.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 use thenar_surface::{Gap, GapLimits, Product, Vec3};
 
 use super::disc_kernel::DiscKernels;
-use super::elastomer::{Elastomer, SoftGrip};
-use crate::fields::result::Contact;
-
-/// How far a vertex of the skin may lie from the product it presses on, mm.
-const TOUCHING_MM: f64 = 1.0;
+use super::elastomer::SoftGrip;
+use super::joint_compliance::GripRows;
 
 /// Depth of the core's surface, as a share of the grip's thickness, below which another wall of the product is clearly nearer.
 const CORE_SHARE: f64 = 0.8;
 
-/// A grip as it lies on its product.
-pub(crate) struct Covered<'a> {
-    grip: &'a SoftGrip,
-    product: &'a Product,
+/// A grip as it lies on its product, and what presses have found of it so far.
+#[derive(Debug)]
+pub(crate) struct Covered {
+    grip: SoftGrip,
+    product: Arc<Product>,
     /// Outward, by vertex; zero within the solid.
     normals: Vec<Vec3>,
     /// Vertices of sheets without thickness, which have skin on either side.
@@ -24,23 +24,39 @@ pub(crate) struct Covered<'a> {
     /// Vertices that yield.
     soft: Vec<u32>,
     /// By elastomer.
-    kernels: Vec<DiscKernels>,
+    kernels: Mutex<Vec<DiscKernels>>,
+    /// By vertex of the product, 1 where the grip is linear: what is left of it where it is pressed as thin as it gets.
+    give: Mutex<Vec<f64>>,
+    /// By site of the skin, mm: how far the grip yields there, as the skin's moduli take it, and in the last press.
+    yields: Mutex<Yields>,
 }
 
-/// A force of the skin on a grip.
-struct Touch {
-    /// N.
-    force: f64,
-    /// Radius of a disc of the skin vertex's area, mm.
-    radius: f64,
-    /// On the grip as it was, mm, and its normal there.
-    place: Vec3,
+/// How far the grip yields where sites of the skin lie, mm; empty for not at all.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Yields {
+    /// As taken by the skin's moduli.
+    pub taken: Vec<f64>,
+    /// Of the last press.
+    pub found: Vec<f64>,
+}
+
+/// A place on a grip, and a vertex area that a force on it is spread over.
+pub(crate) struct Place {
+    /// mm.
+    at: Vec3,
+    /// Outward.
     normal: Vec3,
-    elastomer: usize,
+    /// Of a disc of the area, mm.
+    radius: f64,
+    /// The elastomer, where there is one.
+    elastomer: Option<usize>,
+    /// Share that soft corners carry, times what is left of them; the rest stands on the rigid core.
+    share: f64,
+    is_sheet: bool,
 }
 
-impl<'a> Covered<'a> {
-    pub(crate) fn new(grip: &'a SoftGrip, product: &'a Product) -> Self {
+impl Covered {
+    pub(crate) fn new(grip: &SoftGrip, product: &Arc<Product>) -> Self {
         let mesh = product.mesh();
         let normals = product.boundary_normals();
         let mut is_sheet = vec![false; normals.len()];
@@ -57,10 +73,13 @@ impl<'a> Covered<'a> {
         };
         let size = (corner(f64::max, f64::NEG_INFINITY) - corner(f64::min, f64::INFINITY)).norm();
         let kernels = grip.elastomers.iter();
+        let kernels = kernels.map(|e| DiscKernels::new(e.layer(), size)).collect();
         Covered {
-            kernels: kernels.map(|e| DiscKernels::new(e.layer(), size)).collect(),
-            grip,
-            product,
+            kernels: Mutex::new(kernels),
+            give: Mutex::new(vec![1.0; normals.len()]),
+            yields: Mutex::default(),
+            grip: grip.clone(),
+            product: Arc::clone(product),
             normals,
             is_sheet,
             soft,
@@ -91,117 +110,108 @@ impl<'a> Covered<'a> {
         moved
     }
 
-    /// How much softer the grip is than the skin in waves as short as the skin's vertex spacing (mm): what its softest elastomer yields under
-    /// one vertex's force, over what the hardest pressed region does.
-    pub(crate) fn softness(&mut self, contact: &Contact, spacing: f64) -> f64 {
-        let modulus = contact.regions.iter().filter(|region| region.force > 0.0);
-        let hardest = modulus
-            .map(|region| region.shear_modulus)
-            .fold(0.0, f64::max);
-        // A disc of the area of a vertex on a lattice of equal triangles.
-        let radius = spacing * (3.0f64.sqrt() / (2.0 * std::f64::consts::PI)).sqrt();
-        let yields = |(e, kernels): (&Elastomer, &mut DiscKernels)| {
-            kernels.make([radius].into_iter());
-            e.compliance() * kernels.at(0.0, radius)
-        };
-        let all = self.grip.elastomers.iter().zip(&mut self.kernels);
-        let soft = all.filter(|(e, _)| e.is_soft()).map(yields);
-        // Nearly incompressible skin: (1 - nu) / (2 pi G) times 2 / radius.
-        let skin = 1.0 / (2.0 * std::f64::consts::PI * hardest * radius);
-        soft.fold(0.0, f64::max) / skin
+    pub(crate) fn yields(&self) -> MutexGuard<'_, Yields> {
+        self.yields.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// How far each soft vertex yields (mm) under the forces of a contact with `yielded`, the product as moved. `skin` are the
-    /// posed positions (mm), `shift` (mm) is the way that the product went to carry its force.
-    pub(crate) fn yielding(
-        &mut self,
-        contact: &Contact,
-        skin: &[Vec3],
-        (yielded, shift): (&Product, Vec3),
-    ) -> Vec<f64> {
-        let touches = self.touches(contact, skin, (yielded, shift));
-        let mut depth = vec![0.0; self.soft.len()];
-        for (e, elastomer) in self.grip.elastomers.iter().enumerate() {
-            let here: Vec<&Touch> = touches.iter().filter(|t| t.elastomer == e).collect();
-            if here.is_empty() {
-                continue;
-            }
-            self.kernels[e].make(here.iter().map(|t| t.radius));
-            let (covered, kernels) = (&*self, &self.kernels[e]);
-            let compliance = elastomer.compliance();
-            let yields = |(depth, &v): (&mut f64, &u32)| {
-                if covered.grip.at(v) == Some(e) {
-                    *depth = compliance * covered.at_vertex(v as usize, &here, kernels);
-                }
-            };
-            depth.par_iter_mut().zip(&self.soft).for_each(yields);
-        }
-        depth
+    /// What is left of the grip's give, by vertex of the product.
+    pub(crate) fn give(&self) -> MutexGuard<'_, Vec<f64>> {
+        self.give.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn touches(
-        &self,
-        contact: &Contact,
-        skin: &[Vec3],
-        (yielded, shift): (&Product, Vec3),
-    ) -> Vec<Touch> {
-        let bearing: Vec<usize> = (0..skin.len())
-            .filter(|&i| contact.nodal_force[i] > 0.0)
-            .collect();
-        let points: Vec<Vec3> = bearing
-            .iter()
-            .map(|&i| skin[i] + contact.displacement[i] - shift)
-            .collect();
-        let facing: Vec<Vec3> = bearing.iter().map(|&i| -contact.normal[i]).collect();
-        let limits = GapLimits {
-            cut_off_mm: TOUCHING_MM,
-            max_depth_mm: TOUCHING_MM,
-        };
-        let gaps = yielded.gaps(&points, Some(&facing), limits);
-        let touch = |(&i, gap): (&usize, &Option<Gap>)| {
-            let gap = gap.as_ref()?;
-            let corners = self.product.mesh().triangles()[gap.triangle as usize];
-            // The share of the force that soft corners carry; the rest stands on the rigid core.
-            let mut share = 0.0;
-            let (mut elastomer, mut most) = (None, 0.0);
-            let mut place = Vec3::zeros();
-            for (corner, weight) in corners.into_iter().zip(gap.barycentric) {
-                place += self.product.mesh().positions()[corner as usize] * weight;
-                let Some(here) = self.grip.at(corner) else {
-                    continue;
-                };
-                share += weight;
+    /// The place on the grip that a gap was measured to, for a vertex area in mm2.
+    pub(crate) fn place(&self, gap: &Gap, area: f64) -> Place {
+        let corners = self.product.mesh().triangles()[gap.triangle as usize];
+        let give = self.give();
+        let (mut share, mut elastomer, mut most) = (0.0, None, 0.0);
+        for (corner, weight) in corners.into_iter().zip(gap.barycentric) {
+            if let Some(here) = self.grip.at(corner) {
+                share += weight * give[corner as usize];
                 if weight > most {
                     (elastomer, most) = (Some(here), weight);
                 }
             }
-            let area = contact.nodal_force[i] / contact.pressure[i];
-            Some(Touch {
-                force: contact.nodal_force[i] * share,
-                radius: (area / std::f64::consts::PI).sqrt(),
-                place,
-                normal: contact.normal[i],
-                elastomer: elastomer?,
-            })
-        };
-        bearing.iter().zip(&gaps).filter_map(touch).collect()
+        }
+        Place {
+            at: gap.closest,
+            normal: gap.normal,
+            radius: (area / std::f64::consts::PI).sqrt(),
+            elastomer,
+            share,
+            is_sheet: self.product.is_sheet(gap.triangle as usize),
+        }
     }
 
-    /// Sum of the kernels of all touches at a vertex, 1/mm times N; those of another wall do not reach it.
-    fn at_vertex(&self, vertex: usize, touches: &[&Touch], kernels: &DiscKernels) -> f64 {
-        let (position, normal) = (
-            &self.product.mesh().positions()[vertex],
-            &self.normals[vertex],
-        );
-        let one = |touch: &&Touch| {
-            let (r, along) = ((position - touch.place).norm(), normal.dot(&touch.normal));
-            // The two sides of a sheet are one wall, and its normal may point either way.
-            match (along > 0.0 || self.is_sheet[vertex]) && r < kernels.reach(touch.radius) {
-                true => touch.force * along * kernels.at(r, touch.radius),
-                false => 0.0,
-            }
+    /// The kernels, with tables for discs of these places.
+    fn kernels_for<'p>(
+        &self,
+        places: impl Iterator<Item = &'p Place> + Clone,
+    ) -> MutexGuard<'_, Vec<DiscKernels>> {
+        let mut all = self.kernels.lock().unwrap_or_else(PoisonError::into_inner);
+        for (e, kernels) in all.iter_mut().enumerate() {
+            let here = places.clone().filter(|p| p.elastomer == Some(e));
+            kernels.make(here.map(|p| p.radius).filter(|r| *r > 0.0));
+        }
+        all
+    }
+
+    /// The grip's compliance between places, mm/N.
+    pub(crate) fn rows(&self, places: &[Place]) -> GripRows {
+        let kernels = self.kernels_for(places.iter());
+        let row = |i: usize| {
+            let to = &places[i];
+            let entry = |(j, from): (usize, &Place)| {
+                let value = self.entry(to, from, &kernels);
+                (value != 0.0).then_some((j as u32, value as f32))
+            };
+            places.iter().enumerate().filter_map(entry).collect()
         };
-        touches.iter().map(one).sum()
+        let all: Vec<Vec<(u32, f32)>> = (0..places.len()).into_par_iter().map(row).collect();
+        let mut rows = GripRows::default();
+        all.iter().for_each(|row| rows.push(row));
+        rows
+    }
+
+    /// How far the grip yields at places (mm) under forces (N) at others.
+    pub(crate) fn yield_at(&self, places: &[Place], loads: &[(Place, f64)]) -> Vec<f64> {
+        let kernels = self.kernels_for(places.iter().chain(loads.iter().map(|load| &load.0)));
+        let one = |to: &Place| -> f64 {
+            let terms = loads.iter();
+            let terms = terms.map(|(from, force)| force * self.entry(to, from, &kernels));
+            terms.sum()
+        };
+        places.par_iter().map(one).collect()
+    }
+
+    /// How far a unit force at one place moves another, mm/N: the same either way. Places of another wall do not reach it.
+    fn entry(&self, to: &Place, from: &Place, kernels: &[DiscKernels]) -> f64 {
+        let (Some(e), true) = (to.elastomer, to.elastomer == from.elastomer) else {
+            return 0.0;
+        };
+        let (r, along) = ((to.at - from.at).norm(), to.normal.dot(&from.normal));
+        // The two sides of a sheet are one wall.
+        let is_one_wall = along > 0.0 || (to.is_sheet && from.is_sheet);
+        let radius = to.radius.max(from.radius);
+        if !is_one_wall || r >= kernels[e].reach(radius) {
+            return 0.0;
+        }
+        let compliance = self.grip.elastomers[e].compliance();
+        compliance * along * to.share * from.share * kernels[e].at(r, radius)
+    }
+
+    /// How far each soft vertex yields (mm) under the forces (N) at these places.
+    pub(crate) fn depth(&self, loads: &[(Place, f64)]) -> Vec<f64> {
+        let give = self.give().clone();
+        let vertex = |&v: &u32| Place {
+            at: self.product.mesh().positions()[v as usize],
+            normal: self.normals[v as usize],
+            radius: 0.0,
+            elastomer: self.grip.at(v),
+            share: give[v as usize],
+            is_sheet: self.is_sheet[v as usize],
+        };
+        let places: Vec<Place> = self.soft.iter().map(vertex).collect();
+        self.yield_at(&places, loads)
     }
 
     /// Whether a grip is thicker than half the product at a vertex that yields: then no rigid core is left there.

@@ -61,6 +61,15 @@ impl<'a> Submatrix<'a> {
         }
     }
 
+    /// The same rows with a matrix made of these and the one on them.
+    pub fn with(
+        self,
+        made: impl FnOnce(&[u32], Box<dyn Symmetric + 'a>) -> Box<dyn Symmetric + 'a>,
+    ) -> Self {
+        let matrix = made(&self.rows, self.matrix);
+        Submatrix { matrix, ..self }
+    }
+
     /// All `unknowns`, with a matrix that is valid on `set` (ascending) alone.
     pub fn in_place(unknowns: usize, set: &[u32], matrix: Box<dyn Symmetric + 'a>) -> Self {
         let mut answers = vec![false; unknowns];

@@ -12,6 +12,7 @@ use crate::interface::shear_response::Pairs;
 use crate::response::quantized_rows::QuantizedRows;
 use crate::response::rows::Response;
 use crate::skin::prepare::Skin;
+use crate::soft_grip::yielding::Covered;
 use live_cache::{LiveContact, LiveField, NearFields};
 use posture::PostureCache;
 use problem::ZoneProblem;
@@ -43,6 +44,8 @@ pub struct Workspace {
     pub(crate) pairs: Pairs,
     /// Memory of the tissue, while a row of a protocol is solved.
     pub(crate) history: Option<TissueMemory>,
+    /// The soft grip on the product, while one is pressed.
+    pub(crate) grip: Option<Arc<Covered>>,
 }
 
 impl Workspace {

@@ -5,6 +5,7 @@ pub(crate) mod opposing_wall;
 pub(crate) mod neighborhood;
 pub(crate) mod flesh;
 pub(crate) mod sheet_side;
+pub(crate) mod tool_end;
 pub(crate) mod through_walls;
 pub(crate) mod skin_queries;
 pub(crate) mod kept_readings;

@@ -182,7 +182,7 @@ pub fn tolerance(deepest: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::detection::gaps::detect;
+    use crate::detection::gaps::{Stand, detect};
     use crate::detection::press_direction::Sums;
     use crate::press::live::reused_sites::keep_solution;
     use crate::press::solution::ZoneSolution;
@@ -220,7 +220,7 @@ mod tests {
         let (skin, mut workspace, _) = sheet();
         let mut pressing = workspace.on(&skin);
         let (product, mesh) = (plate(), skin.merged.mesh.clone());
-        let detection = detect(&mut pressing, &mesh, &product, Vec3::zeros()).unwrap();
+        let detection = detect(&mut pressing, &mesh, &Stand::as_given(&product)).unwrap();
         let count = skin.sites.len();
         let weight = vec![0.5; count];
         let setting = SolveSetting {

@@ -1,0 +1,111 @@
+"""A flat indenter of 2 mm at 1 N, against Tables 1 and 2 of Xie, Kanai and Date, and against a punch on a half space.
+
+The tables: the skin rises most 8 mm (fingertip) and 15 mm (palm) from the middle of the indenter.
+"""
+
+import numpy as np
+import pytest
+import thenar
+from proof import meshes, pressing
+
+RADIUS, FORCE = 1.0, 1.0
+"""mm, N."""
+BULGE = {"fingertip": 8.0, "palm": 15.0}
+"""Distance from the middle at which the skin rises most, mm (Table 2)."""
+OFF = 0.15
+"""Most that it may be off."""
+
+
+def indenter(depth=0.0, radius=RADIUS):
+    """A flat-ended rod, 40 mm long, its end at z = -depth."""
+    vertices, triangles = meshes.cylinder(radius, 40.0, 64, 8)
+    return vertices + [0.0, 0.0, 20.0 - depth], triangles
+
+
+def fine_in_the_middle(spacing, radius=36.0):
+    """A disc of skin whose spacing grows from `spacing` to 8 times that at the rim."""
+    return meshes.graded_patch(radius, spacing, 8.0)
+
+
+def rise(vertices, z):
+    """(Distance of the highest place from the middle, height there), mm, of heights `z` over rings 1.5 mm wide."""
+    r = np.hypot(vertices[:, 0], vertices[:, 1])
+    middles = np.arange(2.0, 30.0, 0.5)
+    heights = [z[np.abs(r - at) < 0.75].mean() for at in middles]
+    top = int(np.argmax(heights))
+    return middles[top], heights[top]
+
+
+def pressed(material, model):
+    """(skin's vertices, contact) under 1 N."""
+    skin = fine_in_the_middle(0.4)
+    prepared = thenar.Skin(*skin, materials=[material], model=model)
+    return skin[0], prepared.press(*indenter(), force_n=FORCE, direction=(0.0, 0.0, -1.0))
+
+
+@pytest.mark.parametrize("site", BULGE)
+def test_one_newton_is_reached_and_the_bulge_lies_where_the_tables_say(site):
+    material = {"fingertip": thenar.Material.finger_layer, "palm": thenar.Material.palm_layer}[site]()
+    vertices, contact = pressed(material, "layer")
+    (at, height), depth = rise(vertices, contact.displacement_mm[:, 2]), -contact.displacement_mm[:, 2].min()
+    print(f"{site}: {contact.total_force_n[2]:.3f} N, {depth:.2f} mm deep, rises {height:.3f} mm at {at:.1f} mm")
+    assert contact.total_force_n[2] == pytest.approx(FORCE, rel=1e-3)
+    assert at == pytest.approx(BULGE[site], rel=OFF)
+    assert height > 0.0 and depth > RADIUS, "deeper than half the tool is wide"
+
+
+def test_the_published_constants_swell_the_palm_where_they_say():
+    """What swelling adds to the half space's dip; a fingertip's lies where `paper` moves skin toward the tool."""
+    material = thenar.Material.palm()
+    numbers = {name: getattr(material, name) for name in ("g0_mpa", "g_lim_mpa", "d_lim_mm", "zone_mm")}
+    flat = thenar.Material(thickness_mm=np.inf, swelling=(0.0, 8.0, 2.0), **numbers)
+    (vertices, swollen), (_, dipped) = (pressed(m, "paper") for m in (material, flat))
+    both = swollen.displacement_mm[:, 2], dipped.displacement_mm[:, 2]
+    (at, height), (net_at, net) = rise(vertices, both[0] - both[1]), rise(vertices, both[0])
+    print(f"{-both[0].min():.2f} mm deep, swells {height:.3f} mm at {at:.1f} mm; net {net:.3f} at {net_at:.1f}")
+    assert swollen.total_force_n[2] == pytest.approx(FORCE, rel=1e-3)
+    assert at == pytest.approx(BULGE["palm"], rel=OFF) and height > 0.05
+
+
+@pytest.mark.parametrize("depth", [0.5, 3.0])
+def test_a_punch_deeper_than_it_is_wide_carries_what_sneddon_s_does(depth):
+    """F = 2 E* a d at any depth of linear theory, in the limit of fine spacing: its sides carry nothing."""
+    spacing, wanted = np.array([0.2, 0.16, 0.13, 0.1]), 2.0 * pressing.CONTACT_MODULUS * RADIUS * depth
+    travel = []
+    for h in spacing:
+        skins = [meshes.disc_patch(RADIUS + 4.0 * h, h, 0.15, seed) for seed in (1, 2, 3)]
+        presses = [pressing.press(s, indenter(), force_n=wanted, direction=(0.0, 0.0, -1.0)) for s in skins]
+        travel.append(np.mean([contact.offset_mm for contact in presses]))
+    limit = np.polyfit(spacing, travel, 1)[1]
+    print(f"{depth} mm: travel {limit / depth - 1.0:+.1%}")
+    assert limit == pytest.approx(depth, rel=0.02)
+
+
+def test_an_edge_carries_in_proportion_to_its_depth():
+    """A strip 2 mm wide, 3 mm deep, was read from its sides: less force than at 1 mm."""
+    skin = meshes.disc_patch(12.0, 0.5)
+    vertices, triangles = meshes.box((-1.0, -30.0, 0.0), (1.0, 30.0, 30.0))
+    prepared = thenar.Skin(*skin, materials=[pressing.material(thickness=7.0)])
+    forces = (1.0, 2.0, 4.0)
+    travel = [prepared.press(vertices, triangles, force_n=n, direction=(0, 0, -1)).offset_mm for n in forces]
+    print(np.round(travel, 3))
+    assert travel[-1] > 2.0, "deeper than the edge is wide"
+    assert np.array(travel) / forces / travel[0] == pytest.approx(1.0, abs=0.03)
+
+
+def test_the_paper_s_model_settles_under_refinement():
+    """A vertex answered to itself as at 0.5 mm, however fine the mesh: the peak grew by 5 from 1 to 0.5 mm."""
+    force, peak, middle = [], [], []
+    for spacing in (1.0, 0.7, 0.5, 0.35):
+        vertices, triangles = meshes.disc_patch(10.0, spacing)
+        ball = meshes.sphere(20.0, (0.0, 0.0, 18.5), 12.0, 0.4)
+        contact = pressing.press((vertices, triangles), ball, [thenar.Material.finger()], "paper")
+        inner = np.hypot(vertices[:, 0], vertices[:, 1]) < 2.0
+        force.append(contact.total_force_n[2])
+        peak.append(1e3 * contact.pressure_mpa.max())
+        middle.append(1e3 * contact.pressure_mpa[inner].mean())
+    hertz = 0.966 * 1.5 * force[-1] / (np.pi * 20.0 * 1.5) * 1e3  # mean over 2 mm of the radius sqrt(R d)
+    print(np.round(force, 4), np.round(peak, 2), np.round(middle, 2), round(hertz, 2))
+    assert np.abs(np.diff(force)).max() < 0.02 * force[-1] and abs(force[-1] / force[-2] - 1.0) < 0.01
+    assert max(peak) / min(peak) < 1.1
+    assert (np.diff(middle) < 0.0).all() and 1.0 < middle[-1] / hertz < 1.1, "it comes down to the ball's"
