@@ -8,10 +8,13 @@ import numpy as np
 from .. import effect_settings, names, native, sentences
 from ..scene import matching
 from ..scene.checks import Refusal
+from ..scene.units import KPA_PER_MPA
 from . import freshness, reading, wording
 
 EVERYWHERE = {"", "default", names.WHOLE_SKIN}
 """What studies call skin that is not sorted into regions."""
+PARAMETER = "region_stiffness"
+"""What a diagnosis of grasps names that is a material's number."""
 _AXES = "xyz"
 
 
@@ -39,6 +42,7 @@ def apply(context, index):
     state = context.scene.thenar_diagnosis
     found = reading.parse(state.findings)
     finding = reading.finding(found, index)
+    _refuse_parameter(finding)
     _refuse_unnamed(found, finding)
     row = next((row for row in native.effects() if row["name"] == finding["effect"]), None)
     if row is None:
@@ -57,6 +61,18 @@ def apply(context, index):
         "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
     )
     return Taken(f"{title} is on {where}{waits}", doubt)
+
+
+def _refuse_parameter(finding):
+    """Refuse a region's stiffness: it is a material's number and no effect."""
+    if finding["effect"] != PARAMETER:
+        return
+    region = sentences.region_title((finding.get("where") or {}).get("region") or "")
+    value = ((finding.get("parameters") or {}).get("g0_mpa") or {}).get("value") or 0.0
+    raise Refusal(
+        f"a region's stiffness is a parameter and no effect; set G0 of '{region}' to "
+        f"{wording.number(value * KPA_PER_MPA)} kPa under Materials"
+    )
 
 
 def _refuse_unnamed(found, finding):

@@ -16,6 +16,7 @@ SAMPLES = Path(__file__).resolve().parents[1] / "sample_studies"
 KINDS = (
     ("nothing_missing", "Nothing Missing", "Balls pressed on gel, as Hertz and Sneddon say, with a laboratory's noise"),
     ("concealed_effect", "Something Missing", "The same, with one effect that the model does not have: which?"),
+    ("held_handle", "Held Handle", "A hand holds a cylinder three times, with a mat and a force trace: what changed?"),
 )
 
 
@@ -197,7 +198,7 @@ def _covers(context, event):
 
 
 class THENAR_OT_sample_study(bpy.types.Operator):
-    """Open a small study to diagnose: its recordings follow closed forms, not Thenar's model"""
+    """Open a small study to diagnose: its recordings do not come from Thenar's contact model"""
 
     bl_idname = "thenar.sample_study"
     bl_label = "Sample Study"

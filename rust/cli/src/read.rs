@@ -90,17 +90,33 @@ fn write_study(text: &mut String, study: &Study) -> Result<(), Error> {
         study.skin.region_names.len().max(1)
     )?;
     for recording in &study.recordings {
-        writeln!(
-            text,
-            "\n{} ({} at {})",
-            recording.name, recording.indenter, recording.site
-        )?;
+        match recording.site.as_str() {
+            "" => writeln!(text, "\n{} ({} held)", recording.name, recording.indenter)?,
+            site => writeln!(
+                text,
+                "\n{} ({} at {site})",
+                recording.name, recording.indenter
+            )?,
+        }
         match &recording.data {
             Data::Indentation(curve) => write_curve(text, curve)?,
             Data::PressureMap { map, sensels, .. } => {
                 write_map(text, map)?;
                 let placed = sensels.iter().flatten().flatten().count();
                 writeln!(text, "  {placed} sensels placed on the product")?;
+            }
+            Data::Grasp {
+                map,
+                sensels,
+                force,
+                ..
+            } => {
+                write_map(text, map)?;
+                let placed = sensels.iter().flatten().count();
+                writeln!(text, "  {placed} sensels placed on the product")?;
+                if let Some(force) = force {
+                    write_curve(text, force)?;
+                }
             }
             Data::Scan { mesh, .. } => {
                 writeln!(text, "  scan of {} vertices", mesh.positions.len())?

@@ -36,6 +36,11 @@ pub fn compare(
     options: &Options,
     control: &Control<'_>,
 ) -> Result<Comparison, InferenceError> {
+    if study.has_grasps() {
+        return Err(InferenceError::Grasps {
+            problem: "moduli are not fitted to grasps; diagnose the study, which compares them region by region".to_owned(),
+        });
+    }
     let progress = |stage: &str, share: f64| (control.progress)(stage, FITTING * share);
     let fitting = Control {
         cancelled: control.cancelled,

@@ -13,6 +13,7 @@ use crate::channels::slides::add_friction;
 use crate::findings::{Diagnosis, Suggestion, Verdict};
 use crate::gates::decision::Decision;
 use crate::gates::pair_gates::is_pair;
+use crate::grasp::diagnose_grasps;
 use thenar_comparison::Comparison;
 use thenar_comparison::compare;
 use thenar_inference::errors::InferenceError;
@@ -45,6 +46,9 @@ pub fn diagnose(
     options: &DiagnoseOptions,
     control: &Control<'_>,
 ) -> Result<Diagnosis, InferenceError> {
+    if study.has_grasps() {
+        return diagnose_grasps(study, control);
+    }
     let parts = Parts::new(control);
     let clipped = with_ceiling(study);
     let study = clipped.as_ref().map_or(study, |(stated, _)| stated);

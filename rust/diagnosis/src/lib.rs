@@ -14,6 +14,7 @@ mod next_recording;
 mod place;
 mod sentence;
 mod findings_json;
+mod grasp;
 mod diagnose;
 #[cfg(test)]
 #[path = "../../inference/tests/synthetic_rungs/mod.rs"]

@@ -35,6 +35,12 @@ pub enum InferenceError {
         /// What the contact model says.
         source: ContactError,
     },
+    /// Grasps that cannot be diagnosed together, or as they are asked to be.
+    #[error("the study's grasps: {problem}")]
+    Grasps {
+        /// What is wrong, and the remedy.
+        problem: String,
+    },
     /// There is nothing to compare with.
     #[error(
         "none of the study's {recordings} recordings has a sample that can be simulated; {reasons}"

@@ -17,6 +17,7 @@ pub mod fit;
 pub mod checks;
 pub mod selection;
 pub mod design;
+pub mod grasp;
 
 pub use errors::InferenceError;
 pub use fit::fitting::{Fitting, Options, fit_study};

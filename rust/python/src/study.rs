@@ -227,6 +227,20 @@ fn recording(py: Python<'_>, recording: &StudyRecording) -> PyResult<Py<PyAny>> 
             )?;
             "pressure_map"
         }
+        Data::Grasp {
+            map,
+            sensels,
+            force,
+            force_direction,
+        } => {
+            entries.set_item("map", map_record(py, map)?)?;
+            entries.set_item("sensels", places_record(py, sensels)?)?;
+            let force = force.as_ref().map(|curve| curve_record(py, curve));
+            entries.set_item("force", force.transpose()?)?;
+            let direction = force_direction.map(|way| triple(py, Vec3::from(way)));
+            entries.set_item("force_direction", direction)?;
+            "grasp"
+        }
         Data::Scan {
             mesh,
             at_time_s,

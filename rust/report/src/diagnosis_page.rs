@@ -225,11 +225,11 @@ fn rivals(all: &[Rival]) -> String {
         let names = rival.effects.join(" + ").replace('_', " ");
         let _ = write!(
             html,
-            "<tr><td class='left'>{}</td><td>{}</td><td>{:.0} %</td><td>{:.0} %</td>",
+            "<tr><td class='left'>{}</td><td>{}</td><td>{:.0} %</td><td>{}</td>",
             escaped(&names),
             nats(rival.evidence),
             100.0 * rival.probability,
-            100.0 * rival.left
+            part_of(rival.left)
         );
         for part in rival.ledger {
             let _ = write!(html, "<td>{}</td>", nats(part));
@@ -240,8 +240,19 @@ fn rivals(all: &[Rival]) -> String {
 counts as the other alone, and has no probability of its own.</p>\n"
 }
 
-/// Evidence with one decimal; what rounds to nothing has no sign.
+/// A share in percent; a dash where it is not known, as of grasps.
+fn part_of(share: f64) -> String {
+    match share.is_finite() {
+        true => format!("{:.0} %", 100.0 * share),
+        false => "\u{2013}".to_owned(),
+    }
+}
+
+/// Evidence with one decimal; what rounds to nothing has no sign, what is not known is a dash.
 fn nats(evidence: f64) -> String {
+    if !evidence.is_finite() {
+        return "\u{2013}".to_owned();
+    }
     format!("{:.1}", (10.0 * evidence).round() / 10.0 + 0.0)
 }
 

@@ -59,6 +59,12 @@ fn observe_one(
             let seen = (&**map, motion.as_deref());
             said.map(seen, sensels.as_deref(), &mut measured)
         }
+        Data::Grasp { .. } => {
+            let text =
+                "a grasp is diagnosed with other grasps, and not fitted to presses of a tool";
+            measured.unknown.push(text.to_owned());
+            true
+        }
         Data::Scan {
             mesh,
             at_time_s,

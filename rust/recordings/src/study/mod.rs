@@ -37,6 +37,20 @@
 //! A sensel lies on the one triangle whose chart holds its center, and looks along that triangle's normal. Its area is the maker's; where
 //! the file states none, that of its patch of the chart on the mesh.
 //!
+//! A grasp is a mat on a product that a whole hand holds. The skin is the posed hand, the indenter a mesh in skin coordinates as it is held,
+//! and there is no site. The force trace has time_s, on the clock of the mat, and force_n.
+//!
+//! ```toml
+//! [[recordings]]
+//! name = "hold, 1"
+//! kind = "grasp"
+//! file = "hold_1.csv"        # time_s, row, col, pressure_kpa, or a maker's export
+//! indenter = "handle"
+//! force = "force_1.csv"      # optional
+//! force_direction = [1, 0, 0] # across the cut of a product in two halves; without it the trace is the sum of all normal forces
+//! protocol = "hold"          # repeats share it
+//! ```
+//!
 //! A handprint is an image with its scale, placed as a mat is: looking at the inked side, its columns count from left to right and its
 //! rows from the lower edge up, so `origin_mm` and `corner_uv` are where the image's lower left corner lies.
 //!
@@ -64,6 +78,8 @@ mod sensels;
 mod seat;
 mod charts;
 mod prints;
+mod frames;
+mod grasps;
 mod indentation;
 mod recordings;
 mod instrument;
@@ -157,6 +173,12 @@ impl Study {
             instrument,
             warnings,
         })
+    }
+
+    /// Whether it holds grasps.
+    pub fn has_grasps(&self) -> bool {
+        let is_grasp = |each: &StudyRecording| matches!(each.data, Data::Grasp { .. });
+        self.recordings.iter().any(is_grasp)
     }
 
     /// The recording of a name.

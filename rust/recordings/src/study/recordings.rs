@@ -1,6 +1,8 @@
 //! The recordings that a study lists, with what they were taken from.
 
 use super::charts::{self, OffChart};
+use super::frames::read_map;
+use super::grasps;
 use super::indentation;
 use super::indenters::Indenter;
 use super::place::Folder;
@@ -14,7 +16,7 @@ use crate::curve::Curve;
 use crate::fault::{Fault, shown};
 use crate::handprint::Handprint;
 use crate::meshes::{self, MeshFile};
-use crate::pressure_map::{PressureMap, PressureUnit};
+use crate::pressure_map::PressureMap;
 use crate::recording_file::ReadOptions;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -60,6 +62,18 @@ pub enum Data {
         /// The indentation that goes with it.
         motion: Option<Box<Curve>>,
     },
+    /// Frames of a mat on a product that a whole hand holds: the skin is the posed hand, in touch with the product.
+    Grasp {
+        /// The frames.
+        map: Box<PressureMap>,
+        /// Where the sensels lie on the product, in the map's order.
+        sensels: Vec<Option<PlacedSensel>>,
+        /// Force trace: channels `time_s` on the mat's clock, and `force_n`.
+        force: Option<Box<Curve>>,
+        /// What the trace measures: the force across this direction (a unit vector) in a product that is cut in two; `None` is the sum
+        /// of all normal forces.
+        force_direction: Option<[f64; 3]>,
+    },
     /// A surface under load, or before it.
     Scan {
         /// The deformed surface, mm; a point cloud has no triangles.
@@ -93,7 +107,7 @@ impl StudyRecording {
     pub(super) fn warnings(&self) -> Vec<String> {
         let of_file = match &self.data {
             Data::Indentation(curve) => &curve.warnings,
-            Data::PressureMap { map, .. } => &map.warnings,
+            Data::PressureMap { map, .. } | Data::Grasp { map, .. } => &map.warnings,
             Data::Scan { .. } => return Vec::new(),
             Data::Handprint { print, .. } => &print.warnings,
         };
@@ -146,25 +160,31 @@ fn read_setting(
     known: (&[Indenter], &[Site]),
     read: (String, PathBuf, Data),
 ) -> Result<StudyRecording, Fault> {
-    let (name, file, data) = read;
     let indenters: Vec<&str> = known
         .0
         .iter()
         .map(|indenter| indenter.name.as_str())
         .collect();
     let sites: Vec<&str> = known.1.iter().map(|site| site.name.as_str()).collect();
+    let indenter = defined(section, "indenter", &indenters)?;
+    if matches!(read.2, Data::Grasp { .. }) {
+        grasps::check_product(section, (&indenter, known.0))?;
+    }
     Ok(StudyRecording {
-        name,
-        file,
-        data,
-        indenter: defined(section, "indenter", &indenters)?,
-        site: defined(section, "site", &sites)?,
+        indenter,
+        site: match read.2 {
+            Data::Grasp { .. } => String::new(),
+            _ => defined(section, "site", &sites)?,
+        },
         protocol: section.text("protocol")?.unwrap_or_default(),
         subject: section.text("subject")?,
         day: section.text("day")?,
         temperature_c: section.number("temperature_c")?,
         rest_s: section.number("rest_s")?,
         order: section.number("order")?,
+        name: read.0,
+        file: read.1,
+        data: read.2,
     })
 }
 
@@ -194,12 +214,12 @@ fn read_data(
     let Some(entry) = section.get("kind") else {
         return Err(here(section.needs(
             "kind",
-            "give indentation, pressure_map, scan or handprint",
+            "give indentation, pressure_map, grasp, scan or handprint",
         )));
     };
     let kind = entry.text().map_err(here)?;
     let key = if kind == "scan" { "mesh" } else { "file" };
-    let known = ["indentation", "pressure_map", "scan", "handprint"];
+    let known = ["indentation", "pressure_map", "grasp", "scan", "handprint"];
     if !known.contains(&kind.as_str()) {
         let problem = format!("kind {} is not known", shown(kind.as_bytes()));
         return Err(here(Fault::line(
@@ -216,48 +236,38 @@ fn read_data(
     let file = folder.file(&file)?;
     let data = match kind.as_str() {
         "indentation" => Data::Indentation(indentation::of_section(section, &file, folder)?),
+        "grasp" => read_grasp(section, &file, folder)?,
         "scan" => read_scan(section, &file, folder)?,
         "handprint" => prints::read(section, (&file, skin), folder)?,
-        _ => read_map(section, &file, folder)?,
+        _ => read_pressures(section, &file, folder)?,
     };
     Ok((file, data))
 }
 
-fn read_map(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data, RecordingError> {
-    let here = |fault: Fault| folder.fault(fault);
-    let maps = crate::read(file)?.maps;
-    let wanted = section.text("mat").map_err(here)?;
-    let mut map = choose(section, maps, wanted).map_err(here)?;
-    if let Some(entry) = section.get("calibrated") {
-        let is_calibrated = entry.boolean().map_err(here)?;
-        match (is_calibrated, map.unit) {
-            (false, _) => map.unit = PressureUnit::RawCounts,
-            (true, PressureUnit::Kilopascal) => {}
-            (true, _) => {
-                let problem =
-                    "is true, but the file holds raw counts or states no unit".to_string();
-                return Err(here(entry.fault(
-                    problem,
-                    "export calibrated pressures, or write calibrated = false",
-                )));
-            }
-        }
-    } else if map.unit != PressureUnit::Kilopascal {
-        let problem = format!("{} holds raw counts, or states no unit", section.name);
-        return Err(here(section.fault(
-            problem,
-            "declare it with calibrated = false, or export calibrated pressures",
-        )));
-    }
-    if map.unit == PressureUnit::RawCounts {
-        map.warnings
-            .push("not calibrated: only shape and relative size are used".into());
-    }
-    let sensels = read_places(section, (&map, OffChart::Refused), folder)?;
+fn read_pressures(
+    section: &mut Section,
+    file: &Path,
+    folder: &Folder,
+) -> Result<Data, RecordingError> {
+    let map = read_map(section, file, folder)?;
     Ok(Data::PressureMap {
+        sensels: read_places(section, (&map, OffChart::Refused), folder)?,
+        map: Box::new(map),
+        motion: read_motion(section, folder)?,
+    })
+}
+
+fn read_grasp(section: &mut Section, file: &Path, folder: &Folder) -> Result<Data, RecordingError> {
+    let map = read_map(section, file, folder)?;
+    grasps::check(section, &map).map_err(|fault| folder.fault(fault))?;
+    let places = read_places(section, (&map, OffChart::Refused), folder)?;
+    let sensels = places.ok_or_else(|| folder.fault(grasps::unplaced(section)))?;
+    let trace = grasps::read_trace(section, folder)?;
+    Ok(Data::Grasp {
         map: Box::new(map),
         sensels,
-        motion: read_motion(section, folder)?,
+        force: trace.force.map(Box::new),
+        force_direction: trace.direction,
     })
 }
 
@@ -331,33 +341,4 @@ pub(super) fn read_places(
     };
     placing.finish().map_err(here)?;
     Ok(Some(placed))
-}
-
-/// The mat of a name; the only one needs none.
-fn choose(
-    section: &Section,
-    mut maps: Vec<PressureMap>,
-    wanted: Option<String>,
-) -> Result<PressureMap, Fault> {
-    let names: Vec<String> = maps.iter().map(|map| map.name.clone()).collect();
-    let at = match &wanted {
-        None if maps.len() == 1 => Some(0),
-        None => None,
-        Some(wanted) => names.iter().position(|name| name == wanted),
-    };
-    match at {
-        Some(at) => Ok(maps.swap_remove(at)),
-        None => {
-            let problem = format!(
-                "{} must say which of {} mats of its file it is",
-                section.name,
-                maps.len()
-            );
-            let remedy = match names.is_empty() {
-                true => "name a file of pressures".to_string(),
-                false => format!("add mat = \"...\" with one of {}", names.join(", ")),
-            };
-            Err(Fault::line(section.line, problem, remedy))
-        }
-    }
 }

@@ -3,6 +3,7 @@
 
 mod afm;
 mod bounds;
+mod grasps;
 mod jpk;
 mod makers;
 mod ply;
