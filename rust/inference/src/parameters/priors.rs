@@ -51,13 +51,16 @@ pub const FORCE_ZERO: f64 = 0.01;
 pub const COUNTS: f64 = 12.0;
 
 /// Standard deviation of the factor by which the model's form may be off, for each tool at each site, by way (`stiffness_factor::modes`): of a ball
-/// on flat skin (`forward::tables::sphere`), of another tool there, and on any other skin.
+/// on flat skin (`forward::tables::sphere`), of another tool there, over bone whose width is stated, and on round skin where it is not.
 ///
 /// Against the finite elements of the calibration's flat pads without effects balls are off by 0.4 % in the whole, by 0.3 % in their tilt and
-/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more; on the
-/// round fingertip of `tests/proof` the layer is off by up to 9 %.
-pub const FORM_ERROR: [[f64; KNOTS]; 3] = [
+/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more. Against
+/// solids of pads over bone (`tests/proof/deep_pads/form_error.py`, the reference solve; not the pads of any trial) the layer over a stated bone
+/// is off by 2.2, 2.7 and 2.6 % (rms of fingertips, a phalanx and palms, the larger of the two); over a bone that is not stated by up to 26 % in the whole
+/// and 10 % in its tilt, most of which the moduli take, and 6 % in its bend.
+pub const FORM_ERROR: [[f64; KNOTS]; 4] = [
     [0.006, 0.006, 0.003, 0.02],
     [0.01, 0.01, 0.004, 0.02],
+    [0.03, 0.03, 0.03, 0.05],
     [0.05, 0.05, 0.03, 0.05],
 ];

@@ -82,18 +82,25 @@ pub(crate) fn of_place(
 
 /// As [`FORM_ERROR`] has it for the tool and the skin of a place.
 pub(crate) fn form_error(elastic: &Elastic, place: usize) -> [f64; KNOTS] {
-    let is_exact = elastic.places[place].is_exact;
-    FORM_ERROR[if is_exact {
-        0
-    } else {
-        1 + usize::from(!elastic.is_flat)
+    match elastic.places[place].is_exact {
+        true => FORM_ERROR[0],
+        false => meshed(elastic),
+    }
+}
+
+/// That of a tool that is pressed on the mesh.
+fn meshed(elastic: &Elastic) -> [f64; KNOTS] {
+    FORM_ERROR[match (elastic.is_bone_stated, elastic.is_flat) {
+        (true, _) => 2,
+        (false, true) => 1,
+        (false, false) => 3,
     }]
 }
 
 /// How well the elastic answers of the study's tools are known, in words.
 pub fn form_note(elastic: &Elastic) -> String {
     let percent = |form: [f64; KNOTS]| 100.0 * form[0];
-    let meshed = percent(FORM_ERROR[1 + usize::from(!elastic.is_flat)]);
+    let meshed = percent(meshed(elastic));
     let places = &elastic.places[..elastic.studied];
     let balls = places.iter().filter(|place| place.is_exact).count();
     let known = format!(
@@ -101,6 +108,11 @@ pub fn form_note(elastic: &Elastic) -> String {
         percent(FORM_ERROR[0])
     );
     match (balls, places.len() - balls) {
+        (0, _) if !elastic.is_flat && !elastic.is_bone_stated => format!(
+            "pressed on the mesh, over bone without end; its forces may be off by {meshed} % over a narrow bone. State the bone \
+             (bone_half_width_mm in [skin.materials]) and smaller effects can be named: then it is {} %",
+            percent(FORM_ERROR[2])
+        ),
         (0, _) => format!("pressed on the mesh; its forces may be off by {meshed} %"),
         (_, 0) => known,
         (_, others) => format!(

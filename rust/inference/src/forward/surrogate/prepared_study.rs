@@ -253,6 +253,9 @@ mod tests {
         ready.elastic.is_flat = false;
         let round = of(&ready.elastic, 0);
         assert!(flat[1] < flat[0] && flat[0] < round);
+        ready.elastic.is_bone_stated = true;
+        let stated = of(&ready.elastic, 0);
+        assert!(flat[0] < stated && stated < round);
     }
 
     #[test]

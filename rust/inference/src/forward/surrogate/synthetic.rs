@@ -78,6 +78,7 @@ pub fn ready(
             variants: Vec::new(),
             limit_depth: LIMIT_MM,
             is_flat: true,
+            is_bone_stated: false,
         },
         base_material: Material::finger_layer(),
         courses,

@@ -38,6 +38,8 @@ pub struct Elastic {
     pub studied: usize,
     /// Whether the skin is flat about every site.
     pub is_flat: bool,
+    /// Whether the study states how wide the bone is, in every region.
+    pub is_bone_stated: bool,
 }
 
 impl Elastic {
@@ -57,6 +59,7 @@ impl Elastic {
             drained: Vec::new(),
             studied: replay.places(),
             is_flat,
+            is_bone_stated: sphere::has_width(&replay.tissue.materials),
         };
         elastic.add(replay, g_mpa, control)?;
         Ok(elastic)
