@@ -138,7 +138,7 @@ fn explained(
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, InferenceError> {
     let (decision, gain) =
-        crate::gates::held_out_gate::decide(ready, rungs, fitting.measured(), options.seed);
+        crate::gates::form_gate::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&decision.cannot_tell[..], quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;

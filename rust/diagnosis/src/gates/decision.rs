@@ -25,7 +25,7 @@ const DETECTED_ELSE: (f64, f64) = (5.5, 7.5);
 const LEAD: (f64, f64) = (3.0, 4.4);
 /// Coherent misfit per sample that no name explains, from which something unlisted is there: where nothing is missing it reaches 0.08, under
 /// a blister at least 0.22 (calibration).
-const UNLISTED: f64 = 0.13;
+pub(crate) const UNLISTED: f64 = 0.13;
 /// Evidence of a listed effect from which unsteady skin does not keep it from being named.
 const BEYOND_HETEROSCEDASTIC: f64 = 60.0;
 
@@ -73,7 +73,7 @@ pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     }
 }
 
-fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
+pub(crate) fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
     Decision {
         verdict,
         named: None,
@@ -179,7 +179,7 @@ fn alone<'a>(ready: &PreparedStudy, rungs: &'a Rungs, best: &'a Scored) -> Decis
 }
 
 /// Nothing is missing, with the study's own parameters or with others.
-fn nothing(ready: &PreparedStudy, rungs: &Rungs) -> Verdict {
+pub(crate) fn nothing(ready: &PreparedStudy, rungs: &Rungs) -> Verdict {
     let at = &rungs.base.refit.at;
     let moved = (0..2).any(|k| {
         let start = ready.shared[k].start;

@@ -92,6 +92,24 @@ pub fn decide<'a>(
     (decision, Some(all))
 }
 
+/// What one explanation gains on protocols that it was not fitted to, and whether that is enough; None where none can be held out.
+pub(crate) fn predicted_by_protocols(
+    (ready, rungs): (&PreparedStudy, &Rungs),
+    measured: &[Measured],
+    (found, seed): (&Scored, u64),
+) -> Option<(Gain, bool)> {
+    let judged = Judged {
+        ready,
+        measured,
+        found,
+        overdispersion: rungs.overdispersion,
+        seed,
+    };
+    let gain = judged.by_protocol()?;
+    let predicts = !is_refuted(found, &gain);
+    Some((gain, predicts))
+}
+
 /// Whether it is a ceiling of the instrument with much evidence: it shows at the largest forces alone, which one protocol may have.
 fn may_be_shown_by_repeats(named: &Scored) -> bool {
     let is_ceiling = named

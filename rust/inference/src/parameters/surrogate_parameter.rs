@@ -22,6 +22,8 @@ pub enum Kind {
     Gain(usize),
     /// Logarithm of the factor by which the model's form is off, by tool and way.
     Form(usize, usize),
+    /// Size of a form that all tools at a site share, in standard deviations: by site and form (`priors::SHARED_FORM`).
+    SharedForm(usize, usize),
     /// A number of a mechanism: which of the model's, which number.
     Of(usize, usize),
 }

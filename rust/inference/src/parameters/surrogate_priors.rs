@@ -3,12 +3,13 @@
 use crate::forward::mesh::replay::Replay;
 use thenar_contact::Material;
 
-use crate::forward::mesh::nuisance::KNOTS;
 use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
+use crate::forward::tables::form_ways::WAYS;
 use crate::noise::estimate::Noise;
 use crate::parameters::priors::{
-    DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MOST, TOUCH, UNKNOWN_TOUCH,
+    DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MEASURED_FORM, MOST, SHARED, SHARED_FORM, TOUCH,
+    UNKNOWN_TOUCH,
 };
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
@@ -66,7 +67,7 @@ pub(crate) fn touch(scatter_mm: Option<f64>) -> f64 {
 pub(crate) fn of_place(
     place: usize,
     (judged, deep): (f64, f64),
-    (form, has_regions): ([f64; KNOTS], bool),
+    (form, has_regions): ([f64; WAYS], bool),
 ) -> Vec<Coordinate> {
     let mut all = vec![Coordinate::about(
         Kind::Touch(place),
@@ -76,31 +77,86 @@ pub(crate) fn of_place(
     if has_regions {
         all.push(Coordinate::about(Kind::Scale(place), (0.5, MOST), 1e-3));
     }
-    all.extend((0..KNOTS).map(|k| Coordinate::about(Kind::Form(place, k), (form[k], MOST), 1e-3)));
+    let is_off = |k: &usize| form[*k] > 0.0;
+    let one = |k| Coordinate::about(Kind::Form(place, k), (form[k], MOST), 1e-3);
+    all.extend((0..WAYS).filter(is_off).map(one));
     all
 }
 
+/// These coordinates with the form of the model as free as it was measured to be; what is new comes last. None on flat skin over bone without
+/// end, whose form is known, and on a half space: what was measured is tissue over bone.
+pub(crate) fn with_measured_form(
+    shared: &[Coordinate],
+    elastic: &Elastic,
+) -> Option<Vec<Coordinate>> {
+    let is_known = elastic.is_flat && !elastic.is_bone_stated;
+    if is_known || !elastic.shared_depth.is_finite() {
+        return None;
+    }
+    let mut all = shared.to_vec();
+    let places: Vec<usize> = (0..elastic.places.len())
+        .filter(|p| shared.iter().any(|c| c.kind == Kind::Touch(*p)))
+        .collect();
+    for place in &places {
+        for (way, sd) in MEASURED_FORM.into_iter().enumerate() {
+            let kind = Kind::Form(*place, way);
+            match all.iter_mut().find(|c| c.kind == kind) {
+                Some(known) => {
+                    let wider = sd.max(known.prior.unwrap_or(sd));
+                    *known = Coordinate::about(kind, (wider, MOST), 1e-3);
+                }
+                None => all.push(Coordinate::about(kind, (sd, MOST), 1e-3)),
+            }
+        }
+    }
+    let mut sites: Vec<usize> = places.iter().map(|p| elastic.site_of[*p]).collect();
+    sites.sort_unstable();
+    sites.dedup();
+    let is_off = |form: &usize| elastic.shared_form()[*form].iter().any(|size| *size != 0.0);
+    for site in sites {
+        let one = |form| Coordinate::about(Kind::SharedForm(site, form), (1.0, MOST), 0.02);
+        all.extend((0..SHARED).filter(is_off).map(one));
+    }
+    Some(all)
+}
+
 /// As [`FORM_ERROR`] has it for the tool and the skin of a place.
-pub(crate) fn form_error(elastic: &Elastic, place: usize) -> [f64; KNOTS] {
-    let is_exact = elastic.places[place].is_exact;
-    FORM_ERROR[if is_exact {
-        0
-    } else {
-        1 + usize::from(!elastic.is_flat)
+pub(crate) fn form_error(elastic: &Elastic, place: usize) -> [f64; WAYS] {
+    match elastic.places[place].is_exact {
+        true => FORM_ERROR[0],
+        false => meshed(elastic),
+    }
+}
+
+/// That of a tool that is pressed on the mesh.
+fn meshed(elastic: &Elastic) -> [f64; WAYS] {
+    FORM_ERROR[match (elastic.is_bone_stated, elastic.is_flat) {
+        (true, _) => 2,
+        (false, true) => 1,
+        (false, false) => 3,
     }]
 }
 
 /// How well the elastic answers of the study's tools are known, in words.
 pub fn form_note(elastic: &Elastic) -> String {
-    let percent = |form: [f64; KNOTS]| 100.0 * form[0];
-    let meshed = percent(FORM_ERROR[1 + usize::from(!elastic.is_flat)]);
+    let percent = |size: f64| (100.0 * size).round();
+    let off = |shared: [[f64; WAYS]; SHARED]| {
+        let all = shared.iter().flatten().map(|size| size.abs());
+        percent(all.fold(meshed(elastic)[0], f64::max))
+    };
+    let meshed = off(elastic.shared_form());
     let places = &elastic.places[..elastic.studied];
     let balls = places.iter().filter(|place| place.is_exact).count();
     let known = format!(
         "a ball on flat skin is pressed without a mesh, and its force known to {} %",
-        percent(FORM_ERROR[0])
+        100.0 * FORM_ERROR[0][0]
     );
     match (balls, places.len() - balls) {
+        (0, _) if !elastic.is_flat && !elastic.is_bone_stated => format!(
+            "pressed on the mesh, over bone without end; its forces may be off by {meshed} % over a narrow bone. State the bone \
+             (bone_half_width_mm in [skin.materials]) and smaller effects can be named: then it is {} %",
+            off(SHARED_FORM[0])
+        ),
         (0, _) => format!("pressed on the mesh; its forces may be off by {meshed} %"),
         (_, 0) => known,
         (_, others) => format!(

@@ -94,7 +94,7 @@ fn lower(one: Scored, other: Scored) -> Scored {
 }
 
 /// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
-fn lack_of_fit(surrogate: &Surrogate<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
+pub(crate) fn lack_of_fit(surrogate: &Surrogate<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
     let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
     let mut sums = vec![(0.0, 0.0f64, 0.0); count];
     for (sample, _, _) in surrogate.phases() {

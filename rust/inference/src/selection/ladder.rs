@@ -20,7 +20,7 @@ use crate::selection::candidates::singles;
 use crate::selection::scored::{Rungs, Scored};
 
 /// Price of one free number in nats.
-const PENALTY: f64 = 1.0;
+pub(crate) const PENALTY: f64 = 1.0;
 /// Names among which all pairs are tried.
 const PAIRED: usize = 6;
 /// Names that are tried beside the leader.

@@ -4,6 +4,7 @@ pub mod scored;
 pub mod candidates;
 pub(crate) mod candidate_fits;
 pub mod ladder;
+pub mod form_check;
 pub mod model_weights;
 pub mod cross_validation;
 pub(crate) mod negative_control;

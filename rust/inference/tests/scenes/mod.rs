@@ -103,6 +103,7 @@ pub fn material(g0_mpa: f64, g_lim_mpa: f64, thickness_mm: f64) -> StudyMaterial
         d_lim_mm: Some(4.0),
         thickness_mm: Some(thickness_mm),
         fit: vec!["g0_mpa".into(), "g_lim_mpa".into()],
+        ..StudyMaterial::default()
     }
 }
 

@@ -14,6 +14,9 @@ use std::path::Path;
 const MOST_REGIONS: usize = 4096;
 /// Parameters that a fit may change.
 const FITTED: &[&str] = &["g0_mpa", "g_lim_mpa", "d_lim_mm", "thickness_mm"];
+/// What else a length may be.
+const OR_HALF_SPACE: &str = "give a number above zero, or \"inf\" for a half space";
+const OR_ENDLESS: &str = "give a number above zero, or \"inf\" for bone without end";
 
 /// The undeformed skin.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -50,6 +53,10 @@ pub struct StudyMaterial {
     pub d_lim_mm: Option<f64>,
     /// Soft tissue over bone, mm; infinite for a half space.
     pub thickness_mm: Option<f64>,
+    /// Half the width of the bone under the tissue, mm; infinite for bone without end.
+    pub bone_half_width_mm: Option<f64>,
+    /// Half the length of that bone, mm; infinite for a long one.
+    pub bone_half_length_mm: Option<f64>,
     /// Parameters that a fit may change.
     pub fit: Vec<String>,
 }
@@ -92,28 +99,24 @@ pub(super) fn read(root: &mut Section, folder: &Folder) -> Result<StudySkin, Rec
 }
 
 fn read_material(region: String, mut section: Section) -> Result<StudyMaterial, Fault> {
+    let length_line = section.get("bone_half_length_mm").map(|entry| entry.line);
     let mut material = StudyMaterial {
         region,
         g0_mpa: section.positive("g0_mpa")?,
         g_lim_mpa: section.positive("g_lim_mpa")?,
         d_lim_mm: section.positive("d_lim_mm")?,
-        thickness_mm: None,
+        thickness_mm: length(&mut section, "thickness_mm", OR_HALF_SPACE)?,
+        bone_half_width_mm: length(&mut section, "bone_half_width_mm", OR_ENDLESS)?,
+        bone_half_length_mm: length(&mut section, "bone_half_length_mm", OR_ENDLESS)?,
         fit: vec!["g0_mpa".into(), "g_lim_mpa".into()],
     };
-    if let Some(entry) = section.get("thickness_mm") {
-        let is_half_space = entry.is_text() && entry.text()? == "inf";
-        let thickness = if is_half_space {
-            f64::INFINITY
-        } else {
-            entry.number()?
-        };
-        if thickness <= 0.0 {
-            return Err(entry.fault(
-                format!("is {thickness}"),
-                "give a number above zero, or \"inf\" for a half space",
-            ));
-        }
-        material.thickness_mm = Some(thickness);
+    let has_width = material.bone_half_width_mm.is_some();
+    if let Some(line) = length_line.filter(|_| !has_width) {
+        return Err(Fault::line(
+            line,
+            "bone_half_length_mm stands without bone_half_width_mm".into(),
+            "state half the width of the bone too, or leave both out",
+        ));
     }
     if let Some(entry) = section.get("fit") {
         material.fit = entry.texts()?;
@@ -131,6 +134,27 @@ fn read_material(region: String, mut section: Section) -> Result<StudyMaterial, 
     }
     section.finish()?;
     Ok(material)
+}
+
+/// A length above zero, mm, or "inf".
+fn length(
+    section: &mut Section,
+    key: &'static str,
+    remedy: &'static str,
+) -> Result<Option<f64>, Fault> {
+    let Some(entry) = section.get(key) else {
+        return Ok(None);
+    };
+    let is_endless = entry.is_text() && entry.text()? == "inf";
+    let found = if is_endless {
+        f64::INFINITY
+    } else {
+        entry.number()?
+    };
+    if found <= 0.0 {
+        return Err(entry.fault(format!("is {found}"), remedy));
+    }
+    Ok(Some(found))
 }
 
 fn check_region(region: &str, names: &[String], line: usize) -> Result<(), Fault> {

@@ -101,5 +101,7 @@ fn material(given: Option<&StudyMaterial>) -> Material {
     take(&mut material.g_lim_mpa, given.g_lim_mpa);
     take(&mut material.d_lim_mm, given.d_lim_mm);
     take(&mut material.thickness_mm, given.thickness_mm);
+    take(&mut material.bone_half_width_mm, given.bone_half_width_mm);
+    take(&mut material.bone_half_length_mm, given.bone_half_length_mm);
     material
 }

@@ -1,9 +1,10 @@
 //! A candidate model: base plus mechanisms, with its parameters and their values by what they belong to.
 
-use crate::forward::mesh::nuisance::KNOTS;
 use crate::forward::surrogate::mechanism::{HIGHEST, Law, MEDIANS_S, Mechanism, RANGES};
 use crate::forward::surrogate::relaxation_spectrum::Spectrum;
 use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::forward::tables::form_ways::WAYS;
+use crate::parameters::priors::SHARED;
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
 /// A model that is screened: what is added to the base.
@@ -46,7 +47,8 @@ impl<'a> Model<'a> {
             touch: vec![0.0; places],
             zero: vec![0.0; courses],
             gain: vec![0.0; courses],
-            form: vec![[0.0; KNOTS]; places],
+            form: vec![[0.0; WAYS]; places],
+            shared_form: vec![[0.0; SHARED]; places],
             of: vec![Vec::new(); self.mechanisms.len()],
         };
         for (coordinate, value) in self.coordinates.iter().zip(at) {
@@ -58,6 +60,7 @@ impl<'a> Model<'a> {
                 Kind::Zero(course) => set.zero[course] = *value,
                 Kind::Gain(course) => set.gain[course] = *value,
                 Kind::Form(place, mode) => set.form[place][mode] = *value,
+                Kind::SharedForm(site, form) => set.shared_form[site][form] = *value,
                 Kind::Of(mechanism, _) => set.of[mechanism].push(*value),
             }
         }
@@ -80,7 +83,9 @@ pub struct Setting {
     /// Logarithm of the gain by course.
     pub gain: Vec<f64>,
     /// What the model's form is off by, by place.
-    pub form: Vec<[f64; KNOTS]>,
+    pub form: Vec<[f64; WAYS]>,
+    /// Sizes of the forms that tools share, by site.
+    pub shared_form: Vec<[f64; SHARED]>,
     /// By mechanism.
     pub of: Vec<Vec<f64>>,
 }

@@ -2,7 +2,6 @@
 
 use crate::forward::surrogate::candidate_model::Model;
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
-use crate::forward::surrogate::stiffness_factor::modes;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::parameters::surrogate_parameter::Kind;
 
@@ -44,6 +43,7 @@ impl Surrogate<'_> {
                 Law::GainStep { from } => one.order >= *from,
                 _ => true,
             },
+            Kind::SharedForm(site, _) => site == self.elastic.site_of[one.place],
             Kind::First | Kind::Limit => true,
         }
     }
@@ -60,10 +60,14 @@ impl Surrogate<'_> {
         match kind {
             Kind::Gain(_) if all(Mechanism::is_read_in_proportion) => Some(forces.to_vec()),
             Kind::Scale(_) if all(Mechanism::is_in_proportion) => Some(forces.to_vec()),
-            Kind::Form(place, mode) if all(Mechanism::is_in_proportion) => {
-                let table = &self.elastic.places[place];
+            Kind::Form(..) | Kind::SharedForm(..) if all(Mechanism::is_in_proportion) => {
                 let depths = self.depths(model, &model.setting(self, at), (course, forces));
-                let slope = |(d, f): (&f64, &f64)| f * modes(table, *d)[mode];
+                let way = |depth: f64| match kind {
+                    Kind::Form(place, way) => self.form_of_tool(place, depth)[way],
+                    Kind::SharedForm(_, form) => self.form_of_site(depth)[form],
+                    _ => 0.0,
+                };
+                let slope = |(d, f): (&f64, &f64)| f * way(*d);
                 Some(depths.iter().zip(forces).map(slope).collect())
             }
             _ => None,
@@ -76,10 +80,11 @@ mod tests {
     use thenar_contact::effects::Effect;
 
     use super::*;
-    use crate::forward::mesh::nuisance::KNOTS;
     use crate::forward::surrogate::prepared_study::PreparedStudy;
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+    use crate::forward::tables::form_ways::WAYS;
     use crate::observe::measured::Phase;
+    use crate::parameters::priors::SHARED;
     use crate::parameters::surrogate_parameter::Coordinate;
     use crate::selection::candidates::singles;
 
@@ -90,14 +95,19 @@ mod tests {
         let readings = (0..=80).map(|k| read(f64::from(k) / 40.0)).collect();
         let (mut made, _) = ready(vec![tool(2.0, ball, |d| d.sqrt())], &[(0, readings)], 0.1);
         let kinds = [Kind::Gain(0), Kind::Scale(0), Kind::Touch(0), Kind::Zero(0)];
-        let forms = (0..KNOTS).map(|k| Kind::Form(0, k));
-        let free = kinds.into_iter().chain(forms).map(|kind| Coordinate {
-            kind,
-            start: 0.03,
-            bounds: (-1.0, 1.0),
-            prior: Some(0.1),
-            step: 1e-5,
-        });
+        let forms = (0..WAYS).map(|k| Kind::Form(0, k));
+        let shared = (0..SHARED).map(|k| Kind::SharedForm(0, k));
+        let free = kinds
+            .into_iter()
+            .chain(forms)
+            .chain(shared)
+            .map(|kind| Coordinate {
+                kind,
+                start: 0.03,
+                bounds: (-1.0, 1.0),
+                prior: Some(0.1),
+                step: 1e-5,
+            });
         made.shared.extend(free);
         made
     }

@@ -242,6 +242,8 @@ fn is_flat(study: &Study) -> bool {
 mod tests {
     use super::*;
     use crate::forward::surrogate::synthetic::{ready, tool};
+    use crate::forward::tables::form_ways::WAYS;
+    use crate::parameters::surrogate_priors::with_measured_form;
 
     #[test]
     fn form_prior_widens_from_sphere_to_mesh_to_round_skin() {
@@ -253,6 +255,37 @@ mod tests {
         ready.elastic.is_flat = false;
         let round = of(&ready.elastic, 0);
         assert!(flat[1] < flat[0] && flat[0] < round);
+        ready.elastic.is_bone_stated = true;
+        let stated = of(&ready.elastic, 0);
+        assert!(flat[0] < stated && stated < round);
+    }
+
+    /// On round skin a name is held against a form that is freer than the fit's, the more so where the bone is not stated, and on flat skin not.
+    #[test]
+    fn measured_form_is_free_on_round_skin() {
+        let (mut ready, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &[], 0.1);
+        let round = of_place(0, (0.05, 1.0), ([0.01; WAYS], false));
+        let free = |elastic: &Elastic| with_measured_form(&round, elastic);
+        assert!(free(&ready.elastic).is_none());
+        ready.elastic.is_flat = false;
+        let unstated = free(&ready.elastic).unwrap();
+        assert_eq!(
+            unstated[..round.len()]
+                .iter()
+                .map(|c| c.kind)
+                .collect::<Vec<_>>(),
+            round.iter().map(|c| c.kind).collect::<Vec<_>>()
+        );
+        let sd = |all: &[Coordinate], kind: Kind| {
+            all.iter().find(|c| c.kind == kind).and_then(|c| c.prior)
+        };
+        assert!(sd(&unstated, Kind::Form(0, 2)) > sd(&round, Kind::Form(0, 2)));
+        assert!(sd(&unstated, Kind::SharedForm(0, 0)) == Some(1.0));
+        let bend = |elastic: &Elastic| elastic.shared_form()[0][2];
+        let most = bend(&ready.elastic);
+        ready.elastic.is_bone_stated = true;
+        assert!(bend(&ready.elastic) < 0.6 * most && bend(&ready.elastic) > 0.01);
+        assert!(free(&ready.elastic).unwrap().len() < unstated.len());
     }
 
     #[test]

@@ -2,12 +2,16 @@
 
 use thenar_contact::effects::Effect;
 
-use crate::forward::mesh::nuisance::KNOTS;
 use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::mechanism::{DeformationMeasure, Law};
 use crate::forward::surrogate::surrogate_data::Surrogate;
-use crate::forward::tables::elastic_table::{Tabulated, radius, rung};
+use crate::forward::tables::elastic_table::{radius, rung};
+use crate::forward::tables::form_ways::{WAYS, ways};
 use crate::interpolation::{interval, mixed};
+use crate::parameters::priors::{SHARED, SHARED_DEPTH};
+
+/// Depth over that which shared forms were measured to, up to which they go on: half the thickness.
+const DEEPEST: f64 = 0.5 / SHARED_DEPTH;
 
 impl Surrogate<'_> {
     /// Modulus, form and changed response at a depth: force over the table's.
@@ -17,12 +21,14 @@ impl Surrogate<'_> {
         set: &Setting,
         (place, depth): (usize, f64),
     ) -> f64 {
-        let table = &self.elastic.places[place];
         let share = (depth / self.elastic.limit_depth).clamp(0.0, 1.0);
         let modulus = set.first * (1.0 - share) + set.limit * share;
         let mut log = set.scale[place];
-        let form = set.form[place].iter().zip(modes(table, depth));
-        log += form.map(|(size, mode)| size * mode).sum::<f64>();
+        log += sum(&set.form[place], &self.form_of_tool(place, depth));
+        log += sum(
+            &set.shared_form[self.elastic.site_of[place]],
+            &self.form_of_site(depth),
+        );
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             match &mechanism.law {
                 Law::Tabulated(form) => {
@@ -37,6 +43,17 @@ impl Surrogate<'_> {
             }
         }
         modulus * libm::exp(log)
+    }
+
+    /// Ways in which the form of one tool's force may be off at a depth, over that tool's deepest.
+    pub(crate) fn form_of_tool(&self, place: usize, depth: f64) -> [f64; WAYS] {
+        ways((depth / self.elastic.places[place].deepest).clamp(0.0, 1.0))
+    }
+
+    /// The forms that all tools at a site share, at a depth: as they were measured, over a part of the tissue's thickness.
+    pub(crate) fn form_of_site(&self, depth: f64) -> [f64; SHARED] {
+        let ways = ways((depth / self.elastic.shared_depth).clamp(0.0, DEEPEST));
+        self.elastic.shared_form().map(|form| sum(&form, &ways))
     }
 
     fn tabled(
@@ -75,16 +92,7 @@ impl Surrogate<'_> {
     }
 }
 
-/// Ways in which the model's form may be off at a depth: the whole tool, its tilt and its bend over depth, and first touch.
-pub(crate) fn modes(table: &Tabulated, depth: f64) -> [f64; KNOTS] {
-    let u = (depth / table.deepest).clamp(0.0, 1.0);
-    [
-        1.0,
-        2.0 * u - 1.0,
-        6.0 * u * (u - 1.0) + 1.0,
-        libm::exp(-u / FIRST),
-    ]
+/// Products of each of two, summed.
+fn sum<const N: usize>(sizes: &[f64; N], ways: &[f64; N]) -> f64 {
+    sizes.iter().zip(ways).map(|(size, way)| size * way).sum()
 }
-
-/// Part of the deepest depth over which an error at first touch dies away.
-const FIRST: f64 = 0.05;

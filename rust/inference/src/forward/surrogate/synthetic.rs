@@ -15,6 +15,7 @@ use crate::noise::correlation::Correlation;
 use crate::noise::estimate::Noise;
 use crate::noise::whitening::Whitening;
 use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
+use crate::parameters::priors::SHARED_DEPTH;
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
 /// Depth at which the modulus of made tissue stops growing, mm.
@@ -74,10 +75,13 @@ pub fn ready(
         elastic: Elastic {
             drained: vec![1.0; tools.len()],
             studied: tools.len(),
+            site_of: vec![0; tools.len()],
             places: tools,
             variants: Vec::new(),
             limit_depth: LIMIT_MM,
             is_flat: true,
+            is_bone_stated: false,
+            shared_depth: SHARED_DEPTH * LIMIT_MM,
         },
         base_material: Material::finger_layer(),
         courses,

@@ -1,6 +1,6 @@
 //! Elastic tables of every tool at its site, with and without effects that change the response.
 
-use crate::forward::mesh::replay::Replay;
+use crate::forward::mesh::replay::{Place, Replay};
 use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
@@ -8,10 +8,12 @@ use thenar_contact::{ActiveEffect, Control, Material};
 use crate::errors::InferenceError;
 use crate::forward::mesh::press_table::PressTable;
 use crate::forward::tables::elastic_table::{Tabulated, Variant};
+use crate::forward::tables::form_ways::WAYS;
 use crate::forward::tables::sphere::{self, SphereTable};
 use crate::forward::tables::stiff_skin;
 use crate::forward::tables::table_presses::{ratios, tables};
 use crate::interpolation::Table;
+use crate::parameters::priors::{SHARED, SHARED_DEPTH, SHARED_FORM};
 
 /// Thickness over the base's at which bone is tabulated.
 const THICKNESSES: [f64; 5] = [0.6, 0.8, 1.0, 1.3, 1.8];
@@ -38,6 +40,12 @@ pub struct Elastic {
     pub studied: usize,
     /// Whether the skin is flat about every site.
     pub is_flat: bool,
+    /// By place: number of its site.
+    pub site_of: Vec<usize>,
+    /// Depth to which the forms that tools share were measured, mm.
+    pub shared_depth: f64,
+    /// Whether the study states how wide the bone is, in every region.
+    pub is_bone_stated: bool,
 }
 
 impl Elastic {
@@ -57,6 +65,9 @@ impl Elastic {
             drained: Vec::new(),
             studied: replay.places(),
             is_flat,
+            site_of: Vec::new(),
+            shared_depth: SHARED_DEPTH * thinnest(&replay.tissue.materials),
+            is_bone_stated: sphere::has_width(&replay.tissue.materials),
         };
         elastic.add(replay, g_mpa, control)?;
         Ok(elastic)
@@ -76,6 +87,7 @@ impl Elastic {
         let flat = flattened(&start, g_mpa);
         let (known, places) = (self.places.len(), replay.places());
         let at: Vec<usize> = (known..places).collect();
+        self.site_of = sites(replay);
         let mut base = tables(replay, (&[], &flat, RUNGS), (&at, control))?;
         let spheres = sphere::known(replay, self.is_flat, (&at, &base, &flat));
         for (table, ball) in base.iter_mut().zip(&spheres) {
@@ -112,11 +124,32 @@ impl Elastic {
         }
     }
 
+    /// The forms by which all tools at a site may be off alike, each of one standard deviation, by way.
+    pub(crate) fn shared_form(&self) -> [[f64; WAYS]; SHARED] {
+        match (self.is_bone_stated, self.is_flat) {
+            (true, _) => SHARED_FORM[0],
+            (false, false) => SHARED_FORM[1],
+            (false, true) => [[0.0; WAYS]; SHARED],
+        }
+    }
+
     /// The variant of an effect, of that form.
     pub fn variant(&self, effect: Effect, form: usize) -> Option<&Variant> {
         let is_it = |v: &&Variant| v.effect == effect && v.form == form;
         self.variants.iter().find(is_it)
     }
+}
+
+/// Least thickness of these tissues, mm.
+fn thinnest(materials: &[Material]) -> f64 {
+    let all = materials.iter().map(|m| m.thickness_mm);
+    all.fold(f64::INFINITY, f64::min)
+}
+
+/// By place, the number of the first place at the same site.
+fn sites(replay: &Replay) -> Vec<usize> {
+    let first = |place: &Place| replay.places.iter().position(|p| p.site == place.site);
+    replay.places.iter().filter_map(first).collect()
 }
 
 /// What an effect changes of the base tables of these places: of known balls, and of others on the mesh.

@@ -25,8 +25,13 @@ pub struct SphereTable {
     pub bare: Vec<f64>,
 }
 
-/// By place whose table from the mesh is given: the ball that it is. Skin of one region that is flat, and a ball that presses it as the mesh
-/// has it.
+/// Whether the bone under every one of these tissues has a width; one without end is as one that is not known.
+pub(crate) fn has_width(materials: &[Material]) -> bool {
+    materials.iter().all(|m| m.bone_half_width_mm.is_finite())
+}
+
+/// By place whose table from the mesh is given: the ball that it is. Skin of one region that is flat over bone without end, and a ball that presses it as
+/// the mesh has it.
 pub fn known(
     replay: &Replay,
     is_flat: bool,
@@ -37,7 +42,9 @@ pub fn known(
         let [material] = materials else {
             return None;
         };
-        SphereTable::of(radius_mm, material, table).filter(|_| is_flat)
+        // Narrow bone gives tissue room to the sides, which a layer without end has not.
+        let is_layer = is_flat && !has_width(materials);
+        SphereTable::of(radius_mm, material, table).filter(|_| is_layer)
     };
     places.iter().zip(base).map(one).collect()
 }
