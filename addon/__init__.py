@@ -1,6 +1,7 @@
 """Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
 
 from . import (
+    curves,
     diagnosis,
     grasp,
     grasp_data,
@@ -43,6 +44,7 @@ _MODULES = (
     hand_shape,
     picture_sets,
     recordings,
+    curves,
     refining,
     new_study,
     diagnosis,

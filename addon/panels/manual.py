@@ -24,6 +24,7 @@ _OPERATORS = (
     ("picture open_picture", "guide.html#pictures"),
     ("load_hand_pose", "grasp_data.html#poses-of-mano-and-smpl-x"),
     ("export_contact_map", "grasp_data.html#contact-maps"),
+    ("show_frame", "guide.html#curves-over-time"),
     ("bake play_take export export_bake", "guide.html#bake--export"),
     (
         "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",

@@ -3,6 +3,8 @@
 import bpy
 
 from .. import grades, maps, status
+from ..curves import panel as over_time
+from ..curves import tables
 from ..languages import iface
 from ..scene import baked
 from ..scene.parts import product_parts
@@ -219,10 +221,12 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
             for take in takes:
                 icon = "RADIOBUT_ON" if baked.is_playing(hand, take) else "RADIOBUT_OFF"
                 column.operator("thenar.play_take", text=take or "Bake", icon=icon).take = take
+        has_curves = over_time.draw(layout, context, tables.BAKE)
         box = layout.box().column(align=True)
-        _pair(box, "Force", f"{stored.force_n:.1f} N")
-        _pair(box, "Contact area", f"{stored.area_mm2 / 100:.2f} cm²")
-        _pair(box, "Peak pressure", f"{stored.frame_peak_kpa:.0f} kPa")
+        if not has_curves:
+            _pair(box, "Force", f"{stored.force_n:.1f} N")
+            _pair(box, "Contact area", f"{stored.area_mm2 / 100:.2f} cm²")
+            _pair(box, "Peak pressure", f"{stored.frame_peak_kpa:.0f} kPa")
         _pair(box, "Frames", iface("{first} to {last}", first=stored.frame_start, last=stored.frame_end))
         _pair(box, "History kept", "yes" if stored.follows else "no")
         _pair(box, "Max. force", f"{stored.peak_force_n:.1f} N")

@@ -3,6 +3,8 @@
 import bpy
 
 from .. import status
+from ..curves import panel as over_time
+from ..curves import tables
 from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab, has_hand
@@ -101,6 +103,8 @@ def _draw_placing(layout, context, item):
         row = column.row()
         row.enabled = item.frame_rule == "NUMBER"
         row.prop(item, "frame", text=iface("of {count}", count=item.frames))
+    layout.use_property_split = False
+    over_time.draw(layout, context, tables.RECORDING)
     row = layout.row(align=True)
     row.operator("thenar.show_recording", text="Recording", icon="IMAGE_DATA")
     row.operator("thenar.show_residual", text="Residual")

@@ -29,6 +29,7 @@ class Layout:
             "active",
             "alert",
             "alignment",
+            "enabled",
             "scale_y",
             "use_property_split",
             "use_property_decorate",
@@ -37,12 +38,12 @@ class Layout:
     def _child(self, **_):
         share = 1.0 if self.factor is None else self.factor if self.count == 0 else 1.0 - self.factor
         self.__dict__["count"] += 1
-        return Layout(self.letters * share, self.said)
+        return type(self)(self.letters * share, self.said)
 
     row = column = box = grid_flow = _child
 
     def split(self, factor=0.5, align=False):
-        return Layout(self._child().letters, self.said, factor)
+        return type(self)(self._child().letters, self.said, factor)
 
     def separator(self, factor=1.0):
         pass
@@ -69,7 +70,7 @@ class Layout:
 
     def operator_menu_enum(self, name, prop, text="", icon="NONE"):
         button = self.operator(name, text)
-        assert prop in button.kind.properties
+        assert prop in button._rna.properties
         return button
 
     def menu(self, name, text="", icon="NONE"):
@@ -100,10 +101,11 @@ class _Properties:
     """What an operator's button sets."""
 
     def __init__(self, kind):
-        self.__dict__["kind"] = kind
+        self.__dict__["_rna"] = kind
 
     def __setattr__(self, name, value):
-        assert name in self.kind.properties, f"{self.kind.identifier} has no '{name}'"
+        assert name in self._rna.properties, f"{self._rna.identifier} has no '{name}'"
+        self.__dict__[name] = value
 
 
 class Context:
