@@ -23,6 +23,7 @@ from . import (
     rigging,
     settings,
     start,
+    tabs,
 )
 from .grasp_choices import more as more_grasps
 from .views import viewport
@@ -30,6 +31,7 @@ from .views import viewport
 _MODULES = (
     languages,
     settings,
+    tabs,
     operators,
     presets,
     product_files,

@@ -6,7 +6,7 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from .. import languages
+from .. import languages, tabs
 from ..operators import polling, running
 from ..recordings import loading
 from ..scene.checks import Refusal
@@ -49,6 +49,7 @@ to diagnose, and asks what the files do not state"""
         count = running.attempt(self, drafting.begin, context, folder, names)
         if count is None:
             return {"CANCELLED"}
+        tabs.open_tab(context, tabs.RECORD)
         running.redraw(context)
         words = "{count} recordings; answer what New Study asks"
         words = "1 recording; answer what New Study asks" if count == 1 else words
@@ -83,6 +84,7 @@ class THENAR_OT_write_study(_OfStudy, bpy.types.Operator):
         title = running.attempt(self, making.make, context)
         if title is None:
             return {"CANCELLED"}
+        tabs.open_tab(context, tabs.DIAGNOSE)
         running.redraw(context)
         words = "Study '{title}' is written and loaded; press Diagnose"
         self.report({"INFO"}, languages.report(words, title=title))
@@ -214,6 +216,7 @@ class THENAR_OT_sample_study(bpy.types.Operator):
         added = running.attempt(self, loading.load, context, str(SAMPLES / self.kind))
         if added is None:
             return {"CANCELLED"}
+        tabs.open_tab(context, tabs.DIAGNOSE)
         running.redraw(context)
         self.report({"INFO"}, languages.report("Loaded {files}; press Diagnose", files=", ".join(added)))
         return {"FINISHED"}

@@ -53,6 +53,7 @@ _TYPES = (
     ("thenardiagnosis thenarmodeleffect", "guide.html#diagnosis"),
     ("thenarreference", "guide.html#reference"),
     ("thenarresult thenarregionresult thenarcomfort thenartext thenarstage", "guide.html#result"),
+    ("thenartabs", "guide.html#tabs-by-task"),
     ("thenarpreferences", "guide.html#menus-and-preferences"),
     ("thenar*", "guide.html#thenar"),
 )

@@ -2,14 +2,14 @@
 
 import bpy
 
-from .. import grades, maps, status
+from .. import grades, maps, status, tabs
 from ..curves import panel as over_time
 from ..curves import tables
 from ..languages import iface
 from ..scene import baked
 from ..scene.parts import product_parts
 from . import text
-from .lists import SHARE, brief, columns
+from .lists import FINGER_SHARE, SHARE, brief, columns
 from .main import Physics, Tab, draw_looks, has_result
 
 
@@ -22,7 +22,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and has_result(context)
+        return not status.native_problem and has_result(context) and tabs.shows(context, tabs.RESULT)
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
@@ -100,7 +100,7 @@ class THENAR_PT_physics_result(Physics, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return Physics.poll(context) and THENAR_PT_result.poll(context)
+        return Physics.poll(context) and not status.native_problem and has_result(context)
 
 
 class OfResult(Tab):
@@ -132,7 +132,7 @@ class THENAR_PT_regions(OfResult, bpy.types.Panel):
             return
         column = layout.box().column(align=True)
         for finger in result.fingers:
-            split = column.split(factor=SHARE)
+            split = column.split(factor=FINGER_SHARE)
             split.label(text=iface(finger.name.capitalize()))
             columns(split, finger)
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import status
+from .. import status, tabs
 from ..curves import panel as over_time
 from ..curves import tables
 from ..languages import iface
@@ -26,16 +26,16 @@ class THENAR_UL_recordings(bpy.types.UIList):
 
 
 class THENAR_PT_no_recordings(Tab, bpy.types.Panel):
-    """Where recordings are loaded, closed until there is one."""
+    """Where recordings are loaded, until there is one."""
 
     bl_label = "Recordings"
     bl_parent_id = "THENAR_PT_main"
-    bl_options = {"DEFAULT_CLOSED"}
     bl_order = 6
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context) and not context.scene.thenar_recordings.items
+        is_empty = has_hand(context) and not context.scene.thenar_recordings.items
+        return is_empty and tabs.shows(context, tabs.RECORD)
 
     def draw(self, context):
         if not text.progress(self.layout):
@@ -43,7 +43,7 @@ class THENAR_PT_no_recordings(Tab, bpy.types.Panel):
 
 
 class THENAR_PT_recordings(Tab, bpy.types.Panel):
-    """Recordings and the simulation, open and near the top once there is one."""
+    """Recordings and the simulation, once there is one."""
 
     bl_label = "Recordings"
     bl_parent_id = "THENAR_PT_main"
@@ -51,7 +51,8 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and bool(context.scene.thenar_recordings.items)
+        is_loaded = not status.native_problem and bool(context.scene.thenar_recordings.items)
+        return is_loaded and tabs.shows(context, tabs.RECORD)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings
