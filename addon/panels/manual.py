@@ -30,7 +30,7 @@ _OPERATORS = (
         "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
         "guide.html#recordings",
     ),
-    ("new_study write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
+    ("new_study read_study_files write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
     ("diagnose apply_finding show_finding", "guide.html#diagnosis"),
     ("copy_debug_info", "guide.html#menus-and-preferences"),
     ("*", "guide.html"),

@@ -8,15 +8,20 @@ from bpy.props import EnumProperty, PointerProperty
 SETUP, RESULT, RECORD, DIAGNOSE = "SETUP", "RESULT", "RECORD", "DIAGNOSE"
 
 
-_AGAIN_S = (0.1, 0.3, 1.0)
-"""When the panel is drawn again: Blender (5.2) puts panels that appear where they were last, and right with the next \
-drawing."""
+_AGAIN_S = (0.1, 0.2, 0.3, 0.5)
+"""Pauses before the panel is drawn again: Blender (5.2) puts panels that appear where they were last, and right with a
+later drawing. One timer after the other, so that each leads to a drawing however slow these are."""
 
 
 def _was_opened(_self, context):
     _redraw()
-    for seconds in () if bpy.app.background else _AGAIN_S:
-        bpy.app.timers.register(functools.partial(_redraw), first_interval=seconds)
+    if not bpy.app.background:
+        bpy.app.timers.register(functools.partial(_again, iter(_AGAIN_S[1:])), first_interval=_AGAIN_S[0])
+
+
+def _again(pauses):
+    _redraw()
+    return next(pauses, None)
 
 
 def _redraw():

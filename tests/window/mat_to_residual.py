@@ -98,7 +98,7 @@ def drive(bpy, ui):
     yield from press(ui, RECORD)
     yield from until(lambda: bpy.context.window_manager.thenar_tabs.tab == "RECORD")
     ui.move(RECORD[0], RECORD[1] + 60)
-    yield 2.5
+    yield 4.0
     ui.shot("e_record")
     yield from press(ui, SHOW)
     yield from until(lambda: bpy.data.objects.get("Thenar Mat Recorded") is not None)
