@@ -1,6 +1,7 @@
 """Thenar: presses a hand against a product and shows the skin's shape, pressure and forces. Registration only."""
 
 from . import (
+    curves,
     diagnosis,
     grasp,
     grasp_data,
@@ -22,6 +23,7 @@ from . import (
     rigging,
     settings,
     start,
+    tabs,
 )
 from .grasp_choices import more as more_grasps
 from .views import viewport
@@ -29,6 +31,7 @@ from .views import viewport
 _MODULES = (
     languages,
     settings,
+    tabs,
     operators,
     presets,
     product_files,
@@ -43,6 +46,7 @@ _MODULES = (
     hand_shape,
     picture_sets,
     recordings,
+    curves,
     refining,
     new_study,
     diagnosis,

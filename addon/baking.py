@@ -135,7 +135,7 @@ def steps(context, frame_start, frame_end, take=""):
     Frames that a crashed bake of this take has solved from the same input are taken over, unless frames follow one
     another. Raises `Refusal` and the native module's errors, which name the frame; then nothing is written.
     """
-    bake = begin(context, frame_start, frame_end, take)
+    bake, own_hashes = begin(context, frame_start, frame_end, take), set()
     try:
         while not bake.is_complete:
             job = read_frame(context, bake)
@@ -144,7 +144,7 @@ def steps(context, frame_start, frame_end, take=""):
             kept = None if bake.follows else baked.kept_frame(bake.stem, job.input_hash)
             if kept is not None:
                 bake.done.append(kept)
-                bake.resumed += 1
+                bake.resumed += job.input_hash not in own_hashes  # else the same input came twice in this bake
                 continue
             try:
                 contact = yield partial(_compute, bake, job)
@@ -152,6 +152,7 @@ def steps(context, frame_start, frame_end, take=""):
                 raise type(error)(f"at frame {bake.frame}, {error}") from None
             keep_frame(bake, job, contact)
             if not bake.follows:
+                own_hashes.add(job.input_hash)
                 baked.keep_frame(bake.stem, job.input_hash, bake.done[-1])
         publish(context, bake)
     finally:

@@ -13,16 +13,11 @@ from . import native
 from .scene.units import KPA_PER_MPA
 
 PRESETS = (
-    ("FINGER_LAYER", "Finger, layer on bone", "Finger pad as a soft layer on bone; for the layer model", 0),
-    ("PALM_LAYER", "Palm, layer on bone", "Palm as a soft layer on bone; for the layer model", 1),
-    ("FINGER", "Finger, published", "Fingertip of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 2),
-    ("PALM", "Palm, published", "Palm of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 3),
-    (
-        "PHALANX_LAYER",
-        "Phalanx, layer on bone",
-        "Pad of a finger's middle or base over a long bone; for the layer model",
-        5,
-    ),
+    ("FINGER_LAYER", "Fingertip", "Finger pad as a soft layer on bone; for the layer model", 0),
+    ("PALM_LAYER", "Palm", "Palm as a soft layer on bone; for the layer model", 1),
+    ("FINGER", "Finger (Xie)", "Fingertip of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 2),
+    ("PALM", "Palm (Xie)", "Palm of Xie, Kanai & Date, section 4.1 and Table 2; for the paper model", 3),
+    ("PHALANX_LAYER", "Phalanx", "Pad of a finger's middle or base over a long bone; for the layer model", 5),
     ("CUSTOM", "Own values", "Values entered by hand", 4),
 )
 

@@ -4,9 +4,9 @@ from functools import lru_cache
 
 import bpy
 
-from .. import status
+from .. import status, tabs
 from ..languages import iface
-from ..panels import text
+from ..panels import start, text
 from ..panels.main import Tab
 from ..recordings import settings as recordings
 from ..scene.checks import Refusal
@@ -46,15 +46,16 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        loaded = context.scene.thenar_recordings.items or context.scene.thenar_diagnosis.is_valid
-        return not status.native_problem and bool(loaded)
+        is_loaded = context.scene.thenar_recordings.items or context.scene.thenar_diagnosis.is_valid
+        is_asked = is_loaded or context.scene.thenar.hand is not None
+        return not status.native_problem and bool(is_asked) and tabs.shows(context, tabs.DIAGNOSE)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_diagnosis
         item = recordings.chosen(context)
         if item is None or item.kind != recordings.STUDY:
-            text.paragraph(layout, context, "Load a study under Recordings, and select it", "INFO")
-            layout.operator("thenar.new_study", text="New Study from Files...", icon="FILE_NEW")
+            text.paragraph(layout, context, "A diagnosis needs a study: load one, and select it in the list", "INFO")
+            start.draw_studies(layout.box().column())
         else:
             text.faint(layout, context, f"{item.name}: {item.about}")
         _draw_button(layout)

@@ -5,7 +5,7 @@ from functools import partial
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-from .. import languages, workflow
+from .. import languages, tabs, workflow
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_make, can_pose
@@ -231,7 +231,10 @@ class THENAR_OT_add_sample(bpy.types.Operator):
 
     def execute(self, context):
         made = running.attempt(self, samples.add_sample_scene, context, self.kind)
-        return {"FINISHED"} if made else {"CANCELLED"}
+        if not made:
+            return {"CANCELLED"}
+        tabs.open_after_hand(context)
+        return {"FINISHED"}
 
 
 CLASSES = (THENAR_OT_fit_grasp, THENAR_OT_settle_grasp, THENAR_OT_use_grasp, THENAR_OT_add_sample)

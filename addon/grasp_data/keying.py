@@ -3,6 +3,9 @@
 import numpy as np
 from mathutils import Matrix
 
+_LINEAR = 1
+"""Blender's number of the interpolation LINEAR."""
+
 
 def pose(armature, turns):
     """Set basis rotations, bone name -> (3, 3); location and scale of those bones are reset."""
@@ -10,14 +13,31 @@ def pose(armature, turns):
         armature.pose.bones[name].matrix_basis = Matrix(turn.tolist()).to_4x4()
 
 
-def key(armature, turns, frames):
-    """Keyframe basis rotations, bone name -> (f, 3, 3), at scene frames (f,) in rising order.
+def modes(armature, names):
+    """How each bone is rotated, by name."""
+    return {name: armature.pose.bones[name].rotation_mode for name in names}
+
+
+def channels(held, turns, cancel=None, progress=None):
+    """Rotation property and values (f, k) by bone name, of basis rotations (f, 3, 3) by name and modes as `modes` has
+    them. It asks Blender for nothing, so any thread may run it."""
+    out = {}
+    for number, (name, matrices) in enumerate(turns.items()):
+        if cancel is not None and cancel.is_set():
+            break  # what was computed is dropped
+        if progress is not None:
+            progress("keying", number / len(turns))
+        out[name] = _channels(held[name], matrices)
+    return out
+
+
+def key(armature, rows_of, frames):
+    """Keyframe rotations, as `channels` gives them, at scene frames (f,) in rising order.
 
     Keys of these bones' rotations between the first and the last frame are replaced; others stay.
     """
-    for name, matrices in turns.items():
+    for name, (path, rows) in rows_of.items():
         bone = armature.pose.bones[name]
-        path, rows = _channels(bone, matrices)
         bone.keyframe_insert(path, frame=float(frames[0]))
         whole = bone.path_from_id(path)
         for index in range(rows.shape[1]):
@@ -36,23 +56,21 @@ def curves(armature):
     return [curve for bag in bags if bag is not None for curve in bag.fcurves]
 
 
-def _channels(bone, matrices):
-    """The bone's rotation property, and its values (f, k) without leaps between frames."""
+def _channels(mode, matrices):
+    """The rotation property of a bone of this rotation mode, and its values (f, k) without leaps between frames."""
     rows, last = [], None
     for turn in matrices:
         matrix = Matrix(turn.tolist())
-        if bone.rotation_mode in {"QUATERNION", "AXIS_ANGLE"}:
+        if mode in {"QUATERNION", "AXIS_ANGLE"}:
             value = matrix.to_quaternion()
             if last is not None:
                 value.make_compatible(last)
         else:
-            value = (
-                matrix.to_euler(bone.rotation_mode, last) if last is not None else matrix.to_euler(bone.rotation_mode)
-            )
+            value = matrix.to_euler(mode, last) if last is not None else matrix.to_euler(mode)
         last = value
-        rows.append(_axis_angle(value) if bone.rotation_mode == "AXIS_ANGLE" else tuple(value))
+        rows.append(_axis_angle(value) if mode == "AXIS_ANGLE" else tuple(value))
     names = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
-    return names.get(bone.rotation_mode, "rotation_euler"), np.array(rows)
+    return names.get(mode, "rotation_euler"), np.array(rows)
 
 
 def _axis_angle(quaternion):
@@ -73,6 +91,5 @@ def _fill(curve, frames, values):
     while len(points) > len(rows):
         points.remove(points[-1], fast=True)
     points.foreach_set("co", rows.ravel())
-    for point in points:
-        point.interpolation = "LINEAR"
+    points.foreach_set("interpolation", np.full(len(points), _LINEAR, np.int32))
     curve.update()

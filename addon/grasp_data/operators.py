@@ -6,20 +6,15 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from .. import languages
+from .. import languages, steps
 from ..hand.operators import can_pose
-from ..operators import polling, running, selecting
+from ..operators import computing, polling, running, selecting
 from . import contact_map, containers, posing
 
 
-class THENAR_OT_load_hand_pose(bpy.types.Operator, ImportHelper):
-    """Pose the hand by parameters of MANO or SMPL-X (.npz, .npy, .json, .pkl); several frames become keyframes"""
+class _OfPose:
+    """What both operators are asked, and how they end."""
 
-    bl_idname = "thenar.load_hand_pose"
-    bl_label = "Pose from MANO or SMPL-X"
-    bl_options = {"REGISTER", "UNDO"}
-
-    filter_glob: StringProperty(default=";".join(f"*{suffix}" for suffix in containers.SUFFIXES), options={"HIDDEN"})
     filepath: StringProperty(name="File", description="File of pose parameters", subtype="FILE_PATH")
     side: EnumProperty(
         name="Side",
@@ -55,7 +50,8 @@ class THENAR_OT_load_hand_pose(bpy.types.Operator, ImportHelper):
     def poll(cls, context):
         return can_pose(cls, context)
 
-    def execute(self, context):
+    def steps(self, context):
+        """The computation, see `posing.steps`."""
         wish = posing.Wish(
             {"AUTO": None, "LEFT": "left", "RIGHT": "right"}[self.side],
             {"AUTO": None, "AXIS_ANGLE": False, "PCA": True}[self.numbers],
@@ -64,14 +60,44 @@ class THENAR_OT_load_hand_pose(bpy.types.Operator, ImportHelper):
             self.step,
         )
         selecting.to_object_mode(context)
-        done = running.attempt(self, posing.apply, context, Path(bpy.path.abspath(self.filepath)), wish)
-        if done is None:
-            return {"CANCELLED"}
+        return posing.steps(context, Path(bpy.path.abspath(self.filepath)), wish)
+
+    def _report(self, _context, done):
         text = languages.report("Posed by '{key}'", key=done.key)
         if done.keyed:
             text = languages.report("{count} frames of '{key}' keyed", count=done.keyed, key=done.key)
         self.report({"WARNING" if done.remark else "INFO"}, text + (f"; {done.remark}" if done.remark else ""))
         return {"FINISHED"}
+
+
+class THENAR_OT_load_hand_pose(_OfPose, bpy.types.Operator, ImportHelper):
+    """Pose the hand by parameters of MANO or SMPL-X (.npz, .npy, .json, .pkl); several frames become keyframes"""
+
+    bl_idname = "thenar.load_hand_pose"
+    bl_label = "Pose from MANO or SMPL-X"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filter_glob: StringProperty(default=";".join(f"*{suffix}" for suffix in containers.SUFFIXES), options={"HIDDEN"})
+
+    def execute(self, context):
+        if context.window is not None and not bpy.app.background:
+            asked = {name: getattr(self, name) for name in ("filepath", "side", "numbers", *_SWITCHES)}
+            bpy.ops.thenar.read_hand_pose("INVOKE_DEFAULT", **asked)
+            return {"CANCELLED"}  # what reads leaves the undo step
+        done = running.attempt(self, steps.at_once, self.steps(context))
+        return {"CANCELLED"} if done is None else self._report(context, done)
+
+
+_SWITCHES = ("add_mean", "keep_limits", "step")
+
+
+class THENAR_OT_read_hand_pose(_OfPose, computing.Computing, bpy.types.Operator):
+    """Read poses of MANO or SMPL-X next to the window, and key them"""
+
+    bl_idname = "thenar.read_hand_pose"
+    bl_label = "Read Hand Poses"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+    noun = "Reading"
 
 
 class THENAR_OT_export_contact_map(bpy.types.Operator, ExportHelper):
@@ -100,4 +126,4 @@ class THENAR_OT_export_contact_map(bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
 
-CLASSES = (THENAR_OT_load_hand_pose, THENAR_OT_export_contact_map)
+CLASSES = (THENAR_OT_load_hand_pose, THENAR_OT_read_hand_pose, THENAR_OT_export_contact_map)

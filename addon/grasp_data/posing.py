@@ -1,6 +1,7 @@
 """Poses of MANO and SMPL-X put onto the scene's hand: one as its pose, several as keyframes."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -34,8 +35,11 @@ class Done:
     remark: str
 
 
-def apply(context, path, wish):
-    """Pose the scene's hand by a file. Returns `Done`; raises `Refusal` with the hand as before."""
+def steps(context, path, wish):
+    """Pose the scene's hand by a file, as the steps of a computation: the hand changes at their end alone.
+
+    Returns `Done`; raises `Refusal` with the hand as before.
+    """
     hand = context.scene.thenar.hand
     checks.check_hand(context, hand)
     rig, role_names = reading.read_free_rig(context, hand)
@@ -43,16 +47,19 @@ def apply(context, path, wish):
     found = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
     own = "right" if found.side > 0.0 else "left"
     side = wish.side or own
-    values = containers.read(path)
+    values = yield partial(_apart, partial(containers.read, path))
     poses = parameters.find(values, parameters.Wish(side, wish.is_pca, wish.adds_mean), path.name)
     turns = poses.turns[:: wish.step] if side == own else joints.mirrored(poses.turns[:: wish.step])
-    fitted = joints.fit(rig, found, POSES["flat"], turns, wish.keeps_limits)
+    fitted = yield partial(_apart, partial(joints.fit, rig, found, POSES["flat"], turns, wish.keeps_limits))
     named = {rig.names[bone]: matrices for bone, matrices in fitted.turns.items()}
+    rows = {}
+    if len(turns) > 1:
+        rows = yield partial(keying.channels, keying.modes(armature, named), named)
     muted = 0 if wish.keeps_limits else _mute_limits(armature, named)
     keyed = 0
-    if len(turns) > 1:
+    if rows:
         frames = scene_frames(context.scene, poses.frames[:: wish.step], poses.rate_hz)
-        keying.key(armature, named, frames)
+        keying.key(armature, rows, frames)
         context.scene.frame_end = max(context.scene.frame_end, int(np.ceil(frames[-1])))
         context.scene.frame_set(context.scene.frame_start)
         keyed = len(frames)
@@ -60,6 +67,11 @@ def apply(context, path, wish):
         keying.pose(armature, {name: matrices[0] for name, matrices in named.items()})
     context.view_layer.update()
     return Done(len(turns), keyed, poses.key, _remark(fitted, muted))
+
+
+def _apart(action, _cancel, _progress):
+    """An action that counts no progress, as work for any thread."""
+    return action()
 
 
 def scene_frames(scene, frames, rate_hz):

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
-from .. import languages, status
+from .. import languages, status, tabs
 from ..hand_shape import framing
 from ..operators import polling, running
 from ..panels import preferences
@@ -41,6 +41,7 @@ class THENAR_OT_make_hand(bpy.types.Operator):
         hand = running.attempt(self, self._make, context)
         if hand is None:
             return {"CANCELLED"}
+        tabs.open_after_hand(context)
         words = "'{name}' has {vertices:,} vertices"
         self.report({"INFO"}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)))
         return {"FINISHED"}

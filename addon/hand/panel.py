@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import tabs
 from ..hand_shape import thumb_range
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
@@ -18,7 +19,7 @@ class THENAR_PT_hand(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context)
+        return has_hand(context) and tabs.shows(context, tabs.SETUP)
 
     def draw(self, context):
         layout = self.layout

@@ -1,5 +1,7 @@
 """The study that is being made: filled from files, kept in step with the user's answers, and what is still open."""
 
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 from ..languages import iface
@@ -7,15 +9,43 @@ from ..scene.checks import Refusal
 from . import looking, repeats, settings, writing
 
 
-def begin(context, folder, names):
-    """Look at the files and open the proposal. Returns its recordings' count. Raises `Refusal`, the scene as it was."""
+def steps(context, folder, names):
+    """Look at the files, and open the proposal, as the steps of a computation. Returns its recordings' count.
+
+    Raises `Refusal`, the scene as it was.
+    """
+    found = yield partial(_look_at, _chosen(folder, names))
+    return _open(context, folder, found)
+
+
+def _chosen(folder, names):
     if not names:
         raise Refusal("no file is chosen; choose the files of the recordings, with Ctrl or Shift for several")
     recorded = [name for name in names if name not in writing.OWN]
     if not recorded:
         raise Refusal(f"'{names[0]}' is a file of a study and no recording; choose the files of the recordings")
-    paths = [Path(folder) / name for name in sorted(recorded, key=_natural)]
-    found = [each for path in paths for each in looking.look(path)]
+    return [Path(folder) / name for name in sorted(recorded, key=_natural)]
+
+
+def _look_at(paths, cancel=None, progress=None):
+    """The recordings of all files; those that state everything are read whole, so that `refresh` finds them read."""
+    found = []
+    looking.forget()
+    for number, path in enumerate(paths):
+        if cancel is not None and cancel.is_set():
+            break  # what was found is dropped
+        if progress is not None:
+            progress("read", number / len(paths))
+        seen = looking.look(path)
+        for each in seen:
+            if not each.headers:
+                with suppress(Refusal):  # said at its file, by `refresh`
+                    looking.track(each.path, each.run, ())
+        found += seen
+    return found
+
+
+def _open(context, folder, found):
     if len(found) > settings.MOST_FILES:
         raise Refusal(
             f"these are {len(found)} recordings, and one study takes {settings.MOST_FILES} here; "
@@ -23,7 +53,7 @@ def begin(context, folder, names):
         )
     state, hand = context.scene.thenar_new_study, context.scene.thenar.hand
     with settings.filling():
-        discard(state)
+        _clear(state)
         state.is_open, state.folder, state.title = True, str(folder), Path(folder).name or "Study"
         state.skin = settings.FLAT if hand is None else settings.HAND
         several = {each.path for each in found if each.run}
@@ -39,6 +69,10 @@ def begin(context, folder, names):
 def discard(state):
     """Close the proposal; files on disk stay."""
     looking.forget()
+    _clear(state)
+
+
+def _clear(state):
     for name in ("files", "columns", "protocols"):
         getattr(state, name).clear()
     for name in ("is_open", "is_own_grouping", "replaces", "site_vertex", "site_hand", "site_count", "site_region"):

@@ -6,8 +6,8 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
-from .. import languages
-from ..operators import polling, running
+from .. import languages, steps, tabs
+from ..operators import computing, polling, running
 from ..recordings import loading
 from ..scene.checks import Refusal
 from . import drafting, making, settings, skins
@@ -46,14 +46,49 @@ to diagnose, and asks what the files do not state"""
     def execute(self, context):
         names = [each.name for each in self.files if each.name]
         folder = bpy.path.abspath(self.directory)
-        count = running.attempt(self, drafting.begin, context, folder, names)
-        if count is None:
-            return {"CANCELLED"}
-        running.redraw(context)
-        words = "{count} recordings; answer what New Study asks"
-        words = "1 recording; answer what New Study asks" if count == 1 else words
-        self.report({"INFO"}, languages.report(words, count=count))
-        return {"FINISHED"}
+        if context.window is not None and not bpy.app.background:
+            chosen = [{"name": name} for name in names]
+            bpy.ops.thenar.read_study_files("INVOKE_DEFAULT", directory=folder, files=chosen)
+            return {"CANCELLED"}  # what reads leaves the undo step
+        count = running.attempt(self, steps.at_once, drafting.steps(context, folder, names))
+        return {"CANCELLED"} if count is None else _opened(self, context, count)
+
+
+class THENAR_OT_read_study_files(computing.Computing, bpy.types.Operator):
+    """Read the recordings of a new study next to the window, and open what the panel asks about them"""
+
+    bl_idname = "thenar.read_study_files"
+    bl_label = "Read Recordings"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+    noun = "Reading"
+
+    directory: bpy.props.StringProperty(name="Folder", description="Folder of the recordings", subtype="DIR_PATH")
+    files: bpy.props.CollectionProperty(
+        name="Files",
+        description="Names of the recordings in the folder",
+        type=bpy.types.OperatorFileListElement,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_module(), polling.busy())
+
+    def steps(self, context):
+        return drafting.steps(context, bpy.path.abspath(self.directory), [each.name for each in self.files])
+
+    def _report(self, context, count):
+        return _opened(self, context, count)
+
+
+def _opened(operator, context, count):
+    """Show the proposal, and report."""
+    tabs.open_tab(context, tabs.RECORD)
+    running.redraw(context)
+    words = "{count} recordings; answer what New Study asks"
+    words = "1 recording; answer what New Study asks" if count == 1 else words
+    operator.report({"INFO"}, languages.report(words, count=count))
+    return {"FINISHED"}
 
 
 class _OfStudy:
@@ -83,6 +118,7 @@ class THENAR_OT_write_study(_OfStudy, bpy.types.Operator):
         title = running.attempt(self, making.make, context)
         if title is None:
             return {"CANCELLED"}
+        tabs.open_tab(context, tabs.DIAGNOSE)
         running.redraw(context)
         words = "Study '{title}' is written and loaded; press Diagnose"
         self.report({"INFO"}, languages.report(words, title=title))
@@ -214,6 +250,7 @@ class THENAR_OT_sample_study(bpy.types.Operator):
         added = running.attempt(self, loading.load, context, str(SAMPLES / self.kind))
         if added is None:
             return {"CANCELLED"}
+        tabs.open_tab(context, tabs.DIAGNOSE)
         running.redraw(context)
         self.report({"INFO"}, languages.report("Loaded {files}; press Diagnose", files=", ".join(added)))
         return {"FINISHED"}
@@ -221,6 +258,7 @@ class THENAR_OT_sample_study(bpy.types.Operator):
 
 CLASSES = (
     THENAR_OT_new_study,
+    THENAR_OT_read_study_files,
     THENAR_OT_write_study,
     THENAR_OT_discard_study,
     THENAR_OT_leave_out_file,

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import tabs
 from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab
@@ -19,7 +20,7 @@ class THENAR_PT_new_study(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return context.scene.thenar_new_study.is_open
+        return context.scene.thenar_new_study.is_open and tabs.shows(context, tabs.RECORD)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_new_study

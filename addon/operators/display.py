@@ -94,9 +94,14 @@ def hide(context):
 
 
 def fitting_range(context):
-    """A round value above the largest of the map that is shown; 1, 1.5, 2, 3, 5 or 7.5 times a power of ten."""
-    name = maps.shown(context.scene.thenar).attribute
+    """A round value above the largest of the map that is shown; 1, 1.5, 2, 3, 5 or 7.5 times a power of ten.
+
+    Of the pressures of a bake that plays, the largest over all its frames counts.
+    """
+    name, hand = maps.shown(context.scene.thenar).attribute, context.scene.thenar.hand
     peaks = [abs(attributes.read(obj.data, name)).max(initial=0.0) for obj, _ in shown_objects(context, name)]
+    if name == names.PRESSURE_KPA and hand is not None and hand.thenar.bake_path:
+        peaks.append(hand.thenar.bake.peak_kpa)
     peak = max(peaks, default=0.0)
     if not 0.0 < peak < 1e9:
         return None
@@ -179,7 +184,7 @@ class THENAR_OT_show_map(bpy.types.Operator):
 
 
 class THENAR_OT_reset_range(bpy.types.Operator):
-    """Fit the color range to the largest value of the map"""
+    """Fit the color range to the largest value of the map; while a bake plays, over all its frames"""
 
     bl_idname = "thenar.reset_range"
     bl_label = "Fit Range"

@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import grades, languages, workflow
+from .. import grades, languages, tabs, workflow
 from ..panels import preferences
 from ..scene import regions
 from . import computing, display, polling, running, selecting
@@ -52,6 +52,8 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
 
     def _report(self, context, result):
         """The last message is the one that is seen: the gravest."""
+        if self.show_map:
+            tabs.open_tab(context, tabs.RESULT)
         if self.show_map and not context.scene.thenar.hand.thenar.shows_pressure:
             display.show(context)
             if bpy.ops.thenar.look.poll():

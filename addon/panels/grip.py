@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import tabs
 from ..languages import iface
 from ..presets import kinds, menus
 from ..scene.parts import product_parts
@@ -20,7 +21,8 @@ class THENAR_PT_grip(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context) and bool(product_parts(context.scene.thenar))
+        is_set = has_hand(context) and bool(product_parts(context.scene.thenar))
+        return is_set and tabs.shows(context, tabs.SETUP)
 
     def draw(self, context):
         layout = self.layout

@@ -12,7 +12,7 @@ class THENAR_UL_materials(bpy.types.UIList):
     def draw_item(self, context, layout, data, item, icon, active_data, active_name):  # noqa: PLR0913 - Blender's
         missing = item.name not in item.id_data.vertex_groups
         split = layout.split(factor=SHARE)
-        split.label(text=iface(sentences.region_title(item.name)), icon="ERROR" if missing else "NONE")
+        split.label(text=iface(brief(item.name)), icon="ERROR" if missing else "NONE")
         split.prop(item, "preset", text="", emboss=False)
 
 
@@ -30,6 +30,8 @@ class THENAR_UL_regions(bpy.types.UIList):
 
 SHARE = 0.56
 """Of a row's width, what its name takes."""
+FINGER_SHARE = 0.4
+"""The same of a finger, whose name is short, so that three digits and their decimal fit at every interface scale."""
 NAME_SHARE = 0.5
 """The same in the list of regions, where arrow and scroll bar take room: less cuts "Thumb prox.", more "22.6"."""
 

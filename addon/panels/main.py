@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import effect_settings, grades, maps, names, status
+from .. import effect_settings, grades, maps, names, status, tabs
 from ..languages import iface
 from ..presets import kinds, menus
 from ..scene.parts import product_parts
@@ -44,14 +44,14 @@ def has_map(context):
 
 
 class OfHand(Tab):
-    """A closed part of the tab that is there once a hand is chosen."""
+    """A closed part of the tab Set Up that is there once a hand is chosen."""
 
     bl_parent_id = "THENAR_PT_main"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context)
+        return has_hand(context) and tabs.shows(context, tabs.SETUP)
 
 
 class Physics:
@@ -68,7 +68,7 @@ class Physics:
 
 
 class THENAR_PT_main(Tab, bpy.types.Panel):
-    """What is to be pressed, and the button that presses."""
+    """The tabs; what is to be pressed, and the button that presses."""
 
     bl_label = "Thenar"
     bl_translation_context = "*"  # the name of the extension; in its own context it is the ball of the thumb
@@ -78,31 +78,69 @@ class THENAR_PT_main(Tab, bpy.types.Panel):
         if status.native_problem:
             draw_state(layout, context)
             return
-        settings = context.scene.thenar
-        if settings.hand is None:
+        if context.scene.thenar.hand is None:
             start.draw_cards(layout, context)
             return
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        _draw_state(layout, context)
-        column = layout.column()
-        column.prop(settings, "hand")
-        row = column.row(align=True)
-        row.prop(settings, "product")
-        row.operator("thenar.add_product", text="", icon="IMPORT")
-        column.prop(settings, "product_collection")
-        start.draw_sizes(layout, context)
-        if not product_parts(settings):
-            start.draw_add(layout)
-            return
-        layout.prop(settings, "model")
-        _draw_force(layout, settings)
-        _draw_next(layout, context)
-        _draw_live(layout, context)
-        if bpy.ops.thenar.clear.poll():
-            row = layout.row(align=True)
-            row.operator("thenar.clear", text="Clear", icon="TRASH")
-            row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
+        row = layout.row(align=True)
+        row.prop(context.window_manager.thenar_tabs, "tab", expand=True)
+        if tabs.shows(context, tabs.SETUP):
+            _draw_set_up(layout, context)
+        elif tabs.shows(context, tabs.RESULT):
+            _draw_solved(layout, context)
+
+
+def _draw_set_up(layout, context):
+    settings = context.scene.thenar
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    _draw_state(layout, context)
+    column = layout.column()
+    column.prop(settings, "hand")
+    row = column.row(align=True)
+    row.prop(settings, "product")
+    row.operator("thenar.add_product", text="", icon="IMPORT")
+    column.prop(settings, "product_collection")
+    start.draw_sizes(layout, context)
+    if not product_parts(settings):
+        start.draw_add(layout)
+        return
+    layout.prop(settings, "model")
+    _draw_force(layout, settings)
+    _draw_next(layout, context)
+    _draw_live(layout, context)
+    _draw_facts(layout, context)
+
+
+def _draw_solved(layout, context):
+    """The state of the result, and the buttons that renew and end it."""
+    _draw_state(layout, context)
+    if not product_parts(context.scene.thenar):
+        text.faint(layout, context, "Choose the product under Set Up first")
+        return
+    if not text.progress(layout):
+        _draw_solve(layout)
+    _draw_live(layout, context)
+    _draw_ends(layout)
+
+
+def _draw_ends(layout):
+    """What ends a result."""
+    if bpy.ops.thenar.clear.poll():
+        row = layout.row(align=True)
+        row.operator("thenar.clear", text="Clear", icon="TRASH")
+        row.operator("thenar.apply", text="Apply", icon="CHECKMARK")
+
+
+def _draw_facts(layout, context):
+    """What only matters where something is wrong."""
+    hand, column = context.scene.thenar.hand, layout.column(align=True)
+    if hand.type != "MESH":
+        return
+    column.active = False
+    count = sum(modifier.show_viewport for modifier in hand.modifiers)
+    about = "{vertices:,} vertices, 1 modifier" if count == 1 else "{vertices:,} vertices, {count} modifiers"
+    column.label(text=iface(about, vertices=len(hand.data.vertices), count=count), icon="MESH_DATA")
+    column.label(text=iface("1 unit = {mm:g} mm", mm=mm_per_unit(context.scene)), icon="DRIVER_DISTANCE")
 
 
 def _draw_state(layout, context):
@@ -111,10 +149,6 @@ def _draw_state(layout, context):
     if hand.type != "MESH":
         column.label(text="Choose a mesh as the hand", icon="INFO")
         return
-    count = sum(modifier.show_viewport for modifier in hand.modifiers)
-    about = "{vertices:,} vertices, 1 modifier" if count == 1 else "{vertices:,} vertices, {count} modifiers"
-    column.label(text=iface(about, vertices=len(hand.data.vertices), count=count), icon="MESH_DATA")
-    column.label(text=iface("1 unit = {mm:g} mm", mm=mm_per_unit(context.scene)), icon="DRIVER_DISTANCE")
     if settings.live:
         follower = status.live.get(context.scene.name)
         waits = follower is not None and follower.problem
@@ -183,6 +217,10 @@ def _draw_next(layout, context):
         row = layout.row()
         row.scale_y = start.BIG
         row.operator("thenar.fit_grasp", text="Grasp the Product", icon="CON_ARMATURE").place = "LAY"
+    _draw_solve(layout)
+
+
+def _draw_solve(layout):
     row = layout.row()
     row.scale_y = start.BIG
     row.operator("thenar.solve", text="Solve", icon="PLAY")
@@ -229,7 +267,7 @@ class THENAR_PT_display(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return has_map(context)
+        return has_map(context) and tabs.shows(context, tabs.RESULT)
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.thenar
@@ -276,11 +314,20 @@ LOOKS = (("OPENED", "Hand Opened"), ("PALM", "Palm"), ("PRODUCT", "Product"), ("
 
 
 class THENAR_PT_physics(Physics, bpy.types.Panel):
-    """The sidebar's main panel in the physics properties."""
+    """The sidebar's main panel in the physics properties, without tabs."""
 
     bl_label = "Thenar"
     bl_translation_context = "*"
-    draw = THENAR_PT_main.draw
+
+    def draw(self, context):
+        layout = self.layout
+        if status.native_problem:
+            draw_state(layout, context)
+        elif context.scene.thenar.hand is None:
+            start.draw_cards(layout, context)
+        else:
+            _draw_set_up(layout, context)
+            _draw_ends(layout)
 
 
 class THENAR_PT_physics_display(Physics, bpy.types.Panel):
@@ -306,7 +353,8 @@ class THENAR_PT_output(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context) and bool(product_parts(context.scene.thenar))
+        is_set = has_hand(context) and bool(product_parts(context.scene.thenar))
+        return is_set and tabs.shows(context, tabs.RESULT)
 
     def draw(self, context):
         layout, scene = self.layout, context.scene

@@ -22,14 +22,18 @@ _OPERATORS = (
     ("effect_add effect_remove", "guide.html#effects"),
     ("preset_save preset_apply preset_remove preset_import preset_export", "guide.html#presets"),
     ("picture open_picture", "guide.html#pictures"),
-    ("load_hand_pose", "grasp_data.html#poses-of-mano-and-smpl-x"),
+    ("load_hand_pose read_hand_pose", "grasp_data.html#poses-of-mano-and-smpl-x"),
     ("export_contact_map", "grasp_data.html#contact-maps"),
+    ("show_frame", "guide.html#curves-over-time"),
     ("bake play_take export export_bake", "guide.html#bake--export"),
     (
         "load_recording read_recording remove_recording compare outline_mat show_recording show_residual",
         "guide.html#recordings",
     ),
-    ("new_study write_study discard_study leave_out_file pick_site sample_study", "guide.html#new-study"),
+    (
+        "new_study read_study_files write_study discard_study leave_out_file pick_site sample_study",
+        "guide.html#new-study",
+    ),
     ("diagnose apply_finding show_finding", "guide.html#diagnosis"),
     ("copy_debug_info", "guide.html#menus-and-preferences"),
     ("*", "guide.html"),
@@ -52,6 +56,7 @@ _TYPES = (
     ("thenardiagnosis thenarmodeleffect", "guide.html#diagnosis"),
     ("thenarreference", "guide.html#reference"),
     ("thenarresult thenarregionresult thenarcomfort thenartext thenarstage", "guide.html#result"),
+    ("thenartabs", "guide.html#tabs-by-task"),
     ("thenarpreferences", "guide.html#menus-and-preferences"),
     ("thenar*", "guide.html#thenar"),
 )

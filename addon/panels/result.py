@@ -2,12 +2,14 @@
 
 import bpy
 
-from .. import grades, maps, status
+from .. import grades, maps, status, tabs
+from ..curves import panel as over_time
+from ..curves import tables
 from ..languages import iface
 from ..scene import baked
 from ..scene.parts import product_parts
 from . import text
-from .lists import SHARE, brief, columns
+from .lists import FINGER_SHARE, SHARE, brief, columns
 from .main import Physics, Tab, draw_looks, has_result
 
 
@@ -20,7 +22,7 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and has_result(context)
+        return not status.native_problem and has_result(context) and tabs.shows(context, tabs.RESULT)
 
     def draw(self, context):
         layout, result = self.layout, context.scene.thenar.result
@@ -98,7 +100,7 @@ class THENAR_PT_physics_result(Physics, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return Physics.poll(context) and THENAR_PT_result.poll(context)
+        return Physics.poll(context) and not status.native_problem and has_result(context)
 
 
 class OfResult(Tab):
@@ -130,7 +132,7 @@ class THENAR_PT_regions(OfResult, bpy.types.Panel):
             return
         column = layout.box().column(align=True)
         for finger in result.fingers:
-            split = column.split(factor=SHARE)
+            split = column.split(factor=FINGER_SHARE)
             split.label(text=iface(finger.name.capitalize()))
             columns(split, finger)
 
@@ -219,10 +221,12 @@ class THENAR_PT_bake(Tab, bpy.types.Panel):
             for take in takes:
                 icon = "RADIOBUT_ON" if baked.is_playing(hand, take) else "RADIOBUT_OFF"
                 column.operator("thenar.play_take", text=take or "Bake", icon=icon).take = take
+        has_curves = over_time.draw(layout, context, tables.BAKE)
         box = layout.box().column(align=True)
-        _pair(box, "Force", f"{stored.force_n:.1f} N")
-        _pair(box, "Contact area", f"{stored.area_mm2 / 100:.2f} cm²")
-        _pair(box, "Peak pressure", f"{stored.frame_peak_kpa:.0f} kPa")
+        if not has_curves:
+            _pair(box, "Force", f"{stored.force_n:.1f} N")
+            _pair(box, "Contact area", f"{stored.area_mm2 / 100:.2f} cm²")
+            _pair(box, "Peak pressure", f"{stored.frame_peak_kpa:.0f} kPa")
         _pair(box, "Frames", iface("{first} to {last}", first=stored.frame_start, last=stored.frame_end))
         _pair(box, "History kept", "yes" if stored.follows else "no")
         _pair(box, "Max. force", f"{stored.peak_force_n:.1f} N")

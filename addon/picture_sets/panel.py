@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import status
+from .. import status, tabs
 from ..panels.main import Tab
 from . import operators, order
 
@@ -26,7 +26,8 @@ class THENAR_PT_pictures(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and context.scene.thenar.result.is_valid
+        is_solved = not status.native_problem and context.scene.thenar.result.is_valid
+        return is_solved and tabs.shows(context, tabs.RESULT)
 
     def draw(self, context):
         layout, chosen = self.layout, context.scene.thenar_pictures

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from .. import native
 from ..scene.checks import Refusal
-from . import frames, settings
+from . import frames, over_time, settings
 
 _STUDY_FILE = "study.toml"
 IMAGES = (".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -64,9 +64,9 @@ def _maps(file):
         count = len(frames.values_of(found))
         about = f"{read.format}: {count} frames of {len(found.row)} sensels, {found.unit}"
         name = f"{file.name}, {found.name}" if found.name else file.name
-        rows.append(
-            {"name": name, "kind": settings.MAP, "path": str(file), "mat": found.name, "about": about, "frames": count}
-        )
+        curves = over_time.kept(frames.values_of(found), found.area_mm2, found.pressure_kpa is not None)
+        about_file = {"kind": settings.MAP, "path": str(file), "mat": found.name}
+        rows.append({"name": name, **about_file, "about": about, "frames": count, "curves": curves})
     return rows
 
 

@@ -5,7 +5,7 @@ from functools import partial
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
-from .. import languages, names
+from .. import languages, names, tabs
 from ..operators import computing, display, polling, running, selecting
 from ..scene.checks import Refusal
 from . import comparing, frames, laying, loading, outline, settings, showing
@@ -78,6 +78,7 @@ def _loaded(operator, context, added):
     """Guess where a mat lies, and report."""
     _guess_size(context, settings.chosen(context))
     frames.settle(context)
+    tabs.open_tab(context, tabs.RECORD)
     operator.report({"INFO"}, languages.report("Loaded {files}", files=", ".join(added)))
     return {"FINISHED"}
 

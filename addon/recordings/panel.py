@@ -2,7 +2,9 @@
 
 import bpy
 
-from .. import status
+from .. import status, tabs
+from ..curves import panel as over_time
+from ..curves import tables
 from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab, has_hand
@@ -24,16 +26,16 @@ class THENAR_UL_recordings(bpy.types.UIList):
 
 
 class THENAR_PT_no_recordings(Tab, bpy.types.Panel):
-    """Where recordings are loaded, closed until there is one."""
+    """Where recordings are loaded, until there is one."""
 
     bl_label = "Recordings"
     bl_parent_id = "THENAR_PT_main"
-    bl_options = {"DEFAULT_CLOSED"}
     bl_order = 6
 
     @classmethod
     def poll(cls, context):
-        return has_hand(context) and not context.scene.thenar_recordings.items
+        is_empty = has_hand(context) and not context.scene.thenar_recordings.items
+        return is_empty and tabs.shows(context, tabs.RECORD)
 
     def draw(self, context):
         if not text.progress(self.layout):
@@ -41,7 +43,7 @@ class THENAR_PT_no_recordings(Tab, bpy.types.Panel):
 
 
 class THENAR_PT_recordings(Tab, bpy.types.Panel):
-    """Recordings and the simulation, open and near the top once there is one."""
+    """Recordings and the simulation, once there is one."""
 
     bl_label = "Recordings"
     bl_parent_id = "THENAR_PT_main"
@@ -49,7 +51,8 @@ class THENAR_PT_recordings(Tab, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        return not status.native_problem and bool(context.scene.thenar_recordings.items)
+        is_loaded = not status.native_problem and bool(context.scene.thenar_recordings.items)
+        return is_loaded and tabs.shows(context, tabs.RECORD)
 
     def draw(self, context):
         layout, state = self.layout, context.scene.thenar_recordings
@@ -101,6 +104,8 @@ def _draw_placing(layout, context, item):
         row = column.row()
         row.enabled = item.frame_rule == "NUMBER"
         row.prop(item, "frame", text=iface("of {count}", count=item.frames))
+    layout.use_property_split = False
+    over_time.draw(layout, context, tables.RECORDING)
     row = layout.row(align=True)
     row.operator("thenar.show_recording", text="Recording", icon="IMAGE_DATA")
     row.operator("thenar.show_residual", text="Residual")

@@ -143,6 +143,8 @@ class ThenarRecording(bpy.types.PropertyGroup):
     mat: StringProperty()
     about: StringProperty()
     frames: IntProperty()
+    curves: StringProperty()
+    """Force, area and peak over the frames as text, see `over_time.kept`; empty where there are none."""
     frame_rule: EnumProperty(
         name="Frame",
         description="Which frame is compared with the contact",

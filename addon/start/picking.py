@@ -2,7 +2,7 @@
 
 import bpy
 
-from .. import languages
+from .. import languages, tabs
 from ..hand import bonemap, reading
 from ..hand.rig_axes import RigError
 from ..hand_shape import framing
@@ -37,6 +37,7 @@ def take(operator, context, hand):
         settings.product = None
     level, found = _detect(hand)
     framing.frame(context, hand)
+    tabs.open_after_hand(context)
     running.redraw(context)
     words = "'{name}' is the hand, {vertices:,} vertices"
     operator.report({level}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)) + found)

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 import small_studies
 import stage
-from thenar_blender import diagnosis, hand, panels, recordings, status
+from thenar_blender import diagnosis, hand, new_study, panels, picture_sets, recordings, status, tabs
 from thenar_blender.diagnosis import settings as kept
 from thenar_blender.panels import text
 
 SIDEBAR = 291
 """Width of Blender's sidebar as it opens, pixels."""
+TABS = (tabs.SETUP, tabs.RESULT, tabs.RECORD, tabs.DIAGNOSE)
 ICON = 3
 """Letters that an icon takes the place of."""
 
@@ -29,6 +30,7 @@ class Layout:
             "active",
             "alert",
             "alignment",
+            "enabled",
             "scale_y",
             "use_property_split",
             "use_property_decorate",
@@ -37,12 +39,12 @@ class Layout:
     def _child(self, **_):
         share = 1.0 if self.factor is None else self.factor if self.count == 0 else 1.0 - self.factor
         self.__dict__["count"] += 1
-        return Layout(self.letters * share, self.said)
+        return type(self)(self.letters * share, self.said)
 
     row = column = box = grid_flow = _child
 
     def split(self, factor=0.5, align=False):
-        return Layout(self._child().letters, self.said, factor)
+        return type(self)(self._child().letters, self.said, factor)
 
     def separator(self, factor=1.0):
         pass
@@ -69,15 +71,19 @@ class Layout:
 
     def operator_menu_enum(self, name, prop, text="", icon="NONE"):
         button = self.operator(name, text)
-        assert prop in button.kind.properties
+        assert prop in button._rna.properties
         return button
 
     def menu(self, name, text="", icon="NONE"):
         assert hasattr(bpy.types, name), name
         self._say(text, icon)
 
-    def prop(self, data, name, text=None, index=-1, **_):
+    def prop(self, data, name, text=None, index=-1, expand=False, **_):  # noqa: PLR0913 - Blender's
         assert name in data.bl_rna.properties, f"{data} has no '{name}'"
+        if expand:
+            items, room = data.bl_rna.properties[name].enum_items, self._child().letters
+            self.said.extend((item.name, room / len(items)) for item in items)
+            return
         told = data.bl_rna.properties[name].name if text is None else text
         self._say(told if data.bl_rna.properties[name].type != "ENUM" else "")
 
@@ -100,10 +106,11 @@ class _Properties:
     """What an operator's button sets."""
 
     def __init__(self, kind):
-        self.__dict__["kind"] = kind
+        self.__dict__["_rna"] = kind
 
     def __setattr__(self, name, value):
-        assert name in self.kind.properties, f"{self.kind.identifier} has no '{name}'"
+        assert name in self._rna.properties, f"{self._rna.identifier} has no '{name}'"
+        self.__dict__[name] = value
 
 
 class Context:
@@ -121,14 +128,38 @@ def _index(kind):
 
 
 def draw():
-    """Draw every panel that shows now. Returns {panel: [(text, room)]}."""
+    """Draw every panel of every tab. Returns {panel: [(text, room)]}."""
+    chosen, drawn = bpy.context.window_manager.thenar_tabs.tab, {}
+    for tab in TABS:
+        for panel, said in draw_tab(tab).items():
+            drawn.setdefault(panel, []).extend(each for each in said if each not in drawn[panel])
+    bpy.context.window_manager.thenar_tabs.tab = chosen
+    return drawn
+
+
+def draw_tab(tab):
+    """The same of one tab: those that show now."""
+    bpy.context.window_manager.thenar_tabs.tab = tab
     context, drawn = Context(), {}
-    for module in (*panels._MODULES, hand.panel, recordings.panel, diagnosis.panel):
+    for module in (
+        *panels._MODULES,
+        hand.panel,
+        recordings.panel,
+        diagnosis.panel,
+        new_study.panel,
+        picture_sets.panel,
+    ):
         for cls in module.CLASSES:
-            if issubclass(cls, bpy.types.Panel) and (not hasattr(cls, "poll") or cls.poll(context)):
+            if issubclass(cls, bpy.types.Panel) and is_shown(cls, context):
                 said = drawn.setdefault(cls.__name__, [])
                 cls.draw(SimpleNamespace(layout=Layout(text.width(context), said)), context)
     return drawn
+
+
+def is_shown(cls, context):
+    """Whether Blender draws the panel: it and all above it have something to say."""
+    above = getattr(bpy.types, getattr(cls, "bl_parent_id", ""), None)
+    return (not hasattr(cls, "poll") or cls.poll(context)) and (above is None or is_shown(above, context))
 
 
 def too_long(drawn):
@@ -173,7 +204,7 @@ def test_the_cards_go_on_from_what_is_there():
     drawn = draw()
     said = [words for words, _ in drawn["THENAR_PT_main"]]
     assert "Add Product..." in said and "Solve" not in said and "Try a sample" not in said
-    assert not {"THENAR_PT_result", "THENAR_PT_display", "THENAR_PT_output", "THENAR_PT_diagnosis"} & set(drawn)
+    assert not {"THENAR_PT_result", "THENAR_PT_display", "THENAR_PT_output"} & set(drawn)
     assert not too_long(drawn)
 
 

@@ -12,8 +12,8 @@ import time
 
 LIMIT_S = 120.0
 ADD, FILE, ACCEPT = (1165, 302), (484, 100), (1135, 614)
-SCALE, HAND, GRASP, SOLVE = (1165, 366), (1165, 346), (1165, 350), (1165, 350)
-OPENED, APART = (1096, 497), (1215, 518)
+SCALE, HAND, GRASP, SOLVE = (1165, 366), (1165, 346), (1165, 335), (1165, 335)
+OPENED, APART = (1096, 304), (1215, 326)
 """Where the buttons are in Blender 5.2's sidebar and file browser at their default sizes."""
 PROFILE = (
     (8, -62), (14, -60), (17, -56), (18.5, -48), (18.5, -20), (16.5, 0), (18, 20), (19, 38), (17, 46), (13, 50),

@@ -8,15 +8,17 @@ Prints how many labels of Thenar's operators Blender shows in each language.
 import sys
 
 LANGUAGES = ("ja_JP", "de_DE", "zh_HANS")
-SCALES = {1.0: (1566, 6), 1.7: (1540, 7)}
-"""Scale of the interface: where its sidebar has room right of lists (pixels), and how many pictures, page by page."""
+SCALES = {1.0: 1566, 1.7: 1540}
+"""Scale of the interface: where its sidebar has room right of lists (pixels)."""
+PAGES = {"SETUP": (4, 5), "RESULT": (3, 4), "RECORD": (1, 1), "DIAGNOSE": (1, 1)}
+"""How many pictures of each tab, page by page, at either scale."""
 WHEEL = 24
 """Turns of the wheel from page to page."""
 LIGHT = "Blender_Light.xml"
 
 
 def drive(bpy, ui):
-    """The cards of the empty scene, then every panel of a solved sample, page by page."""
+    """The cards of the empty scene, then every tab of a solved sample, page by page."""
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     open_all(bpy)
@@ -41,15 +43,17 @@ def drive(bpy, ui):
         shown = bpy.app.translations.pgettext_iface("Solve Contact", "Operator")
         print("LANGUAGE", language, bpy.app.translations.locale, shown)
         assert shown != "Solve Contact"
-        for scale, (x, pages) in SCALES.items():
+        for number, (scale, x) in enumerate(SCALES.items()):
             bpy.context.preferences.view.ui_scale = scale
             yield 2
             ui.sidebar("Thenar")
             yield 1
-            yield from turn(ui, x, -90)
-            for page in range(pages):
-                ui.shot(f"{language}_{scale:g}_{page}")
-                yield from turn(ui, x, WHEEL)
+            for tab, pages in PAGES.items():
+                bpy.context.window_manager.thenar_tabs.tab = tab
+                yield from turn(ui, x, -90)
+                for page in range(pages[number]):
+                    ui.shot(f"{language}_{scale:g}_{tab}_{page}")
+                    yield from turn(ui, x, WHEEL if page < pages[number] - 1 else 0)
     bpy.context.preferences.view.ui_scale = 1.0
     theme = next(path for path in bpy.utils.preset_paths("interface_theme"))
     bpy.ops.script.execute_preset(filepath=f"{theme}/{LIGHT}", menu_idname="USERPREF_MT_interface_theme_presets")

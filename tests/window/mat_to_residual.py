@@ -12,9 +12,9 @@ import time
 
 LIMIT_S = 120.0
 LOAD, FILE, ACCEPT = (1165, 582), (484, 100), (1135, 614)
-SAMPLES, CYLINDER, SOLVE = (1165, 259), (1117, 329), (1165, 350)
-SHOW, RESIDUAL, COMPARE, FOLLOW = (1100, 811), (1200, 811), (1165, 840), (1264, 763)
-LATE = (128, 948)
+SAMPLES, CYLINDER, SOLVE, RECORD = (1165, 259), (1117, 375), (1165, 335), (1184, 128)
+SHOW, RESIDUAL, COMPARE, FOLLOW = (1100, 735), (1198, 735), (1165, 764), (1264, 457)
+LATE, ON_CURVE = (128, 948), (1240, 675)
 """Where the buttons are in Blender 5.2's sidebar, file browser and timeline at their default sizes."""
 ROWS, COLUMNS, PITCH_MM, DIAMETER_MM, FRAMES = 24, 30, 5.026548, 48.0, 40
 PADS = (
@@ -59,7 +59,7 @@ def write_export(path):
 
 
 def drive(bpy, ui):
-    """Load the export, add the sample, solve, show, compare, scrub, and show the residual; a picture of each step."""
+    """Load the export, add the sample, solve, show, compare, scrub, click the curve, show the residual; pictures."""
     known = write_export(os.path.join(os.environ["HOME"], "grip.asf"))
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
@@ -95,6 +95,11 @@ def drive(bpy, ui):
     yield from until(lambda: state.hand.thenar.shows_pressure)
     yield 1.0
     mark("solved")
+    yield from press(ui, RECORD)
+    yield from until(lambda: bpy.context.window_manager.thenar_tabs.tab == "RECORD")
+    ui.move(RECORD[0], RECORD[1] + 60)
+    yield 4.0
+    ui.shot("e_record")
     yield from press(ui, SHOW)
     yield from until(lambda: bpy.data.objects.get("Thenar Mat Recorded") is not None)
     yield 1.0
@@ -111,6 +116,10 @@ def drive(bpy, ui):
     yield from until(lambda: kept.items[0].frame > 12)
     yield 1.0
     mark("frame")
+    yield from press(ui, ON_CURVE)
+    yield from until(lambda: kept.items[0].frame > 28 and bpy.context.scene.frame_current == kept.items[0].frame)
+    yield 1.0
+    mark("curve")
     yield from press(ui, RESIDUAL)
     yield from until(lambda: state.maps.shown == "RESIDUAL")
     took = time.monotonic() - began

@@ -5,7 +5,7 @@ pixels of a window of 1600 x 1000 and takes pictures. Hand, presets and library 
 Raises where what a click should do does not happen, and prints what the steps left.
 """
 
-PRESETS, PALM, BLEND, SLIDER = (1135, 803), (1085, 828), (1231, 506), (1452, 578)
+PRESETS, PALM, BLEND, SLIDER = (1135, 835), (1085, 860), (1215, 537), (1436, 609)
 ASSETS = (500, 865), (660, 865)
 """Where the buttons are in Blender 5.2's sidebar and asset shelf at their default sizes."""
 

@@ -16,8 +16,8 @@ import time
 
 LIMIT_S = 120.0
 HAND, FILE, ACCEPT = (1165, 433), (484, 100), (1135, 614)
-ADD, JOIN, GRASP, SOLVE = (1165, 273), (1165, 418), (1165, 350), (1165, 350)
-OPENED, APART = (1096, 497), (1215, 518)
+ADD, JOIN, GRASP, SOLVE = (1165, 258), (1165, 403), (1165, 335), (1165, 335)
+OPENED, APART = (1096, 304), (1215, 326)
 """Where the buttons are in Blender 5.2's sidebar and file browser at their default sizes."""
 NAMES = {"proximal": "phalanx-proximal", "middle": "phalanx-intermediate", "distal": "phalanx-distal"}
 

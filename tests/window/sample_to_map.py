@@ -7,9 +7,9 @@ pixels of a window of 1600 x 1000 and takes pictures. Prints the seconds from th
 import time
 
 LIMIT_S = 30.0
-SAMPLE, SOLVE = (1165, 210), (1165, 350)
+SAMPLE, SOLVE = (1165, 210), (1165, 335)
 """Where the buttons are in Blender 5.2's sidebar at its default width."""
-LOOKS = {"opened": (1096, 497), "palm": (1215, 497), "product": (1096, 518), "apart": (1215, 518)}
+LOOKS = {"opened": (1096, 304), "palm": (1215, 304), "product": (1096, 326), "apart": (1215, 326)}
 
 
 def drive(bpy, ui):
