@@ -28,7 +28,7 @@ def icon(table, side):
             previews.clear()
         preview = previews.new(name)
         preview.image_size = (side, side)
-        preview.image_pixels_float = marked(_curves(table, side), table.shares[table.row]).ravel()
+        preview.image_pixels_float.foreach_set(marked(_curves(table, side), table.shares[table.row]).ravel())
     return previews[name].icon_id
 
 

@@ -24,8 +24,8 @@ class Column:
     def said(self, row):
         """The value of a row with its unit."""
         value = float(self.values[row])
-        digits = 0 if self.unit == "kPa" or abs(value) >= 1000 else 1
-        return f"{value:.{digits}f} {self.unit}".strip()
+        text = f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+        return f"{text} {self.unit}".strip()
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,8 @@ def _of_recording(context):
     if kept["unit"] == "kPa":
         titles, units = (iface("Force"), iface("Area"), iface("Peak")), ("N", "cm²", "kPa")
     else:
-        titles, units = (iface("Sum"), iface("Cells"), iface("Peak")), ("", "", "")
+        peak = "kPa" if kept["unit"].startswith("kPa") else ""
+        titles, units = (iface("Sum"), iface("Cells"), iface("Peak")), ("", "", peak)
     values = (np.array(kept[name]) for name in ("force", "area", "peak"))
     columns = tuple(Column(*each) for each in zip(titles, units, values, strict=True))
     return Table(RECORDING, frames, columns, int(np.abs(frames - item.frame).argmin()))
@@ -94,7 +95,14 @@ def _of_recording(context):
 
 @lru_cache(maxsize=8)
 def _read(text):
-    return json.loads(text) if text else None
+    try:
+        kept = json.loads(text) if text else None
+        return kept if kept is None or kept.keys() >= _PARTS else None
+    except (ValueError, AttributeError):
+        return None  # text of something else: as none
+
+
+_PARTS = {"unit", "frame", "force", "area", "peak"}
 
 
 def sentence(table, row):

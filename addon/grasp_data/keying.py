@@ -79,17 +79,38 @@ def _axis_angle(quaternion):
 
 
 def _fill(curve, frames, values):
-    """Replace the keys between the first and the last frame by these, with lines between them."""
+    """Replace the keys between the first and the last frame by these, with lines between them; others stay."""
     points = curve.keyframe_points
-    held = np.empty(2 * len(points))
-    points.foreach_get("co", held)
-    held = held.reshape(-1, 2)
-    outside = held[(held[:, 0] < frames[0] - 1e-3) | (held[:, 0] > frames[-1] + 1e-3)]
-    rows = np.concatenate([outside, np.stack([frames, values], axis=1)])
-    rows = rows[np.argsort(rows[:, 0], kind="stable")]
-    points.add(max(len(rows) - len(points), 0))
-    while len(points) > len(rows):
+    held = {name: _read(points, name, width) for name, width in _KEPT.items()}
+    outside = (held["co"][:, 0] < frames[0] - 1e-3) | (held["co"][:, 0] > frames[-1] + 1e-3)
+    new = np.stack([frames, values], axis=1)
+    fresh = {name: new for name in ("co", "handle_left", "handle_right")}
+    fresh["interpolation"] = np.full((len(new), 1), _LINEAR)
+    order = np.argsort(np.concatenate([held["co"][outside, 0], frames]), kind="stable")
+    points.add(max(len(order) - len(points), 0))
+    while len(points) > len(order):
         points.remove(points[-1], fast=True)
-    points.foreach_set("co", rows.ravel())
-    points.foreach_set("interpolation", np.full(len(points), _LINEAR, np.int32))
+    for name, width in _KEPT.items():
+        added = fresh.get(name, np.zeros((len(new), width)))
+        rows = np.concatenate([held[name][outside], added])[order]
+        points.foreach_set(name, rows.ravel().astype(held[name].dtype))
     curve.update()
+
+
+def _read(points, name, width):
+    """A property of all keys, (k, width)."""
+    out = np.empty(width * len(points), np.float32 if width == 2 else np.int32)
+    points.foreach_get(name, out)
+    return out.reshape(-1, width)
+
+
+_KEPT = {
+    "co": 2,
+    "handle_left": 2,
+    "handle_right": 2,
+    "handle_left_type": 1,
+    "handle_right_type": 1,
+    "interpolation": 1,
+    "easing": 1,
+}
+"""Properties of a key that stay with it, and how many numbers each has."""

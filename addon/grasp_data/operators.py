@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
-from bpy_extras.io_utils import ExportHelper, ImportHelper
+from bpy_extras.io_utils import ExportHelper
 
 from .. import languages, steps
 from ..hand.operators import can_pose
@@ -70,7 +70,7 @@ class _OfPose:
         return {"FINISHED"}
 
 
-class THENAR_OT_load_hand_pose(_OfPose, bpy.types.Operator, ImportHelper):
+class THENAR_OT_load_hand_pose(_OfPose, computing.OpensFiles, bpy.types.Operator):
     """Pose the hand by parameters of MANO or SMPL-X (.npz, .npy, .json, .pkl); several frames become keyframes"""
 
     bl_idname = "thenar.load_hand_pose"
@@ -80,10 +80,9 @@ class THENAR_OT_load_hand_pose(_OfPose, bpy.types.Operator, ImportHelper):
     filter_glob: StringProperty(default=";".join(f"*{suffix}" for suffix in containers.SUFFIXES), options={"HIDDEN"})
 
     def execute(self, context):
-        if context.window is not None and not bpy.app.background:
+        if self.reads_beside(context):
             asked = {name: getattr(self, name) for name in ("filepath", "side", "numbers", *_SWITCHES)}
-            bpy.ops.thenar.read_hand_pose("INVOKE_DEFAULT", **asked)
-            return {"CANCELLED"}  # what reads leaves the undo step
+            return self.hand_over(bpy.ops.thenar.read_hand_pose, **asked)
         done = running.attempt(self, steps.at_once, self.steps(context))
         return {"CANCELLED"} if done is None else self._report(context, done)
 

@@ -55,6 +55,7 @@ def steps(context, path, wish):
     rows = {}
     if len(turns) > 1:
         rows = yield partial(keying.channels, keying.modes(armature, named), named)
+    _check_there(armature, named)
     muted = 0 if wish.keeps_limits else _mute_limits(armature, named)
     keyed = 0
     if rows:
@@ -67,6 +68,16 @@ def steps(context, path, wish):
         keying.pose(armature, {name: matrices[0] for name, matrices in named.items()})
     context.view_layer.update()
     return Done(len(turns), keyed, poses.key, _remark(fitted, muted))
+
+
+def _check_there(armature, names):
+    """Raise `Refusal` where the armature or a bone went while the file was read."""
+    try:
+        gone = next((name for name in names if name not in armature.pose.bones), None)
+    except ReferenceError:
+        raise checks.Refusal("the hand's armature was removed while the file was read; load the pose again") from None
+    if gone is not None:
+        raise checks.Refusal(f"bone '{gone}' was removed while the file was read; load the pose again")
 
 
 def _apart(action, _cancel, _progress):

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import bpy
-from bpy_extras.io_utils import ImportHelper
 from bpy_extras.view3d_utils import region_2d_to_origin_3d, region_2d_to_vector_3d
 
 from .. import languages, steps, tabs
@@ -20,7 +19,7 @@ KINDS = (
 )
 
 
-class THENAR_OT_new_study(bpy.types.Operator, ImportHelper):
+class THENAR_OT_new_study(computing.OpensFiles, bpy.types.Operator):
     """Choose recordings of a tool pressed on skin (CSV, text, workbook, JPK, Mach-1 ...): Thenar proposes the study \
 to diagnose, and asks what the files do not state"""
 
@@ -46,10 +45,9 @@ to diagnose, and asks what the files do not state"""
     def execute(self, context):
         names = [each.name for each in self.files if each.name]
         folder = bpy.path.abspath(self.directory)
-        if context.window is not None and not bpy.app.background:
+        if self.reads_beside(context):
             chosen = [{"name": name} for name in names]
-            bpy.ops.thenar.read_study_files("INVOKE_DEFAULT", directory=folder, files=chosen)
-            return {"CANCELLED"}  # what reads leaves the undo step
+            return self.hand_over(bpy.ops.thenar.read_study_files, directory=folder, files=chosen)
         count = running.attempt(self, steps.at_once, drafting.steps(context, folder, names))
         return {"CANCELLED"} if count is None else _opened(self, context, count)
 

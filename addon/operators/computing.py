@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 from bpy.app.handlers import persistent
+from bpy_extras.io_utils import ImportHelper
 
 from .. import languages, steps
 from . import running
@@ -23,6 +24,27 @@ class _Run:
 
     timer: object
     worker: running.Worker | running.Turn
+
+
+class OpensFiles(ImportHelper):
+    """A file operator that reads next to the window where a user chose the file; a script goes on when all is read."""
+
+    def invoke(self, context, event):
+        """Open the file browser, which keeps this operator until the user has chosen."""
+        self._is_asked = True
+        return ImportHelper.invoke(self, context, event)
+
+    def reads_beside(self, context):
+        """Whether `hand_over` is to read: a user waits in a window."""
+        return getattr(self, "_is_asked", False) and context.window is not None and not bpy.app.background
+
+    def hand_over(self, begin, **asked):
+        """Begin an operator that reads next to the window; what it refuses is reported here."""
+        try:
+            begin("INVOKE_DEFAULT", **asked)
+        except RuntimeError as error:
+            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+        return {"CANCELLED"}  # what reads leaves the undo step
 
 
 class Computing:

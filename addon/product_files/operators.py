@@ -3,6 +3,7 @@
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
+from .. import tabs
 from ..hand_shape import framing
 from ..languages import report
 from ..operators import polling, running, selecting
@@ -41,6 +42,7 @@ class THENAR_OT_add_product(bpy.types.Operator, ImportHelper):
             return {"CANCELLED"}
         hand = context.scene.thenar.hand
         framing.frame(context, *added.parts, *([] if hand is None else [hand]))
+        tabs.open_tab(context, tabs.SETUP)  # where its unit is asked
         self.report(*_told(added))
         running.redraw(context)
         return {"FINISHED"}

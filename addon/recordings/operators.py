@@ -3,7 +3,6 @@
 from functools import partial
 
 import bpy
-from bpy_extras.io_utils import ImportHelper
 
 from .. import languages, names, tabs
 from ..operators import computing, display, polling, running, selecting
@@ -27,7 +26,7 @@ def _no_comparison(context):
     return "" if state.is_valid else "nothing was compared yet; press Compare first"
 
 
-class THENAR_OT_load_recording(bpy.types.Operator, ImportHelper):
+class THENAR_OT_load_recording(computing.OpensFiles, bpy.types.Operator):
     """Load a study (its folder or study.toml), a maker's export of a pressure mat, or the image of a handprint"""
 
     bl_idname = "thenar.load_recording"
@@ -45,9 +44,8 @@ class THENAR_OT_load_recording(bpy.types.Operator, ImportHelper):
 
     def execute(self, context):
         path = bpy.path.abspath(self.filepath)
-        if context.window is not None and not bpy.app.background:
-            bpy.ops.thenar.read_recording("INVOKE_DEFAULT", filepath=path)
-            return {"CANCELLED"}  # what reads leaves the undo step
+        if self.reads_beside(context):
+            return self.hand_over(bpy.ops.thenar.read_recording, filepath=path)
         added = running.attempt(self, loading.load, context, path)
         return {"CANCELLED"} if added is None else _loaded(self, context, added)
 

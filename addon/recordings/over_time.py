@@ -25,5 +25,5 @@ def kept(values, areas_mm2, is_calibrated):
     rows = np.unique([*rows, force.argmax(), peak.argmax()])
     columns = {"force": force, "area": area, "peak": peak}
     listed = {name: [float(f"{value:.4g}") for value in column[rows]] for name, column in columns.items()}
-    unit = "kPa" if in_units else "counts"
+    unit = "kPa" if in_units else "kPa, no areas" if is_calibrated else "counts"
     return json.dumps({"unit": unit, "frame": (rows + 1).tolist(), **listed}, separators=(",", ":"))

@@ -191,7 +191,7 @@ def notes(hand: Object, parts: Sequence[Object]) -> list[str]:
         return ["no take is shown; choose one, or switch its modifier on"]
     tables = _load(hand)
     if tables is None:
-        return [f"its file is missing: '{_path(hand)}'; put it back, or bake again"]
+        return [f"its file is missing or damaged: '{_path(hand)}'; put it back, or bake again"]
     found = []
     pressure = tables.get(f"hand/{names.PRESSURE_KPA}", tables.get("hand"))
     if pressure is not None and len(pressure[0]) != len(hand.data.vertices):
@@ -283,8 +283,11 @@ def _load(hand: Object) -> dict[str, Floats] | None:
         _loaded.clear()
         if not os.path.exists(path):
             return None
-        with np.load(path, allow_pickle=False) as file:
-            _loaded[path] = {name: file[name] for name in file.files}
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                _loaded[path] = {name: file[name] for name in file.files}
+        except (OSError, ValueError, EOFError, BadZipFile):
+            return None  # damaged, or being written: as a file that is missing
     return _loaded[path]
 
 

@@ -202,3 +202,27 @@ def test_the_line_is_at_the_shown_frame():
         line = pictures.marked(image, share)
         (changed,) = np.nonzero((line != image).any(axis=(0, 2)))
         assert len(changed) == 1 and changed[0] == round(pictures.INSET + share * (side - 1 - 2 * pictures.INSET))
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [(0.043, "N", "0.043 N"), (0.27, "cm²", "0.27 cm²"), (61.84, "cm²", "61.8 cm²"), (1234.5, "kPa", "1234 kPa")],
+)
+def test_small_numbers_keep_their_digits(value, unit, text):
+    assert tables.Column("", unit, np.array([value])).said(0) == text
+
+
+def test_a_damaged_bake_draws_no_curve_and_raises_nothing(baked_scene):
+    from thenar_blender.scene import baked
+
+    hand, _ = baked_scene
+    place = Path(baked._path(hand))
+    place.write_bytes(place.read_bytes()[:200])
+    baked._loaded.clear()
+    assert tables.of(bpy.context, tables.BAKE) is None
+    assert baked.notes(hand, [])[0].startswith("its file is missing or damaged")
+
+
+@pytest.mark.parametrize("text", ["", "{", "[1]", '{"unit": "kPa"}'])
+def test_text_that_is_no_curve_draws_none(text):
+    assert tables._read(text) is None

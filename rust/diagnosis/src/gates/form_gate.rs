@@ -176,7 +176,7 @@ impl<'a> Gate<'a, '_> {
 
     fn nothing(&self, feigned: &[&'static str]) -> Decision<'a> {
         let reason = format!(
-            "{} is suspected, since it explains more than noise would, but no more than {}",
+            "suspected is {}, which explains more than noise would, but no more than {}",
             in_words(feigned),
             self.form()
         );

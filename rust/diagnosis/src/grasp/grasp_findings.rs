@@ -91,7 +91,10 @@ fn listed_cells(explained: &Explained) -> String {
         .dead
         .iter()
         .take(4)
-        .filter_map(|cell| places(cell).map(|[row, col]| format!("row {row} column {col}")))
+        .map(|cell| match places(cell) {
+            Some([row, col]) => format!("row {row} column {col}"),
+            None => format!("cell {} of the mat", cell + 1),
+        })
         .collect();
     let more = if explained.dead.len() > named.len() {
         " and more"

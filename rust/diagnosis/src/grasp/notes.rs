@@ -33,9 +33,12 @@ pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
         .collect();
     match found.verdict {
         Verdict::NothingMissing => format!(
-            "Nothing is missing: what changes in these {} holds is posture, and no region, no course in time and no part of the mat stands out beyond what the \
+            "Nothing is missing: what changes in {} is posture, and no region, no course in time and no part of the mat stands out beyond what the \
              model's own form allows.",
-            explained.holds.len()
+            match explained.holds.len() {
+                1 => "this hold".to_owned(),
+                count => format!("these {count} holds"),
+            }
         ),
         Verdict::CannotTell => {
             let pair = found.cannot_tell.first().map_or(["", ""], |pair| *pair);
@@ -143,14 +146,14 @@ pub(super) fn notes(study: &Study, explained: &Explained) -> Vec<String> {
 
 /// Force, scale over the model, and posture of every region, in the mean over holds.
 fn by_region(explained: &Explained) -> String {
-    let count = explained.fits.len().max(1) as f64;
     let told = regions(&explained.fits).into_iter().map(|region| {
         let mean = |of: &dyn Fn(&RegionalFit, usize) -> f64| {
             let own = explained
                 .fits
                 .iter()
                 .filter_map(|fit| place(fit, region).map(|k| of(fit, k)));
-            own.sum::<f64>() / count
+            let own: Vec<f64> = own.collect();
+            own.iter().sum::<f64>() / own.len().max(1) as f64
         };
         let scale = mean(&|fit, k| fit.log_scale[k]).exp();
         let shift = mean(&|fit, k| fit.shift_mm[k]);

@@ -133,9 +133,9 @@ fn verdict(explained: &Explained, found: &Diagnosis) -> Verdict {
         }
         _ => {
             let (squared, rows) = explained.chosen.left;
-            match squared > UNEXPLAINED * rows as f64 {
-                true => Verdict::Unlisted,
-                false => Verdict::NothingMissing,
+            match squared <= UNEXPLAINED * rows as f64 {
+                true => Verdict::NothingMissing,
+                false => Verdict::Unlisted,
             }
         }
     }

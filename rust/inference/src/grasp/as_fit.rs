@@ -50,7 +50,7 @@ pub fn as_fit(explained: &Explained, notes: Vec<String>) -> Fit {
                 samples.push(Sample {
                     moment: stretch as u32,
                     quantity: Quantity::Pressure(cell as u32),
-                    value: read.max(explained.cells.floor_kpa.min(read)),
+                    value: read,
                     censoring: censoring(explained, read),
                 });
                 simulated.push(maps[cell]);

@@ -1,5 +1,8 @@
 //! Causes that a grasp study can show, as columns of its linear model, and their choice one after the other by evidence.
 
+use std::ops::Range;
+
+use crate::errors::InferenceError;
 use crate::grasp::channels::{Channel, Channels};
 use crate::grasp::linear_evidence::{Factored, Rows, Sized};
 
@@ -249,8 +252,16 @@ fn course(
     })
 }
 
-/// Chooses causes one after the other, each by its evidence in the presence of those before it.
-pub fn choose(channels: &Channels, candidates: &[Candidate]) -> Chosen {
+/// Chooses causes one after the other, each by its evidence in the presence of those before it. `watch` is asked before every hold that is left
+/// out.
+///
+/// # Errors
+/// What `watch` says.
+pub fn choose(
+    channels: &Channels,
+    candidates: &[Candidate],
+    watch: &dyn Fn() -> Result<(), InferenceError>,
+) -> Result<Chosen, InferenceError> {
     let mut rows = channels.model.clone();
     let mut chosen = Chosen {
         named: Vec::new(),
@@ -265,10 +276,14 @@ pub fn choose(channels: &Channels, candidates: &[Candidate]) -> Chosen {
         .any(|row| matches!(row, Channel::Trace(..)));
     for round in 0..=MOST {
         let Some(whole) = rows.factored(|_| true) else {
-            return chosen;
+            return Ok(chosen);
         };
-        let folds = folds(channels, &rows);
-        let mut weighed = weigh(candidates, (&whole, &folds), &taken);
+        let data = Data {
+            channels,
+            rows: &rows,
+            whole: &whole,
+        };
+        let mut weighed = data.weigh(candidates, &taken, watch)?;
         weighed.sort_by(|a, b| b.net.total_cmp(&a.net));
         if round == 0 {
             chosen.rivals.clone_from(&weighed);
@@ -286,7 +301,7 @@ pub fn choose(channels: &Channels, candidates: &[Candidate]) -> Chosen {
         let best = weighed.iter().find(is_named).cloned();
         let (Some(best), true) = (best, round < MOST) else {
             chosen.left = whole.chi_squared();
-            return chosen;
+            return Ok(chosen);
         };
         // Without a trace, tissue that gives way and a mat whose readings fall differ by the shape of their course alone.
         let is_course = |cause: Cause| matches!(cause, Cause::Relaxation(_) | Cause::Drift(_));
@@ -323,52 +338,62 @@ pub fn choose(channels: &Channels, candidates: &[Candidate]) -> Chosen {
         }
         chosen.named.push(best);
     }
-    chosen
+    Ok(chosen)
 }
 
-/// The model without each hold in turn; empty with one hold.
-fn folds(channels: &Channels, rows: &Rows) -> Vec<Factored> {
-    let holds = channels
-        .rows
-        .iter()
-        .map(|row| row.hold() + 1)
-        .max()
-        .unwrap_or(0);
-    if holds < 2 {
-        return Vec::new();
+/// What causes are weighed on.
+struct Data<'a> {
+    channels: &'a Channels,
+    rows: &'a Rows,
+    whole: &'a Factored,
+}
+
+/// Numbers of the holds that are left out in turn; none with one hold.
+fn folds(channels: &Channels) -> Range<usize> {
+    let last = channels.rows.iter().map(|row| row.hold()).max();
+    match last {
+        Some(last) if last > 0 => 0..last + 1,
+        _ => 0..0,
     }
-    let without = |hold: usize| rows.factored(|k| channels.rows[k].hold() != hold);
-    (0..holds).filter_map(without).collect()
 }
 
-fn weigh(
-    candidates: &[Candidate],
-    (whole, folds): (&Factored, &[Factored]),
-    taken: &[Cause],
-) -> Vec<Weighed> {
-    // A kind is named once; of one region stiffness or bone.
-    let is_taken = |each: &Candidate| {
-        taken.iter().any(|named| match named.region() {
-            None => named.name() == each.cause.name(),
-            region => region == each.cause.region(),
-        })
-    };
-    let free = candidates.iter().filter(|each| !is_taken(each));
-    free.filter_map(|each| {
-        let sized = whole.with(&each.column, each.prior);
-        if each.is_positive && sized.size <= 0.0 {
-            return None;
+impl Data<'_> {
+    /// Causes weighed on all rows, and on those of every hold given the others.
+    fn weigh(
+        &self,
+        candidates: &[Candidate],
+        taken: &[Cause],
+        watch: &dyn Fn() -> Result<(), InferenceError>,
+    ) -> Result<Vec<Weighed>, InferenceError> {
+        // A kind is named once; of one region stiffness or bone.
+        let is_taken = |each: &Candidate| {
+            taken.iter().any(|named| match named.region() {
+                None => named.name() == each.cause.name(),
+                region => region == each.cause.region(),
+            })
+        };
+        let free = candidates.iter().filter(|each| !is_taken(each));
+        let sized = free.map(|each| (each, self.whole.with(&each.column, each.prior)));
+        let kept = sized.filter(|(each, sized)| !each.is_positive || sized.size > 0.0);
+        let kept: Vec<_> = kept.collect();
+        let folds = folds(self.channels);
+        let mut held_out = vec![0.0; kept.len()];
+        for hold in folds.clone() {
+            watch()?;
+            let Some(others) = self.rows.factored(|k| self.channels.rows[k].hold() != hold) else {
+                continue;
+            };
+            for (sum, (each, sized)) in held_out.iter_mut().zip(&kept) {
+                *sum += sized.gain - others.with(&each.column, each.prior).gain;
+            }
         }
-        let without: f64 = folds
-            .iter()
-            .map(|f| sized.gain - f.with(&each.column, each.prior).gain)
-            .sum();
-        Some(Weighed {
+        let weighed = kept.into_iter().zip(held_out);
+        let weighed = weighed.map(|((each, sized), held_out)| Weighed {
             cause: each.cause,
             sized,
             net: sized.gain - each.cost,
-            held_out: (!folds.is_empty()).then_some(without),
-        })
-    })
-    .collect()
+            held_out: (!folds.is_empty()).then_some(held_out),
+        });
+        Ok(weighed.collect())
+    }
 }

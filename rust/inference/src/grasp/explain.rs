@@ -20,6 +20,13 @@ pub const THINNER: f64 = 0.8;
 const STATED: f64 = 0.1;
 /// Times that the posture is fitted and pressed again.
 const POSTURES: usize = 2;
+/// Most holds of a study: every one is left out in turn, at a cost that grows with the fourth power of their number.
+const MOST_HOLDS: usize = 12;
+/// Least share of a hold's load that lies on cells which the model loads: holds that are laid out rightly have 0.99, a mat that is turned or
+/// 40 mm off half of it.
+const ON_MODEL: f64 = 0.7;
+/// What counts there as loaded, kPa.
+const LOADED_KPA: f64 = 0.5;
 
 /// A grasp study, explained.
 pub struct Explained {
@@ -64,6 +71,7 @@ pub fn explain(study: &Study, control: &Control<'_>) -> Result<Explained, Infere
     };
     step("preparing the grasp", 0.0)?;
     let holds = holds(study)?;
+    check_holds(&holds)?;
     let product = HeldProduct::new(study, &quiet)?;
     let shown = limits(&holds);
     let sheet = study.instrument.as_ref();
@@ -84,6 +92,11 @@ pub fn explain(study: &Study, control: &Control<'_>) -> Result<Explained, Infere
     for round in 0..POSTURES {
         step("pressing the grasp", 0.1 + 0.3 * round as f64)?;
         let pressed = product.forces(&middle, 1.0, &quiet)?;
+        if pressed.is_bare() {
+            return Err(refused(
+                "the hand does not touch the product; give both in one frame and in mm, as the product is held".to_owned(),
+            ));
+        }
         fits = holds
             .iter()
             .map(|hold| fit(hold, &pressed, &cells))
@@ -116,6 +129,9 @@ pub fn explain(study: &Study, control: &Control<'_>) -> Result<Explained, Infere
         .iter()
         .map(|hold| fit(hold, &forces, &cells))
         .collect();
+    for (hold, fit) in holds.iter().zip(&fits) {
+        check_place(hold, fit, &cells)?;
+    }
     let courses: Vec<Courses> = holds
         .iter()
         .zip(&fits)
@@ -164,7 +180,7 @@ pub fn explain(study: &Study, control: &Control<'_>) -> Result<Explained, Infere
     if !dead.is_empty() || part.is_some() || unstated != Limits::default() {
         causes.retain(|each| each.cause.region().is_none());
     }
-    let chosen = choose(&channels, &causes);
+    let chosen = choose(&channels, &causes, &|| step("weighing causes", 0.9))?;
     Ok(Explained {
         limits: unstated,
         holds,
@@ -179,6 +195,53 @@ pub fn explain(study: &Study, control: &Control<'_>) -> Result<Explained, Infere
         forces,
         readable,
     })
+}
+
+fn refused(problem: String) -> InferenceError {
+    InferenceError::Grasps { problem }
+}
+
+/// Refuses holds that cannot be explained together.
+fn check_holds(holds: &[Hold]) -> Result<(), InferenceError> {
+    if holds.len() > MOST_HOLDS {
+        return Err(refused(format!(
+            "{} holds are more than {MOST_HOLDS}; make studies of fewer",
+            holds.len()
+        )));
+    }
+    match holds.iter().find(|hold| hold.kept != holds[0].kept) {
+        Some(other) => Err(refused(format!(
+            "'{}' and '{}' have different cells; make a study of each mat, and place the same cells in all its recordings",
+            holds[0].name, other.name
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a hold whose readings do not lie where the model's hand touches the product.
+fn check_place(hold: &Hold, fit: &RegionalFit, cells: &Cells) -> Result<(), InferenceError> {
+    let (read, model) = (hold.mean(), fit.sum());
+    let on = |k: usize| match model[k] * cells.gain[k] > LOADED_KPA {
+        true => read[k],
+        false => 0.0,
+    };
+    let on: Vec<f64> = (0..read.len()).map(on).collect();
+    let (on, whole) = (hold.sum_n(&on), hold.sum_n(&read));
+    if whole <= 0.0 {
+        return Err(refused(format!(
+            "'{}' reads nothing; check the file and the mat",
+            hold.name
+        )));
+    }
+    if on < ON_MODEL * whole {
+        return Err(refused(format!(
+            "only {:.0} % of the load of '{}' lies where the hand touches the product; check how the mat is placed (origin, seam, turn) and the \
+             hand's posture",
+            100.0 * on / whole,
+            hold.name
+        )));
+    }
+    Ok(())
 }
 
 /// Logarithm of what the mat can read of the model over what the trace measures of it.

@@ -166,7 +166,17 @@ fn hold(
         maps,
         extremes,
         at_largest,
-        force_n: force.and_then(|curve| trace(curve, &time, &stretches)),
+        force_n: force
+            .map(|curve| {
+                trace(curve, &time, &stretches).ok_or_else(|| InferenceError::Grasps {
+                    problem: format!(
+                        "the force trace of '{}' does not cover the hold with forces above zero; give it on the mat's clock, a push positive, or \
+                         leave it out",
+                        recording.name
+                    ),
+                })
+            })
+            .transpose()?,
         force_direction: None,
         mat,
         kept,
@@ -200,7 +210,8 @@ fn stretches(time: &[f64], first: usize) -> Vec<std::ops::Range<usize>> {
     ends.map(|pair| first + pair[0]..first + pair[1]).collect()
 }
 
-/// Means of the force trace over the stretches; None where it does not last as long as the mat's frames.
+/// Means of the force trace over the stretches, between two of its readings where a stretch holds none; None where it does not last as long as
+/// the hold, or is not above zero.
 fn trace(curve: &Curve, time: &[f64], stretches: &[std::ops::Range<usize>]) -> Option<Vec<f64>> {
     let (at, force) = (curve.channel("time_s")?, curve.channel("force_n")?);
     let mean = |frames: &std::ops::Range<usize>| {
@@ -209,7 +220,12 @@ fn trace(curve: &Curve, time: &[f64], stretches: &[std::ops::Range<usize>]) -> O
             at.partition_point(|t| *t < from - 1e-9),
             at.partition_point(|t| *t <= to + 1e-9),
         );
-        (b > a).then(|| force[a..b].iter().sum::<f64>() / (b - a) as f64)
+        if b > a {
+            return Some(force[a..b].iter().sum::<f64>() / (b - a) as f64);
+        }
+        let before = a.checked_sub(1)?;
+        let share = (0.5 * (from + to) - at[before]) / (at.get(a)? - at[before]);
+        Some(force[before] + share * (force[a] - force[before]))
     };
     let found: Option<Vec<f64>> = stretches.iter().map(mean).collect();
     found.filter(|means| means.iter().all(|mean| *mean > 0.0))

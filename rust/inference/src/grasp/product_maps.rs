@@ -116,7 +116,7 @@ impl HeldProduct {
         &self.tissue.notes
     }
 
-    /// Force-weighted center of a region's contact, mm; the middle of the region without contact.
+    /// Numbers of the skin's vertices in a region.
     pub fn vertices(&self, region: usize) -> Vec<u32> {
         let own = (0..self.region.len()).filter(|v| self.region[*v] == region as i32);
         own.map(|v| v as u32).collect()
@@ -209,6 +209,11 @@ impl HeldProduct {
 }
 
 impl RegionForces {
+    /// Whether no region touches the product at any shift.
+    pub fn is_bare(&self) -> bool {
+        self.nodes.iter().all(Vec::is_empty)
+    }
+
     /// Number of regions.
     pub fn len(&self) -> usize {
         self.nodes.len()
