@@ -68,8 +68,8 @@ def _refuse_parameter(finding):
     if finding["effect"] != PARAMETER:
         return
     region = sentences.region_title((finding.get("where") or {}).get("region") or "")
-    told = finding.get("parameters") or {}
-    value, factor = ((told.get(name) or {}).get("value") or 0.0 for name in ("g0_mpa", "factor"))
+    numbers = finding.get("parameters") or {}
+    value, factor = ((numbers.get(name) or {}).get("value") or 0.0 for name in ("g0_mpa", "factor"))
     raise Refusal(
         f"a region's stiffness is a parameter and no effect; set G0 of '{region}' to "
         f"{wording.number(value * KPA_PER_MPA)} kPa under Materials, and multiply its G Limit by {factor:.2f}"

@@ -1,4 +1,4 @@
-//! What a reader is told of grasps: sentence, notes, detection limits, and the next recording.
+//! What is said of grasps: sentence, notes, detection limits, and the next recording.
 
 use thenar_inference::grasp::causes::Cause;
 use thenar_inference::grasp::channels::{place, regions};
@@ -12,7 +12,7 @@ use crate::grasp::grasp_findings::region_force;
 
 /// Standard deviations that the evidence for a name asks of its size: `z^2 / 2` is about the 4 nats with the prior's cost.
 const SEEN: f64 = 3.6;
-/// Regions of which the posture is told.
+/// Regions whose posture is listed.
 const MOST_POSTURES: usize = 3;
 
 /// What the comparison says of itself.
@@ -26,7 +26,7 @@ pub(super) fn of_comparison() -> Vec<String> {
 
 /// The first sentence of the letter.
 pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
-    let told: Vec<String> = found
+    let parts: Vec<String> = found
         .findings
         .iter()
         .map(|f| of_finding(explained, f))
@@ -43,7 +43,7 @@ pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
         Verdict::CannotTell => {
             let pair = found.cannot_tell.first().map_or(["", ""], |pair| *pair);
             let [a, b] = pair.map(|name| name.replace('_', " "));
-            format!("{} These recordings cannot tell {a} from {b}.", told.join(" "))
+            format!("{} These recordings cannot tell {a} from {b}.", parts.join(" "))
         }
         Verdict::Unlisted => format!(
             "Something changes in these holds that no listed cause explains; most of it in {}.",
@@ -52,7 +52,7 @@ pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
         Verdict::InsufficientData => {
             "Too little was recorded: hold the product for 30 s, two or three times, with a force trace next to the mat.".to_owned()
         }
-        _ => told.join(" "),
+        _ => parts.join(" "),
     }
 }
 
@@ -134,7 +134,7 @@ pub(super) fn notes(study: &Study, explained: &Explained) -> Vec<String> {
     );
     if explained.holds.iter().all(|hold| hold.force_n.is_none()) {
         notes.push(
-            "no force trace was recorded next to the mat: its gain was not tested, and skin that relaxes cannot be told from a mat whose readings fall".to_owned(),
+            "no force trace was recorded next to the mat: its gain was not tested, and skin that relaxes cannot be distinguished from a mat whose readings fall".to_owned(),
         );
     }
     if explained.holds.len() < 3 {
@@ -146,7 +146,7 @@ pub(super) fn notes(study: &Study, explained: &Explained) -> Vec<String> {
 
 /// Force, scale over the model, and posture of every region, in the mean over holds.
 fn by_region(explained: &Explained) -> String {
-    let told = regions(&explained.fits).into_iter().map(|region| {
+    let parts = regions(&explained.fits).into_iter().map(|region| {
         let mean = |of: &dyn Fn(&RegionalFit, usize) -> f64| {
             let own = explained
                 .fits
@@ -163,7 +163,7 @@ fn by_region(explained: &Explained) -> String {
     });
     format!(
         "by region, force, pressure over the model's, and shift toward the product: {}",
-        told.collect::<Vec<_>>().join("; ")
+        parts.collect::<Vec<_>>().join("; ")
     )
 }
 
@@ -183,7 +183,7 @@ fn postures(explained: &Explained) -> Vec<String> {
         .map(|r| (r, mean(r)))
         .collect();
     shifts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let told: Vec<String> = shifts
+    let parts: Vec<String> = shifts
         .iter()
         .take(MOST_POSTURES)
         .map(|(region, shift)| {
@@ -202,10 +202,10 @@ fn postures(explained: &Explained) -> Vec<String> {
         .flat_map(|c| c.shift_mm.iter().flatten())
         .fold(0.0, |most: f64, s| most.max(s.abs()));
     let mut notes = Vec::new();
-    if !told.is_empty() {
+    if !parts.is_empty() {
         notes.push(format!(
             "posture, against the study's hand: {}",
-            told.join("; ")
+            parts.join("; ")
         ));
     }
     notes.push(format!(

@@ -26,7 +26,7 @@ const REGION: (f64, f64) = (2.0, 0.45);
 const SPECTRUM: f64 = 0.12;
 /// Most causes at once.
 const MOST: usize = 3;
-/// Causes within this many nats of each other cannot be told apart.
+/// Causes within this many nats of each other cannot be distinguished.
 pub const ALIKE: f64 = 3.0;
 /// Holds that softening from hold to hold asks for.
 const SOFTENING_HOLDS: usize = 3;

@@ -111,7 +111,7 @@ impl HeldProduct {
         self.tissue.materials[region].thickness_mm
     }
 
-    /// What a reader should be told of the skin.
+    /// What is to be said of the skin.
     pub fn notes(&self) -> &[String] {
         &self.tissue.notes
     }
