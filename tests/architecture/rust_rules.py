@@ -33,7 +33,7 @@ LIBRARIES = ["surface", "contact", "hand", "reference", "recordings", "inference
 # Pattern -> the one file that may hold it.
 ONE_FILE = {
     r"\b(obvhs|glam)::|\buse (obvhs|glam)\b": "rust/surface/src/tree/bvh.rs",
-    r"\bnumpy::|\buse numpy\b": "rust/python/src/arrays.rs",
+    r"\bnumpy::|\buse numpy\b": "rust/python/src/conversion/arrays.rs",
     r"\b1\.4826": "rust/inference/src/observe/robust_scale.rs",
     r"\bfn huber\b": "rust/inference/src/least_squares/huber.rs",
     r"\bdamping\b": "rust/inference/src/least_squares/levenberg_marquardt.rs",

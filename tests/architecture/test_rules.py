@@ -15,7 +15,7 @@ SOUND = {
     "rust/contact/Cargo.toml": CRATE,
     "rust/contact/src/press.rs": "//! A press.\nimpl Skin {\n    fn x(&self) {}\n}\nfn y(a: &mut Rows, b: &Skin) {}\n",
     "rust/surface/src/tree/bvh.rs": "//! The tree.\nuse obvhs::Bvh;\n",
-    "rust/python/src/arrays.rs": "//! Arrays.\nuse numpy::PyArray1;\n",
+    "rust/python/src/conversion/arrays.rs": "//! Arrays.\nuse numpy::PyArray1;\n",
     "rust/recordings/src/lib.rs": "//! Files.\nuse std::fs;\n",
     "addon/__init__.py": '"""The extension."""\nimport bpy\nfrom . import native, panels\n',
     "addon/native.py": '"""The native module."""\nimport thenar\n',

@@ -1,25 +1,22 @@
 //! The thenar binary: arguments, files, exit codes. Knows no algorithm.
 
+mod commands;
 mod arguments;
-mod compare;
-mod diagnose;
 mod effects;
 mod fault;
 mod interrupt;
 mod materials;
-mod press;
 mod progress;
 mod protocol;
-mod read;
 mod regions;
 mod results;
 mod table;
+mod terminal;
 mod threads;
 
 use arguments::{Command, Thenar};
 use clap::Parser;
-use fault::{Fault, printable};
-use std::io::Write;
+use fault::Fault;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -56,22 +53,17 @@ fn run() -> Result<(), Fault> {
         Ok(thenar) => thenar,
         Err(error) if error.use_stderr() => return Err(Fault::Input(arguments::sentence(&error))),
         Err(help) => {
-            tell(&help.to_string());
+            terminal::write(&help.to_string());
             return Ok(());
         }
     };
     match thenar.command {
-        Command::Press(arguments) => press::run(&arguments),
-        Command::Compare(arguments) => compare::run(&arguments),
-        Command::Diagnose(arguments) => diagnose::run(&arguments),
+        Command::Press(arguments) => commands::press::run(&arguments),
+        Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Diagnose(arguments) => commands::diagnose::run(&arguments),
         Command::Read(arguments) => {
-            tell(&read::report(&arguments)?);
+            terminal::write(&commands::read::report(&arguments)?);
             Ok(())
         }
     }
-}
-
-/// Writes to the terminal; a reader that has gone away (`thenar ... | head`) is no fault.
-fn tell(text: &str) {
-    let _ = std::io::stdout().write_all(printable(text).as_bytes());
 }

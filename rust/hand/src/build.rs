@@ -38,24 +38,29 @@ pub struct Hand {
 /// Edges come out this much shorter when asked for; the remesh ends with a median edge of 1.12 times the length it aims at.
 const AIM: f64 = 0.885;
 
-/// Makes the hand a shape asks for.
-pub(crate) fn build(shape: &HandShape) -> Result<Hand, HandError> {
-    let (length, breadth) = shape.length_and_breadth()?;
-    let skeleton = Skeleton::new(length, breadth);
-    let flesh = Flesh::new(&skeleton);
-    let not_closed = HandError::NotClosed {
-        spacing_mm: shape.spacing_mm,
-    };
-    let step = (0.5 * shape.spacing_mm).clamp(0.9, 1.3);
-    let spacing = |p: Vec3| wanted_spacing(&flesh, shape.spacing_mm, p);
-    let skin = remesh(&flesh, &spacing, extract(&flesh, step)).ok_or(not_closed)?;
-    let places = places(&flesh, &skin.positions);
-    let bones = bones(&skeleton, flesh.cut_y);
-    let hand = assemble(&skeleton, skin, &places, bones, shape.spacing_mm)?;
-    Ok(match shape.side {
-        Side::Right => hand,
-        Side::Left => mirrored(&hand)?,
-    })
+impl HandShape {
+    /// Makes the hand: skin, regions, bones and weights.
+    ///
+    /// # Errors
+    /// [`HandError::OutOfRange`] for a measurement no hand has, [`HandError::NotClosed`] if the skin has a hole.
+    pub fn build(&self) -> Result<Hand, HandError> {
+        let (length, breadth) = self.length_and_breadth()?;
+        let skeleton = Skeleton::new(length, breadth);
+        let flesh = Flesh::new(&skeleton);
+        let not_closed = HandError::NotClosed {
+            spacing_mm: self.spacing_mm,
+        };
+        let step = (0.5 * self.spacing_mm).clamp(0.9, 1.3);
+        let spacing = |p: Vec3| wanted_spacing(&flesh, self.spacing_mm, p);
+        let skin = remesh(&flesh, &spacing, extract(&flesh, step)).ok_or(not_closed)?;
+        let places = places(&flesh, &skin.positions);
+        let bones = bones(&skeleton, flesh.cut_y);
+        let hand = assemble(&skeleton, skin, &places, bones, self.spacing_mm)?;
+        Ok(match self.side {
+            Side::Right => hand,
+            Side::Left => mirrored(&hand)?,
+        })
+    }
 }
 
 fn assemble(

@@ -1,6 +1,5 @@
 //! How large a hand is: percentiles of published surveys, or measurements of one's own.
 
-use crate::build::Hand;
 use crate::error::HandError;
 
 /// Which population the percentile is taken from.
@@ -98,14 +97,6 @@ impl Default for HandShape {
 }
 
 impl HandShape {
-    /// Makes the hand: skin, regions, bones and weights.
-    ///
-    /// # Errors
-    /// [`HandError::OutOfRange`] for a measurement no hand has, [`HandError::NotClosed`] if the skin has a hole.
-    pub fn build(&self) -> Result<Hand, HandError> {
-        crate::build::build(self)
-    }
-
     /// Length and breadth this shape stands for, mm.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What this build is and which numbers a material has.
 
-use crate::record::record;
+use crate::conversion::record::record;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use thenar_contact::parameters::PARAMETERS;

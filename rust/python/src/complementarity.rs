@@ -1,9 +1,9 @@
 //! The solvers of contact and friction alone, for a compliance that somebody else made.
 
-use crate::arrays::{Argument, column, table};
-use crate::ending;
-use crate::errors::Failure;
-use crate::record::record;
+use crate::conversion::arrays::{Argument, column, table};
+use crate::conversion::ending;
+use crate::conversion::errors::Failure;
+use crate::conversion::record::record;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 

@@ -1,9 +1,9 @@
 //! `thenar.hand`: a parametric hand as arrays, with regions and bones.
 
-use crate::arrays::{Argument, column, rows, table};
-use crate::errors::{Failure, Topic};
-use crate::record::record;
-use crate::running::{Hooks, run};
+use crate::conversion::arrays::{Argument, column, rows, table};
+use crate::conversion::errors::{Failure, Topic};
+use crate::conversion::record::record;
+use crate::conversion::running::{Hooks, run};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use thenar_hand::{Bone, Hand, HandShape, RegionKind, Sex, Side, VertexWeights};

@@ -1,30 +1,11 @@
 //! The native Python module: exports, arrays, one error table. Knows no algorithm.
 
-mod errors;
-mod ending;
-mod arrays;
-mod readings;
-mod record;
-mod running;
-mod material;
-mod product;
-mod effects;
-mod protocol;
-mod requests;
-mod skin;
-mod walk;
-mod contact;
-mod contact_records;
-mod instrument;
+mod conversion;
 mod hand;
+mod measured;
+mod press;
 mod references;
 mod complementarity;
-mod recordings;
-mod study;
-mod placing;
-mod comparison;
-mod prints;
-mod diagnosis;
 mod parquet_table;
 mod about;
 
@@ -33,37 +14,43 @@ use pyo3::prelude::*;
 /// Contact of soft skin with products: forces, pressures and shapes, in mm, N, MPa and s.
 #[pymodule]
 fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    running::keep_panics_off_the_terminal();
-    errors::register(module)?;
-    ending::register(module)?;
-    record::register(module)?;
-    module.add_class::<material::Material>()?;
-    module.add_class::<product::Product>()?;
-    module.add_class::<effects::Effect>()?;
-    module.add_class::<skin::elastomer::Elastomer>()?;
-    module.add_class::<protocol::Course>()?;
-    module.add_class::<skin::Skin>()?;
-    module.add_class::<walk::Walk>()?;
-    module.add_class::<instrument::Mat>()?;
-    module.add_function(wrap_pyfunction!(instrument::observe, module)?)?;
-    module.add_class::<contact::Contact>()?;
-    module.add_class::<study::Study>()?;
-    module.add_class::<comparison::Comparison>()?;
-    module.add_class::<diagnosis::Diagnosis>()?;
-    module.add_function(wrap_pyfunction!(diagnosis::diagnose, module)?)?;
+    conversion::running::keep_panics_off_the_terminal();
+    conversion::errors::register(module)?;
+    conversion::ending::register(module)?;
+    conversion::record::register(module)?;
+    module.add_class::<press::material::Material>()?;
+    module.add_class::<press::product::Product>()?;
+    module.add_class::<press::effects::Effect>()?;
+    module.add_class::<press::skin::elastomer::Elastomer>()?;
+    module.add_class::<press::protocol::Course>()?;
+    module.add_class::<press::skin::Skin>()?;
+    module.add_class::<press::walk::Walk>()?;
+    module.add_class::<press::instrument::Mat>()?;
+    module.add_function(wrap_pyfunction!(press::instrument::observe, module)?)?;
+    module.add_class::<press::contact::Contact>()?;
+    module.add_class::<measured::study::Study>()?;
+    module.add_class::<measured::comparison::Comparison>()?;
+    module.add_class::<measured::diagnosis::Diagnosis>()?;
+    module.add_function(wrap_pyfunction!(measured::diagnosis::diagnose, module)?)?;
     module.add_function(wrap_pyfunction!(hand::hand, module)?)?;
     module.add_function(wrap_pyfunction!(
         references::solid::reference_press,
         module
     )?)?;
     module.add_function(wrap_pyfunction!(references::solid::bone_points, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::read_recording, module)?)?;
-    module.add_function(wrap_pyfunction!(placing::place_mat, module)?)?;
-    module.add_function(wrap_pyfunction!(comparison::compare, module)?)?;
-    module.add_function(wrap_pyfunction!(comparison::compare_map, module)?)?;
-    module.add_class::<prints::Print>()?;
-    module.add_function(wrap_pyfunction!(prints::compare_print, module)?)?;
-    module.add_function(wrap_pyfunction!(comparison::spread_map, module)?)?;
+    module.add_function(wrap_pyfunction!(
+        measured::recordings::read_recording,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(measured::placing::place_mat, module)?)?;
+    module.add_function(wrap_pyfunction!(measured::comparison::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(measured::comparison::compare_map, module)?)?;
+    module.add_class::<measured::prints::Print>()?;
+    module.add_function(wrap_pyfunction!(
+        measured::print_comparison::compare_print,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(measured::comparison::spread_map, module)?)?;
     module.add_function(wrap_pyfunction!(
         complementarity::solve_complementarity,
         module
@@ -71,9 +58,9 @@ fn thenar(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(complementarity::solve_stick_slip, module)?)?;
     module.add_function(wrap_pyfunction!(references::ball::press_ball, module)?)?;
     module.add_function(wrap_pyfunction!(about::parameters, module)?)?;
-    module.add_function(wrap_pyfunction!(effects::effects, module)?)?;
+    module.add_function(wrap_pyfunction!(press::effects::effects, module)?)?;
     module.add_function(wrap_pyfunction!(parquet_table::parquet, module)?)?;
     module.add_function(wrap_pyfunction!(about::build_info, module)?)?;
-    module.add_function(wrap_pyfunction!(running::_panic, module)?)?;
+    module.add_function(wrap_pyfunction!(conversion::running::_panic, module)?)?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))
 }

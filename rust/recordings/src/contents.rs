@@ -2,12 +2,12 @@
 
 use crate::detection::{Format, HEAD, Kind, asked, kind_of};
 use crate::fault::{Fault, shown};
-use crate::lines::Lines;
-use crate::pressure_map::Source;
 use crate::recording_file::RecordingFile;
+use crate::source::Source;
 use crate::tables::curves::Rows;
 use crate::tables::mapping::Columns;
 use crate::tables::sheet_text::{Book, REMEDY};
+use crate::text::lines::Lines;
 use crate::{makers, tables};
 
 /// Most sheets that a note names.

@@ -1,8 +1,8 @@
 //! An indenter's recording: numbers over time with their units, and what its header states.
 
 use crate::check::Check;
-use crate::pressure_map::Source;
-use crate::units::{Quantity, Unit};
+use crate::source::Source;
+use crate::text::units::{Quantity, Unit};
 
 /// One column of numbers.
 #[derive(Debug, Clone, PartialEq, Default)]

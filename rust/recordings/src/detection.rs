@@ -1,11 +1,11 @@
 //! Which maker's format a file has, from its first bytes.
 
 use crate::fault::Fault;
-use crate::fields::{Separator, value};
-use crate::lines::{Line, Lines};
 use crate::makers::AFM_WORKSHOP;
 use crate::tables::head::{Found, Search, question};
 use crate::tables::mapping::Columns;
+use crate::text::fields::{Separator, value};
+use crate::text::lines::{Line, Lines};
 
 /// Bytes that are looked at.
 pub(crate) const HEAD: usize = 1 << 16;

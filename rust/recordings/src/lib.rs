@@ -1,14 +1,12 @@
 //! Mesh, study and measurement files to arrays with units; the only library crate that reads files.
 #![doc = include_str!("../README.md")]
 
+mod text;
 mod error;
 mod fault;
-mod lines;
-mod fields;
-mod units;
-mod clock;
 mod check;
 mod pressure_map;
+mod source;
 mod curve;
 mod detection;
 mod tables;
@@ -25,8 +23,9 @@ pub use check::Check;
 pub use curve::{Channel, Curve, Fact, Segment};
 pub use detection::Format;
 pub use error::RecordingError;
-pub use pressure_map::{Grid, PressureMap, PressureUnit, Sensel, Source, Threshold};
+pub use pressure_map::{Grid, PressureMap, PressureUnit, Sensel, Threshold};
 pub use recording::{LARGEST_ARCHIVE, LARGEST_TEXT, read, read_bytes, read_bytes_with, read_with};
 pub use recording_file::{ReadOptions, RecordingFile};
+pub use source::Source;
 pub use study::Study;
 pub use tables::mapping::Columns;

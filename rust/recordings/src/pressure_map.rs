@@ -2,27 +2,7 @@
 
 use crate::check::Check;
 use crate::curve::Channel;
-
-/// Who made a recording and with what; never for whom, nor where it was kept.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Source {
-    /// Maker of the instrument.
-    pub maker: &'static str,
-    /// Instrument or program.
-    pub product: String,
-    /// Sensor model or serial number, empty if the file does not say.
-    pub sensor: String,
-}
-
-impl Source {
-    pub(crate) fn of(maker: &'static str, product: &str) -> Source {
-        Source {
-            maker,
-            product: product.to_string(),
-            sensor: String::new(),
-        }
-    }
-}
+use crate::source::Source;
 
 /// What the values of a map are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 
 use crate::detection::{Format, HEAD, Kind, kind_of};
 use crate::fault::{Fault, shown};
-use crate::lines::Lines;
 use crate::recording_file::{ReadOptions, RecordingFile};
 use crate::tables::curves::Rows;
+use crate::text::lines::Lines;
 use crate::{RecordingError, contents, makers, plain_file};
 use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::Path;

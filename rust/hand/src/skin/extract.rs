@@ -1,6 +1,6 @@
 //! Marching tetrahedra on the blocks of a grid that the skin crosses; closed and manifold by construction.
 
-use super::Soup;
+use super::soup::Soup;
 use crate::flesh::{Flesh, MAX_SLOPE, MAX_STEP};
 use rayon::prelude::*;
 use std::collections::BTreeSet;

@@ -1,7 +1,7 @@
 //! Isotropic remesh: split, collapse, flip, relax along the skin, project onto the field (after Botsch & Kobbelt 2004).
 
-use super::Soup;
 use super::polish::polish;
+use super::soup::Soup;
 use super::topology::Topology;
 use crate::flesh::Flesh;
 use rayon::prelude::*;

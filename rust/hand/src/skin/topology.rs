@@ -1,6 +1,6 @@
 //! Who is next to whom: a closed triangle mesh as half-edges, each with its twin.
 
-use super::Soup;
+use super::soup::Soup;
 use thenar_surface::Vec3;
 
 /// No half-edge: its triangle is gone.

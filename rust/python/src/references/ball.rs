@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use thenar_contact::ball::{Ball, SHALLOWEST, StiffSkin};
 
-use crate::arrays::{Argument, column};
-use crate::ending;
-use crate::errors::Topic;
+use crate::conversion::arrays::{Argument, column};
+use crate::conversion::ending;
+use crate::conversion::errors::Topic;
 
 /// Sizes that a press can have, mm, and the deepest depth over the radius at least.
 const SIZES_MM: [f64; 2] = [1e-3, 1e5];

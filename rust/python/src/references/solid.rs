@@ -7,12 +7,12 @@ use thenar_reference::{
 };
 use thenar_surface::{Mesh, Vec3};
 
-use crate::arrays::{Argument, column, owned_rows, triple};
-use crate::errors::{Failure, Topic};
-use crate::product::Surface;
-use crate::record::record;
-use crate::requests::{Target, target_of};
-use crate::running::{Hooks, run};
+use crate::conversion::arrays::{Argument, column, owned_rows, triple};
+use crate::conversion::errors::{Failure, Topic};
+use crate::conversion::record::record;
+use crate::conversion::running::{Hooks, run};
+use crate::press::product::Surface;
+use crate::press::requests::{Target, target_of};
 
 /// Presses soft tissue, meshed from the skin to the bone, against a rigid and smooth product: the reference of model "layer".
 ///

@@ -1,18 +1,22 @@
 //! Counts ink by cell.
 
 use super::image::Gray;
-use super::ink::Told;
-use super::{Handprint, KNOWN_FROM, PrintOptions, cells_along};
+use super::ink::Parted;
+use super::options::{PrintOptions, cells_along};
+use super::print::Handprint;
 
-/// The print of an image whose ink was told from its paper.
-pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
+/// A cell is known if this part of it is paper.
+const KNOWN_FROM: f64 = 0.5;
+
+/// The print of an image whose ink is parted from its paper.
+pub fn count(gray: &Gray, parted: &Parted, options: &PrintOptions) -> Handprint {
     let (mm, side) = (options.scale.mm_per_px(), options.cell_mm);
     let [width, height] = gray.size;
     let [columns, rows] = gray.size.map(|pixels| cells_along(pixels, options));
     let (mut inked, mut known) = (vec![0.0; rows * columns], vec![0.0; rows * columns]);
     let cell = |pixel: usize| ((pixel as f64 + 0.5) * mm / side) as usize;
     for (pixel, brightness) in gray.pixels.iter().enumerate() {
-        if !told.is_paper[pixel] {
+        if !parted.is_paper[pixel] {
             continue;
         }
         let (x, y) = (pixel % width, pixel / width);
@@ -24,7 +28,7 @@ pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
         // Rows count from the lower edge.
         let at = cell(height - 1 - y).min(rows - 1) * columns + cell(across).min(columns - 1);
         known[at] += 1.0;
-        inked[at] += f64::from(u8::from(told.is_ink(*brightness)));
+        inked[at] += f64::from(u8::from(parted.is_ink(*brightness)));
     }
     let all: f64 = inked.iter().sum();
     let in_cell = (side / mm).powi(2);
@@ -35,8 +39,8 @@ pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
     Handprint {
         size_px: gray.size,
         mm_per_px: mm,
-        threshold: told.threshold,
-        ink: told.ink,
+        threshold: parted.threshold,
+        ink: parted.ink,
         cells: [rows, columns],
         cell_mm: side,
         inked: inked.iter().zip(&known).map(share).collect(),
@@ -44,6 +48,6 @@ pub fn count(gray: &Gray, told: &Told, options: &PrintOptions) -> Handprint {
         unknown: vec![
             "ink says where skin touched at any time of the press, and not how hard".to_owned(),
         ],
-        warnings: told.warnings.clone(),
+        warnings: parted.warnings.clone(),
     }
 }

@@ -1,7 +1,7 @@
-//! Tells ink from paper: Otsu's threshold, which side of it is ink, and what of the image is no paper.
+//! Parts ink from paper: Otsu's threshold, which side of it is ink, and what of the image is no paper.
 
 use super::image::Gray;
-use super::{Ink, PrintOptions};
+use super::options::{Ink, PrintOptions};
 use crate::fault::Fault;
 
 /// Steps of brightness that are counted.
@@ -13,8 +13,8 @@ const CLEAR_FROM: f64 = 0.75;
 /// Ink along more than this part of the paper's edge may be a frame.
 const FRAME_FROM: f64 = 0.1;
 
-/// What is ink.
-pub struct Told {
+/// What is ink and what is paper.
+pub struct Parted {
     /// Brightness between ink and paper.
     pub threshold: f64,
     /// Which side of it is ink.
@@ -25,7 +25,7 @@ pub struct Told {
     pub warnings: Vec<String>,
 }
 
-impl Told {
+impl Parted {
     /// Whether a brightness is ink.
     pub fn is_ink(&self, brightness: f32) -> bool {
         match self.ink {
@@ -35,11 +35,11 @@ impl Told {
     }
 }
 
-/// Tells ink from paper.
+/// Parts ink from paper.
 ///
 /// # Errors
 /// Paper that lies outside of the image, and ink that does not stand out.
-pub fn tell(gray: &Gray, options: &PrintOptions) -> Result<Told, Fault> {
+pub fn part(gray: &Gray, options: &PrintOptions) -> Result<Parted, Fault> {
     let is_paper = on_paper(gray, options)?;
     let counts = histogram(gray, &is_paper);
     let threshold = match options.threshold {
@@ -74,7 +74,7 @@ pub fn tell(gray: &Gray, options: &PrintOptions) -> Result<Told, Fault> {
             100.0 * share
         ));
     }
-    Ok(Told {
+    Ok(Parted {
         threshold,
         ink,
         is_paper,

@@ -2,11 +2,11 @@
 
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Separator, value};
-use crate::lines::Lines;
-use crate::pressure_map::Source;
+use crate::source::Source;
 use crate::tables::columns::{Column, fields, names};
-use crate::units::{Quantity, Unit};
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Separator, value};
+use crate::text::lines::Lines;
+use crate::text::units::{Quantity, Unit};
 
 /// What the first line of every file is.
 pub(crate) const FIRST: &str = "Force-Distance Curve";

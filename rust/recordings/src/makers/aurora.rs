@@ -2,10 +2,10 @@
 
 use crate::curve::{Channel, Curve};
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::Source;
-use crate::units::{Quantity, Unit, unit};
+use crate::source::Source;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Quantity, Unit, unit};
 
 /// Most channels of a table.
 const MOST_CHANNELS: usize = 64;

@@ -1,12 +1,13 @@
 //! Novel emed: one page per frame with a window of the platform, its forces and its total.
 
-use super::count;
+use super::limits::count;
 use crate::check::Check;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureMap, PressureUnit, Source, grid_sensels};
-use crate::units::{Quantity, measure};
+use crate::pressure_map::{PressureMap, PressureUnit, grid_sensels};
+use crate::source::Source;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Quantity, measure};
 
 /// Rounding of a page's total and of its cells, N.
 const FORCE_TOLERANCE: f64 = 0.005;
@@ -64,7 +65,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     }
     let area = platform.area_mm2;
     let (first, size) = window(&pages);
-    super::check_cells(size[0], size[1]).map_err(|problem| Fault::file(problem, ODD))?;
+    super::limits::check_cells(size[0], size[1]).map_err(|problem| Fault::file(problem, ODD))?;
     if pages.len().saturating_mul(size[0] * size[1]) > MOST_VALUES {
         return Err(Fault::file(
             "the pictures' windows lie too far apart".into(),
@@ -213,7 +214,8 @@ fn read_rows(lines: &mut Lines, page: &mut Page) -> Result<(), Fault> {
         )?;
         let number = row[0];
         let expected = (page.first_row + page.rows) as f64;
-        let is_number = number.fract() == 0.0 && (1.0..=super::WIDEST as f64).contains(&number);
+        let is_number =
+            number.fract() == 0.0 && (1.0..=super::limits::WIDEST as f64).contains(&number);
         if !is_number || (page.rows > 0 && number != expected) {
             let problem = format!("row number {number} where {expected} should follow");
             return Err(line.fault(problem, DAMAGED));

@@ -1,11 +1,12 @@
 //! RSscan footscan, dynamic roll-off: frames of the rectangle that a foot covered. The patient's name is never kept.
 
-use super::count;
-use crate::clock::Clock;
+use super::limits::count;
 use crate::fault::{Fault, shown};
-use crate::fields::{ODD, Row, Separator, value};
-use crate::lines::Lines;
-use crate::pressure_map::{PressureMap, PressureUnit, Source, grid_sensels};
+use crate::pressure_map::{PressureMap, PressureUnit, grid_sensels};
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{ODD, Row, Separator, value};
+use crate::text::lines::Lines;
 
 /// A rectangle of the plate as the file places it.
 #[derive(Debug, Default, Clone, Copy)]
@@ -93,7 +94,7 @@ fn below(lines: &mut Lines, side: &str, rectangle: &mut Rectangle) -> Result<(),
 
 impl Rectangle {
     fn take(&mut self, side: &str, number: &str) -> Result<(), String> {
-        let place = || number.parse().ok().filter(|at| *at < super::WIDEST);
+        let place = || number.parse().ok().filter(|at| *at < super::limits::WIDEST);
         let problem = || format!("{} is no place on the plate", shown(number.as_bytes()));
         match side {
             "bottom" => self.bottom = Some(place().ok_or_else(problem)?),
@@ -111,7 +112,7 @@ impl Foot {
         let (Some(columns), Some(rows)) = (rectangle.width, rectangle.height) else {
             return Err("a frame stands before the width and height of its rectangle".into());
         };
-        super::check_cells(rows, columns)?;
+        super::limits::check_cells(rows, columns)?;
         let first = [
             rectangle.bottom.unwrap_or(0) as u32,
             rectangle.left.unwrap_or(0) as u32,

@@ -1,10 +1,11 @@
 //! Logger of sensor insoles: one CSV line per sole and time, raw counts without geometry.
 
-use crate::clock::Clock;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
+use crate::pressure_map::{PressureMap, PressureUnit, Sensel};
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Separator, value};
+use crate::text::lines::{Line, Lines};
 
 /// Most soles in one file.
 const MOST_SOLES: usize = 16;

@@ -3,13 +3,13 @@
 use crate::curve::Curve;
 use crate::detection::Format;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, Separator};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::Source;
 use crate::recording_file::RecordingFile;
+use crate::source::Source;
 use crate::tables::columns::{Column, fields, names};
 use crate::tables::mapping::Columns;
 use crate::tables::run::{Run, divided};
+use crate::text::fields::{DAMAGED, MOST_VALUES, Separator};
+use crate::text::lines::{Line, Lines};
 
 /// Reads every block as a run; `named` are the columns that a user named.
 pub(crate) fn read(lines: &mut Lines, named: &Columns) -> Result<RecordingFile, Fault> {

@@ -6,6 +6,7 @@ mod emed;
 mod footscan;
 mod insole_logger;
 pub(crate) mod jpk;
+mod limits;
 mod mach1;
 mod optics11;
 mod pedar;
@@ -17,17 +18,11 @@ mod xsensor_block;
 
 use crate::detection::Format;
 use crate::fault::Fault;
-use crate::lines::Lines;
 use crate::recording_file::RecordingFile;
+use crate::text::lines::Lines;
 
 pub(crate) use afm_workshop::FIRST as AFM_WORKSHOP;
 pub(crate) use mach1::read as mach1;
-
-/// Most rows or columns of a mat; the largest on the market have 256.
-const WIDEST: usize = 4096;
-
-/// Most cells of a mat, so that a damaged header cannot claim memory; the largest on the market have 65,536.
-const MOST_CELLS: usize = 1 << 20;
 
 /// Reads a text of a maker's format; tables are read elsewhere.
 pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFile, Fault> {
@@ -52,28 +47,6 @@ pub(crate) fn read_text(format: Format, lines: &mut Lines) -> Result<RecordingFi
         | Format::MapTable => Err(Fault::file(
             format!("{} is no maker's text", format.name()),
             "report this",
-        )),
-    }
-}
-
-/// A count of rows, columns or sensors that a header states.
-fn count(text: &str, what: &str) -> Result<usize, String> {
-    match text.trim().parse::<usize>() {
-        Ok(count) if (1..=WIDEST).contains(&count) => Ok(count),
-        Ok(count) => Err(format!("{count} {what}, expected 1 to {WIDEST}")),
-        Err(_) => Err(format!(
-            "{} is not a number of {what}",
-            crate::fault::shown(text.trim().as_bytes())
-        )),
-    }
-}
-
-/// Refuses a mat of more cells than any has.
-fn check_cells(rows: usize, columns: usize) -> Result<(), String> {
-    match rows.saturating_mul(columns) <= MOST_CELLS {
-        true => Ok(()),
-        false => Err(format!(
-            "{rows} x {columns} cells, expected {MOST_CELLS} at most"
         )),
     }
 }

@@ -1,13 +1,13 @@
 //! Optics11 Chiaro and Piuma: header of keys, then load, cantilever and piezo over time.
 
-use crate::clock::Clock;
 use crate::curve::{Channel, Curve};
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
-use crate::lines::Lines;
-use crate::pressure_map::Source;
+use crate::source::Source;
 use crate::tables::columns::{Column, names};
-use crate::units::{Quantity, unit};
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
+use crate::text::lines::Lines;
+use crate::text::units::{Quantity, unit};
 
 /// Key of the header, name here, factor to the library's unit.
 const FACTS: &[(&str, &str, f64)] = &[

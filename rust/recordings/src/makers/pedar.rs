@@ -1,11 +1,12 @@
 //! Novel pedar: one line per time step with the sensors of both insoles.
 
-use super::count;
-use crate::clock::Clock;
+use super::limits::count;
 use crate::fault::Fault;
-use crate::fields::{DAMAGED, ODD, Row, Separator};
-use crate::lines::Lines;
-use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
+use crate::pressure_map::{PressureMap, PressureUnit, Sensel};
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, ODD, Row, Separator};
+use crate::text::lines::Lines;
 
 pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
     let header = read_header(lines)?;
@@ -50,7 +51,7 @@ pub(super) fn read(lines: &mut Lines) -> Result<Vec<PressureMap>, Fault> {
             map.values.extend_from_slice(&row[at..at + count]);
             at += count;
         }
-        if maps[0].values.len() > crate::fields::MOST_VALUES {
+        if maps[0].values.len() > crate::text::fields::MOST_VALUES {
             return Err(Fault::line(
                 lines.number(),
                 "the recording is too long".into(),

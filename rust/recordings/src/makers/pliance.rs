@@ -1,12 +1,13 @@
 //! Novel pliance: one line per time step, then the maker's own forces and the geometry of the mat.
 
-use super::count;
+use super::limits::count;
 use crate::check::Check;
-use crate::clock::Clock;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
+use crate::pressure_map::{PressureMap, PressureUnit, Sensel};
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
 
 /// Rounding of the forces and pressures of an export, N.
 const FORCE_TOLERANCE: f64 = 0.01;
@@ -95,7 +96,7 @@ fn read_frames(lines: &mut Lines, map: &mut PressureMap) -> Result<(), Fault> {
         shape.read(line, &mut row)?;
         clock.push(line.number, row[0])?;
         map.values.extend_from_slice(&row[1..]);
-        if map.values.len() > crate::fields::MOST_VALUES {
+        if map.values.len() > crate::text::fields::MOST_VALUES {
             let problem = "the recording holds too many values".into();
             return Err(Fault::line(
                 lines.number(),
@@ -130,7 +131,7 @@ fn read_forces(lines: &mut Lines) -> Result<Vec<[f64; 2]>, Fault> {
         let mut next = || value(words.next().unwrap_or(""));
         let pair = next().and_then(|time| Ok([time, next()?]));
         forces.push(pair.map_err(|problem| line.fault(problem, ODD))?);
-        if forces.len() > crate::fields::MOST_VALUES / 2 {
+        if forces.len() > crate::text::fields::MOST_VALUES / 2 {
             return Err(line.fault(
                 "the table of forces is too long".into(),
                 "export a shorter part",

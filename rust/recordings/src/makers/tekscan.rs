@@ -2,16 +2,16 @@
 
 use super::tekscan_header::{self, Header};
 use crate::check::Check;
-use crate::clock::Clock;
 use crate::detection::Format;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
 use crate::pressure_map::{PressureMap, PressureUnit, Threshold, grid_sensels};
 use crate::recording_file::RecordingFile;
 use crate::tables;
 use crate::tables::curves::Rows;
 use crate::tables::mapping::Columns;
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
 
 /// Counts go from 0 to 255; a count of 255 is clipped.
 const LARGEST_COUNT: f64 = 255.0;
@@ -54,7 +54,8 @@ fn read_movie(lines: &mut Lines, header: Header) -> Result<Vec<PressureMap>, Fau
     };
     let rows = header.rows.ok_or_else(|| needed("ROWS"))?;
     let columns = header.columns.ok_or_else(|| needed("COLS"))?;
-    super::check_cells(rows, columns).map_err(|problem| Fault::line(header_end, problem, ODD))?;
+    super::limits::check_cells(rows, columns)
+        .map_err(|problem| Fault::line(header_end, problem, ODD))?;
     let (unit, factor) = header.unit.ok_or_else(|| needed("UNITS"))?;
     let sensels = grid_sensels([0, 0], [rows, columns], header.area_mm2);
     let mut map = PressureMap::new(header.source(), unit, sensels);

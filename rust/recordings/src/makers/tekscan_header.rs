@@ -1,11 +1,12 @@
 //! Header of a Tekscan ASCII movie: one key and its value per line.
 
-use super::count;
+use super::limits::count;
 use crate::fault::{Fault, shown};
-use crate::fields::{ODD, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureUnit, Source};
-use crate::units::{Quantity, measure, unit};
+use crate::pressure_map::PressureUnit;
+use crate::source::Source;
+use crate::text::fields::{ODD, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Quantity, measure, unit};
 
 /// What the header states; nothing else of it is kept, above all no path and no comment.
 #[derive(Debug, Default)]

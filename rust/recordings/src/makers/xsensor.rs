@@ -2,12 +2,13 @@
 
 use super::xsensor_block::{Block, lower, pair};
 use crate::check::Check;
-use crate::clock::Clock;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureMap, PressureUnit, Source, Threshold, grid_sensels};
-use crate::units::{Quantity, unit};
+use crate::pressure_map::{PressureMap, PressureUnit, Threshold, grid_sensels};
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Quantity, unit};
 
 /// Rounding of the stated loads: cells of 0.01 mmHg, areas and pitch of two digits.
 const LOAD_TOLERANCE: f64 = 1.0;

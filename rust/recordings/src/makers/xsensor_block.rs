@@ -1,11 +1,11 @@
 //! One sensor block of an XSENSOR export: what it states of itself, and its cells.
 
-use super::count;
+use super::limits::count;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
 use crate::tables::columns::fields;
-use crate::units::{Quantity, unit};
+use crate::text::fields::{DAMAGED, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Quantity, unit};
 
 /// Cells and statistics of one sensor in one frame, in the file's unit of pressure and in mm.
 #[derive(Debug, Clone, Default)]
@@ -71,7 +71,7 @@ impl Block {
             let problem = "the sensor above does not state its Rows and Columns".to_string();
             return Err(Fault::line(lines.number(), problem, DAMAGED));
         }
-        super::check_cells(block.rows, block.columns)
+        super::limits::check_cells(block.rows, block.columns)
             .map_err(|problem| Fault::line(lines.number(), problem, ODD))?;
         for row in 0..block.rows {
             let Some(line) = lines.next_filled(&[','])? else {

@@ -1,6 +1,6 @@
 //! A point cloud as a table: x, y, z by line, parted by commas, semicolons or blanks, with or without a line of names.
 
-use super::MeshFile;
+use super::mesh_file::MeshFile;
 use crate::fault::{Fault, number, shown};
 use nalgebra::Vector3;
 

@@ -1,6 +1,7 @@
 //! Mesh files (OBJ, PLY, STL) and point clouds to vertices and triangles; knows nothing of units: numbers come out as written.
 
 mod cloud;
+mod mesh_file;
 mod obj;
 mod ply;
 mod ply_header;
@@ -9,24 +10,15 @@ mod polygons;
 mod stl;
 mod weld;
 
-use crate::fault::{Fault, number};
+use crate::fault::Fault;
 use crate::{RecordingError, plain_file};
-use nalgebra::Vector3;
+use mesh_file::filled;
 use std::path::Path;
+
+pub use mesh_file::{Charted, MeshFile};
 
 /// Largest mesh file that is read, bytes. A 500,000-triangle ASCII STL is about 130 MB.
 pub const LARGEST_FILE: u64 = 2 << 30;
-
-/// What a mesh file holds, in its own unit and its own vertex order.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct MeshFile {
-    /// Vertex positions, finite. Equal corners of an STL are one vertex, in order of first appearance.
-    pub positions: Vec<Vector3<f64>>,
-    /// Triangles as vertex numbers from 0, all in range; larger faces are cut, concave ones too.
-    pub triangles: Vec<[u32; 3]>,
-    /// What was odd about the file and how it was read, one sentence each.
-    pub notes: Vec<String>,
-}
 
 /// The mesh formats that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,15 +80,6 @@ pub fn read_points(file: &Path) -> Result<MeshFile, RecordingError> {
     points.map_err(|fault| fault.in_file(file))
 }
 
-/// A mesh whose triangles lie in a map.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Charted {
-    /// The mesh.
-    pub mesh: MeshFile,
-    /// By triangle, texture coordinates of its corners.
-    pub charts: Vec<[[f64; 2]; 3]>,
-}
-
 /// Reads an OBJ with the texture coordinates of every corner.
 ///
 /// # Errors
@@ -143,16 +126,6 @@ fn points(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
     })
 }
 
-fn filled(mesh: MeshFile) -> Result<MeshFile, Fault> {
-    match mesh.positions.is_empty() {
-        true => Err(Fault::file(
-            "it holds no vertices".into(),
-            "export the mesh again",
-        )),
-        false => Ok(mesh),
-    }
-}
-
 fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
     let mesh = points(bytes, format)?;
     if mesh.triangles.is_empty() {
@@ -162,24 +135,4 @@ fn parse(bytes: &[u8], format: Format) -> Result<MeshFile, Fault> {
         ));
     }
     Ok(mesh)
-}
-
-/// The three finite coordinates that follow the word of a `what` (vertex, corner) on a line.
-fn position<'a>(
-    mut words: impl Iterator<Item = &'a [u8]>,
-    line: usize,
-    what: &str,
-) -> Result<Vector3<f64>, Fault> {
-    let mut position = Vector3::zeros();
-    for axis in 0..3 {
-        let Some(word) = words.next() else {
-            let problem = format!("a {what} with {axis} coordinates, expected 3");
-            return Err(Fault::line(line, problem, "export the mesh again"));
-        };
-        position[axis] = number(word).map_err(|problem| {
-            let remedy = format!("give every {what} finite coordinates");
-            Fault::line(line, problem, remedy)
-        })?;
-    }
-    Ok(position)
 }

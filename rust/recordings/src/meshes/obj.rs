@@ -1,7 +1,7 @@
 //! Wavefront OBJ: `v` and `f` lines; everything else (normals, groups, materials, curves) is passed over.
 
+use super::mesh_file::{Charted, MeshFile, filled, position};
 use super::polygons::{Faces, cut};
-use super::{Charted, MeshFile, filled, position};
 use crate::fault::{Fault, number, shown, words};
 use std::borrow::Cow;
 

@@ -1,6 +1,6 @@
 //! PLY: the elements `vertex` (x, y, z) and `face` (a list of vertex numbers); all else is passed over.
 
-use super::MeshFile;
+use super::mesh_file::MeshFile;
 use super::ply_header::{self, Element};
 use super::ply_values::Values;
 use super::polygons::Faces;

@@ -1,7 +1,7 @@
 //! STL, ASCII and binary. Normals and attributes are passed over; equal corners become one vertex.
 
+use super::mesh_file::{MeshFile, position};
 use super::weld::Weld;
-use super::{MeshFile, position};
 use crate::fault::{Fault, Place, shown, words};
 use nalgebra::Vector3;
 

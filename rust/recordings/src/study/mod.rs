@@ -69,14 +69,13 @@
 //! cell_mm = 2.5              # cells in which contact is compared; by default as long as the skin's edges
 //! ```
 
+mod places;
 mod toml_tree;
 mod place;
 mod skin;
 mod indenters;
 mod sites;
-mod sensels;
-mod seat;
-mod charts;
+mod data;
 mod prints;
 mod frames;
 mod grasps;
@@ -84,11 +83,12 @@ mod indentation;
 mod recordings;
 mod instrument;
 
+pub use data::Data;
 pub use indenters::{Indenter, Shape};
 pub use instrument::Instrument;
-pub use recordings::{Data, StudyRecording};
-pub use seat::Seat;
-pub use sensels::PlacedSensel;
+pub use places::seat::Seat;
+pub use places::sensels::PlacedSensel;
+pub use recordings::StudyRecording;
 pub use sites::Site;
 pub use skin::{StudyMaterial, StudySkin};
 

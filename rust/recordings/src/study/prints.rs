@@ -1,8 +1,8 @@
 //! Handprints of a study: how their image is to be read, how the paper lay, and how hard it was pressed.
 
-use super::charts::OffChart;
+use super::data::{Data, read_motion, read_places};
 use super::place::Folder;
-use super::recordings::{Data, read_motion, read_places};
+use super::places::charts::OffChart;
 use super::toml_tree::{Section, nearest};
 use crate::RecordingError;
 use crate::fault::{Fault, shown};

@@ -3,9 +3,9 @@
 use super::place::Folder;
 use super::toml_tree::{Section, nearest};
 use crate::fault::{Fault, shown};
-use crate::fields::Separator;
-use crate::lines::Lines;
 use crate::meshes::{self, MeshFile};
+use crate::text::fields::Separator;
+use crate::text::lines::Lines;
 use crate::{RecordingError, plain_file};
 use std::io::BufReader;
 use std::path::Path;

@@ -2,9 +2,9 @@
 
 use super::names::{known, quantity};
 use crate::fault::{Fault, shown};
-use crate::fields::Separator;
-use crate::lines::Line;
-use crate::units::{Quantity, Unit, unit};
+use crate::text::fields::Separator;
+use crate::text::lines::Line;
+use crate::text::units::{Quantity, Unit, unit};
 
 /// A column: what it holds, and its unit if that is known.
 #[derive(Debug, Clone, PartialEq)]

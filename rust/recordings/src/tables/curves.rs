@@ -6,9 +6,9 @@ use super::mapping::Columns;
 use super::run::{Run, divided};
 use crate::curve::Curve;
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, value};
-use crate::lines::{Line, Lines};
-use crate::units::unit;
+use crate::text::fields::{DAMAGED, MOST_VALUES, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::unit;
 
 /// The line that ends a Tekscan export.
 const END: &str = "@@";
@@ -111,7 +111,7 @@ struct LeftOut {
 /// A table while it is read.
 struct Table {
     runs: Vec<Run>,
-    separator: crate::fields::Separator,
+    separator: crate::text::fields::Separator,
     columns: usize,
     rows: Rows,
     is_first: bool,

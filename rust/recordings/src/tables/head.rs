@@ -3,9 +3,9 @@
 use super::columns::{Column, bare_unit, fields, is_curve, is_map, names};
 use super::mapping::Columns;
 use crate::fault::{Fault, shown};
-use crate::fields::{Separator, value};
-use crate::lines::Line;
-use crate::units::{Quantity, unit};
+use crate::text::fields::{Separator, value};
+use crate::text::lines::Line;
+use crate::text::units::{Quantity, unit};
 
 /// Longest line that may be a head, bytes.
 const LONGEST: usize = 1 << 14;

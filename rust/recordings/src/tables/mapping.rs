@@ -3,7 +3,7 @@
 use super::columns::{Column, normal};
 use super::names::quantity;
 use crate::fault::shown;
-use crate::units::{Unit, unit};
+use crate::text::units::{Unit, unit};
 
 /// What a column can be named as.
 const NAMED: &[&str] = &[

@@ -1,13 +1,14 @@
 //! Table of pressures: `time_s,row,col,pressure_kpa`, one cell per line; an empty pressure is a missing cell.
 
 use super::columns::{Column, fields, names};
-use crate::clock::Clock;
 use crate::curve::Channel;
 use crate::fault::{Fault, shown};
-use crate::fields::{MOST_VALUES, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::{PressureMap, PressureUnit, Sensel, Source};
+use crate::pressure_map::{PressureMap, PressureUnit, Sensel};
 use crate::recording_file::RecordingFile;
+use crate::source::Source;
+use crate::text::clock::Clock;
+use crate::text::fields::{MOST_VALUES, Separator, value};
+use crate::text::lines::{Line, Lines};
 use std::collections::HashMap;
 
 /// Most cells that are listed, 16 bytes each while they are read.

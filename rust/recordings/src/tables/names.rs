@@ -1,6 +1,6 @@
 //! Names that files give their columns, in the languages of their makers, and the names here.
 
-use crate::units::Quantity;
+use crate::text::units::Quantity;
 
 /// Names that files use, the name here, and what it must measure.
 pub(super) const KNOWN: &[(&str, &str, Option<Quantity>)] = &[

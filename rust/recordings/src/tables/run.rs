@@ -1,12 +1,12 @@
 //! One run of a table: its columns and samples, and the curve that they make.
 
 use super::columns::Column;
-use crate::clock::Clock;
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::{Fault, LARGEST};
-use crate::fields::value;
-use crate::lines::Line;
-use crate::units::Quantity;
+use crate::text::clock::Clock;
+use crate::text::fields::value;
+use crate::text::lines::Line;
+use crate::text::units::Quantity;
 
 /// Columns that must not have an empty cell.
 const NEEDED: &[&str] = &["time", "depth", "travel", "force", "tool_gap"];

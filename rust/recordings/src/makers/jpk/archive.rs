@@ -2,7 +2,7 @@
 
 use super::properties::Properties;
 use crate::fault::{Fault, shown};
-use crate::fields::MOST_VALUES;
+use crate::text::fields::MOST_VALUES;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 

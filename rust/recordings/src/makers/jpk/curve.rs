@@ -4,9 +4,9 @@ use super::archive::{Archive, inside};
 use super::properties::Properties;
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::Fault;
-use crate::fields::MOST_VALUES;
-use crate::pressure_map::Source;
-use crate::units::Quantity;
+use crate::source::Source;
+use crate::text::fields::MOST_VALUES;
+use crate::text::units::Quantity;
 
 /// Channel of the archive, name here. Of the heights that a sensor measured the first counts; older instruments call theirs otherwise.
 const CHANNELS: &[(&str, &str, Quantity)] = &[

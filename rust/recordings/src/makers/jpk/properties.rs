@@ -1,6 +1,6 @@
 //! The property files of a JPK archive: `key=value` lines.
 
-use crate::fields::value;
+use crate::text::fields::value;
 use std::collections::BTreeMap;
 
 /// Keys and values as text.

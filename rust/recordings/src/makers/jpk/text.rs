@@ -3,10 +3,10 @@
 use super::curve::with_travel;
 use crate::curve::{Channel, Curve, Segment};
 use crate::fault::{Fault, shown};
-use crate::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
-use crate::lines::{Line, Lines};
-use crate::pressure_map::Source;
-use crate::units::{Unit, unit};
+use crate::source::Source;
+use crate::text::fields::{DAMAGED, MOST_VALUES, ODD, Row, Separator, value};
+use crate::text::lines::{Line, Lines};
+use crate::text::units::{Unit, unit};
 
 /// Most columns of a segment.
 const MOST_COLUMNS: usize = 64;
@@ -180,7 +180,7 @@ fn join(blocks: &[Block], curve: &mut Curve) {
 
 /// Name here of a JPK column. `time` starts again with each segment, `seriesTime` does not.
 fn base(name: &str, unit: Unit) -> String {
-    use crate::units::Quantity::{Force, Time};
+    use crate::text::units::Quantity::{Force, Time};
     match (name, unit.quantity) {
         ("vDeflection", Force) => "force".into(),
         ("seriesTime", Time) => "time".into(),

@@ -1,0 +1,5 @@
+//! Where sensels lie on a product.
+
+pub mod charts;
+pub mod seat;
+pub mod sensels;
