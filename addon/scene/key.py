@@ -132,12 +132,15 @@ def _jacobian(moved: Moved, base: Floats, active: Bools) -> Steps[tuple[Floats, 
     return jacobian, solvable
 
 
+@dataclass(frozen=True)
 class _Fit:
     """The best offsets so far and their error, over residual corrections."""
 
-    def __init__(self, moved: Moved, start: Floats, wanted: Floats, active: Bools, largest: float) -> None:
-        self.moved, self.start, self.wanted = moved, start, wanted
-        self.active, self.largest = active, largest
+    moved: Moved
+    start: Floats
+    wanted: Floats
+    active: Bools
+    largest: float
 
     def correct(
         self, offsets: Floats, jacobian: Floats, corrections: int, solvable: Any = slice(None)

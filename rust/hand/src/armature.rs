@@ -61,9 +61,13 @@ pub(crate) fn bones(skeleton: &Skeleton, cut_y: f64) -> Vec<Bone> {
         bone(
             name.to_string(),
             parent,
-            (head, tail),
-            (axis, axis.cross(&along)),
-            (0.0, range),
+            [head, tail],
+            &Joint {
+                axis,
+                palmar: axis.cross(&along),
+                rest: 0.0,
+                range,
+            },
         )
     };
     let mut bones = vec![
@@ -112,25 +116,34 @@ fn chain(
 ) {
     for k in 0..3 {
         let parent = Some(bones.len() - 1);
-        let ends = (digit.joints[k], digit.joints[k + 1]);
+        let ends = [digit.joints[k], digit.joints[k + 1]];
+        let joint = Joint {
+            axis: digit.axis,
+            palmar: digit.palmar[k],
+            rest: rest[k],
+            range: ranges[k],
+        };
         let name = format!("{}_{}", digit.name, parts[k]);
-        bones.push(bone(
-            name,
-            parent,
-            ends,
-            (digit.axis, digit.palmar[k]),
-            (rest[k], ranges[k]),
-        ));
+        bones.push(bone(name, parent, ends, &joint));
     }
 }
 
-fn bone(
-    name: String,
-    parent: Option<usize>,
-    (head, tail): (Vec3, Vec3),
-    (axis, palmar): (Vec3, Vec3),
-    (rest, range): (f64, Range),
-) -> Bone {
+/// How a bone turns about its head.
+struct Joint {
+    axis: Vec3,
+    palmar: Vec3,
+    /// Flexion at rest, degrees.
+    rest: f64,
+    range: Range,
+}
+
+fn bone(name: String, parent: Option<usize>, [head, tail]: [Vec3; 2], joint: &Joint) -> Bone {
+    let Joint {
+        axis,
+        palmar,
+        rest,
+        range,
+    } = *joint;
     let radians = |(low, high): (f64, f64), rest: f64| {
         ((low - rest).to_radians(), (high - rest).to_radians())
     };

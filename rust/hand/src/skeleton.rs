@@ -95,7 +95,14 @@ fn place_finger(finger: &FingerProportions, length: f64, breadth: f64) -> Digit 
     let lengths = finger
         .phalanges
         .map(|fraction| fraction * finger.shorter * length);
-    chain(finger.name, mcp, straight, axis, (bends, lengths)).with(base, TIP * length)
+    chain(
+        finger.name,
+        mcp,
+        straight,
+        axis,
+        Phalanges { bends, lengths },
+    )
+    .with(base, TIP * length)
 }
 
 /// The thumb stands out of the palm plane: its pad faces ulnarly, nearly at right angles to the finger pads.
@@ -108,7 +115,23 @@ fn place_thumb(length: f64, breadth: f64) -> Digit {
     let straight = Vec3::new(0.60, 0.66, 0.46).normalize();
     let axis = straight.cross(&Vec3::new(-0.74, 0.30, 0.60)).normalize();
     let lengths = THUMB_LENGTHS.map(|fraction| fraction * length);
-    chain("thumb", base, straight, axis, ([0.0, 12.0, 10.0], lengths)).with(base, TIP * length)
+    chain(
+        "thumb",
+        base,
+        straight,
+        axis,
+        Phalanges {
+            bends: [0.0, 12.0, 10.0],
+            lengths,
+        },
+    )
+    .with(base, TIP * length)
+}
+
+/// How far each phalanx is bent at rest, degrees, and how long it is, mm.
+struct Phalanges {
+    bends: [f64; 3],
+    lengths: [f64; 3],
 }
 
 fn chain(
@@ -116,7 +139,7 @@ fn chain(
     start: Vec3,
     straight: Vec3,
     axis: Vec3,
-    (bends, lengths): ([f64; 3], [f64; 3]),
+    Phalanges { bends, lengths }: Phalanges,
 ) -> Digit {
     let mut joints = [start; 4];
     let mut along = [straight; 3];

@@ -69,8 +69,16 @@ pub fn frame(mat: &Mat, (frame, marks): (&Frame, &[Mark]), unit: &str, label: &s
         &layout,
         [&frame.measured, &frame.simulated, &frame.residual],
         [
-            (&pressure, (0.0, top), &viridis),
-            (&residual, (-most, most), &to_share),
+            Look {
+                of_value: &pressure,
+                ends: [0.0, top],
+                of_share: &viridis,
+            },
+            Look {
+                of_value: &residual,
+                ends: [-most, most],
+                of_share: &to_share,
+            },
         ],
         (unit, label),
     );
@@ -107,8 +115,16 @@ pub fn scan(scan: &Scanned, label: &str) -> String {
         &layout(&seen),
         [&scan.measured, &scan.simulated, &scan.residual],
         [
-            (&height, (-top, top), &to_share),
-            (&residual, (-most, most), &to_share),
+            Look {
+                of_value: &height,
+                ends: [-top, top],
+                of_share: &to_share,
+            },
+            Look {
+                of_value: &residual,
+                ends: [-most, most],
+                of_share: &to_share,
+            },
         ],
         ("mm", label),
     );
@@ -120,12 +136,15 @@ fn third(width: f64) -> f64 {
     2.0 * width + GAP + SCALE + GAP
 }
 
-/// Color of a value, ends of its scale, and color of a share of that scale.
-type Look<'a> = (
-    &'a dyn Fn(f64) -> String,
-    (f64, f64),
-    &'a dyn Fn(f64) -> String,
-);
+/// How values are colored.
+struct Look<'a> {
+    /// Color of a value.
+    of_value: &'a dyn Fn(f64) -> String,
+    /// Lowest and highest value of the scale.
+    ends: [f64; 2],
+    /// Color of a share of the scale.
+    of_share: &'a dyn Fn(f64) -> String,
+}
 
 /// Measured, simulated and residual side by side, the first two in one look.
 fn triptych(
@@ -138,9 +157,14 @@ fn triptych(
     let third = third(width);
     let mut svg = Svg::new(third + width + SCALE, TOP + height.max(120.0) + 34.0, label);
     let panels: [Panel; 3] = [
-        (0.0, "Measured", values[0], both.0),
-        (width + GAP, "Simulated", values[1], both.0),
-        (third, "Measured \u{2212} simulated", values[2], left_over.0),
+        (0.0, "Measured", values[0], both.of_value),
+        (width + GAP, "Simulated", values[1], both.of_value),
+        (
+            third,
+            "Measured \u{2212} simulated",
+            values[2],
+            left_over.of_value,
+        ),
     ];
     for (left, title, values, color) in panels {
         svg.text([left, TOP - 10.0], Anchor::Start, Type::Title, title);
@@ -156,9 +180,9 @@ fn triptych(
         svg.frame([left, TOP], layout.size, "#c3cad0");
     }
     let first = [2.0 * width + GAP + 10.0, height];
-    scale(&mut svg, first, both.1, unit, both.2);
+    scale(&mut svg, first, &both, unit);
     let second = [third + width + 10.0, height];
-    scale(&mut svg, second, left_over.1, unit, left_over.2);
+    scale(&mut svg, second, &left_over, unit);
     ruler(&mut svg, layout);
     svg
 }
@@ -207,13 +231,8 @@ fn outline(svg: &mut Svg, mat: &Mat, layout: &Layout, (left, measured): (f64, &[
 }
 
 /// A color scale with its numbers; `at` is its left edge and height.
-fn scale(
-    svg: &mut Svg,
-    at: [f64; 2],
-    (low, high): (f64, f64),
-    unit: &str,
-    color: &dyn Fn(f64) -> String,
-) {
+fn scale(svg: &mut Svg, at: [f64; 2], look: &Look<'_>, unit: &str) {
+    let [low, high] = look.ends;
     const STEPS: usize = 60;
     let ([left, height], width) = (at, 12.0);
     let height = height.max(90.0);
@@ -223,7 +242,7 @@ fn scale(
         svg.rect(
             [left, y],
             [width, step + 0.4],
-            &color((k as f64 + 0.5) / STEPS as f64),
+            &(look.of_share)((k as f64 + 0.5) / STEPS as f64),
         );
     }
     for (value, text) in ticks(low, high, 5) {

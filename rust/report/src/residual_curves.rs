@@ -40,16 +40,35 @@ pub fn curve(recording: &RecordingComparison, series: &Series, against: Against)
     };
     let label = format!("{} of {} against {title}", series.label, recording.name);
     let mut svg = Svg::new(WIDTH, 400.0, &label);
-    draw_values(&mut svg, (series, &shown, x), &at);
-    draw_residual(&mut svg, recording, (series, &shown, x), &at, title);
+    let drawn = Drawn {
+        recording,
+        series,
+        shown: &shown,
+        x,
+        at: &at,
+    };
+    draw_values(&mut svg, &drawn);
+    draw_residual(&mut svg, &drawn, title);
     Some(svg.finish())
 }
 
-fn draw_values(
-    svg: &mut Svg,
-    (series, shown, x): (&Series, &[usize], [f64; 2]),
-    at: &dyn Fn(usize) -> f64,
-) {
+/// What of a recording is drawn: some moments of one quantity, against depth or time.
+struct Drawn<'a> {
+    recording: &'a RecordingComparison,
+    series: &'a Series,
+    shown: &'a [usize],
+    x: [f64; 2],
+    at: &'a dyn Fn(usize) -> f64,
+}
+
+fn draw_values(svg: &mut Svg, drawn: &Drawn<'_>) {
+    let Drawn {
+        series,
+        shown,
+        x,
+        at,
+        ..
+    } = *drawn;
     let all = shown
         .iter()
         .flat_map(|k| [series.measured[*k], series.simulated[*k], series.before[*k]]);
@@ -114,13 +133,14 @@ fn legend(svg: &mut Svg) {
     );
 }
 
-fn draw_residual(
-    svg: &mut Svg,
-    recording: &RecordingComparison,
-    (series, shown, x): (&Series, &[usize], [f64; 2]),
-    at: &dyn Fn(usize) -> f64,
-    title: &str,
-) {
+fn draw_residual(svg: &mut Svg, drawn: &Drawn<'_>, title: &str) {
+    let Drawn {
+        recording,
+        series,
+        shown,
+        x,
+        at,
+    } = *drawn;
     let has_noise = series.sigma.iter().all(|sigma| *sigma > 0.0);
     let left = |k: usize| {
         let left = series.measured[k] - series.simulated[k];

@@ -9,6 +9,13 @@ const PARTS: f64 = 4.0;
 /// A place farther from every vertex than this is no skin, in roots of the vertex's area: the corners of a square are 0.71 away.
 const REACH: f64 = 0.8;
 
+/// The places nearer than `reach` to a vertex that lies `off` the sheet above `at`, mm.
+struct Disk {
+    at: [f64; 2],
+    off: f64,
+    reach: f64,
+}
+
 /// A grid over the sheet and what would go on beyond its edge, a value in the middle of each square.
 #[derive(Clone)]
 pub struct Field {
@@ -34,7 +41,12 @@ impl Field {
             let reach = REACH * pressed.areas[vertex].sqrt();
             let value = f32::from(u8::from(touches));
             for image in sheet.images(at) {
-                field.cover((image, off, reach), value, &mut nearest);
+                let disk = Disk {
+                    at: image,
+                    off,
+                    reach,
+                };
+                field.cover(&disk, value, &mut nearest);
             }
             if touches {
                 sides.push(pressed.areas[vertex].sqrt());
@@ -101,7 +113,8 @@ impl Field {
     }
 
     /// Gives a value to all places within reach that have had no nearer one.
-    fn cover(&mut self, (at, off, reach): ([f64; 2], f64, f64), value: f32, nearest: &mut [f32]) {
+    fn cover(&mut self, disk: &Disk, value: f32, nearest: &mut [f32]) {
+        let Disk { at, off, reach } = *disk;
         let ends = [0, 1].map(|axis| {
             let place = |x: f64| {
                 ((x - self.low[axis]) / self.step[axis] - 0.5)

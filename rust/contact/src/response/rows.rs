@@ -211,8 +211,7 @@ impl Response {
             let is_near = r < 0.5 * (self.reach[i] + self.reach[j]);
             let distance = if i == j { None } else { Some(r) };
             let entry = stiff.entry(
-                (i, self.mix[i]),
-                (j, self.mix[j]),
+                [(i, self.mix[i]), (j, self.mix[j])],
                 (distance, sites.area[i]),
             );
             return if is_near { entry } else { 0.0 };

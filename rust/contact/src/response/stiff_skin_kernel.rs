@@ -56,20 +56,16 @@ impl StiffSkin {
 
     /// The response between two sites, each with its mix of layers, at a distance (mm); without one, the term of a site of that
     /// area (mm2). 1/mm.
-    pub fn entry(
-        &self,
-        (i, a): (usize, Mix),
-        (j, b): (usize, Mix),
-        (r, area): (Option<f64>, f64),
-    ) -> f64 {
+    pub fn entry(&self, pair: [(usize, Mix); 2], (r, area): (Option<f64>, f64)) -> f64 {
+        let [(i, a), (j, b)] = pair;
         let kernel = |la: u16, lb: u16| {
-            let (a, b) = (
+            let pair = [
                 (usize::from(la), self.sheet[i]),
                 (usize::from(lb), self.sheet[j]),
-            );
+            ];
             match r {
-                Some(r) => self.tables.kernel(a, b, r),
-                None => self.tables.own(a, b, area),
+                Some(r) => self.tables.kernel(pair, r),
+                None => self.tables.own(pair, area),
             }
         };
         if a.0 == a.1 && b.0 == b.1 {
@@ -146,24 +142,24 @@ impl StiffTables {
     }
 
     /// The kernel between two places at distance `r` (mm), 1/mm; each place is a layer and a sheet.
-    pub fn kernel(&self, a: (usize, usize), b: (usize, usize), r: f64) -> f64 {
-        let table = self.table(a, b);
+    pub fn kernel(&self, pair: [(usize, usize); 2], r: f64) -> f64 {
+        let table = self.table(pair);
         interpolate(&table.moment, r / self.step) / r
     }
 
     /// A site's own term for its area (mm2), 1/mm: what a lattice of such sites lacks of the integral.
-    pub fn own(&self, a: (usize, usize), b: (usize, usize), area: f64) -> f64 {
+    pub fn own(&self, pair: [(usize, usize); 2], area: f64) -> f64 {
         let (low, high, count) = ROOT_AREAS;
         let root = area.sqrt();
         let x = (root / low).ln() / (high / low).ln() * (count - 1) as f64;
         let x = x.clamp(0.0, (count - 1) as f64 - 1e-9);
-        let own = &self.table(a, b).own;
+        let own = &self.table(pair).own;
         let (i, share) = (x as usize, x.fract());
         ((1.0 - share) * own[i] + share * own[i + 1]) / root
     }
 
-    fn table(&self, a: (usize, usize), b: (usize, usize)) -> &Table {
-        let [a, b] = [a, b].map(|(layer, sheet)| sheet * self.layers + layer);
+    fn table(&self, pair: [(usize, usize); 2]) -> &Table {
+        let [a, b] = pair.map(|(layer, sheet)| sheet * self.layers + layer);
         let (a, b) = if a <= b { (a, b) } else { (b, a) };
         &self.tables[b * (b + 1) / 2 + a]
     }
@@ -321,8 +317,8 @@ mod tests {
             let tables = StiffTables::new(&[HALF_SPACE], &[sheet], 60.0);
             let exact = std::f64::consts::TAU / (27f64.sqrt() * length);
             for found in [
-                tables.own((0, 0), (0, 0), 0.01 * length * length),
-                tables.kernel((0, 0), (0, 0), 0.01 * length),
+                tables.own([(0, 0); 2], 0.01 * length * length),
+                tables.kernel([(0, 0); 2], 0.01 * length),
             ] {
                 assert!(
                     (found / exact - 1.0).abs() < 5e-3,
@@ -345,16 +341,13 @@ mod tests {
         let tables = StiffTables::new(&[layer], &[sheet], 200.0);
         let bare = super::super::layer_kernel::KernelTables::new(&[layer], 200.0);
         for r in [0.5, 1.0, 2.0, 5.0, 12.0] {
-            let (found, expected) = (
-                tables.kernel((0, 0), (0, 0), r),
-                1.0 / r - bare.psi(0, 0, r),
-            );
+            let (found, expected) = (tables.kernel([(0, 0); 2], r), 1.0 / r - bare.psi(0, 0, r));
             assert!(
                 (found - expected).abs() * r < 5e-3,
                 "{r}: {found} {expected}"
             );
         }
-        let own = tables.own((0, 0), (0, 0), 1.0);
+        let own = tables.own([(0, 0); 2], 1.0);
         assert!(
             (own / (3.900_3 - bare.psi(0, 0, 0.0)) - 1.0).abs() < 0.01,
             "{own}"

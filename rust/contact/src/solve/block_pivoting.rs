@@ -26,6 +26,9 @@ pub fn solve_contact<M: Compliance>(
     let n = matrix.diagonal().len();
     let scale = gap.iter().fold(0.0, |most, d| f64::max(most, -d));
     let mut run = Run {
+        matrix,
+        gap,
+        control,
         force: vec![0.0; n],
         slack: gap.to_vec(),
         in_contact: vec![false; n],
@@ -34,13 +37,17 @@ pub fn solve_contact<M: Compliance>(
         kept: None,
     };
     if scale > 0.0 {
-        run.start(gap, start);
+        run.start(start);
     }
-    let fell_back = scale > 0.0 && !run.pivot(matrix, gap, (scale, accuracy), control);
+    let fell_back = scale > 0.0 && !run.pivot(scale, accuracy);
     if fell_back {
-        let limits = (1e-12 * scale, 200 * n + 2000);
-        run.steps += mprgp(matrix, gap, &mut run.force, limits, control);
-        run.find_slack(matrix, gap);
+        let limits = CgLimits {
+            tolerance: 1e-12 * scale,
+            steps: 200 * n + 2000,
+            cancelled: &control.cancelled,
+        };
+        run.steps += mprgp(matrix, gap, &mut run.force, limits);
+        run.find_slack();
     }
     let complementarity =
         natural_residual(matrix, &run.force, &run.slack) / scale.max(f64::MIN_POSITIVE);
@@ -71,7 +78,10 @@ fn natural_residual<M: Compliance>(matrix: &M, force: &[f64], slack: &[f64]) -> 
     terms.fold(0.0, f64::max)
 }
 
-struct Run<'a> {
+struct Run<'a, M> {
+    matrix: &'a M,
+    gap: &'a [f64],
+    control: &'a Control<'a>,
     force: Vec<f64>,
     slack: Vec<f64>,
     in_contact: Vec<bool>,
@@ -80,8 +90,8 @@ struct Run<'a> {
     kept: Option<Submatrix<'a>>,
 }
 
-impl<'a> Run<'a> {
-    fn start(&mut self, gap: &[f64], start: Option<&[f64]>) {
+impl<M: Compliance> Run<'_, M> {
+    fn start(&mut self, start: Option<&[f64]>) {
         match start {
             Some(force) if force.iter().any(|p| *p > 0.0) => {
                 for (i, p) in force.iter().enumerate() {
@@ -90,7 +100,7 @@ impl<'a> Run<'a> {
                 }
             }
             _ => {
-                for (inside, d) in self.in_contact.iter_mut().zip(gap) {
+                for (inside, d) in self.in_contact.iter_mut().zip(self.gap) {
                     *inside = *d < 0.0;
                 }
             }
@@ -98,28 +108,22 @@ impl<'a> Run<'a> {
     }
 
     /// True if the set was found and the forces are tight.
-    fn pivot<M: Compliance>(
-        &mut self,
-        matrix: &'a M,
-        gap: &[f64],
-        (scale, accuracy): (f64, Accuracy),
-        control: &Control,
-    ) -> bool {
-        let levels = accuracy.levels(matrix.is_costly());
+    fn pivot(&mut self, scale: f64, accuracy: Accuracy) -> bool {
+        let levels = accuracy.levels(self.matrix.is_costly());
         let finest = levels.len() - 1;
         let (mut fewest, mut stalled, mut level) = (usize::MAX, 0, 0);
         let mut tolerance = levels[0] * scale;
         for _ in 0..MOST_PASSES {
-            if (control.cancelled)() {
+            if (self.control.cancelled)() {
                 return true;
             }
             let is_rough = levels[level] >= ROUGH;
-            if !self.solve_set(matrix, gap, (tolerance, is_rough), control) {
+            if !self.solve_set(tolerance, is_rough) {
                 return false;
             }
-            self.find_outer_slack(matrix, gap);
+            self.find_outer_slack();
             if level == finest {
-                self.find_inner_slack(gap);
+                self.find_inner_slack();
             }
             let wrong = self.infeasible(tolerance);
             if wrong.is_empty() {
@@ -155,20 +159,15 @@ impl<'a> Run<'a> {
         self.pivots += 1;
     }
 
-    fn solve_set<M: Compliance>(
-        &mut self,
-        matrix: &'a M,
-        gap: &[f64],
-        (tolerance, is_rough): (f64, bool),
-        control: &Control,
-    ) -> bool {
+    fn solve_set(&mut self, tolerance: f64, is_rough: bool) -> bool {
+        let (matrix, gap) = (self.matrix, self.gap);
         let set: Vec<u32> = (0..self.force.len() as u32)
             .filter(|&i| self.in_contact[i as usize])
             .collect();
         let limits = CgLimits {
             tolerance,
             steps: 40 + 6 * set.len(),
-            cancelled: &control.cancelled,
+            cancelled: &self.control.cancelled,
         };
         // Single precision suffices to find the set.
         let kept = match self.kept.take() {
@@ -189,34 +188,34 @@ impl<'a> Run<'a> {
         end == CgEnd::Converged
     }
 
-    fn find_slack<M: Compliance>(&mut self, matrix: &M, gap: &[f64]) {
-        matrix.times(&self.force, &mut self.slack);
-        for (s, d) in self.slack.iter_mut().zip(gap) {
+    fn find_slack(&mut self) {
+        self.matrix.times(&self.force, &mut self.slack);
+        for (s, d) in self.slack.iter_mut().zip(self.gap) {
             *s += d;
         }
     }
 
     /// The slack outside the contact set, which is all that finding the set needs.
-    fn find_outer_slack<M: Compliance>(&mut self, matrix: &M, gap: &[f64]) {
+    fn find_outer_slack(&mut self) {
         let outer: Vec<u32> = (0..self.force.len() as u32)
             .filter(|&i| !self.in_contact[i as usize])
             .collect();
         let mut image = vec![0.0; outer.len()];
-        matrix.times_rows(&outer, &self.force, &mut image);
+        self.matrix.times_rows(&outer, &self.force, &mut image);
         for (&i, image) in outer.iter().zip(&image) {
-            self.slack[i as usize] = image + gap[i as usize];
+            self.slack[i as usize] = image + self.gap[i as usize];
         }
     }
 
     /// The slack within the contact set, by the part of the matrix that it was solved on.
-    fn find_inner_slack(&mut self, gap: &[f64]) {
+    fn find_inner_slack(&mut self) {
         let Some(kept) = &self.kept else { return };
         let force: Vec<f64> = kept.rows.iter().map(|&i| self.force[i as usize]).collect();
         let mut image = vec![0.0; kept.rows.len()];
         kept.matrix.times(&force, &mut image);
         for (&i, image) in kept.rows.iter().zip(&image) {
             if self.in_contact[i as usize] {
-                self.slack[i as usize] = image + gap[i as usize];
+                self.slack[i as usize] = image + self.gap[i as usize];
             }
         }
     }
@@ -276,7 +275,12 @@ mod tests {
         );
         assert!(solution.force.iter().all(|p| *p >= 0.0));
         let mut other = vec![0.0; 80];
-        mprgp(&rows, &gap, &mut other, (1e-13, 100_000), FULL.1);
+        let limits = CgLimits {
+            tolerance: 1e-13,
+            steps: 100_000,
+            cancelled: &|| false,
+        };
+        mprgp(&rows, &gap, &mut other, limits);
         for (a, b) in solution.force.iter().zip(&other) {
             assert!((a - b).abs() < 1e-9, "{a} {b}");
         }

@@ -1,19 +1,17 @@
 //! The fallback solver: modified proportioning with reduced gradient projections (MPRGP, Dostal & Schoeberl 2005); it always ends.
 
+use super::conjugate_gradient::CgLimits;
 use super::lcp::Compliance;
-use crate::Control;
 
 /// Minimizes `x A x / 2 + d x` over `x >= 0`, from the feasible part of the `x` given.
 ///
-/// Stops when the free and the chopped gradient are within `tolerance` (mm), or after `steps` products. Returns the steps.
-pub fn mprgp<M: Compliance>(
-    matrix: &M,
-    gap: &[f64],
-    x: &mut [f64],
-    limits: (f64, usize),
-    control: &Control,
-) -> usize {
-    let (tolerance, steps) = limits;
+/// Stops when the free and the chopped gradient are within the tolerance (mm), or after that many products. Returns the steps.
+pub fn mprgp<M: Compliance>(matrix: &M, gap: &[f64], x: &mut [f64], limits: CgLimits<'_>) -> usize {
+    let CgLimits {
+        tolerance,
+        steps,
+        cancelled,
+    } = limits;
     let n = matrix.diagonal().len();
     let step_length = 1.0 / matrix.norm_bound();
     for v in x.iter_mut() {
@@ -24,7 +22,7 @@ pub fn mprgp<M: Compliance>(
     residual(matrix, gap, x, &mut gradient);
     let mut direction = free_part(x, &gradient);
     for step in 0..steps {
-        if step % 16 == 0 && (control.cancelled)() {
+        if step % 16 == 0 && cancelled() {
             return step;
         }
         let free = free_part(x, &gradient);

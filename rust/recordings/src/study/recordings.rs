@@ -76,8 +76,8 @@ pub(super) fn read(
             ));
         }
         let (file, data) = read_data(&mut section, skin, folder)?;
-        let recording =
-            read_setting(&mut section, (indenters, sites), (name, file, data)).map_err(here)?;
+        let read = Read { name, file, data };
+        let recording = read_setting(&mut section, (indenters, sites), read).map_err(here)?;
         section.finish().map_err(here)?;
         recordings.push(recording);
     }
@@ -96,10 +96,17 @@ fn needed(section: &mut Section, key: &'static str) -> Result<String, Fault> {
     text.ok_or_else(|| section.needs(key, "add it, in quotes"))
 }
 
+/// A recording without its setting.
+struct Read {
+    name: String,
+    file: PathBuf,
+    data: Data,
+}
+
 fn read_setting(
     section: &mut Section,
     known: (&[Indenter], &[Site]),
-    read: (String, PathBuf, Data),
+    read: Read,
 ) -> Result<StudyRecording, Fault> {
     let indenters: Vec<&str> = known
         .0
@@ -108,12 +115,12 @@ fn read_setting(
         .collect();
     let sites: Vec<&str> = known.1.iter().map(|site| site.name.as_str()).collect();
     let indenter = defined(section, "indenter", &indenters)?;
-    if matches!(read.2, Data::Grasp { .. }) {
+    if matches!(read.data, Data::Grasp { .. }) {
         grasps::check_product(section, (&indenter, known.0))?;
     }
     Ok(StudyRecording {
         indenter,
-        site: match read.2 {
+        site: match read.data {
             Data::Grasp { .. } => String::new(),
             _ => defined(section, "site", &sites)?,
         },
@@ -123,9 +130,9 @@ fn read_setting(
         temperature_c: section.number("temperature_c")?,
         rest_s: section.number("rest_s")?,
         order: section.number("order")?,
-        name: read.0,
-        file: read.1,
-        data: read.2,
+        name: read.name,
+        file: read.file,
+        data: read.data,
     })
 }
 

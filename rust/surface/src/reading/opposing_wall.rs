@@ -7,7 +7,7 @@ use crate::solid::gap::{Gap, GapLimits, Side};
 use crate::solid::product::Product;
 use crate::tree::bvh::Query;
 use crate::tree::face::Face;
-use crate::tree::nearest::{Hit, Pending};
+use crate::tree::nearest::{Choice, Hit, Pending};
 
 /// Cosine between skin normal and face normal from which a face is not one the skin can have come through: 46 degrees off its own
 /// direction. Between 0 and this, faces count with growing reluctance. Tests pass from 0.5 to 0.85.
@@ -180,7 +180,10 @@ impl<'a> Facing<'a> {
         let tree = &product.tree;
         let may_lead_out = |face: &Face| face.normal.dot(skin) < most;
         let weigh = |face: &Face, _: &ClosestPoint| reluctance(face, skin);
-        let choice = (may_lead_out, weigh);
+        let choice = Choice {
+            wanted: may_lead_out,
+            weigh,
+        };
         let through = tree.nearest_of(query, f64::INFINITY, self.pending, choice)?;
         Some(product.reading(query, &through, Side::Inside))
     }

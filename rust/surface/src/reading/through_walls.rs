@@ -29,7 +29,7 @@ use crate::solid::gap::flipped;
 use crate::solid::gap::{Gap, GapLimits, Side};
 use crate::solid::product::Product;
 use crate::tree::face::Face;
-use crate::tree::nearest::Pending;
+use crate::tree::nearest::{Choice, Pending};
 
 /// Cosine from which two readings push the same way.
 const SAME_WAY: f64 = 0.5;
@@ -80,7 +80,12 @@ pub(crate) fn settle(
     // Points that were read deeper make others agree.
     while has_grown {
         let is_within = |k: usize| sights[away[k] as usize] == Sight::Within;
-        let mut needed = needed(skin, (&vicinity, &away, &is_unread), (product, gaps));
+        let unread = Away {
+            vicinity: &vicinity,
+            points: &away,
+            is_unread: &is_unread,
+        };
+        let mut needed = needed(skin, unread, (product, gaps));
         needed.extend((0..away.len()).filter(|&k| is_unread[k] && is_within(k)));
         needed.sort_unstable();
         needed.dedup();
@@ -142,12 +147,23 @@ fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec
     }
 }
 
+/// Points that face away from what they were measured to.
+struct Away<'a> {
+    vicinity: &'a Vicinity<'a>,
+    points: &'a [u32],
+    is_unread: &'a [bool],
+}
+
 /// Which of the points that face away to read next: those that some neighbors could agree with, as far as these are known.
 ///
 /// Through a wall a point is at least as deep as it is now away, so that most are never read.
 fn needed(
     skin: &PosedSkin<'_>,
-    (vicinity, away, is_unread): (&Vicinity, &[u32], &[bool]),
+    Away {
+        vicinity,
+        points: away,
+        is_unread,
+    }: Away<'_>,
     (product, gaps): (&Product, &[Option<Gap>]),
 ) -> Vec<usize> {
     let gap = |i: u32| gaps[i as usize].as_ref();
@@ -376,7 +392,10 @@ impl Product {
                 face.normal.dot(&normal) < 0.0 && (query.point - face.a).dot(&face.normal) < 0.0
             };
             let limit = reach * reach * (1.0 + 1e-9);
-            let choice = (is_near_side, |_: &Face, _: &ClosestPoint| 1.0);
+            let choice = Choice {
+                wanted: is_near_side,
+                weigh: |_: &Face, _: &ClosestPoint| 1.0,
+            };
             let hit = self.tree.nearest_of(&query, limit, &mut pending, choice);
             hit.map(|hit| self.reading(&query, &hit, Side::Inside))
         });

@@ -203,8 +203,7 @@ impl Parts<'_> {
     /// What of a face bounds the union: all of it as it is, or pieces.
     fn bare_pieces(&self, source: &Source, meets: &[u32]) -> Vec<Source> {
         let normal = normal_of(source.corners);
-        let mut pieces = Vec::new();
-        self.cut(&source.corners, (meets, normal), 0, &mut pieces);
+        let pieces = self.cut(&source.corners, (meets, normal), 0);
         let all = pieces.len();
         let piece = |corners: [Vec3; 3]| Source {
             corners,
@@ -245,18 +244,18 @@ impl Parts<'_> {
         polygon: &[Vec3],
         (meets, normal): (&[u32], Vec3),
         depth: usize,
-        pieces: &mut Vec<Vec<Vec3>>,
-    ) {
+    ) -> Vec<Vec<Vec3>> {
         let thin = self.oriented.thin;
         if let (&[a, b, c], true) = (polygon, meets.len() > MANY && depth < DEEPEST) {
             let [ab, bc, ca] = [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0];
+            let mut pieces = Vec::new();
             for quarter in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
                 let touches =
                     |t: &u32| may_touch(&quarter, &self.mesh().corners(*t as usize), thin);
                 let near: Vec<u32> = meets.iter().copied().filter(touches).collect();
-                self.cut(&quarter, (&near, normal), depth + 1, pieces);
+                pieces.extend(self.cut(&quarter, (&near, normal), depth + 1));
             }
-            return;
+            return pieces;
         }
         let mut cut = vec![polygon.to_vec()];
         for &t in meets {
@@ -268,7 +267,7 @@ impl Parts<'_> {
                     .for_each(|piece| split(piece, &line, (&normal, CUT * thin), &mut cut));
             }
         }
-        pieces.extend(cut);
+        cut
     }
 }
 

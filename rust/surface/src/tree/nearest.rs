@@ -20,6 +20,14 @@ pub(crate) struct Hit {
 #[derive(Debug, Default)]
 pub(crate) struct Pending(pub(crate) Vec<(f32, u32)>);
 
+/// Which faces count, and how far away each seems.
+pub(crate) struct Choice<W, F> {
+    /// Whether a face counts.
+    pub wanted: W,
+    /// Its weight for its closest point, at least 1, or infinity to leave it out.
+    pub weigh: F,
+}
+
 impl Tree {
     /// The face with the least `weight * distance^2`, at most `limit` (mm2); of several, that of lowest index in the mesh.
     ///
@@ -31,16 +39,20 @@ impl Tree {
         pending: &mut Pending,
         weigh: impl Fn(&Face, &ClosestPoint) -> f64,
     ) -> Option<Hit> {
-        self.nearest_of(query, limit, pending, (|_| true, weigh))
+        let choice = Choice {
+            wanted: |_: &Face| true,
+            weigh,
+        };
+        self.nearest_of(query, limit, pending, choice)
     }
 
-    /// [`Tree::nearest`] of the faces that are `wanted`.
+    /// [`Tree::nearest`] of the faces that are wanted.
     pub(crate) fn nearest_of(
         &self,
         query: &Query,
         limit: f64,
         pending: &mut Pending,
-        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
+        choice: Choice<impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64>,
     ) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -58,7 +70,7 @@ impl Tree {
         query: &Query,
         limit: f64,
         pending: &mut Pending,
-        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
+        choice: Choice<impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64>,
     ) -> Option<Hit> {
         self.walk(query, limit, pending, choice)
     }
@@ -69,7 +81,7 @@ impl Tree {
         query: &Query,
         limit: f64,
         pending: &mut Pending,
-        choice: (impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
+        choice: Choice<impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64>,
     ) -> Option<Hit> {
         let mut best = Best {
             hit: None,
@@ -121,10 +133,10 @@ impl Tree {
         slot: u32,
         query: &Query,
         best: &mut Best,
-        (wanted, weigh): &(impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64),
+        choice: &Choice<impl Fn(&Face) -> bool, impl Fn(&Face, &ClosestPoint) -> f64>,
     ) {
         let face = &self.faces[slot as usize];
-        if !wanted(face) {
+        if !(choice.wanted)(face) {
             return;
         }
         let on = closest_on(face.a, face.ab, face.ac, query.point);
@@ -132,7 +144,7 @@ impl Tree {
         if on.distance_squared > best.bound {
             return;
         }
-        let weighted = on.distance_squared * weigh(face, &on);
+        let weighted = on.distance_squared * (choice.weigh)(face, &on);
         let is_nearer = match &best.hit {
             Some(hit) => {
                 weighted < hit.weighted
