@@ -11,6 +11,7 @@ mod setup;
 mod blenders;
 mod testing;
 mod tally;
+mod lives;
 mod demo;
 mod prove;
 
@@ -23,8 +24,10 @@ const USAGE: &str = "cargo xtask COMMAND
   setup     wheel, extension zip, target/venv with bpy, target/blender, target/release/thenar
   demo      solve and render the sample grasp into target/demo
   test      every test: Rust, Python, Blender, architecture, packaging, docs, lint; `--blenders all` (or `4.2,5.3`):
-            the whole life of the extension in these Blender modules of PyPI too, besides 4.5 and 5.0
+            the whole life of the extension in these Blender modules of PyPI too, besides 4.5 and 5.0; with 5.3
+            (CPython 3.13) among them the whole of tests/blender there as well
   blenders [VERSION...]  only the whole life of the extension, in every Blender module of PyPI or in those named
+  blenders --tests [VERSION...]  only the whole of tests/blender, in 5.3 or in those named of 4.5, 5.0, 5.3
   samples   make blend-samples from code, in the oldest Blender
   prove     the blind trial of the diagnosis: table of verdicts against sealed labels (`-- --help`: options)
   bench     benchmarks, each as a ratio against a peer in the same run
@@ -51,7 +54,7 @@ fn dispatch(arguments: &[String]) -> Result<ExitCode> {
         "setup" => setup::run(&places),
         "demo" => demo::demo(&places, rest),
         "test" => testing::run(&places, rest),
-        "blenders" => testing::live(&places, rest),
+        "blenders" => lives::run(&places, rest),
         "samples" => demo::samples(&places),
         "bench" => demo::bench(&places, rest),
         "prove" => prove::run(&places, rest),

@@ -61,6 +61,19 @@ pub const BLENDER_45: Environment = Environment {
     ],
 };
 
+/// The newest Blender module, with the test tools; made where `--blenders` or `--tests` names it.
+pub const BLENDER_53: Environment = Environment {
+    name: "venv53",
+    version: "3.13",
+    packages: &[
+        "bpy==5.3.0",
+        "numpy==2.3.5",
+        "scipy==1.17.1",
+        "pytest==9.2.0",
+        "hypothesis==6.170.15",
+    ],
+};
+
 /// What Blender 5.1 and later bring (CPython 3.13, NumPy 2), without Blender; for tests, where there is a CPython 3.13.
 pub const PLAIN_313: Environment = Environment {
     name: "venv313",

@@ -3,7 +3,7 @@
 use crate::blenders;
 use crate::places::Places;
 use crate::process::{self, Output, Watched};
-use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
+use crate::python::{self, BLENDER_50, PLAIN_313, TOOLS};
 use crate::setup::{self, cargo};
 use crate::tally::{self, Tally};
 use anyhow::{Context, Result, bail};
@@ -28,7 +28,7 @@ const NOT_PLAIN: [&str; 1] = ["blender"];
 const LIVED_IN: [&str; 2] = ["4.5", "5.0"];
 
 /// The variable that says to `tests/packaging/test_whole_life.py` which versions it is to live in.
-const VERSIONS: &str = "THENAR_BLENDERS";
+pub const VERSIONS: &str = "THENAR_BLENDERS";
 
 /// The plain folder that takes longest; it starts early, so that no lane ends long after the others.
 const LONGEST: &str = "trial";
@@ -42,9 +42,9 @@ enum Counted {
     ByPytest,
 }
 
-struct Step {
+pub struct Step {
     name: String,
-    command: Command,
+    pub command: Command,
     counted: Counted,
 }
 
@@ -56,7 +56,7 @@ struct Done {
 }
 
 /// Sets up, runs every step, prints the sum. `--blenders all` or `--blenders 4.2,5.3` names further Blender modules for
-/// the whole life of the extension.
+/// the whole life of the extension; the whole of `tests/blender` runs in 5.3 too where it is among them.
 ///
 /// # Errors
 /// If an argument is unknown or the set-up fails; a failed step is an exit code.
@@ -74,7 +74,7 @@ pub fn run(places: &Places, arguments: &[String]) -> Result<ExitCode> {
     let mut steps = rust_steps(places);
     steps.extend(lint_steps(places));
     steps.extend(type_steps(places));
-    let python_steps = python_steps(places, &versions.join(" "))?;
+    let python_steps = python_steps(places, &versions)?;
     let mut done = Vec::new();
     match advisory_step(places) {
         Some(step) => steps.push(step),
@@ -94,19 +94,6 @@ pub fn run(places: &Places, arguments: &[String]) -> Result<ExitCode> {
     }
     done.extend(run_in_lanes(python_steps));
     Ok(report(&done))
-}
-
-/// `cargo xtask blenders [VERSION...]`: the whole life of the extension in these versions, without the other tests.
-///
-/// # Errors
-/// If a version is unknown or the set-up fails; a failed test is an exit code.
-pub fn live(places: &Places, words: &[String]) -> Result<ExitCode> {
-    let versions = blenders::chosen(words)?;
-    setup::user_environment(places)?;
-    blenders::make(places, &versions)?;
-    let mut step = pytest(places, "packaging/test_whole_life.py", BLENDER_50.name);
-    step.command.env(VERSIONS, versions.join(" "));
-    Ok(report(&[run_step(step, Output::AsItComes)]))
 }
 
 fn rust_steps(places: &Places) -> Vec<Step> {
@@ -210,7 +197,7 @@ fn deny(places: &Places, arguments: &[&str]) -> Command {
     command
 }
 
-fn python_steps(places: &Places, versions: &str) -> Result<Vec<Step>> {
+fn python_steps(places: &Places, versions: &[&str]) -> Result<Vec<Step>> {
     let tests = places.root.join("tests");
     let mut folders: Vec<String> = std::fs::read_dir(&tests)
         .with_context(|| format!("cannot list {}", tests.display()))?
@@ -222,8 +209,12 @@ fn python_steps(places: &Places, versions: &str) -> Result<Vec<Step>> {
     folders.sort_by_key(|folder| (folder != LONGEST, folder.clone()));
     let mut steps = Vec::new();
     if tests.join("blender").is_dir() {
-        steps.push(pytest(places, "blender", BLENDER_50.name));
-        steps.push(pytest(places, "blender", BLENDER_45.name));
+        steps.extend(
+            blenders::with_tests(versions)
+                .into_iter()
+                .rev()
+                .map(|environment| pytest(places, "blender", environment)),
+        );
     }
     steps.extend(
         folders
@@ -231,7 +222,7 @@ fn python_steps(places: &Places, versions: &str) -> Result<Vec<Step>> {
             .map(|folder| pytest(places, folder, BLENDER_50.name)),
     );
     for step in &mut steps {
-        step.command.env(VERSIONS, versions);
+        step.command.env(VERSIONS, versions.join(" "));
     }
     if tests.join("python").is_dir() && python::find(PLAIN_313.version).is_ok() {
         steps.push(pytest(places, "python", PLAIN_313.name));
@@ -249,7 +240,8 @@ fn holds_tests(folder: &Path) -> bool {
     })
 }
 
-fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
+/// A step of pytest over `tests/FOLDER` in an environment.
+pub fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
     let mut command = Command::new(places.python(environment));
     command
         .current_dir(&places.root)
@@ -304,6 +296,16 @@ fn run_in_lanes(steps: Vec<Step>) -> Vec<Done> {
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Runs steps one after another, their output as it comes, and prints the sum.
+pub fn run_in_view(steps: Vec<Step>) -> ExitCode {
+    let mut done = Vec::new();
+    for step in steps {
+        println!("\n== {}", step.name);
+        done.push(run_step(step, Output::AsItComes));
+    }
+    report(&done)
 }
 
 fn run_step(mut step: Step, output: Output) -> Done {
