@@ -1,9 +1,9 @@
 //! The commands that run the add-on on samples: `demo`, `samples`, and the benchmarks against peers.
 
+use crate::environment::python::{self, BLENDER_50, Environment};
 use crate::places::Places;
 use crate::process;
-use crate::python::{self, BLENDER_50, Environment};
-use crate::{blenders, setup, wheel};
+use crate::{environment::blenders, environment::wheel, setup};
 use anyhow::Result;
 use std::process::{Command, ExitCode};
 

@@ -1,19 +1,12 @@
 //! The project's commands: which word runs what, and how a failure is told.
 
+mod environment;
+mod test_run;
 mod places;
 mod process;
 mod stamp;
-mod python;
-mod wheel;
-mod extension;
-mod manual;
 mod setup;
-mod blenders;
-mod testing;
-mod tally;
-mod lives;
 mod demo;
-mod prove;
 
 use anyhow::{Result, bail};
 use places::Places;
@@ -53,12 +46,12 @@ fn dispatch(arguments: &[String]) -> Result<ExitCode> {
     match command {
         "setup" => setup::run(&places),
         "demo" => demo::demo(&places, rest),
-        "test" => testing::run(&places, rest),
-        "blenders" => lives::run(&places, rest),
+        "test" => test_run::testing::run(&places, rest),
+        "blenders" => test_run::lives::run(&places, rest),
         "samples" => demo::samples(&places),
         "bench" => demo::bench(&places, rest),
-        "prove" => prove::run(&places, rest),
-        "bundle" => extension::bundle_command(&places, rest),
+        "prove" => test_run::prove::run(&places, rest),
+        "bundle" => environment::extension::bundle_command(&places, rest),
         "help" | "--help" | "-h" => {
             println!("{USAGE}");
             Ok(ExitCode::SUCCESS)

@@ -1,9 +1,9 @@
 //! Conducts the set-up: environments and wheel side by side, then the extension and the binary.
 
+use crate::environment::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
 use crate::places::{Places, shown};
 use crate::process;
-use crate::python::{self, BLENDER_45, BLENDER_50, PLAIN_313, TOOLS};
-use crate::{extension, wheel};
+use crate::{environment::extension, environment::wheel};
 use anyhow::{Context, Result, anyhow, ensure};
 use std::fs::File;
 use std::path::PathBuf;

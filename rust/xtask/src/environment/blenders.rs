@@ -1,8 +1,8 @@
 //! Every Blender module of PyPI that Thenar supports: its environment, and the whole life of the extension in it.
 
+use crate::environment::python::{self, BLENDER_45, BLENDER_50, BLENDER_53, Environment};
 use crate::places::Places;
-use crate::python::{self, BLENDER_45, BLENDER_50, BLENDER_53, Environment};
-use crate::{setup, wheel};
+use crate::{environment::wheel, setup};
 use anyhow::{Result, ensure};
 
 /// The oldest Blender that Thenar supports; files that it saves open in every later one.
@@ -206,7 +206,7 @@ mod tests {
     /// The tests find an environment by its folder below `target`.
     #[test]
     fn tests_know_the_same_versions_and_folders() {
-        let products = include_str!("../../../tests/packaging/products.py");
+        let products = include_str!("../../../../tests/packaging/products.py");
         for (version, environment) in MODULES {
             let entry = format!("\"{version}\": \"{}\"", environment.name);
             assert!(products.contains(&entry), "{entry}");

@@ -1,10 +1,11 @@
 //! `cargo xtask blenders`: what is tested of the extension in Blender modules by name, without the other tests.
 
-use crate::blenders;
+use crate::environment::blenders;
+use crate::environment::python::BLENDER_50;
 use crate::places::Places;
-use crate::python::BLENDER_50;
 use crate::setup;
-use crate::testing::{VERSIONS, pytest, run_in_view};
+use crate::test_run::steps::run_in_view;
+use crate::test_run::testing::{VERSIONS, pytest};
 use anyhow::{Result, ensure};
 use std::process::ExitCode;
 

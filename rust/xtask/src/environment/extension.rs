@@ -1,9 +1,9 @@
 //! The extension zip: staged from `addon`, built and validated by Blender's own script, installed.
 
-use crate::manual;
+use crate::environment::manual;
+use crate::environment::python::BLENDER_50;
 use crate::places::{Places, shown};
 use crate::process;
-use crate::python::BLENDER_50;
 use crate::stamp::{self, Key};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ pub fn build(places: &Places, wheel: &Path) -> Result<PathBuf> {
         .files(&places.root.join("addon"))?
         .files(&places.root.join("LICENSE"))?
         .files(wheel)?
-        .files(&places.root.join("rust/xtask/src/manual.rs"))?
+        .files(&places.root.join("rust/xtask/src/environment/manual.rs"))?
         .finish();
     let ready = dist.join(".ready");
     if zip.is_file() && stamp::is_current(&ready, &key) {
@@ -87,7 +87,11 @@ pub fn install(places: &Places, zip: &Path) -> Result<()> {
         .with_context(|| format!("cannot make {}", partial.display()))?;
     let mut command = Command::new(places.python(BLENDER_50.name));
     command
-        .arg(places.root.join("rust/xtask/src/install_extension.py"))
+        .arg(
+            places
+                .root
+                .join("rust/xtask/src/environment/install_extension.py"),
+        )
         .arg(zip)
         .env("BLENDER_USER_RESOURCES", &partial);
     process::quiet(&mut command, "installing the extension in Blender")?;
@@ -113,7 +117,7 @@ pub fn bundle_command(places: &Places, wheels: &[String]) -> Result<ExitCode> {
         !wheels.is_empty(),
         "name the wheels to bundle: cargo xtask bundle WHEEL..."
     );
-    crate::python::make(places, &BLENDER_50)?;
+    crate::environment::python::make(places, &BLENDER_50)?;
     let wheels: Vec<PathBuf> = wheels.iter().map(PathBuf::from).collect();
     let stage = stage(places, &wheels)?;
     let dist = places.target.join("dist");

@@ -1,8 +1,8 @@
 //! The native wheel (cp311-abi3, manylinux_2_28) and its installation into an environment.
 
+use crate::environment::python;
 use crate::places::{Places, link_folder};
 use crate::process;
-use crate::python;
 use crate::stamp::{self, Key};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn every_crate_in_the_wheel_is_a_source_of_it() {
-        let manifest = include_str!("../../python/Cargo.toml");
+        let manifest = include_str!("../../../python/Cargo.toml");
         let ours: Vec<String> = manifest
             .lines()
             .filter_map(|line| line.strip_prefix("thenar-")?.split([' ', '.']).next())

@@ -1,7 +1,7 @@
 //! `cargo xtask prove`: the blind trial of the diagnosis, with the baselines beside it.
 
+use crate::environment::python::BLENDER_50;
 use crate::places::Places;
-use crate::python::BLENDER_50;
 use crate::setup;
 use anyhow::{Context, Result};
 use std::process::{Command, ExitCode};
