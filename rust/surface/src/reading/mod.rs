@@ -6,6 +6,7 @@ pub(crate) mod neighborhood;
 pub(crate) mod flesh;
 pub(crate) mod sheet_side;
 pub(crate) mod tool_end;
+pub(crate) mod unread_points;
 pub(crate) mod through_walls;
 pub(crate) mod skin_queries;
 pub(crate) mod kept_readings;

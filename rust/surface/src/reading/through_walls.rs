@@ -16,8 +16,6 @@
 //!
 //! What is accepted does not depend on the order of the vertices.
 
-use rayon::prelude::*;
-
 use crate::mesh::closest_point::ClosestPoint;
 use crate::mesh::triangles::Vec3;
 use crate::reading::facing::{PosedSkin, Sight, seen_and_away};
@@ -25,6 +23,7 @@ use crate::reading::flesh::Flesh;
 use crate::reading::neighborhood::{Vicinity, spacing};
 use crate::reading::opposing_wall::{Facing, Turned};
 use crate::reading::sheet_side::read_by_side;
+use crate::reading::unread_points::{Away, STEEPEST, WITNESSES, each, faces_alike};
 use crate::solid::gap::flipped;
 use crate::solid::gap::{Gap, GapLimits, Side};
 use crate::solid::product::Product;
@@ -34,17 +33,8 @@ use crate::tree::nearest::{Choice, Pending};
 /// Cosine from which two readings push the same way.
 const SAME_WAY: f64 = 0.5;
 
-/// Growth of depth, mm a mm, that neighbors may show; 1 in a smooth field, and some for the corners of a product.
-const STEEPEST: f64 = 1.1;
-
 /// Depth to which a point outside, all of whose neighbors are outside as well, may have come through, mm: what skin yields before bone.
 const THROUGH: f64 = 6.0;
-
-/// Settled neighbors needed, so that no vertex is judged by one other alone.
-const WITNESSES: usize = 2;
-
-/// Up to so many items are answered one after the other: to wake other threads takes as long.
-const FEW: usize = 256;
 
 /// A point that may have come through, with what it would read: through a wall, and through a sheet without thickness.
 struct Candidate {
@@ -85,7 +75,7 @@ pub(crate) fn settle(
             points: &away,
             is_unread: &is_unread,
         };
-        let mut needed = needed(skin, unread, (product, gaps));
+        let mut needed = unread.needed(skin, product, gaps);
         needed.extend((0..away.len()).filter(|&k| is_unread[k] && is_within(k)));
         needed.sort_unstable();
         needed.dedup();
@@ -138,78 +128,11 @@ pub(crate) fn settle(
     before
 }
 
-/// What `f` gives for each item, in order.
-fn each<T: Sync, R: Send>(items: &[T], f: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
-    if items.len() <= FEW {
-        items.iter().map(f).collect()
-    } else {
-        items.par_iter().map(f).collect()
-    }
-}
-
-/// Points that face away from what they were measured to.
-struct Away<'a> {
-    vicinity: &'a Vicinity<'a>,
-    points: &'a [u32],
-    is_unread: &'a [bool],
-}
-
-/// Which of the points that face away to read next: those that some neighbors could agree with, as far as these are known.
-///
-/// Through a wall a point is at least as deep as it is now away, so that most are never read.
-fn needed(
-    skin: &PosedSkin<'_>,
-    Away {
-        vicinity,
-        points: away,
-        is_unread,
-    }: Away<'_>,
-    (product, gaps): (&Product, &[Option<Gap>]),
-) -> Vec<usize> {
-    let gap = |i: u32| gaps[i as usize].as_ref();
-    let distance = |i: u32| gap(i).map_or(f64::INFINITY, |g| g.distance);
-    let (distances, deepest) = (vicinity.values(distance), STEEPEST * vicinity.reach());
-    let least = vicinity.least_near(away, &distances);
-    let may_be = |&k: &usize| {
-        let is_deep = distance(away[k]).abs() + least[k] <= deepest;
-        is_unread[k] && (is_deep || product.is_sheet_at(gap(away[k])))
-    };
-    let may_be: Vec<usize> = (0..away.len()).filter(may_be).collect();
-    let agreeing = |&k: &usize| {
-        let (i, own) = (away[k], distance(away[k]).abs());
-        let agrees = |&j: &u32| {
-            let apart = (skin.points[i as usize] - skin.points[j as usize]).norm();
-            own + distance(j) <= STEEPEST * apart && faces_alike(skin, i, j)
-        };
-        let mut near = vicinity.around_where(i, &distances, |other| own + other <= deepest);
-        near.retain(agrees);
-        near
-    };
-    let found = each(&may_be, agreeing);
-    let mut is_needed = vec![false; away.len()];
-    for (k, agreeing) in may_be.into_iter().zip(found) {
-        if agreeing.len() >= WITNESSES || product.is_sheet_at(gap(away[k])) {
-            is_needed[k] = true;
-            for other in agreeing {
-                if let Ok(other) = away.binary_search(&other) {
-                    is_needed[other] = is_unread[other];
-                }
-            }
-        }
-    }
-    (0..away.len()).filter(|&k| is_needed[k]).collect()
-}
-
 /// The points near a point whose skin faces the same way.
 fn neighbors(skin: &PosedSkin<'_>, vicinity: &Vicinity, at: u32) -> Vec<u32> {
     let mut near = vicinity.around(at);
     near.retain(|&j| faces_alike(skin, at, j));
     near
-}
-
-/// Whether skin at two different points faces the same way, by and large.
-fn faces_alike(skin: &PosedSkin<'_>, i: u32, j: u32) -> bool {
-    i != j && skin.normals[j as usize].dot(&skin.normals[i as usize]) > 0.0
 }
 
 /// Accepts candidates next to settled points, until no more can be; returns whether there were any.
@@ -358,11 +281,6 @@ fn enclose(
 }
 
 impl Product {
-    /// Whether a gap was measured to a sheet.
-    fn is_sheet_at(&self, gap: Option<&Gap>) -> bool {
-        gap.is_some_and(|gap| self.is_sheet(gap.triangle as usize))
-    }
-
     /// What a point inside would read if it had come through the wall that opposes its skin.
     fn reading_within(&self, skin: &PosedSkin<'_>, at: usize, limits: GapLimits) -> Option<Gap> {
         let mut pending = Pending::default();
