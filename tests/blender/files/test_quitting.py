@@ -11,7 +11,7 @@ import test_computing
 import thenar_blender
 from thenar_blender.operators import running
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1]
 PRESSING = """
 import sys
 sys.path.insert(0, sys.argv[1])

@@ -16,7 +16,7 @@ import numpy as np
 import stage
 
 TABLE = Path(__file__).with_name("frozen_round_trip.json")
-SAMPLE = Path(__file__).parents[2] / "blend-samples/cylinder_48.blend"
+SAMPLE = Path(__file__).parents[3] / "blend-samples/cylinder_48.blend"
 
 
 def pressed():
