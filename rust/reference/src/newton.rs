@@ -54,6 +54,15 @@ impl Forces {
     }
 }
 
+/// Where a step leads.
+struct Next {
+    places: Vec<Vec3>,
+    /// Whether the full step at the regularization given went well.
+    is_plain: bool,
+    /// Forces there, where the stiffness kept belongs to them.
+    forces: Option<Forces>,
+}
+
 /// When an iteration ends.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
@@ -122,19 +131,18 @@ impl<'a> Equilibrium<'a> {
                 return (End::Cancelled, places, Some(forces));
             }
             self.steps += 1;
-            let Some((next, is_plain)) = self.step(&places, &forces, penalty, &mut regularization)
-            else {
+            let Some(next) = self.step(&places, &forces, penalty, &mut regularization) else {
                 return (End::Stuck, places, Some(forces));
             };
-            if is_plain {
+            if next.is_plain {
                 regularization = if regularization > NO_REGULARIZATION {
                     0.25 * regularization
                 } else {
                     0.0
                 };
             }
-            places = next;
-            match self.forces(&places, penalty, true) {
+            places = next.places;
+            match next.forces.or_else(|| self.forces(&places, penalty, true)) {
                 Some(found) => forces = found,
                 None => return (End::Stuck, places, None),
             }
@@ -147,18 +155,21 @@ impl<'a> Equilibrium<'a> {
         (end, places, Some(forces))
     }
 
-    /// The next places, and whether the full step at the regularization given went well; `None` where no step lowers the energy.
+    /// The next places; `None` where no step lowers the energy. The stiffness kept is that of the places given, or of the next ones where
+    /// their forces are returned.
     fn step(
         &mut self,
         places: &[Vec3],
         forces: &Forces,
         penalty: Penalty,
         regularization: &mut f64,
-    ) -> Option<(Vec<Vec3>, bool)> {
+    ) -> Option<Next> {
         let mut is_first = true;
         let unbalanced = norm(&forces.residual);
+        // The attempts below overwrite the stiffness that is kept.
+        let stiffness = self.values.clone();
         while *regularization <= REGULARIZATION.2 {
-            let mut values = self.values.clone();
+            let mut values = stiffness.clone();
             for entry in self.pattern.diagonal() {
                 values[*entry] += *regularization * values[*entry].abs();
             }
@@ -170,11 +181,17 @@ impl<'a> Equilibrium<'a> {
                 let mut share = (MOST_STEP_MM / longest).min(1.0);
                 for attempt in 0..SHORTER.0 {
                     let next = self.moved(places, &step, share);
-                    if let Some(found) = self.forces(&next, penalty, false) {
+                    // The first step mostly serves: its stiffness is then not computed apart.
+                    let is_plain = is_first && attempt == 0;
+                    if let Some(found) = self.forces(&next, penalty, is_plain) {
                         let enough =
                             forces.energy + DECREASE * share * slope + 1e-10 * forces.energy.abs();
                         if found.energy <= enough || norm(&found.residual) < 0.5 * unbalanced {
-                            return Some((next, is_first && attempt == 0));
+                            return Some(Next {
+                                places: next,
+                                is_plain,
+                                forces: is_plain.then_some(found),
+                            });
                         }
                     }
                     share *= SHORTER.1;
