@@ -1,6 +1,6 @@
 """Fast result, reference and their difference on the opened hand of the 48 mm sample, rendered in one picture.
 
-PYTHONPATH=tests target/venv/bin/python tests/proof/charts/reference_hand.py [FILE.png]; about two minutes.
+PYTHONPATH=tests target/venv/bin/python tests/proof/charts/reference_hand.py [FILE.jpg]; about two minutes.
 """
 
 import sys
@@ -13,7 +13,7 @@ from thenar_blender import pictures
 from thenar_blender.operators import display
 
 ROOT = Path(__file__).parents[3]
-PICTURE = ROOT / "addon/docs/pictures/reference_maps.png"
+PICTURE = ROOT / "addon/docs/pictures/reference_maps.jpg"
 SAMPLE = ROOT / "blend-samples/cylinder_48.blend"
 SIDES = (400, 342)
 """Width and height of one of the three, pixels."""
@@ -35,7 +35,17 @@ def main(path):
         for kind, picture in zip(MAPS, paths, strict=True):
             display.show(context, kind)
             pictures.render_hand(context, picture)
-        pictures.beside(paths, Path(path))
+        joined = Path(folder) / "joined.png"
+        pictures.beside(paths, joined)
+        save_jpeg(joined, path)
+
+
+def save_jpeg(picture, path):
+    """Write a picture as a JPEG: a render's grain makes a PNG larger than the documents' limit."""
+    scene = bpy.context.scene
+    scene.view_settings.view_transform = "Standard"
+    scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 90
+    bpy.data.images.load(str(picture)).save_render(str(path), scene=scene)
 
 
 if __name__ == "__main__":
