@@ -22,7 +22,7 @@ use thenar_inference::forward::surrogate::force_recording::ForceRecording;
 use thenar_inference::forward::surrogate::prepared_study::{PreparedStudy, prepare};
 use thenar_inference::parameters::surrogate_priors::form_note;
 use thenar_inference::selection::cross_validation::Gain;
-use thenar_inference::selection::scored::{Rungs, Scored};
+use thenar_inference::selection::scored::Rungs;
 
 /// What a diagnosis is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -202,14 +202,7 @@ fn told(
         evidence: crate::findings_content::evidence(ready, rungs),
         notes: vec![decision.reason.clone()],
     };
-    if found.verdict == Verdict::InsufficientData {
-        found.names_90 = Vec::new();
-    }
-    if let Some(names) = decision.named.map(Scored::names)
-        && !found.names_90.contains(&names)
-    {
-        found.names_90.insert(0, names);
-    }
+    found.names_90 = with_what_is_said(found.names_90, &decision);
     let mut reason = decision.reason.clone();
     let unmodeled_repeat_noise =
         thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise(
@@ -244,6 +237,26 @@ fn told(
     found
 }
 
+/// The sets of names kept at 90 % with what the verdict says first: a name, or none. The weights do not know what gates refuse, so that a
+/// name which is only suspected may have all of them; it stays as what it may be.
+fn with_what_is_said(
+    weighed: Vec<Vec<&'static str>>,
+    decision: &Decision<'_>,
+) -> Vec<Vec<&'static str>> {
+    let said = match (decision.verdict, decision.named) {
+        (Verdict::InsufficientData, _) => return Vec::new(),
+        (_, Some(named)) => named.names(),
+        (Verdict::NothingMissing | Verdict::Parameters, None) => Vec::new(),
+        _ => return weighed,
+    };
+    let mut sets = weighed;
+    match sets.iter().position(|names| *names == said) {
+        Some(known) => sets[..=known].rotate_right(1),
+        None => sets.insert(0, said),
+    }
+    sets
+}
+
 /// What a reader should be told besides, and the place that maps show.
 fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     let is_no_better = |g: &Gain| g.log_score <= g.placebo;
@@ -261,4 +274,28 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     });
     found.notes.extend(ready.noise.wander_note(forces));
     found.notes.extend(untested(&ready.courses));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gates::decision::{named, silent};
+    use crate::synthetic_rungs::rungs_beside;
+    use thenar_contact::effects::Effect::{Relaxation, StiffSkin};
+
+    #[test]
+    fn sets_begin_with_none_where_a_name_is_only_suspected() {
+        let weighed = vec![vec!["stiff_skin"]];
+        let of = |decision: &Decision<'_>| with_what_is_said(weighed.clone(), decision);
+        let nothing = silent(Verdict::Parameters, "suspected is stiff skin");
+        assert_eq!(of(&nothing), [vec![], vec!["stiff_skin"]]);
+        assert!(of(&silent(Verdict::InsufficientData, "")).is_empty());
+        assert_eq!(of(&silent(Verdict::Unlisted, "")), weighed);
+        let second = vec![vec!["stiff_skin"], vec![], vec!["bone"]];
+        let sets = with_what_is_said(second, &nothing);
+        assert_eq!(sets, [vec![], vec!["stiff_skin"], vec!["bone"]]);
+        let rungs = rungs_beside((Relaxation, 100.0), StiffSkin, 0.0);
+        let relaxation = named(&rungs.singles[0], "");
+        assert_eq!(of(&relaxation), [vec!["relaxation"], vec!["stiff_skin"]]);
+    }
 }
