@@ -3,7 +3,9 @@
 use thenar_inference::grasp::causes::Cause;
 use thenar_inference::grasp::channels::{place, regions};
 use thenar_inference::grasp::explain::Explained;
-use thenar_inference::grasp::regional_fit::RegionalFit;
+use thenar_inference::grasp::hold::Hold;
+use thenar_inference::grasp::product_maps::SHIFTS_MM;
+use thenar_inference::grasp::regional_fit::{Bound, RegionalFit};
 use thenar_inference::number_format::{number, percent};
 use thenar_recordings::Study;
 
@@ -126,6 +128,8 @@ pub(super) fn notes(study: &Study, explained: &Explained) -> Vec<String> {
     let mut notes = study.warnings.clone();
     notes.extend(explained.product.notes().iter().cloned());
     notes.extend(postures(explained));
+    notes.extend(unsettled(&explained.forces.unsettled_mm));
+    notes.extend(at_bounds(explained));
     notes.push(by_region(explained));
     notes.push(
         "a region's scale is known no better than the model's own form: its force is 0.84 to 1.19 times that of a solid in seven grasps; one region is named stiffer, softer or \
@@ -142,6 +146,52 @@ pub(super) fn notes(study: &Study, explained: &Explained) -> Vec<String> {
     }
     notes.push("friction was not tested: no hold slides".to_owned());
     notes
+}
+
+/// Presses of the model that did not converge.
+fn unsettled(shifts_mm: &[f64]) -> Option<String> {
+    let parts: Vec<String> = shifts_mm.iter().map(|s| format!("{s:+.1}")).collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "{} of {} presses of the model did not converge (regions shifted by {} mm): forces near that posture are approximate; check skin and product \
+             for folds and intersections",
+            parts.len(),
+            SHIFTS_MM.len(),
+            parts.join(" and ")
+        )
+    })
+}
+
+/// Regions whose fitted posture or scale ended at a bound, by hold.
+fn at_bounds(explained: &Explained) -> Option<String> {
+    let of = |hold: &Hold, fit: &RegionalFit| -> Vec<String> {
+        let each = fit.active.iter().enumerate().filter_map(|(k, &region)| {
+            let bound = fit.at_bound(k, explained.forces.range(region))?;
+            let title = explained.product.regions()[region].replace('_', " ");
+            Some(bound_in_words(&title, &hold.name, bound))
+        });
+        each.collect()
+    };
+    let both = explained.holds.iter().zip(&explained.fits);
+    let parts: Vec<String> = both.flat_map(|(hold, fit)| of(hold, fit)).collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "fitted values at a bound, which are known no better than that: {}; pose the hand as it held the product",
+            parts.join("; ")
+        )
+    })
+}
+
+fn bound_in_words(title: &str, hold: &str, bound: Bound) -> String {
+    match bound {
+        Bound::Shift(shift) => {
+            format!("the {title} in '{hold}' lies {shift:+.1} mm toward the product or farther")
+        }
+        Bound::Scale(scale) => {
+            let word = if scale > 1.0 { "more" } else { "less" };
+            format!("the {title} in '{hold}' bears {scale:.1} times the model's pressure or {word}")
+        }
+    }
 }
 
 /// Force, scale over the model, and posture of every region, in the mean over holds.
@@ -311,5 +361,28 @@ fn suggestion(text: &str, (settles, presses): (Vec<&'static str>, u32)) -> Sugge
         settles,
         probability: None,
         minutes: 2.0 * f64::from(presses),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presses_that_did_not_converge_are_listed_with_their_shift() {
+        assert_eq!(unsettled(&[]), None);
+        let said = unsettled(&[-1.0, 0.5]).unwrap();
+        assert!(
+            said.starts_with("2 of 5 presses") && said.contains("-1.0 and +0.5 mm"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn values_at_a_bound_say_on_which_side_they_may_lie() {
+        let of = |bound| bound_in_words("thumb", "hold 1", bound);
+        assert!(of(Bound::Shift(-1.0)).contains("-1.0 mm"));
+        assert!(of(Bound::Scale(4.95)).ends_with("pressure or more"));
+        assert!(of(Bound::Scale(0.2)).ends_with("pressure or less"));
     }
 }

@@ -148,19 +148,33 @@ pub fn part_gain(holds: &[Hold], fits: &[RegionalFit], cells: &Cells) -> Option<
         return None;
     }
     let ratios = ratios(holds, fits, cells);
+    let compared: Vec<usize> = (0..ratios.len()).filter(|c| ratios[*c].is_some()).collect();
     let mut best: Option<(f64, PartGain)> = None;
     for line in 0..2 {
         let mut numbers: Vec<u32> = first.places.iter().flatten().map(|p| p[line]).collect();
         numbers.sort_unstable();
         numbers.dedup();
+        // A band that begins or ends with lines without compared cells is the same as one that was tried.
+        let has_compared = |number: u32| {
+            compared
+                .iter()
+                .any(|c| first.places[*c].is_some_and(|p| p[line] == number))
+        };
+        let bears: Vec<bool> = numbers.iter().map(|n| has_compared(*n)).collect();
         for (i, &from) in numbers.iter().enumerate() {
-            for &to in &numbers[i + 1..] {
-                let is_in: Vec<bool> = first
-                    .places
+            if i > 0 && !bears[i - 1] {
+                continue;
+            }
+            for (j, &to) in numbers.iter().enumerate().skip(i + 1) {
+                if j > i + 1 && !bears[j] {
+                    continue;
+                }
+                let is_within =
+                    |p: &Option<[u32; 2]>| p.is_some_and(|p| (from..=to).contains(&p[line]));
+                let parted = compared
                     .iter()
-                    .map(|p| p.is_some_and(|p| (from..=to).contains(&p[line])))
-                    .collect();
-                let Some((size, deviation)) = step_of(&ratios, &is_in) else {
+                    .filter_map(|c| ratios[*c].map(|ratio| (ratio, is_within(&first.places[*c]))));
+                let Some((size, deviation)) = step_of(parted) else {
                     continue;
                 };
                 let strength = (size / deviation).abs();
@@ -175,7 +189,7 @@ pub fn part_gain(holds: &[Hold], fits: &[RegionalFit], cells: &Cells) -> Option<
                         band: (from, to),
                         gain: size.exp(),
                         interval: ends,
-                        is_in,
+                        is_in: first.places.iter().map(is_within).collect(),
                     };
                     best = Some((strength, found));
                 }
@@ -204,12 +218,10 @@ fn ratios(holds: &[Hold], fits: &[RegionalFit], cells: &Cells) -> Vec<Option<(us
 }
 
 /// Mean step of the ratios into a part, over regions with cells on both sides, and its standard deviation.
-fn step_of(ratios: &[Option<(usize, f64)>], is_in: &[bool]) -> Option<(f64, f64)> {
+fn step_of(parted: impl Iterator<Item = ((usize, f64), bool)>) -> Option<(f64, f64)> {
     let mut by_region: BTreeMap<usize, [Vec<f64>; 2]> = BTreeMap::new();
-    for (ratio, is_in) in ratios.iter().zip(is_in) {
-        if let Some((region, value)) = ratio {
-            by_region.entry(*region).or_default()[usize::from(*is_in)].push(*value);
-        }
+    for ((region, value), is_in) in parted {
+        by_region.entry(region).or_default()[usize::from(is_in)].push(value);
     }
     let (mut sum, mut weights, mut inside, mut squares) = (0.0, 0.0, 0, 0.0);
     let mut steps = Vec::new();

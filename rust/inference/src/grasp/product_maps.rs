@@ -37,6 +37,8 @@ struct Node {
 pub struct RegionForces {
     /// Shift of each region from the posture as given, at which the tables have their middle, mm.
     pub middle_mm: Vec<f64>,
+    /// Shifts, mm, at which the contact did not converge: forces there are those of the last iteration.
+    pub unsettled_mm: Vec<f64>,
     nodes: Vec<Vec<Node>>,
 }
 
@@ -144,6 +146,7 @@ impl HeldProduct {
         };
         let mut workspace = Workspace::default();
         let mut nodes: BTreeMap<(usize, usize), Node> = BTreeMap::new();
+        let mut unsettled_mm = Vec::new();
         for (number, shift) in SHIFTS_MM.iter().enumerate() {
             let posed = self.posed(middle_mm, *shift);
             let press = Press {
@@ -162,6 +165,9 @@ impl HeldProduct {
                 .on(&skin)
                 .press(&press, control)
                 .map_err(failed())?;
+            if !contact.convergence.has_converged {
+                unsettled_mm.push(*shift);
+            }
             self.add(&mut nodes, number, (&contact, &posed));
         }
         let mut by_region = vec![Vec::new(); self.ways.len()];
@@ -170,6 +176,7 @@ impl HeldProduct {
         }
         Ok(RegionForces {
             middle_mm: middle_mm.to_vec(),
+            unsettled_mm,
             nodes: by_region,
         })
     }

@@ -23,6 +23,10 @@ const PLACE_MM: f64 = 1.5;
 /// Half step of finite differences: of posture and of place, mm.
 const STEP_MM: f64 = 0.15;
 const ROUNDS: usize = 14;
+/// Largest size of the logarithm of a scale.
+const MOST_SCALE: f64 = 1.6;
+/// A value this near to its bound is at it.
+const AT_BOUND: f64 = 1e-6;
 
 /// What explains the mean map of a hold.
 #[derive(Debug, Clone)]
@@ -51,6 +55,24 @@ impl RegionalFit {
             .map(|c| self.maps.iter().map(|m| m[c]).sum())
             .collect()
     }
+
+    /// What of an active region's fit ended at a bound, and is known no better than that it lies there or beyond.
+    pub fn at_bound(&self, k: usize, (low, high): (f64, f64)) -> Option<Bound> {
+        let (shift, scale) = (self.shift_mm[k], self.log_scale[k]);
+        if shift <= low + AT_BOUND || shift >= high - AT_BOUND {
+            return Some(Bound::Shift(shift));
+        }
+        (scale.abs() >= MOST_SCALE - AT_BOUND).then(|| Bound::Scale(scale.exp()))
+    }
+}
+
+/// A fitted value at the end of its range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bound {
+    /// Shift toward the product, mm: the tables end there.
+    Shift(f64),
+    /// Pressure over the model's.
+    Scale(f64),
 }
 
 /// What is known of the cells.
@@ -209,7 +231,8 @@ impl Problem<'_> {
         };
         let step = factor.solve(&pull);
         for r in 0..regions {
-            state.log_scale[r] = (state.log_scale[r] + step[r].clamp(-0.4, 0.4)).clamp(-1.6, 1.6);
+            state.log_scale[r] =
+                (state.log_scale[r] + step[r].clamp(-0.4, 0.4)).clamp(-MOST_SCALE, MOST_SCALE);
             let (low, high) = self.forces.range(self.active[r]);
             let shift = state.shift_mm[r] + step[regions + r].clamp(-0.3, 0.3);
             state.shift_mm[r] = shift.clamp(low, high);
@@ -253,4 +276,29 @@ fn difference(ahead: &[Vec<f64>], behind: &[Vec<f64>], step: f64) -> Vec<Vec<f64
     let of =
         |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| (a - b) / step).collect();
     ahead.iter().zip(behind).map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_at_the_end_of_their_range_are_known_as_such() {
+        let of = |shift: f64, log_scale: f64| {
+            let fit = RegionalFit {
+                active: vec![3],
+                log_scale: vec![log_scale],
+                shift_mm: vec![shift],
+                deviation: vec![0.1],
+                placement: Placement::default(),
+                maps: Vec::new(),
+                by_shift: Vec::new(),
+            };
+            fit.at_bound(0, (-0.6, 1.4))
+        };
+        assert_eq!(of(0.3, 0.1), None);
+        assert_eq!(of(1.4, 0.1), Some(Bound::Shift(1.4)));
+        assert_eq!(of(-0.6, 0.1), Some(Bound::Shift(-0.6)));
+        assert_eq!(of(0.3, -1.6), Some(Bound::Scale((-1.6_f64).exp())));
+    }
 }
