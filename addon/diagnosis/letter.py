@@ -21,6 +21,8 @@ _UNSAID = {"nothing_missing", "parameters", "unlisted"}
 """Verdicts after which the list of what it might be says nothing: what is small enough is on it, or it is none."""
 _SETS = 4
 """Sets of names that are told."""
+UNMEASURED = "confidence not measured"
+"""Of findings of a kind that too few calibration studies have shown."""
 
 
 @dataclass(frozen=True)
@@ -119,8 +121,8 @@ def lines(letter):
     yield letter.heading
     yield letter.sentence
     for entry in letter.entries:
-        sure = "" if entry.sureness is None else f", {wording.share(entry.sureness)} confidence"
-        yield f"{entry.index + 1}. {entry.title}{sure}"
+        sure = UNMEASURED if entry.sureness is None else f"{wording.share(entry.sureness)} confidence"
+        yield f"{entry.index + 1}. {entry.title}, {sure}"
         yield from (f"   {text}" for text in (entry.meaning, entry.story) if text)
         yield from (f"   {row.label}: {row.text}" for row in entry.rows)
         yield from (f"   {'Seen' if holds else 'Not seen'}: {sign}" for sign, holds in entry.signs)
@@ -143,6 +145,9 @@ def _entry(found, index):
     rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
+    record = finding.get("track_record") or {}
+    if record.get("stated"):
+        rows.append(Row("Track record", f"right in {record['right']} of {record['stated']} such findings"))
     story = (wording.place(where), wording.moment(when), wording.depends(finding.get("depends_on")))
     return Entry(
         index=index,

@@ -250,9 +250,11 @@ def _draw_entry(layout, context, entry):
     box = layout.box().column(align=True)
     head = box.row()
     head.label(text=entry.title, icon="TOOL_SETTINGS" if entry.is_instrument else "PHYSICS")
-    if entry.sureness is not None:
-        sure = head.row()
-        sure.alignment = "RIGHT"
+    sure = head.row()
+    sure.alignment = "RIGHT"
+    if entry.sureness is None:
+        sure.label(text=letter.UNMEASURED.capitalize())
+    else:
         sure.label(text=iface("{share} confidence", share=letter.wording.share(entry.sureness)))
     if entry.meaning:
         text.faint(box, context, entry.meaning)

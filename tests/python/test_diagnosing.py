@@ -66,7 +66,8 @@ def test_findings_keep_to_their_schema_and_repeat_bit_for_bit(tmp_path):
     keys = {"findings", "names_90", "cannot_tell", "fit", "smallest_seen", "record_next", "model"}
     assert keys <= set(said) and set(said["model"]) == {"materials", "effects"}
     for one in said["findings"]:
-        assert one["kind"] in ("tissue", "instrument") and 0.0 <= one["confidence"] <= 1.0
+        assert one["kind"] in ("tissue", "instrument") and 0.0 <= one["posterior"] <= 1.0
+        assert one["confidence"] is None or one["confidence"] <= one["posterior"]
         assert all({"value", "low", "high", "unit"} == set(number) for number in one["parameters"].values())
     assert thenar.diagnose(study(tmp_path, 3), seed=1).to_json() == found.to_json()
 

@@ -95,8 +95,11 @@ def _of_finding(finding):
     if finding.get("kind") != kind:
         wrong.append(f"{effect} is of kind {kind}, not {finding.get('kind')!r}")
     confidence = finding.get("confidence")
-    if not _is_number(confidence) or not 0.0 <= confidence <= 1.0:
-        wrong.append(f"confidence is {confidence!r}, not between 0 and 1")
+    # Null where no frequency is known; the posterior is then all that is.
+    known = {"confidence": confidence} if confidence is not None or "posterior" not in finding else {}
+    for name, value in (known | {key: finding[key] for key in ("posterior",) if key in finding}).items():
+        if not _is_number(value) or not 0.0 <= value <= 1.0:
+            wrong.append(f"{name} is {value!r}, not between 0 and 1")
     for name, number in (finding.get("parameters") or {}).items():
         wrong += [f"{name}: {text}" for text in _of_interval(number)]
         wrong += [] if isinstance(number, dict) and isinstance(number.get("unit"), str) else [f"{name} has no unit"]

@@ -36,6 +36,8 @@ BROKEN = [
     ("findings.0.kind", "instrument", "relaxation is of kind tissue, not 'instrument'"),
     ("findings.0.confidence", 1.2, "confidence is 1.2, not between 0 and 1"),
     ("findings.0.confidence", float("nan"), "findings[0].confidence is not finite"),
+    ("findings.0.confidence", None, "confidence is None, not between 0 and 1"),
+    ("findings.0.posterior", -0.1, "posterior is -0.1, not between 0 and 1"),
     ("findings.0.parameters.time_1_s.low", 0.5, "its value lies outside its interval"),
     ("findings.0.parameters.time_1_s.unit", None, "time_1_s has no unit"),
     ("findings.0.when.phase", "dance", "there is no phase 'dance'"),

@@ -1,5 +1,6 @@
 //! Types of a diagnosis: verdict, findings with numbers, place and time, rivals, and the suggested recording.
 
+use crate::track_record::Confidence;
 use crate::unlisted_finding::Unlisted;
 use thenar_comparison::Comparison;
 use thenar_inference::selection::cross_validation::Gain;
@@ -104,8 +105,8 @@ pub struct Finding {
     pub kind: &'static str,
     /// What it was found in: "force" over depth, "tangential_force" or "map".
     pub channel: &'static str,
-    /// 0 to 1.
-    pub confidence: f64,
+    /// How often such findings are right.
+    pub confidence: Confidence,
     /// Its numbers.
     pub numbers: Vec<Number>,
     /// Where.

@@ -7,10 +7,12 @@ use thenar_recordings::Study;
 use crate::effect_numbers::numbers_of_effect;
 use crate::findings::{Curve, Finding, Rival, Switched, When, Where};
 use crate::gates::decision::Decision;
+use crate::track_record::{Confidence, Form, Kind};
 use crate::wording::{PHASES, phase_number};
 use thenar_inference::checks::signatures::looked_for;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::least_squares::huber::{HUBER, huber};
+use thenar_inference::parameters::surrogate_priors::is_form_known;
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Findings of what is named.
@@ -28,16 +30,25 @@ pub fn findings(
     let holding = probabilities
         .iter()
         .filter(|(other, _)| names.iter().all(|name| other.contains(name)));
-    let confidence = holding.map(|(_, p)| p).sum::<f64>().min(0.99);
+    let posterior = holding.map(|(_, p)| p).sum::<f64>().min(0.99);
+    let form = match is_form_known(&ready.elastic) {
+        true => Form::Known,
+        false => Form::Measured,
+    };
     let of = |number: usize| {
         let mechanism = &named.mechanisms[number];
         let entry = mechanism.effect.entry();
         let (numbers, _) = numbers_of_effect(ready, named, number);
+        let kind = match (named.mechanisms.len(), mechanism.is_instrument()) {
+            (1, true) => Kind::Instrument(form),
+            (1, false) => Kind::Skin(form),
+            _ => Kind::OneOfTwo(form),
+        };
         Finding {
             effect: entry.name,
             kind: entry.kind(),
             channel: "force",
-            confidence,
+            confidence: Confidence::new(posterior, kind),
             numbers,
             place: (!mechanism.is_instrument()).then(|| Where {
                 site: study.recordings[ready.courses[0].recording].site.clone(),

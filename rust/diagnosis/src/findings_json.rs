@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::findings::{Diagnosis, Finding, Rival, Suggestion, Switched};
+use crate::track_record::Confidence;
 use crate::unlisted_finding::{Correction, Unlisted};
 use thenar_inference::selection::cross_validation::{Gain, HeldOutBy, Spread};
 
@@ -50,6 +51,11 @@ pub fn findings_json(found: &Diagnosis) -> String {
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
+/// Of findings of the same kind on studies of known truth; counts are null where they are too few.
+fn track_record(of: &Confidence) -> Value {
+    json!({"kind": of.kind.word(), "right": of.record.map(|r| r.right), "stated": of.record.map(|r| r.stated)})
+}
+
 /// To seven digits, so that the file does not depend on the last bits; null if not finite.
 fn rounded(value: f64) -> Option<f64> {
     if !value.is_finite() {
@@ -71,7 +77,9 @@ fn finding(found: &Finding) -> Value {
         "effect": found.effect,
         "kind": found.kind,
         "channel": found.channel,
-        "confidence": rounded(found.confidence),
+        "confidence": found.confidence.frequency().and_then(rounded),
+        "posterior": rounded(found.confidence.posterior),
+        "track_record": track_record(&found.confidence),
         "parameters": numbers,
         "depends_on": found.depends_on,
         "consequences": found.consequences.iter()

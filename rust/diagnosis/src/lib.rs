@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 mod wording;
+mod track_record;
 mod findings;
 mod effect_numbers;
 mod channels;
@@ -26,5 +27,6 @@ pub use findings::{
 };
 pub use findings_json::findings_json;
 pub use thenar_inference::selection::cross_validation::{Gain, Spread};
+pub use track_record::{Confidence, Form, Kind, Record};
 pub use unlisted_finding::{Correction, Unlisted};
 pub use wording::variable_in_words;

@@ -4,6 +4,7 @@ use thenar_recordings::study::Data;
 use thenar_recordings::{PressureMap, Study};
 
 use crate::findings::{Diagnosis, Finding, Verdict, When, Where};
+use crate::track_record::{Confidence, Kind};
 use thenar_comparison::Comparison;
 use thenar_comparison::{Carrier, Mismatch, Shown};
 use thenar_inference::observe::measured::Phase;
@@ -101,7 +102,7 @@ fn inclusion(study: &Study, mismatch: &Mismatch) -> Finding {
         effect: "inclusion",
         kind: "tissue",
         channel: "map",
-        confidence: (1.0 - mismatch.p).clamp(0.5, 0.99),
+        confidence: Confidence::new((1.0 - mismatch.p).clamp(0.5, 0.99), Kind::Place),
         numbers: Vec::new(),
         place: Some(Where {
             site: study

@@ -13,7 +13,7 @@ pub fn sentence(
 ) -> String {
     let names: Vec<String> = findings.iter().map(|f| effect_in_words(f.effect)).collect();
     let names = names.join(" and ");
-    let sure = findings.iter().map(|f| f.confidence).fold(1.0, f64::min);
+    let sure = sureness(findings);
     match verdict {
         Verdict::NothingMissing => {
             "Nothing is missing at this noise: the study's own parameters explain the recordings."
@@ -50,10 +50,7 @@ pub fn sentence(
                 .into()
         }
         Verdict::Instrument => {
-            format!(
-                "It is the instrument: {names} ({:.0} % sure).",
-                100.0 * sure
-            )
+            format!("It is the instrument: {names} ({sure}).")
         }
         Verdict::MissingPhysics => {
             let when = findings.first().and_then(|f| f.when.as_ref());
@@ -61,12 +58,18 @@ pub fn sentence(
                 format!(", seen most {}", phase_in_words(w.phase))
             });
             let gained = gain.map_or(String::new(), predicted);
-            format!(
-                "What is missing is {names} ({:.0} % sure){when}{gained}.",
-                100.0 * sure
-            )
+            format!("What is missing is {names} ({sure}){when}{gained}.")
         }
     }
+}
+
+/// How often findings of the least sure kind are right; one that was not measured is less sure than any other.
+fn sureness(findings: &[Finding]) -> String {
+    let frequency = |f: &&Finding| f.confidence.frequency().unwrap_or(-1.0);
+    let least = findings
+        .iter()
+        .min_by(|a, b| frequency(a).total_cmp(&frequency(b)));
+    least.map_or(String::new(), |f| f.confidence.told())
 }
 
 /// Share of the reducible error from which it is stated, if all of its interval is above 0: otherwise noise decides how large it is.

@@ -51,9 +51,9 @@ fn findings(found: &Diagnosis) -> String {
     for finding in &found.findings {
         let _ = write!(
             html,
-            "<h3>{} ({:.0} % sure)</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
+            "<h3>{} ({})</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
             escaped(&capital(&finding.effect.replace('_', " "))),
-            100.0 * finding.confidence
+            finding.confidence.told()
         );
         html.extend(finding.numbers.iter().map(number));
         html.extend(found.choices(finding.effect).iter().map(choice));

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use serde_json::Value;
 use thenar_comparison::Location;
 use thenar_comparison::{Compared, Comparison, compare_fit};
-use thenar_diagnosis::{Diagnosis, Finding, Verdict};
+use thenar_diagnosis::{Confidence, Diagnosis, Finding, Form, Kind, Verdict};
 use thenar_inference::{Fit, Measured, Phase, Target};
 use thenar_report::{comparison_html, comparison_json, diagnosis_html};
 
@@ -271,7 +271,7 @@ fn page_of_a_diagnosis_shows_which_signs_hold() {
         effect: "relaxation",
         kind: "tissue",
         channel: "force",
-        confidence: 0.9,
+        confidence: Confidence::new(0.9, Kind::Skin(Form::Known)),
         numbers: Vec::new(),
         place: None,
         when: None,

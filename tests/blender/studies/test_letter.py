@@ -51,3 +51,19 @@ def test_evidence_by_phase_is_that_of_force_over_depth_alone():
 
     assert phases(law) == phases(law, friction) == ["75 %", "25 %"]
     assert phases(ceiling) == []
+
+
+def test_confidence_has_its_track_record_or_is_said_not_to_be_measured():
+    named = {"effect": "relaxation", "kind": "tissue", "confidence": 0.93, "posterior": 0.99, "parameters": {}}
+    record = {"kind": "skin_form_known", "right": 48, "stated": 49}
+
+    def lines(finding):
+        return list(letter.lines(letter.write(letters.FINDINGS["missing_physics"] | {"findings": [finding]})))
+
+    measured = lines(named | {"track_record": record})
+    assert "1. Relaxation, 93 % confidence" in measured
+    assert "   Track record: right in 48 of 49 such findings" in measured
+    unknown = record | {"right": None, "stated": None}
+    unmeasured = lines(named | {"confidence": None, "track_record": unknown})
+    assert "1. Relaxation, confidence not measured" in unmeasured
+    assert not any("Track record" in line or "99 % confidence" in line for line in unmeasured)

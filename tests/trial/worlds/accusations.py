@@ -90,6 +90,11 @@ def judged(asked, verdict, names):
     return "right" if is_right else "missed"
 
 
+def noises(world):
+    """Noise families of a world."""
+    return importlib.import_module(f"trial.worlds.{world}").NOISES
+
+
 def bounds(count, of):
     """95 % bounds of a share."""
     low = beta.ppf(0.025, count, of - count + 1) if count else 0.0
@@ -110,7 +115,7 @@ def arguments():
     parser.add_argument("--program", default=str(Path(__file__).parents[3] / "target/release/thenar"))
     given = parser.parse_args()
     world = importlib.import_module(f"trial.worlds.{given.world}")
-    given.noises = given.noises or list(world.NOISES)
+    given.noises = given.noises or list(noises(given.world))
     if given.truth not in world.TRUTHS or set(given.noises) - set(world.NOISES):
         parser.error(f"{given.world} has the truths {', '.join(world.TRUTHS)} and the noises {', '.join(world.NOISES)}")
     return given

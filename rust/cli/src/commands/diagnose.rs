@@ -51,7 +51,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
 fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
     let mut text = format!("{}\n\n", found.sentence);
     for finding in &found.findings {
-        text += &format!("{} ({:.0} %)\n", finding.effect, 100.0 * finding.confidence);
+        text += &format!("{} ({})\n", finding.effect, finding.confidence.told());
         for number in &finding.numbers {
             let (between, unit) = number.told();
             let line = format!("  {} = {:.4} ({between}) {unit}", number.name, number.value);

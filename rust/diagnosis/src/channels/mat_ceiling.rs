@@ -6,6 +6,7 @@ use thenar_recordings::study::{Data, StudyRecording};
 use thenar_recordings::{PressureUnit, Study};
 
 use crate::findings::{Diagnosis, Finding, Number, Verdict};
+use crate::track_record::{Confidence, Kind};
 
 /// Readings below the largest among which those of a mat that does not clip lie about evenly, as a part of it.
 const BAND: f64 = 0.15;
@@ -148,7 +149,7 @@ pub fn add_ceiling(found: &mut Diagnosis, seen: Ceiling) {
         effect: "saturation",
         kind: "instrument",
         channel: "map",
-        confidence: 0.99,
+        confidence: Confidence::new(0.99, Kind::MatCeiling),
         numbers: vec![Number {
             name: "ceiling_kpa",
             value: seen.at,

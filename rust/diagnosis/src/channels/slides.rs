@@ -7,6 +7,7 @@ use thenar_recordings::study::Data;
 use thenar_recordings::{Curve, Study};
 
 use crate::findings::{Diagnosis, Finding, Number, Switched, Verdict, When};
+use crate::track_record::{Confidence, Kind};
 use thenar_inference::observe::robust_scale::{median, median_deviation};
 
 /// Speed from which a tool slides, as a part of its fastest.
@@ -247,7 +248,7 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
         effect: "friction",
         kind: "tissue",
         channel: "tangential_force",
-        confidence: 0.99,
+        confidence: Confidence::new(0.99, Kind::Slide),
         numbers: vec![Number {
             name: "coefficient",
             value: ratio,

@@ -5,6 +5,7 @@ use thenar_inference::grasp::channels::place;
 use thenar_inference::grasp::explain::{Explained, THINNER};
 
 use crate::findings::{Finding, Number, Switched, When, Where};
+use crate::track_record::{Confidence, Kind};
 
 /// Half of a 90 % interval in standard deviations.
 const NINETY: f64 = 1.645;
@@ -66,7 +67,7 @@ fn of_cells(effect: &'static str, numbers: Vec<Number>, sign: String) -> Finding
         effect,
         kind: "instrument",
         channel: "map",
-        confidence: SHOWN,
+        confidence: Confidence::new(SHOWN, Kind::GraspInstrument),
         numbers,
         place: None,
         when: None,
@@ -105,7 +106,11 @@ fn listed_cells(explained: &Explained) -> String {
 }
 
 /// A cause that was named.
-pub(super) fn cause_finding(explained: &Explained, named: &Weighed, confidence: f64) -> Finding {
+pub(super) fn cause_finding(explained: &Explained, named: &Weighed, posterior: f64) -> Finding {
+    let kind = match named.cause.is_instrument() {
+        true => Kind::GraspInstrument,
+        false => Kind::GraspSkin,
+    };
     Finding {
         effect: named.cause.name(),
         kind: if named.cause.is_instrument() {
@@ -118,7 +123,7 @@ pub(super) fn cause_finding(explained: &Explained, named: &Weighed, confidence: 
             Cause::Gain | Cause::Drift(_) => "force",
             Cause::Stiffness(_) | Cause::Bone(_) => "map",
         },
-        confidence,
+        confidence: Confidence::new(posterior, kind),
         numbers: numbers(explained, named),
         place: named
             .cause

@@ -83,14 +83,18 @@ pub(crate) fn of_place(
     all
 }
 
+/// True where the form of the model is known: on flat skin over a plane, and on a half space.
+pub fn is_form_known(elastic: &Elastic) -> bool {
+    (elastic.is_flat && !elastic.is_bone_stated) || !elastic.shared_depth.is_finite()
+}
+
 /// These coordinates with the form of the model as free as it was measured to be; what is new comes last. None on flat skin over bone without
 /// end, whose form is known, and on a half space: what was measured is tissue over bone.
 pub(crate) fn with_measured_form(
     shared: &[Coordinate],
     elastic: &Elastic,
 ) -> Option<Vec<Coordinate>> {
-    let is_known = elastic.is_flat && !elastic.is_bone_stated;
-    if is_known || !elastic.shared_depth.is_finite() {
+    if is_form_known(elastic) {
         return None;
     }
     let mut all = shared.to_vec();
