@@ -59,8 +59,8 @@ class _OfPose:
             self.keep_limits,
             self.step,
         )
-        selecting.to_object_mode(context)
-        return posing.steps(context, Path(bpy.path.abspath(self.filepath)), wish)
+        steps_of_file = posing.steps(context, Path(bpy.path.abspath(self.filepath)), wish)
+        return selecting.in_object_mode(context, steps_of_file)
 
     def _report(self, _context, done):
         text = languages.report("Posed by '{key}'", key=done.key)

@@ -12,10 +12,15 @@ from . import looking, repeats, settings, writing
 def steps(context, folder, names):
     """Look at the files, and open the proposal, as the steps of a computation. Returns its recordings' count.
 
-    Raises `Refusal`, the scene as it was.
+    Raises `Refusal`, the scene as it was. A proposal that stays open keeps what was read of its files.
     """
-    found = yield partial(_look_at, _chosen(folder, names))
-    return _open(context, folder, found)
+    paths = _chosen(folder, names)
+    try:
+        found = yield partial(_look_at, paths)
+        return _open(context, folder, found)
+    finally:
+        files = context.scene.thenar_new_study.files
+        looking.keep({(item.path, item.run) for item in files})
 
 
 def _chosen(folder, names):
@@ -30,7 +35,6 @@ def _chosen(folder, names):
 def _look_at(paths, cancel=None, progress=None):
     """The recordings of all files; those that state everything are read whole, so that `refresh` finds them read."""
     found = []
-    looking.forget()
     for number, path in enumerate(paths):
         if cancel is not None and cancel.is_set():
             break  # what was found is dropped
@@ -68,7 +72,7 @@ def _open(context, folder, found):
 
 def discard(state):
     """Close the proposal; files on disk stay."""
-    looking.forget()
+    looking.keep(())
     _clear(state)
 
 

@@ -120,9 +120,10 @@ def track(path, run, columns):
     return held[1]
 
 
-def forget():
-    """Let go of the recordings that were read."""
-    _read.clear()
+def keep(recordings):
+    """Let go of the recordings that were read, but of these: (path, run) pairs."""
+    for other in _read.keys() - set(recordings):
+        del _read[other]
 
 
 def _track(path, run, columns):

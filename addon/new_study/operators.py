@@ -19,46 +19,8 @@ KINDS = (
 )
 
 
-class THENAR_OT_new_study(computing.OpensFiles, bpy.types.Operator):
-    """Choose recordings of a tool pressed on skin (CSV, text, workbook, JPK, Mach-1 ...): Thenar proposes the study \
-to diagnose, and asks what the files do not state"""
-
-    bl_idname = "thenar.new_study"
-    bl_label = "New Study from Files"
-    bl_options = {"REGISTER", "UNDO"}
-
-    filter_glob: bpy.props.StringProperty(
-        default="*.csv;*.txt;*.tsv;*.asc;*.dat;*.ddf;*.xlsx;*.xls;*.jpk-*", options={"HIDDEN"}
-    )
-    directory: bpy.props.StringProperty(name="Folder", description="Folder of the recordings", subtype="DIR_PATH")
-    files: bpy.props.CollectionProperty(
-        name="Files",
-        description="Names of the recordings in the folder",
-        type=bpy.types.OperatorFileListElement,
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-
-    @classmethod
-    def poll(cls, context):
-        return polling.allows(cls, polling.no_module(), polling.busy())
-
-    def execute(self, context):
-        names = [each.name for each in self.files if each.name]
-        folder = bpy.path.abspath(self.directory)
-        if self.reads_beside(context):
-            chosen = [{"name": name} for name in names]
-            return self.hand_over(bpy.ops.thenar.read_study_files, directory=folder, files=chosen)
-        count = running.attempt(self, steps.at_once, drafting.steps(context, folder, names))
-        return {"CANCELLED"} if count is None else _opened(self, context, count)
-
-
-class THENAR_OT_read_study_files(computing.Computing, bpy.types.Operator):
-    """Read the recordings of a new study next to the window, and open what the panel asks about them"""
-
-    bl_idname = "thenar.read_study_files"
-    bl_label = "Read Recordings"
-    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
-    noun = "Reading"
+class _OfFiles:
+    """An operator on recordings of one folder, chosen by name."""
 
     directory: bpy.props.StringProperty(name="Folder", description="Folder of the recordings", subtype="DIR_PATH")
     files: bpy.props.CollectionProperty(
@@ -73,7 +35,38 @@ class THENAR_OT_read_study_files(computing.Computing, bpy.types.Operator):
         return polling.allows(cls, polling.no_module(), polling.busy())
 
     def steps(self, context):
-        return drafting.steps(context, bpy.path.abspath(self.directory), [each.name for each in self.files])
+        """The computation, see `drafting.steps`."""
+        names = [each.name for each in self.files if each.name]
+        return drafting.steps(context, bpy.path.abspath(self.directory), names)
+
+
+class THENAR_OT_new_study(_OfFiles, computing.OpensFiles, bpy.types.Operator):
+    """Choose recordings of a tool pressed on skin (CSV, text, workbook, JPK, Mach-1 ...): Thenar proposes the study \
+to diagnose, and asks what the files do not state"""
+
+    bl_idname = "thenar.new_study"
+    bl_label = "New Study from Files"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filter_glob: bpy.props.StringProperty(
+        default="*.csv;*.txt;*.tsv;*.asc;*.dat;*.ddf;*.xlsx;*.xls;*.jpk-*", options={"HIDDEN"}
+    )
+
+    def execute(self, context):
+        if self.reads_beside(context):
+            chosen = [{"name": each.name} for each in self.files if each.name]
+            return self.hand_over(bpy.ops.thenar.read_study_files, directory=self.directory, files=chosen)
+        count = running.attempt(self, steps.at_once, self.steps(context))
+        return {"CANCELLED"} if count is None else _opened(self, context, count)
+
+
+class THENAR_OT_read_study_files(_OfFiles, computing.Computing, bpy.types.Operator):
+    """Read the recordings of a new study next to the window, and open what the panel asks about them"""
+
+    bl_idname = "thenar.read_study_files"
+    bl_label = "Read Recordings"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+    noun = "Reading"
 
     def _report(self, context, count):
         return _opened(self, context, count)

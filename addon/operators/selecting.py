@@ -32,6 +32,18 @@ def to_object_mode(context):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
+def in_object_mode(context, steps):
+    """The same computation in Object Mode; the mode that the user was in comes back however it ends."""
+    active = context.object
+    mode = "OBJECT" if active is None else active.mode
+    to_object_mode(context)
+    try:
+        return (yield from steps)
+    finally:
+        if active is not None and context.object == active and active.mode != mode:
+            bpy.ops.object.mode_set(mode=mode)
+
+
 def look_at(context, hand, vertices):
     """Turn the 3D view in which the user clicked so that the middle of `vertices` faces the eye."""
     if context.area is None or context.area.type != "VIEW_3D" or not vertices:

@@ -180,3 +180,18 @@ def test_a_hand_that_was_refused_is_as_before(tmp_path):
     with pytest.raises(RuntimeError, match="no angle in radians"):
         model_files.load(tmp_path, {"hand_pose": np.full(45, 40.0)})
     assert [bone.matrix_basis for bone in rig.pose.bones] == before and rig.animation_data is None
+
+
+@pytest.mark.parametrize(("pose", "is_refused"), [(40.0, True), (0.2, False)])
+def test_a_rigger_stays_in_pose_mode_whether_the_file_is_refused_or_not(tmp_path, pose, is_refused):
+    model_files.make("right")
+    rig = bpy.context.scene.thenar.hand.parent
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="POSE")
+    values = {"hand_pose": np.full(45, pose)}
+    if is_refused:
+        with pytest.raises(RuntimeError, match="no angle in radians"):
+            model_files.load(tmp_path, values)
+    else:
+        model_files.load(tmp_path, values)
+    assert (bpy.context.object, bpy.context.mode) == (rig, "POSE")

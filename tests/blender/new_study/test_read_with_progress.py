@@ -47,6 +47,30 @@ def test_a_cancelled_reading_stops_at_the_next_file_and_keeps_the_proposal_that_
     assert draft().is_open and len(draft().files) == 1 and draft().protocols[0].diameter_mm == 7.0
 
 
+@pytest.mark.parametrize("ends_by", ["esc", "refusal"])
+def test_a_proposal_that_stays_open_is_not_read_from_its_files_again(tmp_path, names, monkeypatch, ends_by):
+    bpy.ops.thenar.new_study(directory=f"{tmp_path}/", files=[{"name": name} for name in names[:2]])
+    if ends_by == "esc":
+        steps = drafting.steps(bpy.context, tmp_path, names[2:])
+        next(steps)(CancelAfter(1), None)
+        steps.close()
+    else:
+        (tmp_path / "other.csv").write_bytes(b"")
+        with pytest.raises(RuntimeError, match=r"other\.csv"):
+            bpy.ops.thenar.new_study(directory=f"{tmp_path}/", files=[{"name": "press_3.csv"}, {"name": "other.csv"}])
+    assert {key[0].rpartition("/")[2] for key in looking._read} == {"press_1.csv", "press_2.csv"}
+    monkeypatch.setattr(looking, "_track", lambda *_: pytest.fail("read a second time, in the window's thread"))
+    drafting.refresh(bpy.context)
+    assert [item.problem for item in draft().files] == ["", ""]
+
+
+def test_a_discarded_proposal_lets_go_of_what_was_read(tmp_path, names):
+    bpy.ops.thenar.new_study(directory=f"{tmp_path}/", files=[{"name": name} for name in names])
+    assert len(looking._read) == 3
+    bpy.ops.thenar.discard_study()
+    assert not looking._read
+
+
 def test_files_that_say_everything_are_read_once(tmp_path, names, monkeypatch):
     steps = drafting.steps(bpy.context, tmp_path, names)
     found = next(steps)(None, None)
