@@ -142,7 +142,8 @@ def lines(letter):
 def _entry(found, index):
     finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
-    rows = [Row(wording.title(key), wording.value(told)) for key, told in (finding.get("parameters") or {}).items()]
+    numbers = finding.get("parameters") or {}
+    rows = [Row(wording.number_title(key, numbers), wording.value(told)) for key, told in numbers.items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     record = finding.get("track_record") or {}

@@ -1,5 +1,6 @@
 """Words and numbers of the letter: effects, values with intervals, places and times, as a reader wants them."""
 
+import re
 from math import isfinite
 
 from .. import effect_settings, sentences
@@ -13,6 +14,7 @@ PHASES = {
 }
 UNITS = {"1": "", "J/m2": "J/m²", "mm2/s": "mm²/s", "standard deviations of the noise": "σ"}
 """Units that are shown shorter than the library tells them."""
+_NUMBERED = re.compile(r"([a-z_]+)_\d+(_|$)")
 _SHARE = "share "
 """What the library's unit begins with where a value is a part of something."""
 _OUT_OF_REASON = 1e3
@@ -32,6 +34,16 @@ DEPENDS = {
 def title(name):
     """An effect's or number's name for reading."""
     return effect_settings.title(name)
+
+
+def number_title(key, keys):
+    """A number's name for reading; where it is the only one of its list, without its place: `time_3_s` is Time.
+
+    `keys`: the names of all numbers that are shown with it.
+    """
+    stem = _NUMBERED.match(key)
+    alone = stem is not None and sum(each.startswith(stem[1] + "_") for each in keys) == 1
+    return title(stem[1]) if alone else title(key)
 
 
 def name(effect):

@@ -14,7 +14,10 @@ BIG = 1.5
 
 
 def draw_cards(layout, context):
-    """Sample, product without a hand, hand that is there; below them what needs no hand."""
+    """Sample, product without a hand, hand that is there; below them what needs no hand.
+
+    Where a study is selected, which needs no hand, a button each, so that its answer is in sight.
+    """
     if text.progress(layout):
         return
     layout.use_property_split = False
@@ -24,11 +27,32 @@ def draw_cards(layout, context):
     is_loaded = bool(context.scene.thenar_recordings.items)
     words = "Recordings are loaded: see below. A hand begins here:" if is_loaded else "No hand is set yet. Begin here:"
     text.faint(layout, context, words)
+    if _is_study(context.scene.thenar_recordings):
+        _draw_short(layout.column(align=True), context)
+        return
     _draw_sample(layout.box().column(), context)
     _draw_product(layout.box().column(), context)
     _draw_hand(layout.box().column(), context)
     if not is_loaded:
         draw_studies(layout.box().column())
+
+
+def _is_study(state):
+    """Whether the recording that is selected in the list is a study."""
+    number = min(max(state.index, 0), len(state.items) - 1)
+    return number >= 0 and state.items[number].kind == "STUDY"
+
+
+def _draw_short(column, context):
+    settings = context.scene.thenar
+    column.operator("thenar.add_sample", text="Try a Sample", icon="PLAY").kind = "held_bottle"
+    if product_parts(settings):
+        if draw_sizes(column, context):
+            column.operator("thenar.make_hand", text="Make Hand", icon="VIEW_PAN")
+    else:
+        column.operator("thenar.add_product", text="Add Product...", icon="IMPORT")
+    column.operator("thenar.add_hand", text="Add Hand from File...", icon="IMPORT")
+    column.prop(settings, "hand", text="")
 
 
 def draw_studies(column):

@@ -182,6 +182,23 @@ def test_an_empty_scene_shows_three_cards_and_nothing_that_cannot_act():
     assert not too_long(drawn)
 
 
+def test_the_answer_of_a_study_is_not_below_the_cards():
+    bpy.ops.thenar.sample_study(kind="nothing_missing")
+    drawn = draw()
+    said = [words for words, _ in drawn["THENAR_PT_main"]]
+    assert {"Try a Sample", "Add Product...", "Add Hand from File..."} <= set(said)
+    assert "Try a sample" not in said and "I have a hand: pick it" not in said
+    assert {"THENAR_PT_recordings", "THENAR_PT_diagnosis"} <= set(drawn)
+    assert not too_long(drawn)
+    bpy.context.scene.thenar_recordings.items[0].kind = "MAP"
+    said = [words for words, _ in draw()["THENAR_PT_main"]]
+    assert "I have a hand: pick it" in said, "a mat needs a hand"
+    bpy.context.scene.thenar_recordings.items[0].kind = "STUDY"
+    bpy.context.scene.thenar.product = stage.plate()
+    said = [words for words, _ in draw()["THENAR_PT_main"]]
+    assert "Make Hand" in said and "Add Product..." not in said
+
+
 def test_the_cards_go_on_from_what_is_there():
     product = stage.plate()
     settings = bpy.context.scene.thenar

@@ -2,9 +2,10 @@
 
 Not a test of pytest: a window is needed. `drive(bpy, ui)` is a generator that yields seconds to wait; `ui` clicks at
 pixels of a window of 1600 x 1000 and takes pictures. Only the files are no clicks: they lie in the home folder, where
-Blender's file browser opens. The hand is the GLB that `THENAR_RIG` names, as the generic hand of WebXR; without it, a
-hand exported with the names of OpenXR, without regions and with bones that hang on nothing. The product is a handle in
-metres. Prints the seconds from the first click to the map.
+Blender's file browser opens. The hand is the GLB that `THENAR_RIG` names, as the generic hand of WebXR, or a .blend
+with a body, as `public_rigs.py` makes them; without it, a hand exported with the names of OpenXR, without
+regions and with bones that hang on nothing. The product is a handle in metres. Prints the seconds from the first click
+to the map.
 """
 
 import json
@@ -19,13 +20,15 @@ HAND, FILE, ACCEPT = (1165, 433), (484, 100), (1135, 614)
 ADD, JOIN, GRASP, SOLVE = (1165, 258), (1165, 403), (1165, 335), (1165, 335)
 OPENED, APART = (1096, 304), (1215, 326)
 """Where the buttons are in Blender 5.2's sidebar and file browser at their default sizes."""
+RIG = os.environ.get("THENAR_RIG", "")
+IS_BLEND = RIG.endswith(".blend")
 NAMES = {"proximal": "phalanx-proximal", "middle": "phalanx-intermediate", "distal": "phalanx-distal"}
 
 
 def write_hand(bpy, path):
     """A hand as trackers export it: bones by OpenXR's names, none on another, no group but theirs."""
-    if os.environ.get("THENAR_RIG"):
-        shutil.copy(os.environ["THENAR_RIG"], path)
+    if RIG:
+        shutil.copy(RIG, path)
         return
     bpy.ops.thenar.make_hand()
     hand = bpy.context.scene.thenar.hand
@@ -93,7 +96,7 @@ def write_handle(path, around=48):
 def drive(bpy, ui):
     """Add the hand and the product, join loose bones, grasp, solve; a picture of each step."""
     home = os.environ["HOME"]
-    write_hand(bpy, os.path.join(home, "a_hand.glb"))
+    write_hand(bpy, os.path.join(home, "a_hand.blend" if IS_BLEND else "a_hand.glb"))
     yield 1.0
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
@@ -113,13 +116,15 @@ def drive(bpy, ui):
     yield from until(lambda: state.hand is not None and len(state.hand.thenar.materials) > 0)
     yield 1.5
     mark("hand")
-    yield from choose(ui, ADD, (FILE[0], FILE[1] + 19))
+    # Files of Blender are hands only: the handle stands first in the list of products then.
+    yield from choose(ui, ADD, FILE if IS_BLEND else (FILE[0], FILE[1] + 19))
     yield from until(lambda: state.product is not None)
     yield 1.5
     mark("product")
-    yield from press(ui, JOIN)
-    yield 1.5
-    mark("joined")
+    if not IS_BLEND:
+        yield from press(ui, JOIN)
+        yield 1.5
+        mark("joined")
     yield from press(ui, GRASP)
     yield 4.0
     ui.shot("d4_searching")

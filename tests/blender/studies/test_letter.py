@@ -67,3 +67,16 @@ def test_confidence_has_its_track_record_or_is_said_not_to_be_measured():
     unmeasured = lines(named | {"confidence": None, "track_record": unknown})
     assert "1. Relaxation, confidence not measured" in unmeasured
     assert not any("Track record" in line or "99 % confidence" in line for line in unmeasured)
+
+
+def test_a_number_of_a_list_keeps_its_place_only_next_to_others():
+    finding = {"kind": "tissue", "confidence": 0.9, "effect": "relaxation", "channel": "map"}
+    alone = {"amplitude": {"value": 0.2, "unit": "1"}, "time_3_s": {"value": 5.0, "unit": "s"}}
+    several = alone | {"time_1_s": {"value": 0.2, "unit": "s"}}
+
+    def labels(numbers):
+        changed = {"findings": [finding | {"parameters": numbers}]}
+        return [row.label for row in letter.write(letters.FINDINGS["missing_physics"] | changed).entries[0].rows]
+
+    assert labels(alone)[:2] == ["Amplitude", "Time"]
+    assert labels(several)[:3] == ["Amplitude", "Time 3", "Time 1"]
