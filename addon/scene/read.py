@@ -10,7 +10,7 @@ from bpy.types import Context, Depsgraph, Object
 from .. import names
 from ..subdivision.last import Last
 from . import checks, mesh, owned, regions, units
-from .units import Floats, Ints
+from .units import Bools, Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def read_hand(context: Context, hand: Object, group_names: Sequence[str], last: 
     far = units.to_world_mm(posed[skin], matrix, scale, np.zeros(3))
     origin = 0.5 * (far.min(axis=0) + far.max(axis=0))
     posed_mm = units.to_world_mm(posed, matrix, scale, origin)
-    checks.check_size(posed_mm[skin], hand.name, context.scene)
+    checks.check_size(posed_mm[_skin_of_regions(skin, vertex_regions)], hand.name, context.scene)
     if units.is_mirrored(matrix):
         triangles = triangles[:, ::-1].copy()
     return HandReading(
@@ -105,6 +105,12 @@ def read_hand(context: Context, hand: Object, group_names: Sequence[str], last: 
         warnings=_hand_warnings(hand),
         last=last,
     )
+
+
+def _skin_of_regions(skin: Bools, vertex_regions: Ints) -> Bools:
+    """The skin that has a region, of which a body has its hand's alone; all of it where none has."""
+    felt = skin & (vertex_regions >= 0)
+    return felt if felt.any() else skin
 
 
 def read_product(context: Context, parts: Sequence[Object], scale: float, origin_mm: Floats) -> ProductReading:

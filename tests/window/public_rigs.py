@@ -24,8 +24,9 @@ def make(folder, bones, path, is_rigify):
     """A body on a rig in an empty file; Rigify's bones are a metarig, from which its rig is generated."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="rigify")
-    body = read_body(folder / "base.obj")
-    rig = read_bones(folder / bones)
+    places, faces = read_base(folder / "base.obj")
+    body = add_body(places, faces)
+    rig = add_bones(folder / bones, places, faces)
     if is_rigify:
         metarig = rig
         shown = metarig.data.collections.new("All")
@@ -46,9 +47,9 @@ def make(folder, bones, path, is_rigify):
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
 
 
-def read_body(path):
-    """The body alone, without clothes' helpers and joint cubes; z up, in metres."""
-    places, faces, group = [], [], ""
+def read_base(path):
+    """Every vertex (x, y, z), z up, in metres, and the faces by group; joints are groups of small cubes."""
+    places, faces, group = [], {}, ""
     for line in path.read_text().splitlines():
         word, _, rest = line.partition(" ")
         if word == "v":
@@ -56,18 +57,33 @@ def read_body(path):
             places.append((x, -z, y))
         elif word == "g":
             group = rest.strip()
-        elif word == "f" and group == "body":
-            faces.append([int(each.partition("/")[0]) - 1 for each in rest.split()])
-    used = sorted({vertex for face in faces for vertex in face})
+        elif word == "f":
+            faces.setdefault(group, []).append([int(each.partition("/")[0]) - 1 for each in rest.split()])
+    return places, faces
+
+
+def add_body(places, faces):
+    """The body alone, without clothes' helpers and joint cubes."""
+    used = sorted({vertex for face in faces["body"] for vertex in face})
     place = {vertex: number for number, vertex in enumerate(used)}
     mesh = bpy.data.meshes.new("Body")
-    mesh.from_pydata([places[vertex] for vertex in used], [], [[place[vertex] for vertex in face] for face in faces])
+    shown = [[place[vertex] for vertex in face] for face in faces["body"]]
+    mesh.from_pydata([places[vertex] for vertex in used], [], shown)
     body = bpy.data.objects.new("Body", mesh)
     bpy.context.collection.objects.link(body)
     return body
 
 
-def read_bones(path):
+def place_of(told, places, faces):
+    """Where an end of a bone is: in the middle of a joint's cube, or of vertices."""
+    if told["strategy"] == "CUBE":
+        chosen = sorted({vertex for face in faces[told["cube_name"]] for vertex in face})
+    else:
+        chosen = told.get("vertex_indices") or [told["vertex_index"]]
+    return [sum(places[vertex][axis] for vertex in chosen) / len(chosen) for axis in range(3)]
+
+
+def add_bones(path, places, faces):
     """An armature of MPFB's file: heads, tails, rolls, parents, and Rigify's types where it has them."""
     told = json.loads(path.read_text())
     rows = told.get("bones", told)
@@ -78,7 +94,7 @@ def read_bones(path):
     made = {}
     for name, row in rows.items():
         bone = made[name] = rig.data.edit_bones.new(name)
-        bone.head, bone.tail = row["head"]["default_position"], row["tail"]["default_position"]
+        bone.head, bone.tail = (place_of(row[end], places, faces) for end in ("head", "tail"))
         bone.roll = row["roll"]
     for name, row in rows.items():
         if row.get("parent"):

@@ -165,3 +165,21 @@ def test_grasp_and_live_ask_too():
     settings.live = True
     assert "'Handle' is 125 m long" in status.live[bpy.context.scene.name].problem
     settings.live = False
+
+
+def test_a_body_is_as_large_as_the_skin_of_its_hand():
+    """A character is 1.7 m tall: only what has a region is the hand whose size is asked about."""
+    hand, _ = stage.scene()
+    group = hand.vertex_groups.new(name="palm")
+    group.add(range(len(hand.data.vertices)), 1.0, "REPLACE")
+    hand.thenar.materials.add().name = "palm"
+    alone = stage.solve().force_n
+    bpy.ops.thenar.clear()
+    body = block("Body", (400, 300, 1700), (600, 0, 0))
+    with bpy.context.temp_override(active_object=hand, selected_editable_objects=[hand, body]):
+        bpy.ops.object.join()
+    assert longest_mm(hand) > 1600
+    assert stage.solve().force_n == pytest.approx(alone, rel=1e-6) and alone > 0.1
+    bpy.ops.thenar.clear()
+    hand.vertex_groups["palm"].add(range(len(hand.data.vertices)), 1.0, "REPLACE")
+    assert "1.7 m long" in refusal()
