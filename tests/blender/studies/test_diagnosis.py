@@ -83,7 +83,7 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
     for line in (
         "1. Relaxation, 97 % confidence",
         "   Amplitude: 0.34 (0.31–0.37)",
-        "   Time 3: 1.9 s (1.6–2.3)",
+        "   Time: 1.9 s (1.6–2.3)",
         "   Force that fades with time at held depth, by three exponentials of time.",
         "   It lies at the site pad. It shows while holding, at 0.8–30 s, at 1.2–2 mm depth, in 'slow 1', 'slow 2', "
         "'fast 1' and 2 more. It depends on time and speed.",
