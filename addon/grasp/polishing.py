@@ -46,7 +46,10 @@ JOINTS = (
 
 
 def polish(stage, state, aim, watch=fitter.ALONE):
-    """The best `settling.State` that small motions lead to from `state`; itself where none is better."""
+    """The best `settling.State` that small motions lead to from `state`; itself where none is better.
+
+    No motion leads into a thin wall.
+    """
     if settling.is_settled(state, aim) or max(state.imbalance, state.lever) > FAR:
         return state
     best = state
@@ -59,7 +62,8 @@ def polish(stage, state, aim, watch=fitter.ALONE):
         return state
     goal = settling.goal_of(fitter.wanted_depths(stage.hand.pads, stage.fit.wish), aim.bar)
     wish = replace(stage.fit.wish, evaluations=1)
-    return replace(best, grasp=fitter.refit(stage.hand, best.grasp, wish, watch, goal))
+    after = replace(best, grasp=fitter.refit(stage.hand, best.grasp, wish, watch, goal))
+    return after if settling.cost_of(after, aim) < settling.cost_of(state, aim) else state
 
 
 def face(stage, state, aim, watch=fitter.ALONE):
@@ -105,7 +109,7 @@ def _walked(stage, state, aim, watch):
         values = _left(before, aim)
         step = _step(slopes, values)
         for _ in range(HALVINGS):
-            after = _pressed(stage, moves.at(x + step), aim, watch)
+            after = _stepped(stage, moves.at(x + step), aim, watch)
             if after is not None and np.linalg.norm(_left(after, aim)) < np.linalg.norm(values):
                 break
             step = 0.5 * step
@@ -140,6 +144,11 @@ def _pressed(stage, grasp, aim, watch):
         return settling.pressed(stage, grasp, aim, watch.cancel)
     except (Refusal, native.module.SolveError):
         return None
+
+
+def _stepped(stage, grasp, aim, watch):
+    """The pressed grasp; None where a finger stands in a thin wall or it cannot be pressed."""
+    return None if fitter.is_crossed(stage.hand, grasp) else _pressed(stage, grasp, aim, watch)
 
 
 def _slopes(stage, moves, at, watch):

@@ -126,7 +126,7 @@ def _best(ready, aim, watch):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]
-        own = replace(aim, bar=one.way.bar)
+        own, passed = replace(aim, bar=one.way.bar), [one]
         for further in (_settled, polishing.polish, _with_thumb_freed):
             if further is not _settled and _is_lost(one.state):
                 break
@@ -134,12 +134,18 @@ def _best(ready, aim, watch):
                 one = _found(further(one.way.stage, one.state, own, watch), aim, one.way)
             except (Refusal, native.module.SolveError):
                 fitter.leave_if_cancelled(watch)
-        out[place] = one
+            passed.append(one)
+        out[place] = _least(passed)
     out.sort(key=lambda found: in_steps(found.score))
     out[0] = _faced(out[0], aim, watch)
     _refuse_what_does_not_hold(out[0].state)
     averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
     return [replace(one, score=one.score - averted) for one in out]
+
+
+def _least(passed):
+    """The best of what one way passed through, the later of two alike: balance that costs more elsewhere is left."""
+    return min(reversed(passed), key=lambda one: in_steps(one.score))
 
 
 def _is_lost(state):

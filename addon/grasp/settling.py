@@ -54,6 +54,9 @@ RISE = 1.3
 SUNK = 5.0
 """Cost of each millimetre that skin is pressed farther than its tissue is thick: bone is then in the product."""
 
+CROSSED = 20.0
+"""Cost of a finger that stands in a thin wall: more than any balance gains that small motions bring."""
+
 LEAST_FACTOR = 0.6
 """The depth of a pad is eased by no more in one round."""
 
@@ -182,8 +185,11 @@ def _reach(state, aim, before):
 
 
 def is_settled(state, aim):
-    """Whether forces balance, no pad is pressed too hard, and the sum is the wanted one or not too large."""
-    if state.imbalance > BALANCED or state.lever > MOMENT or state.peaks_mpa.max() > MOST_MPA or state.sunk_mm > 0.0:
+    """Whether forces balance, no pad is pressed too hard, no finger stands in a thin wall, and the sum is the wanted
+    one or not too large."""
+    if fitter.CROSSED_TEXT in state.grasp.warnings or state.sunk_mm > 0.0 or state.peaks_mpa.max() > MOST_MPA:
+        return False
+    if state.imbalance > BALANCED or state.lever > MOMENT:
         return False
     if aim.total_n is None:
         return state.total_n <= MOST_N
@@ -198,6 +204,7 @@ def cost_of(state, aim):
     """How far a state is from settled: 1 for each tolerance that it misses by its own size, at least `LEAST_COST`."""
     cost = max(state.imbalance / BALANCED, 1.0) + max(state.lever / MOMENT, 1.0)
     cost += 10.0 * max(state.peaks_mpa.max() / MOST_MPA - 1.0, 0.0) + SUNK * state.sunk_mm
+    cost += CROSSED * (fitter.CROSSED_TEXT in state.grasp.warnings)
     if aim.total_n is None:
         return cost + 1.0 + 10.0 * max(state.total_n / MOST_N - 1.0, 0.0)
     return cost + max(abs(state.total_n / aim.total_n - 1.0) / FORCE_MISS, 1.0)

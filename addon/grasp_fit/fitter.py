@@ -208,8 +208,18 @@ def grasp_of(task, x, used, seconds):
         raise GraspError("the product is out of the hand's reach; move it into the open hand, or make it smaller")
     missed = [name for name, want in targets.items() if depths[name] < 0.0 < want]
     warnings = (f"does not touch: {', '.join(missed)}",) if missed else ()
-    if task.gauge.is_crossed(capsules_of_hand.center_points(task.hand.capsules, rig, posed)):
+    if _is_crossed(task.hand, (rig, posed), task.gauge):
         warnings += (CROSSED_TEXT,)
     return Grasp(
         angles, place, depths, targets, float(-gap[body].min(initial=0.0)), used, seconds, warnings, task.gauge
     )
+
+
+def is_crossed(hand, grasp):
+    """Whether a finger of a `Grasp` stands in a thin wall of the product, from its angles and its place alone."""
+    rig = hand.rig.moved(grasp.place)
+    return _is_crossed(hand, (rig, pose_matrices(rig, grasp.angles)), grasp.gauge)
+
+
+def _is_crossed(hand, posed, gauge):
+    return gauge.is_thin and gauge.is_crossed(capsules_of_hand.center_points(hand.capsules, *posed))

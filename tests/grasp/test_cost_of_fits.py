@@ -50,3 +50,75 @@ def test_a_way_with_a_finger_in_a_wall_is_settled_but_not_polished(monkeypatch):
     with pytest.raises(fitter.GraspError, match="has a finger in a thin wall"):
         search._best([way], settling.Aim(np.zeros(3), np.zeros(3), 200.0), fitter.ALONE)
     assert len(settled) == 2, "a little, then to the end"
+
+
+def aim_of(total_n=200.0):
+    return settling.Aim(np.zeros(3), np.zeros(3), total_n)
+
+
+def state_of(net_n, warnings=()):
+    grasp = SimpleNamespace(warnings=warnings)
+    return settling.State(grasp, None, 200.0, np.array([net_n, 0.0, 0.0]), np.zeros(3), np.array([0.1]))
+
+
+def test_a_finger_in_a_wall_costs_more_than_balance_gains():
+    crossed = state_of(0.0, (fitter.CROSSED_TEXT,))
+    assert settling.is_settled(state_of(0.0), aim_of()) and not settling.is_settled(crossed, aim_of())
+    assert settling.cost_of(crossed, aim_of()) > settling.cost_of(state_of(70.0), aim_of())
+
+
+class Slide:
+    """A grasp that one motion, along x, brings into balance at 2 mm; a thin wall stands at `wall_mm`."""
+
+    def __init__(self, monkeypatch, wall_mm):
+        joints = SimpleNamespace(bones={})
+        self.stage = SimpleNamespace(
+            hand=SimpleNamespace(joints=joints, pads=[]), fit=SimpleNamespace(wish=fitter.Wish({}))
+        )
+        self.first = fitter.Grasp(np.zeros((1, 3)), np.eye(4), {}, {}, 0.0, 0, 0.0, (), None)
+        self.wall_mm = wall_mm
+        monkeypatch.setattr(settling, "pressed", lambda stage, grasp, aim, cancel=None: self.state(grasp))
+        monkeypatch.setattr(fitter, "is_crossed", lambda hand, grasp: grasp.place[0, 3] > wall_mm)
+        monkeypatch.setattr(fitter, "refit", self.read)
+
+    def read(self, hand, grasp, *_):
+        warnings = (fitter.CROSSED_TEXT,) if grasp.place[0, 3] > self.wall_mm else ()
+        return fitter.Grasp(grasp.angles, grasp.place, {}, {}, 0.0, 0, 0.0, warnings, None)
+
+    def state(self, grasp):
+        net = np.array([20.0 * (2.0 - grasp.place[0, 3]), 0.0, 0.0])
+        return settling.State(grasp, None, 200.0, net, np.zeros(3), np.array([0.1]))
+
+    def polished(self):
+        before = self.state(self.first)
+        after = polishing.polish(self.stage, before, aim_of())
+        return before, after, after.grasp.place[0, 3]
+
+
+def test_small_motions_find_the_balance(monkeypatch):
+    _, after, moved_mm = Slide(monkeypatch, 99.0).polished()
+    assert settling.is_settled(after, aim_of())
+    assert moved_mm == pytest.approx(2.0, abs=0.3)
+
+
+@pytest.mark.parametrize("wall_mm", [0.0, 0.6, 1.3])
+def test_small_motions_lead_through_no_wall_and_end_no_worse(monkeypatch, wall_mm):
+    before, after, moved_mm = Slide(monkeypatch, wall_mm).polished()
+    assert moved_mm <= wall_mm
+    assert fitter.CROSSED_TEXT not in after.grasp.warnings
+    assert settling.cost_of(after, aim_of()) <= settling.cost_of(before, aim_of())
+
+
+@pytest.mark.parametrize(("scores", "kept"), [((9.0, 19.0, 41.0, 41.0), 9.0), ((9.0, 12.0, 4.0, 5.0), 4.0)])
+def test_a_way_ends_as_its_best(monkeypatch, scores, kept):
+    """Each of settling, polishing and freeing the thumb may end worse than it began, as a tray did: 19, then 41."""
+    state, way, left = state_of(30.0), SimpleNamespace(stage=None, bar=None), list(scores)
+    monkeypatch.setattr(search, "_rough", lambda ready, watch: [(None, None, way)])
+    monkeypatch.setattr(search, "_fine", lambda *_: state.grasp)
+    monkeypatch.setattr(
+        search, "_found", lambda *_: search.Found(state.grasp, state, left.pop(0), way, 0.1, (), None, {})
+    )
+    monkeypatch.setattr(settling, "settle", lambda *_: state)
+    monkeypatch.setattr(polishing, "polish", lambda *_: state)
+    best = search._best([way], aim_of(), fitter.ALONE)
+    assert not left and best[0].score == kept
