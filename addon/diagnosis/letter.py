@@ -143,12 +143,13 @@ def _entry(found, index):
     finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
     numbers = finding.get("parameters") or {}
-    rows = [Row(wording.number_title(key, numbers), wording.value(told)) for key, told in numbers.items()]
+    rows = [Row(wording.number_title(key, numbers), wording.value(number)) for key, number in numbers.items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     record = finding.get("track_record") or {}
     if record.get("stated"):
-        rows.append(Row("Track record", f"right in {record['right']} of {record['stated']} such findings"))
+        counts = f"right in {record['right']} of {record['stated']} such findings of calibration studies"
+        rows.append(Row("Track record", counts))
     story = (wording.place(where), wording.moment(when), wording.depends(finding.get("depends_on")))
     return Entry(
         index=index,

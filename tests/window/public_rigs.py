@@ -74,19 +74,19 @@ def add_body(places, faces):
     return body
 
 
-def place_of(told, places, faces):
+def place_of(described, places, faces):
     """Where an end of a bone is: in the middle of a joint's cube, or of vertices."""
-    if told["strategy"] == "CUBE":
-        chosen = sorted({vertex for face in faces[told["cube_name"]] for vertex in face})
+    if described["strategy"] == "CUBE":
+        chosen = sorted({vertex for face in faces[described["cube_name"]] for vertex in face})
     else:
-        chosen = told.get("vertex_indices") or [told["vertex_index"]]
+        chosen = described.get("vertex_indices") or [described["vertex_index"]]
     return [sum(places[vertex][axis] for vertex in chosen) / len(chosen) for axis in range(3)]
 
 
 def add_bones(path, places, faces):
     """An armature of MPFB's file: heads, tails, rolls, parents, and Rigify's types where it has them."""
-    told = json.loads(path.read_text())
-    rows = told.get("bones", told)
+    described = json.loads(path.read_text())
+    rows = described.get("bones", described)
     rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
     bpy.context.collection.objects.link(rig)
     activate(rig)

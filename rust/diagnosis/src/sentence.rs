@@ -69,7 +69,7 @@ fn sureness(findings: &[Finding]) -> String {
     let least = findings
         .iter()
         .min_by(|a, b| frequency(a).total_cmp(&frequency(b)));
-    least.map_or(String::new(), |f| f.confidence.told())
+    least.map_or(String::new(), |f| f.confidence.in_words())
 }
 
 /// Share of the reducible error from which it is stated, if all of its interval is above 0: otherwise noise decides how large it is.

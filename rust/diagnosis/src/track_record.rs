@@ -97,9 +97,12 @@ impl Confidence {
     }
 
     /// In words.
-    pub fn told(&self) -> String {
+    pub fn in_words(&self) -> String {
         match self.frequency() {
-            Some(share) => format!("right in at least {:.0} % of such findings", 100.0 * share),
+            Some(share) => format!(
+                "on calibration studies right in at least {:.0} % of such findings",
+                100.0 * share
+            ),
             None => "how often such a finding is right was not measured".to_owned(),
         }
     }
@@ -199,7 +202,7 @@ mod tests {
             record: None,
             ..of(0.99, 0.9)
         };
-        assert!(unknown.frequency().is_none() && !unknown.told().contains('%'));
+        assert!(unknown.frequency().is_none() && !unknown.in_words().contains('%'));
     }
 
     #[test]

@@ -53,7 +53,7 @@ fn findings(found: &Diagnosis) -> String {
             html,
             "<h3>{} ({})</h3><table><tr><th class='left'>number</th><th>value</th><th>90 % interval</th><th class='left'>unit</th></tr>",
             escaped(&capital(&finding.effect.replace('_', " "))),
-            finding.confidence.told()
+            finding.confidence.in_words()
         );
         html.extend(finding.numbers.iter().map(number));
         html.extend(found.choices(finding.effect).iter().map(choice));

@@ -62,7 +62,7 @@ def test_confidence_has_its_track_record_or_is_said_not_to_be_measured():
 
     measured = lines(named | {"track_record": record})
     assert "1. Relaxation, 93 % confidence" in measured
-    assert "   Track record: right in 48 of 49 such findings" in measured
+    assert "   Track record: right in 48 of 49 such findings of calibration studies" in measured
     unknown = record | {"right": None, "stated": None}
     unmeasured = lines(named | {"confidence": None, "track_record": unknown})
     assert "1. Relaxation, confidence not measured" in unmeasured

@@ -44,7 +44,7 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
     });
     interrupt::writing(|| results::write(&arguments.out, &outputs))?;
     drop(line);
-    crate::terminal::write(&told(&study, &comparison, &arguments.out));
+    crate::terminal::write(&summary(&study, &comparison, &arguments.out));
     Ok(())
 }
 
@@ -103,7 +103,7 @@ fn prints(comparison: &Comparison) -> Option<Output> {
     })
 }
 
-fn told(study: &Study, comparison: &Comparison, out: &Path) -> String {
+fn summary(study: &Study, comparison: &Comparison, out: &Path) -> String {
     let mut text = format!("{}\n\n", comparison.sentence);
     for recording in &comparison.recordings {
         text += &format!("{}: {}\n", recording.name, recording.sentence);

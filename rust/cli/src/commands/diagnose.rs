@@ -44,14 +44,14 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Fault> {
     ];
     interrupt::writing(|| results::write(&arguments.out, &outputs))?;
     drop(line);
-    crate::terminal::write(&told(&study, &found, &arguments.out));
+    crate::terminal::write(&summary(&study, &found, &arguments.out));
     Ok(())
 }
 
-fn told(study: &Study, found: &Diagnosis, out: &Path) -> String {
+fn summary(study: &Study, found: &Diagnosis, out: &Path) -> String {
     let mut text = format!("{}\n\n", found.sentence);
     for finding in &found.findings {
-        text += &format!("{} ({})\n", finding.effect, finding.confidence.told());
+        text += &format!("{} ({})\n", finding.effect, finding.confidence.in_words());
         for number in &finding.numbers {
             let (between, unit) = number.told();
             let line = format!("  {} = {:.4} ({between}) {unit}", number.name, number.value);

@@ -25,7 +25,7 @@ pub struct Handprint {
     pub inked_mm2: f64,
     /// What cannot be known from it, a sentence each.
     pub unknown: Vec<String>,
-    /// What a reader should be told, a sentence each.
+    /// What a reader should know, a sentence each.
     pub warnings: Vec<String>,
 }
 
