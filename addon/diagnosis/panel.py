@@ -250,11 +250,12 @@ def _draw_entry(layout, context, entry):
     box = layout.box().column(align=True)
     head = box.row()
     head.label(text=entry.title, icon="TOOL_SETTINGS" if entry.is_instrument else "PHYSICS")
-    sure = head.row()
-    sure.alignment = "RIGHT"
     if entry.sureness is None:
-        sure.label(text=letter.UNMEASURED.capitalize())
+        # On a row of its own: next to the name it would cut the name.
+        text.faint(box, context, iface("Confidence not measured"))
     else:
+        sure = head.row()
+        sure.alignment = "RIGHT"
         sure.label(text=iface("{share} confidence", share=letter.wording.share(entry.sureness)))
     if entry.meaning:
         text.faint(box, context, entry.meaning)
