@@ -135,7 +135,7 @@ def _best(ready, aim, watch):
             except (Refusal, native.module.SolveError):
                 fitter.leave_if_cancelled(watch)
             passed.append(one)
-        out[place] = _least(passed)
+        out[place] = _best_balanced(passed, own)
     out.sort(key=lambda found: in_steps(found.score))
     out[0] = _faced(out[0], aim, watch)
     _refuse_what_does_not_hold(out[0].state)
@@ -143,9 +143,12 @@ def _best(ready, aim, watch):
     return [replace(one, score=one.score - averted) for one in out]
 
 
-def _least(passed):
-    """The best of what one way passed through, the later of two alike: balance that costs more elsewhere is left."""
-    return min(reversed(passed), key=lambda one: in_steps(one.score))
+def _best_balanced(passed, aim):
+    """Where one way was balanced best, a finger in a wall counted; the latest of those alike.
+
+    By what balancing wants and not by the score, which would give up balance and the wanted sum for pads that touch.
+    """
+    return min(reversed(passed), key=lambda one: in_steps(settling.cost_of(one.state, aim)))
 
 
 def _is_lost(state):

@@ -109,16 +109,23 @@ def test_small_motions_lead_through_no_wall_and_end_no_worse(monkeypatch, wall_m
     assert settling.cost_of(after, aim_of()) <= settling.cost_of(before, aim_of())
 
 
-@pytest.mark.parametrize(("scores", "kept"), [((9.0, 19.0, 41.0, 41.0), 9.0), ((9.0, 12.0, 4.0, 5.0), 4.0)])
-def test_a_way_ends_as_its_best(monkeypatch, scores, kept):
-    """Each of settling, polishing and freeing the thumb may end worse than it began, as a tray did: 19, then 41."""
-    state, way, left = state_of(30.0), SimpleNamespace(stage=None, bar=None), list(scores)
+@pytest.mark.parametrize(("left_n", "kept"), [((30.0, 60.0, 110.0, 110.0), 0), ((60.0, 40.0, 20.0, 45.0), 2)])
+def test_a_way_ends_where_it_is_balanced_best(monkeypatch, left_n, kept):
+    """Each of settling, polishing and freeing the thumb may end worse than it began; touch and place do not count."""
+    states, way = [state_of(net) for net in left_n], SimpleNamespace(stage=None, bar=None)
+    scores = {id(state): 10.0 - place for place, state in enumerate(reversed(states))}
+
+    def found(state, aim, way):
+        return search.Found(state.grasp, state, scores[id(state)], way, 0.1, (), None, {})
+
+    after = iter(states[1:])
     monkeypatch.setattr(search, "_rough", lambda ready, watch: [(None, None, way)])
-    monkeypatch.setattr(search, "_fine", lambda *_: state.grasp)
-    monkeypatch.setattr(
-        search, "_found", lambda *_: search.Found(state.grasp, state, left.pop(0), way, 0.1, (), None, {})
-    )
-    monkeypatch.setattr(settling, "settle", lambda *_: state)
-    monkeypatch.setattr(polishing, "polish", lambda *_: state)
+    monkeypatch.setattr(search, "_fine", lambda *_: states[0].grasp)
+    monkeypatch.setattr(search, "_found", found)
+    monkeypatch.setattr(search, "_settled", lambda *_: next(after))
+    monkeypatch.setattr(search, "_with_thumb_freed", lambda *_: next(after))
+    monkeypatch.setattr(search, "_refuse_what_does_not_hold", lambda state: None)
+    monkeypatch.setattr(settling, "settle", lambda *_: states[0])
+    monkeypatch.setattr(polishing, "polish", lambda *_: next(after))
     best = search._best([way], aim_of(), fitter.ALONE)
-    assert not left and best[0].score == kept
+    assert best[0].state is states[kept]
