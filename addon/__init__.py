@@ -21,11 +21,11 @@ from . import (
     recordings,
     refining,
     rigging,
-    settings,
     start,
     tabs,
 )
 from .grasp_choices import more as more_grasps
+from .properties import settings
 from .views import viewport
 
 _MODULES = (

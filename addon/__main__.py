@@ -15,7 +15,7 @@ def run():
     package = sys.modules[__package__]
     package.register()
     try:
-        from . import command_line
+        from .terminal import command_line
 
         return command_line.main(sys.argv[1:])
     finally:

@@ -3,10 +3,12 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import cache, command_line, material_settings, native, status, workflow
+from . import cache, native, status, workflow
 from .hand_shape import thumb_range
 from .operators import running
+from .properties import material_settings
 from .scene import baked
+from .terminal import command_line
 
 _DELAY_S = 0.3
 _state = {"command": None}

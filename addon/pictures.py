@@ -8,7 +8,8 @@ from mathutils import Matrix, Vector
 
 from . import maps, names
 from .operators import display
-from .scene import attributes, mesh, own
+from .ownership import own
+from .scene import attributes, mesh
 from .scene.checks import Refusal
 from .views import compositor
 

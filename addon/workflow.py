@@ -10,12 +10,15 @@ from typing import Literal, TypeAlias
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from . import cache, certificate, comfort, effect_settings, effects, grades, maps, names, native, sentences, status
-from . import result as results
+from . import cache, effects, maps, names, native, status
 from .contact_fields import between, written
-from .material_settings import ANATOMY, MATERIAL_NUMBERS
-from .scene import checks, own, owned, read, sizes, state, units, write
-from .scene import parts as parts_of
+from .ownership import own, owned
+from .product_objects import parts as parts_of
+from .properties import effect_settings
+from .properties.material_settings import ANATOMY, MATERIAL_NUMBERS
+from .results import certificate, comfort, grades, sentences
+from .results import result as results
+from .scene import checks, read, sizes, state, units, write
 from .scene.units import Floats
 from .soft_grip import covering
 from .soft_grip import settings as grip_settings

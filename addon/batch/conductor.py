@@ -7,7 +7,8 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from .. import export, names
+from .. import names
+from ..results import export
 from ..scene.checks import Refusal
 from . import cluster, depends, here, rows, sheet
 from .case_files import file_of

@@ -4,7 +4,8 @@ import csv
 import re
 import statistics
 
-from .. import export, native
+from .. import native
+from ..results import export
 from .jobs import KEYS, NOT_SWEPT
 
 RESULTS = (

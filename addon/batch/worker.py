@@ -10,13 +10,15 @@ from pathlib import Path
 
 import bpy
 
-from .. import headless, names, native, workflow
-from .. import result as results
+from .. import names, native, workflow
 from ..grasp import fitting, search
 from ..grasp_fit import fitter
-from ..hand import build, pads, posing
+from ..hand import build, pads
+from ..hand_bones import posing
+from ..results import result as results
 from ..scene.checks import Refusal
 from ..soft_grip import settings as grip_settings
+from ..terminal import headless
 from . import depends
 from .case_files import file_of
 from .jobs import check

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import grades
+from ..results import grades
 from ..scene.units import Bools, Floats, Ints
 from ..steps import Cancel, Progress
 

@@ -7,8 +7,9 @@ from functools import lru_cache
 import numpy as np
 
 from ..languages import iface
+from ..ownership import own
 from ..recordings import settings as recordings
-from ..scene import baked, own
+from ..scene import baked
 
 BAKE, RECORDING = "BAKE", "RECORDING"
 

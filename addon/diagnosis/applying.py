@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import effect_settings, names, native, sentences
+from .. import names, native
+from ..properties import effect_settings
+from ..results import sentences
 from ..scene import matching
 from ..scene.checks import Refusal
 from ..scene.units import KPA_PER_MPA

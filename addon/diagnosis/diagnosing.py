@@ -3,8 +3,9 @@
 import json
 from functools import partial
 
-from .. import native, reports
+from .. import native
 from ..recordings import settings as recordings
+from ..results import reports
 from ..scene.checks import Refusal
 from . import curves, freshness, reading, settings
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from .. import sentences
+from ..results import sentences
 from ..scene.units import KPA_PER_MPA
 from . import reading, wording
 

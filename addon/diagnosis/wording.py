@@ -3,7 +3,8 @@
 import re
 from math import isfinite
 
-from .. import effect_settings, sentences
+from ..properties import effect_settings
+from ..results import sentences
 
 PHASES = {
     "load": "while pressing in",

@@ -9,7 +9,9 @@ from .. import native, workflow
 from ..grasp_choices import facts
 from ..grasp_fit import fitter, walls
 from ..grasp_fit.task import Goal, Task
-from ..hand import capsules, normals, pads, reading, roles
+from ..hand import capsules, pads
+from ..hand_bones import reading, roles
+from ..hand_look import normals
 from ..scene import checks, mesh, read, regions, sizes, units
 from . import force, polishing, search, settings, settling
 from .stage import stage_of

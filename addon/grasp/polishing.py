@@ -11,9 +11,9 @@ import numpy as np
 from .. import native
 from ..grasp_fit import fitter, thumb
 from ..grasp_fit import load as loads
-from ..hand.roles import COLUMNS, FINGERS, angle_bounds
 from ..hand.rotations import rotation_of
 from ..hand.skinning import pose_matrices, skin, skin_normals
+from ..hand_bones.roles import COLUMNS, FINGERS, angle_bounds
 from ..scene.checks import Refusal
 from . import settling
 

@@ -9,8 +9,10 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..grasp_fit import fitter
-from ..hand import build, pads, poses, posing, products, reading, roles, studio
+from ..hand import build, pads, poses, products
 from ..hand.skinning import skin
+from ..hand_bones import posing, reading, roles
+from ..hand_look import studio
 from ..moving_samples import rolling
 from ..scene.units import mm_per_unit
 from . import fitting

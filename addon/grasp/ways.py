@@ -6,8 +6,8 @@ import numpy as np
 
 from ..grasp_fit import closing, fitter, pinches, pinching, places
 from ..hand.poses import OPEN
-from ..hand.roles import angle_bounds, pose_angles
 from ..hand.skinning import TWIST
+from ..hand_bones.roles import angle_bounds, pose_angles
 
 ROLLS = 4
 """Directions around a bar from which the palm is tried."""

@@ -9,12 +9,14 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import export, names, native
-from .. import result as results
+from .. import names, native
 from ..batch.rows import cell
-from ..scene import attributes, copies, mesh, units
+from ..product_objects import copies
+from ..product_objects.parts import product_parts
+from ..results import export
+from ..results import result as results
+from ..scene import attributes, mesh, units
 from ..scene.checks import Refusal
-from ..scene.parts import product_parts
 
 FORMAT = "thenar contact map"
 VERSION = 1

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..hand import roles
 from ..hand.skinning import TWIST, local_rotations, pose_matrices, rotation
+from ..hand_bones import roles
 from ..scene.checks import Refusal
 
 ORDER = tuple(

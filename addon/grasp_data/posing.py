@@ -5,8 +5,8 @@ from functools import partial
 
 import numpy as np
 
-from ..hand import reading, roles
 from ..hand.poses import POSES
+from ..hand_bones import reading, roles
 from ..scene import checks
 from . import containers, joints, keying, parameters
 

@@ -10,8 +10,8 @@ import numpy as np
 from ..hand import capsules as capsules_of_hand
 from ..hand import pads as pads_of_hand
 from ..hand.poses import POSES
-from ..hand.roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
 from ..hand.skinning import pose_matrices, skin, skin_normals, to_world
+from ..hand_bones.roles import COLUMNS, FINGERS, WRIST, along, angle_bounds, flexion_axis, from_anatomical, pose_angles
 
 STEP_DEG = 4.0
 """A closing joint turns in steps of this many degrees; the fit that follows does the rest."""

@@ -12,12 +12,12 @@ import numpy as np
 from ..hand import capsules as capsules_of_hand
 from ..hand import pads as pads_of_hand
 from ..hand.poses import OPEN
-from ..hand.roles import FINGERS, pose_angles
 from ..hand.skinning import (
     pose_matrices,
     skin,
     skin_normals,
 )
+from ..hand_bones.roles import FINGERS, pose_angles
 from ..scene.checks import Refusal
 from . import closing, walls
 from .least_squares import minimize

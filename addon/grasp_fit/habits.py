@@ -3,8 +3,8 @@
 Knows nothing of Blender.
 """
 
-from ..hand.roles import FINGERS
 from ..hand.skinning import FLEXION, TWIST
+from ..hand_bones.roles import FINGERS
 
 DIP_PER_PIP = 0.6
 """The DIP joint bends this much of the PIP joint, an anatomical rule of thumb."""

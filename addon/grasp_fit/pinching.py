@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..hand.poses import PINCHED, SPREAD
-from ..hand.roles import pose_angles
 from ..hand.skinning import pose_matrices, skin
+from ..hand_bones.roles import pose_angles
 from . import closing
 
 HALVINGS = 8

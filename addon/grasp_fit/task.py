@@ -6,7 +6,6 @@ import numpy as np
 
 from ..hand import capsules as capsules_of_hand
 from ..hand import pads as pads_of_hand
-from ..hand.roles import COLUMNS, angle_bounds, limits_of
 from ..hand.rotations import left_jacobian, rotation_of
 from ..hand.skinning import (
     ABDUCTION,
@@ -20,6 +19,7 @@ from ..hand.skinning import (
     to_world,
     vertex_jacobian,
 )
+from ..hand_bones.roles import COLUMNS, angle_bounds, limits_of
 from . import habits
 from .least_squares import Problem
 from .load import Touched, unit

@@ -2,7 +2,8 @@
 
 import bpy
 
-from . import bonemap, operators, panel
+from ..hand_bones import bonemap
+from . import operators, panel
 
 CLASSES = (bonemap.ThenarBoneMap, *operators.CLASSES, *panel.CLASSES)
 

@@ -4,12 +4,14 @@ import bpy
 import numpy as np
 
 from .. import native
+from ..hand_bones import roles
+from ..hand_bones.bonemap import set_map
+from ..hand_look import look, shader, studio
 from ..hand_shape import built, rings, skin_look, weights
-from ..material_settings import preset_of
+from ..properties.material_settings import preset_of
 from ..scene.checks import Refusal
 from ..scene.units import mm_per_unit
-from . import look, model, roles, shader, studio
-from .bonemap import set_map
+from . import model
 
 MESH_NAME = "Hand"
 RIG_NAME = "Hand Rig"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .roles import FINGERS
+from ..hand_bones.roles import FINGERS
 
 ALLOWED_MM = 0.3
 """Two fingers may press this far into each other: neighbours in a fist do touch."""

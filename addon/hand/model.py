@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .normals import vertex_normals
+from ..hand_bones.roles import guess, resolve
+from ..hand_look.normals import vertex_normals
 from .pads import Skin
-from .roles import guess, resolve
 from .skinning import ABDUCTION, FLEXION, Rig
 
 

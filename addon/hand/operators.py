@@ -4,12 +4,13 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from .. import languages, status, tabs
+from ..hand_bones import posing
+from ..hand_bones.reading import armature_of
 from ..hand_shape import framing
 from ..operators import polling, running
 from ..panels import preferences
-from . import build, posing
+from . import build
 from .poses import LABELS
-from .reading import armature_of
 
 
 class THENAR_OT_make_hand(bpy.types.Operator):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .roles import FINGERS, WRIST, along, flexion_axis
+from ..hand_bones.roles import FINGERS, WRIST, along, flexion_axis
 
 DEEPEST = 4
 """Vertices whose mean depth counts as the pad's, at 2.5 mm spacing about a sensel of a pressure mat."""

@@ -3,11 +3,11 @@
 import bpy
 
 from .. import tabs
+from ..hand_bones import roles
 from ..hand_shape import thumb_range
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
 from ..pose_library import panel as library
-from . import roles
 
 
 class THENAR_PT_hand(Tab, bpy.types.Panel):

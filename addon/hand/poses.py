@@ -3,7 +3,7 @@
 Knows nothing of Blender. Flexion as (MCP, PIP, DIP) per finger; abduction towards the thumb; thumb angles by joint.
 """
 
-from .roles import FINGERS
+from ..hand_bones.roles import FINGERS
 
 
 def _fingers(*rows):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .. import names
-from ..hand import look
+from ..hand_look import look
 from ..scene import key as shape_key
 from ..scene.checks import Refusal
 from . import built as built_of

@@ -6,9 +6,11 @@ from collections import OrderedDict
 import numpy as np
 
 from .. import names, workflow
-from ..hand import build, look
+from ..hand import build
+from ..hand_look import look
 from ..operators import display
-from ..scene import own, owned, write
+from ..ownership import own, owned
+from ..scene import write
 from . import built, carrying, geometry, guards, rest_bones, weights
 
 REMEMBERED = 6

@@ -3,7 +3,7 @@
 import bmesh
 import numpy as np
 
-from ..hand import studio
+from ..hand_look import studio
 
 
 def replace(hand, surface, groups):

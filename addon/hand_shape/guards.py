@@ -3,7 +3,8 @@
 import bpy
 import numpy as np
 
-from ..hand import look, reading
+from ..hand_bones import reading
+from ..hand_look import look
 from ..operators import polling
 from ..scene import checks
 from ..scene.checks import Refusal

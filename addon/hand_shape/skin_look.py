@@ -4,7 +4,7 @@ import math
 
 import bpy
 
-from ..hand import shader
+from ..hand_look import shader
 
 FIRST_TONE = 2.0
 """Tone at which the material's own colors hold: the melanin of this tone is counted as none."""

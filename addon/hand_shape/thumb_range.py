@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..hand import roles
+from ..hand_bones import roles
 
 BONE, LIMIT = "thumb_metacarpal", "Joint limits"
 EARLIER_DEG = (-20.0, 30.0)

@@ -8,7 +8,8 @@ import bpy
 import numpy as np
 
 from .. import names
-from ..scene import attributes, mesh, own
+from ..ownership import own
+from ..scene import attributes, mesh
 from ..scene.checks import Refusal
 
 

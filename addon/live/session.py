@@ -7,10 +7,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .. import cache, comfort, effects, maps, names, native, sentences, workflow
-from .. import result as results
+from .. import cache, effects, maps, names, native, workflow
 from ..contact_fields import skin_edge, written
-from ..scene import attributes, checks, colors, mesh, own, read, sizes, state, units, write
+from ..ownership import own
+from ..results import comfort, sentences
+from ..results import result as results
+from ..scene import attributes, checks, mesh, read, sizes, state, units, write
+from ..skin_display import colors
 from ..soft_grip import covering
 from . import nodes
 

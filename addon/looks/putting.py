@@ -14,7 +14,8 @@ from mathutils import Matrix
 
 from ..operators import display
 from ..picture_stage import laying, views
-from ..scene import copies, mesh, units
+from ..product_objects import copies
+from ..scene import mesh, units
 
 SURFACES = laying.SURFACES
 """Types of objects that have a surface."""

@@ -13,7 +13,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..settings import ThenarText
+from ..properties.settings import ThenarText
 
 HAND, FLAT = "HAND", "FLAT"
 STATED = "STATED"

@@ -6,7 +6,7 @@ import numpy as np
 from mathutils.geometry import delaunay_2d_cdt
 
 from .. import names, native, workflow
-from ..hand.normals import vertex_normals
+from ..hand_look.normals import vertex_normals
 from ..scene import mesh, read, regions, units
 from ..scene.checks import Refusal
 

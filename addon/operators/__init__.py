@@ -2,7 +2,8 @@
 
 import bpy
 
-from .. import reports, status
+from .. import status
+from ..results import reports
 from . import bake, certify, clear, computing, display, effects, export, regions, report, sizing, solve
 
 _MODULES = (solve, certify, clear, display, regions, effects, export, bake, report, sizing)

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import baking, languages, workflow
+from .. import languages, workflow
 from ..scene import baked
+from ..timeline import baking
 from . import computing, display, polling, running
 
 

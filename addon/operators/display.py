@@ -2,8 +2,13 @@
 
 import bpy
 
-from .. import comfort, languages, map_settings, maps, names, status, tissue, workflow
-from ..scene import attributes, colors, copies, owned, shading
+from .. import languages, maps, names, status, tissue, workflow
+from ..ownership import owned
+from ..product_objects import copies
+from ..properties import map_settings
+from ..results import comfort
+from ..scene import attributes
+from ..skin_display import colors, shading
 from ..views import compositor
 from . import polling, running
 

@@ -2,7 +2,8 @@
 
 import bpy
 
-from .. import effect_settings, languages, tissue
+from .. import languages, tissue
+from ..properties import effect_settings
 from . import polling, running
 
 _ITEMS = []

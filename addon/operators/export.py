@@ -3,7 +3,8 @@
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .. import export, languages
+from .. import languages
+from ..results import export
 from . import polling, running
 
 

@@ -2,7 +2,8 @@
 
 import bpy
 
-from .. import languages, material_settings
+from .. import languages
+from ..properties import material_settings
 from ..scene import regions
 from . import polling, selecting
 

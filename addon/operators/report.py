@@ -5,7 +5,8 @@ from pathlib import Path
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .. import languages, reports
+from .. import languages
+from ..results import reports
 from . import polling, running
 
 _KINDS = (

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import grades, languages, tabs, workflow
+from .. import languages, tabs, workflow
 from ..panels import preferences
+from ..results import grades
 from ..scene import regions
 from . import computing, display, polling, running, selecting
 

@@ -2,9 +2,11 @@
 
 import bpy
 
-from .. import effect_settings, maps, names, sentences
+from .. import maps, names
 from ..languages import iface
 from ..presets import kinds, menus
+from ..properties import effect_settings
+from ..results import sentences
 from .main import OfHand
 
 NAME_SHARE = 0.72

@@ -5,7 +5,7 @@ import bpy
 from .. import tabs
 from ..languages import iface
 from ..presets import kinds, menus
-from ..scene.parts import product_parts
+from ..product_objects.parts import product_parts
 from ..soft_grip import settings as grip_settings
 from . import text
 from .main import Tab, has_hand

@@ -2,8 +2,8 @@
 
 import bpy
 
-from .. import sentences
 from ..languages import iface
+from ..results import sentences
 
 
 class THENAR_UL_materials(bpy.types.UIList):

@@ -2,10 +2,12 @@
 
 import bpy
 
-from .. import effect_settings, grades, maps, names, status, tabs
+from .. import maps, names, status, tabs
 from ..languages import iface
 from ..presets import kinds, menus
-from ..scene.parts import product_parts
+from ..product_objects.parts import product_parts
+from ..properties import effect_settings
+from ..results import grades
 from ..scene.units import mm_per_unit
 from . import manual, start, text
 from .preferences import draw_state

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import maps, material_settings
+from .. import maps
 from ..presets import kinds, menus
+from ..properties import material_settings
 from . import text
 from .main import OfHand
 

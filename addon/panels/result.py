@@ -2,12 +2,13 @@
 
 import bpy
 
-from .. import grades, maps, status, tabs
+from .. import maps, status, tabs
 from ..curves import panel as over_time
 from ..curves import tables
 from ..languages import iface
+from ..product_objects.parts import product_parts
+from ..results import grades
 from ..scene import baked
-from ..scene.parts import product_parts
 from . import text
 from .lists import FINGER_SHARE, SHARE, brief, columns
 from .main import Physics, Tab, draw_looks, has_result

@@ -3,8 +3,8 @@
 import bpy
 
 from ..languages import iface
+from ..product_objects.parts import product_parts
 from ..scene import sizes
-from ..scene.parts import product_parts
 from . import text
 
 _LONGEST = 24

@@ -2,8 +2,9 @@
 
 import bpy
 
-from .. import headless, workflow
+from .. import workflow
 from ..scene.checks import Refusal
+from ..terminal import headless
 from . import drawing, operators, order, panel, process, settings
 
 _CLASSES = (*settings.CLASSES, *operators.CLASSES, *panel.CLASSES)

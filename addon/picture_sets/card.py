@@ -1,7 +1,8 @@
 """The page *Comfort card*: two views, totals, bars by finger, and hands of three sizes next to each other."""
 
-from .. import grades, names, sentences
+from .. import names
 from ..picture_stage import facts, page, stage, views
+from ..results import grades, sentences
 from ..scene.units import cm2
 from . import grip_and_print, sizes
 from . import order as orders

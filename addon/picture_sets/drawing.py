@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from .. import export
 from ..picture_stage import laying, page, pdf, pixels
+from ..results import export
 from ..scene.checks import Refusal
 from . import card, grip_and_print, live_film, on_glass, turntable, unrolled
 from . import order as orders

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from .. import export
+from ..results import export
 from ..scene.checks import Refusal
 from . import order as orders
 

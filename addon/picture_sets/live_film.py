@@ -12,10 +12,11 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 
-from .. import baking, names, native, steps
+from .. import names, native, steps
 from ..picture_stage import facts, laying, page, pixels, stage, views
 from ..scene import baked
 from ..scene.checks import Refusal
+from ..timeline import baking
 from . import film, grip_and_print, turntable
 from . import order as orders
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import bpy
 
-from .. import export, workflow
+from .. import workflow
 from ..batch import here
+from ..results import export
 from ..scene.checks import Refusal
 from . import order as orders
 

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import headless, workflow
+from .. import workflow
 from ..hand import build
 from ..picture_stage import facts, laying, stage, views
 from ..scene.checks import Refusal
+from ..terminal import headless
 
 PERCENTILES, MIDDLE = (5, 50, 95), 50
 _FILL = 0.88

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..hand import studio
+from ..hand_look import studio
 from ..picture_stage import page, pixels, stage, views
 from . import film, grip_and_print
 from . import order as orders

@@ -1,6 +1,6 @@
 """What a picture says of a result in words and numbers: product, hand, force, area, peak, grade, and if it is stale."""
 
-from .. import grades
+from ..results import grades
 from ..scene.units import cm2
 from . import page
 

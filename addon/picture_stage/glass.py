@@ -6,7 +6,7 @@ Changes materials of the open file: it is called in a file that is thrown away a
 import numpy as np
 
 from .. import names
-from ..hand.shader import PALM, Tree
+from ..hand_look.shader import PALM, Tree
 
 BLOODLESS_KPA = 48.0
 """Pressure at which the color shows no blood; in between it falls linearly. Blood flow in the skin of the hand fell by

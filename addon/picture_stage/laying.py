@@ -11,8 +11,10 @@ import numpy as np
 
 from .. import names
 from ..operators import display
-from ..scene import mesh, own, shading, units
+from ..ownership import own
+from ..scene import mesh, units
 from ..scene.checks import Refusal
+from ..skin_display import shading
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 """Types of objects that have a surface."""

@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from .. import colormap
-from ..scene import shading
+from ..skin_display import shading
 from . import values
 
 PAGE = (0.957, 0.954, 0.948)

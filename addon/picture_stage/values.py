@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from .. import colormap, maps
-from ..hand.shader import Tree
+from ..hand_look.shader import Tree
 
 INK = (0.10, 0.05, 0.05)
 """Of the line along the edge of the contact, scene-linear."""

@@ -5,8 +5,9 @@ from hashlib import sha256
 
 import bpy
 
-from ..hand import build, model, roles
+from ..hand import build, model
 from ..hand.poses import LABELS, POSES
+from ..hand_bones import roles
 
 SIDES = ("right", "left")
 FRAME = 1

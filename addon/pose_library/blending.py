@@ -1,7 +1,7 @@
 """A hand's pose between the current one and one of the library, joint angle by joint angle."""
 
-from ..hand import reading, roles
 from ..hand.poses import POSES
+from ..hand_bones import reading, roles
 from ..scene import checks
 
 

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import bpy
 
-from ..hand import build, posing, studio
+from ..hand import build
 from ..hand.poses import LABELS
+from ..hand_bones import posing
+from ..hand_look import studio
 from ..picture_stage.stage import can_denoise
 from . import actions, library
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 
-from ..export import replace_file
+from ..results.export import replace_file
 from ..scene.checks import Refusal
 
 FORMAT = "thenar preset"

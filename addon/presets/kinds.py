@@ -1,8 +1,8 @@
 """What each kind of preset holds of a scene, how a file of it is checked, and how it is put onto the scene."""
 
-from .. import effect_settings, material_settings
+from ..product_objects.parts import product_parts
+from ..properties import effect_settings, material_settings
 from ..scene.checks import Refusal
-from ..scene.parts import product_parts
 from ..soft_grip import settings as grip_settings
 from . import fields
 from .fields import Place

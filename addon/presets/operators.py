@@ -9,8 +9,8 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from .. import languages
-from ..export import replace_file
 from ..operators import polling, running
+from ..results.export import replace_file
 from ..scene.checks import Refusal
 from . import files, kinds
 

@@ -9,9 +9,11 @@ from functools import partial
 
 import numpy as np
 
-from .. import names, native, reports, status, workflow
+from .. import names, native, status, workflow
 from ..contact_fields import written
-from ..scene import attributes, matching, own, read, units
+from ..ownership import own
+from ..results import reports
+from ..scene import attributes, matching, read, units
 from ..scene.checks import Refusal
 from . import filling, frames, laying, settings
 

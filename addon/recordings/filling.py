@@ -2,7 +2,7 @@
 
 from math import isnan
 
-from .. import sentences
+from ..results import sentences
 
 _SHOWN = {
     "peak_kpa": "Peak",

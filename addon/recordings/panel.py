@@ -8,7 +8,7 @@ from ..curves import tables
 from ..languages import iface
 from ..panels import start, text
 from ..panels.main import Tab, has_hand
-from ..scene.parts import product_parts
+from ..product_objects.parts import product_parts
 from . import settings
 
 SHARE, PLACE_SHARE = 0.5, 0.45

@@ -12,7 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..settings import ThenarText
+from ..properties.settings import ThenarText
 
 STUDY, MAP, PRINT = "STUDY", "MAP", "PRINT"
 AXES = tuple((f"{sign}{axis}", f"{sign}{axis}", f"The product's {sign}{axis} axis") for axis in "XYZ" for sign in "+-")

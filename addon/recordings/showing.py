@@ -14,10 +14,12 @@ from .. import maps, names, native, status
 from ..looks import operators as looks
 from ..looks import putting
 from ..operators import display
+from ..ownership import own
 from ..picture_stage import views
-from ..scene import attributes, colors, mesh, own, units
+from ..product_objects.parts import product_parts
+from ..scene import attributes, mesh, units
 from ..scene.checks import Refusal
-from ..scene.parts import product_parts
+from ..skin_display import colors
 from ..views import viewport
 from . import comparing, frames, laying, outline, settings
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 
-from .. import headless, names, workflow
+from .. import names, workflow
 from ..grasp import fitting
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..scene import attributes
 from ..scene.checks import Refusal
+from ..terminal import headless
 from . import virtual_mat
 
 PAPER = {

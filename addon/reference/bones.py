@@ -6,7 +6,8 @@ import numpy as np
 from bpy.types import Context, Object
 
 from .. import native
-from ..hand import pads, reading, rig_axes, roles, skinning
+from ..hand import pads, skinning
+from ..hand_bones import reading, rig_axes, roles
 from ..scene import units
 from ..scene.units import Floats, Ints
 

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 from bpy.types import Context, Object, PropertyGroup
 
-from .. import names, native, sentences, workflow
+from .. import names, native, workflow
 from ..contact_fields import skin_edge
-from ..hand import normals
-from ..scene import attributes, checks, own, units, write
+from ..hand_look import normals
+from ..ownership import own
+from ..results import sentences
+from ..scene import attributes, checks, units, write
 from ..scene.units import Bools, Floats, Ints
 from ..soft_grip import covering
 from ..steps import Cancel, Progress, Steps

@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import effect_settings, native
+from .. import native
+from ..properties import effect_settings
 
 MOST_SIDEWAYS = 0.05
 """Share of the force that pushes skin along itself from which a note is given."""

@@ -8,7 +8,8 @@ import numpy as np
 
 from .. import cache, native, workflow
 from ..hand_shape import editing
-from ..scene import own, read
+from ..ownership import own
+from ..scene import read
 from ..scene.checks import Refusal
 from . import cutting, guards, planning
 

@@ -2,7 +2,7 @@
 
 from ..hand_shape import guards
 from ..operators import polling
-from ..scene import own
+from ..ownership import own
 from ..scene.checks import Refusal
 
 PLAYED = {"MESH_CACHE", "MESH_SEQUENCE_CACHE", "CLOTH", "SOFT_BODY"}

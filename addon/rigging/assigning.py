@@ -1,7 +1,7 @@
 """Digits written to the bone map of a hand's armature, and where they lie in the world."""
 
-from ..hand import bonemap, reading, roles
-from ..hand.rig_axes import RigError
+from ..hand_bones import bonemap, reading, roles
+from ..hand_bones.rig_axes import RigError
 from ..rigs import digits
 
 DIGITS = ("thumb", *roles.FINGERS)

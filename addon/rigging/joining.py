@@ -3,8 +3,8 @@
 import bpy
 
 from .. import languages
-from ..hand import bonemap, reading, roles
 from ..hand.operators import can_pose
+from ..hand_bones import bonemap, reading, roles
 from ..operators import running
 from ..rigs.digits import segments_of
 from ..scene.checks import Refusal

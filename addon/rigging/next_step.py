@@ -1,7 +1,7 @@
 """The button that a rigged hand needs before a grasp, in the main panel: find its bones, or join loose ones."""
 
-from ..hand import bonemap
 from ..hand.panel import armature_of
+from ..hand_bones import bonemap
 from ..panels import main, start, text
 from . import joining
 

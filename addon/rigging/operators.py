@@ -6,8 +6,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
 from .. import languages
-from ..hand import bonemap, reading, roles
 from ..hand.operators import can_pose
+from ..hand_bones import bonemap, reading, roles
 from ..operators import running
 from . import assigning
 

@@ -6,7 +6,7 @@ import gpu
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from gpu_extras.batch import batch_for_shader
 
-from ..hand import reading
+from ..hand_bones import reading
 from ..languages import iface
 from ..scene.checks import Refusal
 from . import assigning

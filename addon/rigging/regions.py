@@ -4,8 +4,9 @@ import bpy
 import numpy as np
 
 from .. import languages
-from ..hand import normals, reading, roles
 from ..hand.operators import can_pose
+from ..hand_bones import reading, roles
+from ..hand_look import normals
 from ..operators import running
 from ..operators.regions import add_region
 from ..rigs import skin_regions

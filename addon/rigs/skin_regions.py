@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..hand import pads, roles
-from ..hand.rig_axes import RigError
+from ..hand import pads
+from ..hand_bones import roles
+from ..hand_bones.rig_axes import RigError
 
 NAMES = (
     *(f"thumb_{segment}_pad" for segment in ("distal", "proximal")),

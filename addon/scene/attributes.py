@@ -7,7 +7,7 @@ import numpy as np
 from bpy.types import Mesh
 from numpy.typing import ArrayLike, NDArray
 
-from . import owned
+from ..ownership import owned
 
 _FIELD = {"FLOAT": "value", "INT": "value", "FLOAT_VECTOR": "vector", "FLOAT_COLOR": "color"}
 _WIDTH = {"FLOAT": 1, "INT": 1, "FLOAT_VECTOR": 3, "FLOAT_COLOR": 4}

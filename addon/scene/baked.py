@@ -16,7 +16,10 @@ import numpy as np
 from bpy.types import Modifier, Object, PropertyGroup, Scene
 
 from .. import names
-from . import attributes, colors, correction, moving, own, units, write
+from ..ownership import own
+from ..product_objects import moving
+from ..skin_display import colors
+from . import attributes, correction, units, write
 from .checks import Refusal
 from .units import Floats
 

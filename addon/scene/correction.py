@@ -13,7 +13,8 @@ import numpy as np
 from bpy.types import Modifier, NodeSocket, NodeTree, Object
 
 from .. import names
-from . import attributes, own
+from ..ownership import own
+from . import attributes
 from .units import Floats
 
 

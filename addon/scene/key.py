@@ -12,9 +12,10 @@ import numpy as np
 from bpy.types import Context, Object, ShapeKey
 
 from .. import names
+from ..ownership import owned
+from ..ownership.own import contact_key
 from ..steps import PAUSE, Steps
-from . import mesh, owned
-from .own import contact_key
+from . import mesh
 from .units import Bools, Floats
 
 Moved: TypeAlias = Callable[[Floats | float], Floats]

@@ -8,8 +8,9 @@ import numpy as np
 from bpy.types import Context, Depsgraph, Object
 
 from .. import names
+from ..ownership import owned
 from ..subdivision.last import Last
-from . import checks, mesh, owned, regions, units
+from . import checks, mesh, regions, units
 from .units import Bools, Floats, Ints
 
 

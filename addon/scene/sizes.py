@@ -8,7 +8,8 @@ import numpy as np
 from bpy.types import Context, Object, Scene
 from mathutils import Matrix
 
-from . import checks, mesh, own, units
+from ..ownership import own
+from . import checks, mesh, units
 from .units import Floats
 
 FACTORS = (1e-3, 1e-2, 1e-1, 0.0254, 1.0 / 0.0254, 10.0, 100.0, 1000.0)

@@ -9,9 +9,12 @@ import numpy as np
 from bpy.types import Context, Mesh, Object, PropertyGroup
 
 from .. import names
+from ..ownership import own
+from ..product_objects import copies, moving
+from ..skin_display import colors, refine, shown
+from ..skin_display.shown import Shown
 from ..steps import PAUSE, Steps
-from . import attributes, colors, copies, correction, key, moving, own, read, refine, shown, units
-from .shown import Shown
+from . import attributes, correction, key, read, units
 from .units import Floats, Ints
 
 NO_BONE_MM = 1000.0

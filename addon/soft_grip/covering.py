@@ -7,9 +7,10 @@ import numpy as np
 from bpy.types import Context, Object
 
 from .. import native
-from ..scene import checks, refine, regions
+from ..scene import checks, regions
 from ..scene.read import Part, ProductReading, Reading
 from ..scene.units import Bools, Ints
+from ..skin_display import refine
 from . import settings
 
 

@@ -6,8 +6,8 @@ import bpy
 
 from .. import languages, names, status
 from ..operators import running
+from ..product_objects.parts import product_parts
 from ..scene import sizes
-from ..scene.parts import product_parts
 
 _PATH = re.compile(r"(?<![\w>])(?:[A-Za-z]:[\\/]|\\\\|~?/)(?:.*(?='(?:[\s;:.,)]|$))|.*)")
 """A path from a drive, a server, the home folder or the root on, to the line's last quote: it may hold any letter."""

@@ -3,8 +3,8 @@
 import bpy
 
 from .. import languages, tabs
-from ..hand import bonemap, reading
-from ..hand.rig_axes import RigError
+from ..hand_bones import bonemap, reading
+from ..hand_bones.rig_axes import RigError
 from ..hand_shape import framing
 from ..operators import polling, running
 

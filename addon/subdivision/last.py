@@ -12,7 +12,8 @@ import numpy as np
 from bpy.types import Context, Mesh, Modifier, Object
 
 from .. import cache
-from ..scene import mesh, own
+from ..ownership import own
+from ..scene import mesh
 from ..scene.checks import Refusal
 from ..scene.units import Floats
 from .catmull_clark import Faces, Level, Rules, level

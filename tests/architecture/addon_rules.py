@@ -16,6 +16,9 @@ NEVER = {"urllib", "http", "socket", "ftplib", "smtplib", "pickle", "shelve", "p
 # Room -> what it knows nothing of.
 KNOWS_NOTHING_OF = {
     "scene": {"native", "workflow", "operators", "panels", "views"},
+    "skin_display": {"native", "workflow", "operators", "panels", "views"},
+    "product_objects": {"native", "workflow", "operators", "panels", "views"},
+    "ownership": {"native", "workflow", "operators", "panels", "views"},
     "workflow": {"operators", "panels", "views"},
     "operators": {"numpy"},
     "panels": {"workflow", "native", "numpy"},
@@ -23,7 +26,7 @@ KNOWS_NOTHING_OF = {
     "native": BLENDER,
     "names": BLENDER,
     "cache": BLENDER,
-    "settings": {"workflow", "operators", "panels", "views"},
+    "properties": {"workflow", "operators", "panels", "views"},
 }
 
 
@@ -71,14 +74,12 @@ def nothing_else(root):
 
 def settings_hold_no_numbers(root):
     """Defaults and ranges of materials come from the one table, in Rust."""
-    path = root / "addon/settings.py"
-    if not path.exists():
-        return []
-    wrong = []
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.keyword) and node.arg in ("default", "min", "max") and _is_fraction(node.value):
-            wrong.append(f"addon/settings.py:{node.value.lineno}: {node.arg} = {node.value.value}")
-    return wrong
+    return [
+        f"{path.relative_to(root)}:{node.value.lineno}: {node.arg} = {node.value.value}"
+        for path in sorted((root / "addon/properties").glob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.keyword) and node.arg in ("default", "min", "max") and _is_fraction(node.value)
+    ]
 
 
 def versions_agree(root):

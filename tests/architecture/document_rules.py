@@ -11,7 +11,7 @@ _ANCHOR = re.compile(r"[^\w\- ]")
 _XTASK = re.compile(r"cargo xtask (\w+)")
 _CARGO = re.compile(r"cargo test ([^`\n]*)")
 _FILE = re.compile(r"(?<![\w./-])((?:tests|rust|addon|blend-samples)/[\w./-]*\w)")
-_MODULE = re.compile(r"python -m (trial|bench)\.(\w+)")
+_MODULE = re.compile(r"-m ((?:trial|bench|proof)(?:\.\w+)+)")
 _PLACEHOLDER = re.compile(r"\b(NAME|PART|CRATE)\b")
 _PENDING = ("rust/ARCHITECTURE.md",)
 """Documents that describe folders in words rather than as commands."""
@@ -61,9 +61,9 @@ def commands(root):
             wrong += [f"{path}: {fault}" for fault in _cargo_faults(root, line)]
         missing = {name for name in _FILE.findall(text) if not (root / name).exists()}
         wrong += [f"{path}: there is no {name}" for name in sorted(missing) if not _PLACEHOLDER.search(name)]
-        for package, module in set(_MODULE.findall(text)):
-            if not (root / "tests" / package / f"{module}.py").exists():
-                wrong.append(f"{path}: there is no module {package}.{module}")
+        for module in set(_MODULE.findall(text)):
+            if not (root / "tests" / module.replace(".", "/")).with_suffix(".py").exists():
+                wrong.append(f"{path}: there is no module {module}")
     return wrong
 
 

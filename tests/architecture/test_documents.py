@@ -9,7 +9,7 @@ SOUND = {
     "rust/x/README.md": "# X\n## Two words\n[back](../../README.md) [out](https://example.org) [here](#x)\n",
     "rust/x/tests/hertz.rs": "//! H.\n",
     "rust/xtask/src/main.rs": '//! M.\n        "demo" => demo(),\n',
-    "tests/trial/ceiling.py": '"""C."""\n',
+    "tests/trial/scoring/ceiling.py": '"""C."""\n',
 }
 PLANTED = [
     (document_rules.links, "[a](rust/y/README.md)", "leads nowhere"),
@@ -20,6 +20,7 @@ PLANTED = [
     (document_rules.commands, "`cargo test -p thenar-y`", "thenar-y"),
     (document_rules.commands, "`pytest tests/proof/test_none.py`", "test_none.py"),
     (document_rules.commands, "`python -m trial.floor`", "trial.floor"),
+    (document_rules.commands, "`python -m trial.scoring.floor`", "trial.scoring.floor"),
     (document_rules.pictures, None, "allowed"),
 ]
 

@@ -22,7 +22,7 @@ SOUND = {
     "addon/workflow.py": '"""The order."""\nimport numpy\nfrom . import native\nfrom .scene import units\n',
     "addon/scene/units.py": '"""Units."""\nimport bpy\nimport numpy\n',
     "addon/panels/main.py": '"""Layout."""\nimport bpy\nfrom .. import settings\n',
-    "addon/settings.py": '"""Settings."""\nimport bpy\nX = bpy.props.FloatProperty(default=1.0, min=0.0)\n',
+    "addon/properties/settings.py": '"""Settings."""\nimport bpy\nX = bpy.props.FloatProperty(default=1.0, min=0.0)\n',
 }
 # Rule, file, what is planted in it, a word of the complaint.
 PLANTED = [
@@ -85,7 +85,7 @@ PLANTED = [
     (addon_rules.nothing_else, "addon/workflow.py", "from urllib import request\n", "urllib"),
     (addon_rules.versions_agree, "addon/names.py", 'VERSION = "1.0.1"\n', "1.0.1"),
     (addon_rules.versions_agree, "addon/blender_manifest.toml", 'version = "0.9.0"\n', "0.9.0"),
-    (addon_rules.settings_hold_no_numbers, "addon/settings.py", "X = f(default=0.005)\n", "0.005"),
+    (addon_rules.settings_hold_no_numbers, "addon/properties/settings.py", "X = f(default=0.005)\n", "0.005"),
 ]
 
 

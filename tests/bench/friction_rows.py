@@ -8,8 +8,8 @@ import ctypes
 
 import numpy as np
 import thenar
-from bench import siconos
-from bench.problems import LATTICE
+from bench.peers import siconos
+from bench.peers.problems import LATTICE
 from bench.rows import TARGET, faster, left_out
 from bench.timing import cpu_ms, once_ms
 from proof import meshes

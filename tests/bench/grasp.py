@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import thenar
-from bench import problems
+from bench.peers import problems
 from proof import meshes
 
 RADIUS_MM = 24.0

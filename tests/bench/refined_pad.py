@@ -1,7 +1,7 @@
 """A curved pad at any number of vertices, the same shape each time, and the handle it is pressed on. Lengths in mm."""
 
 import numpy as np
-from bench import problems
+from bench.peers import problems
 
 HALF_AXES_MM = (30.0, 22.0, 12.0)
 """A pad about as large as the ball of a thumb and the palm beside it."""

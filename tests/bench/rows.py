@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import results
 import thenar
-from bench import debian, lemke, problems, siconos
+from bench.peers import debian, lemke, problems, siconos
 from bench.timing import cpu_ms, once_ms
 
 TARGET = Path(__file__).parents[2] / "target"

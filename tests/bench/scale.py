@@ -74,8 +74,8 @@ def main(sizes):
 
 def beside_peer(largest):
     """Runs aspher on a million points and sets our largest case beside it; what it took, or None."""
-    from bench import aspher_peer
-    from bench.debian import Unavailable
+    from bench.peers import aspher_peer
+    from bench.peers.debian import Unavailable
 
     try:
         python = aspher_peer.python(TARGET)

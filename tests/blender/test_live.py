@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import stage
 import thenar_blender
-from thenar_blender import headless, names, native, status, workflow
+from thenar_blender import names, native, status, workflow
 from thenar_blender.live import session, watch
 from thenar_blender.scene import checks, state
+from thenar_blender.terminal import headless
 
 MM = stage.MM
 ALONE = "LIVE_ALONE"

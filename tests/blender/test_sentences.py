@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import thenar
-from thenar_blender import sentences
+from thenar_blender.results import sentences
 
 NAMES = ("thumb_distal_pad", "palm", "Region.001")
 

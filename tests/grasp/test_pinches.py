@@ -7,7 +7,7 @@ from handles import anatomy, grasping, shapes
 from scipy.spatial.transform import Rotation
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import pinches, pinching, places, walls
-from thenar_blender.hand import reading
+from thenar_blender.hand_bones import reading
 
 PALM = {"thenar", "hypothenar", "palm_hollow", "distal_palm_radial", "distal_palm_ulnar"}
 

@@ -4,7 +4,8 @@ import bpy
 import numpy as np
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import fitter
-from thenar_blender.hand import pads, products, studio
+from thenar_blender.hand import pads, products
+from thenar_blender.hand_look import studio
 
 
 def evaluated_mm(obj):

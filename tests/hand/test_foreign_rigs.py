@@ -7,7 +7,8 @@ from hand_scenes import evaluated_mm, with_cylinder
 from mathutils import Vector
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import walls
-from thenar_blender.hand import bonemap, build, pads, reading, roles
+from thenar_blender.hand import build, pads
+from thenar_blender.hand_bones import bonemap, reading, roles
 
 MM = 1e-3
 

@@ -5,7 +5,8 @@ import pytest
 import thenar
 from hand_scenes import triangles_of
 from thenar_blender.grasp_fit import fitter, least_squares, load, task, walls
-from thenar_blender.hand import capsules, pads, products, roles, skinning
+from thenar_blender.hand import capsules, pads, products, skinning
+from thenar_blender.hand_bones import roles
 
 
 def product_of(shape):

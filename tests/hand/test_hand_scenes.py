@@ -6,7 +6,8 @@ from hand_scenes import evaluated_mm, with_cylinder
 from mathutils.bvhtree import BVHTree
 from thenar_blender.grasp import fitting, samples
 from thenar_blender.grasp_fit import walls
-from thenar_blender.hand import build, pads, reading
+from thenar_blender.hand import build, pads
+from thenar_blender.hand_bones import reading
 
 SAMPLE_KINDS = (
     "fingertip_on_plate", "palm_on_plate", "hand_on_glass", "finger_on_ball", "cylinder_48", "cylinder_60",

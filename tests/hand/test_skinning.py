@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 from hand_scenes import evaluated_mm
-from thenar_blender.hand import posing, reading, roles, skinning
+from thenar_blender.hand import skinning
 from thenar_blender.hand.poses import POSES
+from thenar_blender.hand_bones import posing, reading, roles
 
 
 def read(context, hand, rig):

@@ -7,7 +7,8 @@ import pytest
 import thenar
 from hand_scenes import triangles_of
 from thenar_blender.grasp_fit import closing, fitter, walls
-from thenar_blender.hand import capsules, pads, poses, products, roles, skinning
+from thenar_blender.hand import capsules, pads, poses, products, skinning
+from thenar_blender.hand_bones import roles
 
 UPRIGHT = {"axis": (0.0, 0.0, 1.0), "center": (0.0, 0.0, 0.0)}
 ALONG = np.linspace(-100.0, 100.0, 101)

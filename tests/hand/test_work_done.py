@@ -7,7 +7,8 @@ import thenar
 from hand_scenes import triangles_of
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import fitter
-from thenar_blender.hand import build, pads, products, studio
+from thenar_blender.hand import build, pads, products
+from thenar_blender.hand_look import studio
 from thenar_blender.recordings import table_6
 from thenar_blender.scene import units
 

@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pytest
 import thenar
-from trial import against_ball, protocols, truths
+from trial import protocols
+from trial.drawing import truths
+from trial.finite_elements import against_ball
 
 PAD = "forefinger"  # of the calibration
 SKINS = {  # as truth_runs.changed has them, which needs numba: variant, amplitude -> thickness mm, modulus over pulp's

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from proof import layer_theory, pressing
+from proof import pressing
+from proof.theory import layer_theory
 
 RADIUS = 10.0
 CONTACT_RADIUS = 0.7  # mm: a/R = 0.07, where sphere and parabola, normal and vertical agree to 1e-3

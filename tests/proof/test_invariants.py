@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from proof import distances, meshes, pressing
+from proof import meshes, pressing
+from proof.theory import distances
 
 CASES = {
     "fingertip on plate": (

@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from proof import layer_theory, meshes, pressing
+from proof import meshes, pressing
+from proof.theory import layer_theory
 
 RATIO, STRIDE = 1.1, 7  # of neighboring radii; 1.1^7 = 1.95
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import thenar
 
-from proof import complementarity, meshes, paper_model, pressing
+from proof import meshes, pressing
+from proof.theory import complementarity, paper_model
 
 TISSUE = paper_model.Tissue(0.01, 0.06, 4.0, 2.0, 8.0, 2.0)
 MATERIAL = thenar.Material(g0_mpa=0.01, g_lim_mpa=0.06, d_lim_mm=4.0, thickness_mm=np.inf, swelling=(2.0, 8.0, 2.0))

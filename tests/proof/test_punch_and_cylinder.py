@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from proof import cylinder_theory, meshes, pressing
+from proof import meshes, pressing
+from proof.theory import cylinder_theory
 
 
 def punch(spacing, seed, depth=0.02, radius=5.0):

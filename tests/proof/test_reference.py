@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import thenar
 
-from proof import layer_theory, meshes, pressing
+from proof import meshes, pressing
+from proof.theory import layer_theory
 
 THICKNESS_MM = 5.0
 RADIUS_MM = 40.0

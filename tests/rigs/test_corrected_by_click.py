@@ -7,8 +7,8 @@ from bodies import DIGITS
 from makers import KINDS
 from mathutils import Vector
 from rig_scenes import into_scene
-from thenar_blender.hand import bonemap, reading
-from thenar_blender.hand.rig_axes import RigError
+from thenar_blender.hand_bones import bonemap, reading
+from thenar_blender.hand_bones.rig_axes import RigError
 from thenar_blender.rigging import assigning, overlay
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from kinds import Made, fingers
 from rig_scenes import into_scene
-from thenar_blender.hand import bonemap, build, reading, roles
+from thenar_blender.hand import build
+from thenar_blender.hand_bones import bonemap, reading, roles
 from thenar_blender.rigging import region_map, regions
 from thenar_blender.rigs import skin_regions
 from thenar_blender.scene.checks import Refusal

@@ -4,8 +4,8 @@ import bpy
 import pytest
 from makers import KINDS
 from rig_scenes import into_scene
-from thenar_blender.hand import bonemap, posing, reading, roles
-from thenar_blender.hand.rig_axes import RigError
+from thenar_blender.hand_bones import bonemap, posing, reading, roles
+from thenar_blender.hand_bones.rig_axes import RigError
 
 
 @pytest.mark.parametrize("kind", ["makehuman", "daz8", "biped", "openxr", "rigify_deform"])

@@ -25,21 +25,10 @@ import shutil
 from pathlib import Path
 
 import results
-from trial import (
-    cases,
-    ceiling,
-    counts,
-    findings,
-    following,
-    make_larger,
-    mutations,
-    page,
-    running,
-    score,
-    subset,
-    thresholds,
-)
+from trial import cases, running, subset
 from trial.baselines.peers import BASELINES
+from trial.drawing import make_larger
+from trial.scoring import ceiling, counts, findings, following, mutations, page, score, thresholds
 
 ROOT = Path(__file__).parents[2]
 THENAR = "thenar"

@@ -21,8 +21,8 @@ turned by 90 degrees and moved, rod; each press is a force curve to 15 % of the 
 What is there without a spot: a layer model of the right thickness, its modulus refitted to every frame, misses the mean
 pressures over 2.4 mm squares by 2 to 4 % (rms) and 4 to 9 % (worst square) of the largest pressure, the more the
 deeper, and needs a modulus that is 0.80 to 0.90 of the tissue's and differs by 2 to 5 % between plate and rod
-(`python -m trial.against_layer`): finite strain and the bone's curvature. No spot may be claimed from that. A spot
-changes the pressure over it by 20 to 95 % of the largest.
+(`python -m trial.finite_elements.against_layer`): finite strain and the bone's curvature. No spot may be claimed from
+that. A spot changes the pressure over it by 20 to 95 % of the largest.
 
 `Truth` says where the spot is (`center_mm`, the skin's point above it at rest; None for nulls), its depth, radius and
 contrast.
@@ -38,7 +38,7 @@ from scipy.ndimage import map_coordinates
 from scipy.spatial import Delaunay
 from trial import pads
 
-TABLE = Path(__file__).with_name("inclusions_by_finite_elements.npz")
+TABLE = Path(__file__).parent / "finite_elements/inclusions_by_finite_elements.npz"
 MATS = {"fine": (2.5, 1.0), "coarse": (4.9, 1.96)}  # pitch mm, size of the pad over the computed one
 SPACING_MM = 1.2  # of the skin's vertices, on the computed size
 MODULUS_MPA = (0.006, 0.018)

@@ -4,8 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from trial import cases, findings, protocols, score
+from trial import cases, protocols
 from trial.baselines import bic, classifier, curves, examples, fitting, forms, peers, process, verdict
+from trial.scoring import findings, score
 
 pytestmark = pytest.mark.filterwarnings("ignore::sklearn.exceptions.ConvergenceWarning")
 RICH = next(name for name in cases.names("calibration") if len(cases.index()[name].get("published", [])) == 5)

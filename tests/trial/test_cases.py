@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 import thenar
 from proof import meshes, pressing
-from trial import cases, ceiling, counts, make_cases, make_larger, protocols, score
+from trial import cases, protocols
+from trial.drawing import make_cases, make_larger
+from trial.scoring import ceiling, counts, score
 
 HERE = Path(__file__).parent
-RUNS = dict(np.load(HERE / "truth_runs.npz"))
+RUNS = dict(np.load(HERE / "drawing/truth_runs.npz"))
 LEAST = {"null": 60, "decoy": 40, "single": 90, "pair": 10, "unlisted": 20, "ambiguous": 12, "local": 30}
 
 
@@ -22,7 +24,7 @@ def run(key, protocol, pad="fingertip"):
 
 def test_the_trials_elements_agree_with_felupe():
     """Another program on the same mesh; at the first depth few points touch, and the two place them differently."""
-    for row in json.loads((HERE / "axisymmetric_by_felupe.json").read_text()):
+    for row in json.loads((HERE / "finite_elements/axisymmetric_by_felupe.json").read_text()):
         assert np.abs(np.divide(row["own_n"], row["felupe_n"]) - 1.0)[1:].max() < 0.008
 
 

@@ -9,8 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from trial import cases, counts, following, mutations, page, prove, running, score, subset
-from trial.test_score import right
+from trial import cases, prove, running, subset
+from trial.scoring import counts, following, mutations, page, score
+from trial.scoring.test_score import right
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "target/release/thenar"

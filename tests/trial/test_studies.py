@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 import thenar
-from trial import against_layer, pads, studies
+from trial import pads, studies
+from trial.finite_elements import against_layer
 
 COMPUTED = sorted({key.split("/")[0] for key in studies.table()})
 SPOTS = [name for name in pads.SPOTS if name in COMPUTED]

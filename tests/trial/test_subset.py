@@ -5,7 +5,8 @@ import os
 from pathlib import Path
 
 import pytest
-from trial import cases, counts, prove, running, score, subset
+from trial import cases, prove, running, subset
+from trial.scoring import counts, score
 
 ROOT = Path(__file__).parents[2]
 PROGRAM = ROOT / "target/release/thenar"

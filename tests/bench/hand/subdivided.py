@@ -18,9 +18,11 @@ sys.path.insert(0, str(ROOT / "tests"))
 import bpy  # noqa: E402
 import results  # noqa: E402
 import thenar_blender  # noqa: E402
-from thenar_blender import cache, certificate, workflow  # noqa: E402
+from thenar_blender import cache, workflow  # noqa: E402
 from thenar_blender.operators import display  # noqa: E402
-from thenar_blender.scene import read, shown  # noqa: E402
+from thenar_blender.results import certificate  # noqa: E402
+from thenar_blender.scene import read  # noqa: E402
+from thenar_blender.skin_display import shown  # noqa: E402
 
 WANTED, WANTED_S = 3.0, 0.2
 REPEATS = 3

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 import stage
 import test_panels
-from thenar_blender import baking, export
+from thenar_blender.results import export
 from thenar_blender.scene import baked
 from thenar_blender.scene.checks import Refusal
+from thenar_blender.timeline import baking
 
 FRAMES = (1, 2, 3, 4)
 

@@ -7,8 +7,8 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import comfort
-from thenar_blender import result as results
+from thenar_blender.results import comfort
+from thenar_blender.results import result as results
 
 
 def halves(hand, names=("index_distal_pad", "thenar"), edges_mm=(0.0,)):

@@ -52,7 +52,7 @@ def test_colors_follow_range_and_palette():
 
 def test_live_colors_anew_only_where_something_presses_or_pressed(monkeypatch):
     from thenar_blender.live import watch
-    from thenar_blender.scene import colors as scene_colors
+    from thenar_blender.skin_display import colors as scene_colors
 
     objects = stage.scene()
     bpy.context.scene.thenar.live = True
@@ -200,7 +200,7 @@ def test_values_that_are_no_numbers_or_out_of_range_take_the_ends_of_a_map():
 @pytest.mark.parametrize("palette", ["CIVIDIS", "VIRIDIS", "EMBER"])
 def test_colors_of_pressure_from_the_table_are_those_that_the_map_computes(palette):
     from thenar_blender import maps
-    from thenar_blender.scene import colors as scene_colors
+    from thenar_blender.skin_display import colors as scene_colors
 
     hand, _ = stage.scene()
     look, under = bpy.context.scene.thenar, scene_colors.ground(hand, scene_colors.SKIN)

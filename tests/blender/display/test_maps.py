@@ -69,7 +69,7 @@ def test_shear_has_its_own_range_and_colors():
 
 
 def test_slip_is_red_where_skin_slips_and_bare_off_the_contact():
-    from thenar_blender.scene import colors as scene_colors
+    from thenar_blender.skin_display import colors as scene_colors
 
     hand, _ = dragged()
     show("SLIP")

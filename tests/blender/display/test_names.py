@@ -7,8 +7,8 @@ import pytest
 import stage
 import thenar
 from test_sentences import job
-from thenar_blender import sentences
-from thenar_blender.result import as_dict
+from thenar_blender.results import sentences
+from thenar_blender.results.result import as_dict
 
 NAMES = [
     r"C:\cup",

@@ -126,7 +126,7 @@ def test_a_line_is_drawn_along_the_edge_unless_it_is_switched_off(tmp_path):
 
 def test_colors_of_vertices_end_on_the_same_circle():
     """Solid view blends them linearly: where they are half covered lies the edge."""
-    from thenar_blender.scene import colors
+    from thenar_blender.skin_display import colors
 
     hand, product = ball_on_half_space()
     hand_z = stage.evaluated(hand)

@@ -17,9 +17,10 @@ import numpy as np
 import pytest
 import stage
 import thenar
-from thenar_blender import batch, command_line, names
+from thenar_blender import batch, names
 from thenar_blender.batch import child
 from thenar_blender.scene.checks import Refusal
+from thenar_blender.terminal import command_line
 
 SWEEP = """
 blend = "grip.blend"

@@ -69,10 +69,12 @@ def _below(base):
 
 def of_data():
     """Names that code makes of identifiers: effects and their numbers, regions, digits, grades, map units, stages."""
-    from thenar_blender import effect_settings, grades, languages, maps, sentences
+    from thenar_blender import languages, maps
     from thenar_blender.grasp import samples
-    from thenar_blender.hand import roles
+    from thenar_blender.hand_bones import roles
     from thenar_blender.panels import lists
+    from thenar_blender.properties import effect_settings
+    from thenar_blender.results import grades, sentences
     from thenar_blender.rigs import skin_regions
 
     out, laws = {}, {}

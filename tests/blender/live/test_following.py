@@ -6,8 +6,8 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import following
 from thenar_blender.scene import rigid
+from thenar_blender.timeline import following
 
 FPS = 25
 

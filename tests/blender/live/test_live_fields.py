@@ -5,7 +5,7 @@ import numpy as np
 import stage
 from thenar_blender import names
 from thenar_blender.live import session, watch
-from thenar_blender.scene import colors
+from thenar_blender.skin_display import colors
 
 MM = stage.MM
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import bpy
 import pytest
 import stage
-from thenar_blender import demo
 from thenar_blender.recordings import table_6
+from thenar_blender.terminal import demo
 
 SAMPLE = Path(__file__).parents[3] / "blend-samples" / "cylinder_100.blend"
 

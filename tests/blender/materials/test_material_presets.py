@@ -5,7 +5,8 @@ import pytest
 import stage
 import thenar
 import thenar_blender
-from thenar_blender import handlers, material_settings
+from thenar_blender import handlers
+from thenar_blender.properties import material_settings
 
 NEW = ("stiffening", "bone_half_width_mm", "bone_half_length_mm")
 

@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 import stage as scenes
-from thenar_blender.hand import studio
+from thenar_blender.hand_look import studio
 from thenar_blender.picture_sets import grip_and_print
 from thenar_blender.picture_sets.order import Order
 from thenar_blender.picture_stage import laying, page, stage, views

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 import stage as scenes
 import whole_state
-from thenar_blender import grades
 from thenar_blender.operators import computing
 from thenar_blender.picture_sets import card, drawing, film, grip_and_print, operators, process, sizes
 from thenar_blender.picture_sets import order as orders
 from thenar_blender.picture_stage import facts, laying, pdf
 from thenar_blender.picture_stage import page as pages
+from thenar_blender.results import grades
 from thenar_blender.scene.checks import Refusal
 
 SMALL = {"height": 64, "samples": 1}
@@ -228,7 +228,7 @@ def test_product_that_hangs_on_the_hand_stays_where_it_is():
 
 def test_command_writes_the_same(solved, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "a.blend"))
-    from thenar_blender import command_line
+    from thenar_blender.terminal import command_line
 
     call = ["picture", str(tmp_path / "a.blend"), "--kind", "comfort_card", "--out", str(tmp_path / "card.png")]
     assert command_line.main([*call, "--height", "64", "--samples", "1"]) == 0

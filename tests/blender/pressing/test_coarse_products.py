@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender.scene import refine
+from thenar_blender.skin_display import refine
 
 
 def box(sides_mm=(120.0, 90.0, 40.0), name="Box"):

@@ -4,7 +4,8 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import effect_settings, workflow
+from thenar_blender import workflow
+from thenar_blender.properties import effect_settings
 
 
 def add(kind, **numbers):

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender.result import as_dict
+from thenar_blender.results.result import as_dict
 
 MM = stage.MM
 

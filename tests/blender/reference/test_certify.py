@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import result as results
+from thenar_blender.results import result as results
 
 
 def certified(**options):

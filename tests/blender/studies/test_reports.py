@@ -6,7 +6,8 @@ import bpy
 import letters
 import pytest
 import small_studies
-from thenar_blender import native, reports
+from thenar_blender import native
+from thenar_blender.results import reports
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender.scene import shown
+from thenar_blender.skin_display import shown
 from thenar_blender.subdivision import catmull_clark, last
 
 SINGLE = 2e-6

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import bpy
 import thenar_blender
-from thenar_blender import headless, workflow
+from thenar_blender import workflow
 from thenar_blender.recordings import table_6
+from thenar_blender.terminal import headless
 
 ROOT = Path(__file__).parents[3]
 COMMAND = "target/venv/bin/python tests/proof/by_mat/table_6.py"

@@ -19,7 +19,8 @@ import thenar
 import thenar_blender
 import thenar_blender.workflow
 from handles import grasping, measuring, shapes
-from thenar_blender.scene import checks, copies
+from thenar_blender.product_objects import copies
+from thenar_blender.scene import checks
 
 GRIPS = (("EVA_FOAM", 0.0, 4.0), ("CUSTOM", 0.3, 4.0), ("CUSTOM", 0.1, 8.0))
 """Material, Young's modulus (MPa) of a custom one, thickness (mm)."""

@@ -11,10 +11,11 @@ from pathlib import Path
 
 import numpy as np
 from sklearn.ensemble import HistGradientBoostingClassifier
-from trial import cases, score
+from trial import cases
 from trial.baselines import bic, examples, verdict
 from trial.baselines.curves import read
 from trial.baselines.stretches import stretches
+from trial.scoring import score
 
 SURE, BOTH = 0.5, 0.75  # probability from which one class, or the best two together, are believed
 FOLDS = 3

@@ -3,7 +3,7 @@
 import json
 
 import numpy as np
-from trial.findings import TISSUE
+from trial.scoring.findings import TISSUE
 
 ALL = {
     *("nulls", "decoys", "instrument", "severe", "mild", "wrong", "pairs", "mixed", "unlisted", "ambiguous", "poor"),

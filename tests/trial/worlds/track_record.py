@@ -17,9 +17,9 @@ from collections import Counter, defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from trial import score
-from trial.counts import wilson
 from trial.grasps import drawn
+from trial.scoring import score
+from trial.scoring.counts import wilson
 from trial.worlds import accusations
 
 COUNTS = Path(__file__).parents[3] / "rust/diagnosis/src/track_record.csv"

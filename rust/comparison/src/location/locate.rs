@@ -23,7 +23,7 @@ use thenar_inference::fit::result::Fit;
 
 /// What a simulated sensel or force may be off by under smooth factors, of the largest. Against finite elements single sensels are off by
 /// up to 0.04 on a fine mesh, and by as much again where a mesh of 1.2 mm meets sensels of 2.5 mm. Set on 36 studies of six
-/// pads without a spot at 1 % noise (`tests/trial/locate.py`, other seeds): places were named in 17 with 0.02, in 5 with 0.05, in none
+/// pads without a spot at 1 % noise (`tests/trial/scoring/locate.py`, other seeds): places were named in 17 with 0.02, in 5 with 0.05, in none
 /// of the 34 that were read with 0.08; of 24 with a spot 21, 20 and 18 were found, and 15 with 0.13.
 pub(crate) const MODEL_ERROR: f64 = 0.08;
 

@@ -54,7 +54,7 @@ pub const COUNTS: f64 = 12.0;
 /// on flat skin (`forward::tables::sphere`), of another tool there, over bone whose width is stated, and on round skin where it is not.
 ///
 /// Against the finite elements of the calibration's flat pads without effects balls are off by 0.4 % in the whole, by 0.3 % in their tilt and
-/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.against_ball`); tables from the mesh by more; on the
+/// by 0.1 % in their bend, once the moduli took what all tools share (`python -m trial.finite_elements.against_ball`); tables from the mesh by more; on the
 /// round fingertip of `tests/proof` the layer is off by up to 9 %.
 pub const FORM_ERROR: [[f64; WAYS]; 4] = [
     [0.006, 0.006, 0.003, 0.02, 0.0, 0.0, 0.0],

@@ -13,7 +13,7 @@ use crate::forward::tables::elastic_table::radius;
 /// On a half-space it is 2 (Hu et al. 2010). Over bone a wider contact also gives up more of its load, as compressibility tells, and the
 /// more is given up, the less the time grows. Beside finite elements of pads that the trial does not use this leaves 0.04 to 0.11 % of
 /// the load, a power of 1.5 at every share 0.07 to 0.32 %, and a clock that does not ask for the contact's size 0.28 to 0.72 %
-/// (`python -m trial.against_drainage`).
+/// (`python -m trial.finite_elements.against_drainage`).
 const GROWS: (f64, f64) = (1.6, 1.4);
 const MOST_GROWS: (f64, f64) = (1.0, 2.0);
 /// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
@@ -230,7 +230,7 @@ mod tests {
     }
 
     /// Finite elements of the calibration's forefinger under spheres whose contacts are 1.48 and 2.37 times as wide as the smallest
-    /// (`tests/trial/against_drainage.py`, amplitude 0.25): times go from 2.9 to 5.2 and 10.7 s, widths from 1.51 to 1.31 and 1.18.
+    /// (`tests/trial/finite_elements/against_drainage.py`, amplitude 0.25): times go from 2.9 to 5.2 and 10.7 s, widths from 1.51 to 1.31 and 1.18.
     #[test]
     fn drainage_time_and_width_follow_contact_radius() {
         for (size, time_s, width) in [(1.48f64, 5.2, 1.31), (2.37, 10.7, 1.18)] {

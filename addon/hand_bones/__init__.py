@@ -1,0 +1,1 @@
+"""Bones of a hand: which plays which part, how they point, bend and are posed."""

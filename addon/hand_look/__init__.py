@@ -1,0 +1,1 @@
+"""How the made hand looks: skin, nails, materials, light and camera."""

@@ -1,0 +1,1 @@
+"""What in a scene is Thenar's own, and the scene without it."""

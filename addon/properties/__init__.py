@@ -1,0 +1,1 @@
+"""Blender properties: what the user sets and what a result keeps in the file."""

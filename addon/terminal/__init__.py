@@ -1,0 +1,1 @@
+"""Runs without a window: the command line and the demo."""

@@ -1,0 +1,35 @@
+"""Verdicts of calibration and trial cases are those that were frozen (see frozen.py)."""
+
+import copy
+
+import pytest
+from trial import cases
+from trial.frozen_verdicts import frozen
+
+
+@pytest.fixture(scope="module", autouse=True)
+def rewritten():
+    """THENAR_FREEZE writes the table anew before it is compared."""
+    if (wanted := frozen.asked()) is not None:
+        frozen.write({case: frozen.names(frozen.said(case)) for case in wanted})
+
+
+@pytest.mark.parametrize("case", frozen.table())
+def test_verdict_is_the_frozen_one(case):
+    assert frozen.names(frozen.said(case)) == frozen.table()[case]
+
+
+def test_both_splits_and_every_kind_of_verdict_are_held():
+    held = frozen.table()
+    splits = {cases.index()[case]["split"] for case in held}
+    assert {"trial", "calibration"} <= splits
+    kinds = {one["verdict"] for one in held.values()}
+    assert {"parameters", "missing_physics", "instrument", "cannot_tell", "unlisted", "insufficient_data"} <= kinds
+
+
+def test_another_name_is_another_verdict():
+    verdict = {"verdict": "missing_physics", "findings": [{"effect": "drift"}], "cannot_tell": [], "sentence": "x"}
+    for key, other in (("verdict", "unlisted"), ("findings", []), ("cannot_tell", [["relaxation", "drainage"]])):
+        changed = copy.deepcopy(verdict) | {key: other}
+        assert frozen.names(changed) != frozen.names(verdict)
+    assert frozen.names(verdict | {"sentence": "y"}) == frozen.names(verdict)
