@@ -74,8 +74,11 @@ def _cargo_faults(root, line):
     folder = root / "rust" / crate[1]
     if not folder.exists():
         return [f"there is no crate thenar-{crate[1]}"]
-    tests = re.findall(r"--test (\w+)", line)
-    return [f"thenar-{crate[1]} has no test {name}" for name in tests if not (folder / f"tests/{name}.rs").exists()]
+    tests = [(folder / "tests" / name, name) for name in re.findall(r"--test (\w+)", line)]
+    faults = [name for path, name in tests if not path.with_suffix(".rs").exists() and not (path / "main.rs").exists()]
+    modules = {path.stem for path in folder.glob("tests/*/**/*.rs")}
+    faults += [f"{name}::" for name in re.findall(r"(\w+)::", line) if name not in modules]
+    return [f"thenar-{crate[1]} has no test {name}" for name in faults]
 
 
 def pictures(root):

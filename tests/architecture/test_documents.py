@@ -5,9 +5,11 @@ import pytest
 from test_rooms import ROOT
 
 SOUND = {
-    "README.md": "# Top\n[there](rust/x/README.md#two-words) `cargo xtask demo`, `cargo test -p thenar-x --test hertz`",
+    "README.md": "# Top\n[there](rust/x/README.md#two-words) `cargo xtask demo`, "
+    "`cargo test -p thenar-x --test all ball::`",
     "rust/x/README.md": "# X\n## Two words\n[back](../../README.md) [out](https://example.org) [here](#x)\n",
-    "rust/x/tests/hertz.rs": "//! H.\n",
+    "rust/x/tests/all/main.rs": "mod ball;\n",
+    "rust/x/tests/all/ball.rs": "//! B.\n",
     "rust/xtask/src/main.rs": '//! M.\n        "demo" => demo(),\n',
     "tests/trial/scoring/ceiling.py": '"""C."""\n',
 }
@@ -17,6 +19,7 @@ PLANTED = [
     (document_rules.links, "[a](rust/x/README.md#three)", "names no heading"),
     (document_rules.commands, "`cargo xtask fly`", "fly"),
     (document_rules.commands, "`cargo test -p thenar-x --test mindlin`", "mindlin"),
+    (document_rules.commands, "`cargo test -p thenar-x --test all mindlin::`", "mindlin"),
     (document_rules.commands, "`cargo test -p thenar-y`", "thenar-y"),
     (document_rules.commands, "`pytest tests/proof/test_none.py`", "test_none.py"),
     (document_rules.commands, "`python -m trial.floor`", "trial.floor"),

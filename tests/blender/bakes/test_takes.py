@@ -179,7 +179,8 @@ def test_a_bake_that_crashed_goes_on_where_it_was(sinking, tmp_path):
     bpy.ops.wm.save_mainfile()
     script = (
         "import os, bpy, thenar_blender\n"
-        "from thenar_blender import baking, workflow\n"
+        "from thenar_blender import workflow\n"
+        "from thenar_blender.timeline import baking\n"
         "thenar_blender.register()\n"
         f"bpy.ops.wm.open_mainfile(filepath={path!r})\n"
         "compute, calls = workflow.compute, []\n"

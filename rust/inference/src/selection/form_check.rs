@@ -120,7 +120,7 @@ mod tests {
             from: Vec::new(),
             control: &Control::none(),
         };
-        let base = trial.scoring.score(&[], &[]);
+        let base = trial.score(&[], &[]);
         let trial = Trial {
             from: base.refit.at.clone(),
             ..trial
