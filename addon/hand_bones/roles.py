@@ -204,13 +204,6 @@ def from_anatomical(joints, role, angle, degrees):
     return -joints.side * turn if COLUMNS[angle] == ABDUCTION else joints.side * turn
 
 
-def to_anatomical(joints, role, angle, turn):
-    """Inverse of `from_anatomical`."""
-    if COLUMNS[angle] == FLEXION:
-        return np.degrees(turn + joints.rest_flexion[joints.bones[role]])
-    return np.degrees(-joints.side * turn if COLUMNS[angle] == ABDUCTION else joints.side * turn)
-
-
 def angle_bounds(joints, role, angle):
     """Turn from rest (low, high), radians, of one angle of `role`; rest itself is always allowed."""
     own = joints.limits.get((joints.bones[role], COLUMNS[angle]))

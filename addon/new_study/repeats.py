@@ -45,11 +45,6 @@ def groups(tracks):
     return numbers
 
 
-def are_repeats(one, other):
-    """Whether two tracks follow one path: the same motion answered by about the same force, or the other way around."""
-    return one is not None and other is not None and _are_alike(_loaded(one), _loaded(other))
-
-
 def _are_alike(first, second):
     """Whether two loaded parts follow one path; None does not."""
     if first is None or second is None:

@@ -1,14 +1,13 @@
 """Materials that show a map over the user's own, and the way back to them."""
 
 import bpy
-from bpy.types import ColorRamp, Material, Node, NodeTree, Object, PropertyGroup
+from bpy.types import ColorRamp, Material, NodeTree, Object, PropertyGroup
 
 from .. import colormap, maps, names
+from . import contact_border
 
 _SKIN = (0.80, 0.52, 0.40, 1.0)
 _BARE = (0.62, 0.62, 0.60, 1.0)
-_INK = (0.10, 0.05, 0.05, 1.0)
-"""Of the line along the edge of the contact, scene-linear."""
 
 
 def show(obj: Object, look: PropertyGroup, is_skin: bool) -> None:
@@ -151,30 +150,10 @@ def _fill_group(tree: NodeTree) -> None:
     links.new(edge.outputs["Result"], mix.inputs[0])
     links.new(entry.outputs["Surface"], mix.inputs[1])
     links.new(light.outputs["Emission"], mix.inputs[2])
-    lined = _lined(tree, cover, mix)
+    lined = contact_border.lined(tree, cover, mix)
     links.new(lined.outputs["Shader"], leave.inputs["Surface"])
     for place, node in enumerate(nodes):
         node.location = (place % 7 * 220 - 900, -300 * (place // 7))
-
-
-def _lined(tree: NodeTree, cover: Node, mapped: Node) -> Node:
-    """`mapped` under a line where the attribute of `cover` is 0."""
-    nodes, links = tree.nodes, tree.links
-    distance, line, strength = nodes.new("ShaderNodeMath"), nodes.new("ShaderNodeMapRange"), nodes.new("ShaderNodeMath")
-    distance.operation, strength.operation = "ABSOLUTE", "MULTIPLY"
-    line.name, strength.name = "Line", "Line Shown"
-    half, soft = 0.5 * maps.LINE_MM, 0.25 * maps.LINE_MM
-    for name, value in (("From Min", half - soft), ("From Max", half + soft), ("To Min", 1.0), ("To Max", 0.0)):
-        line.inputs[name].default_value = value
-    ink, mix = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeMixShader")
-    ink.inputs["Color"].default_value = _INK
-    links.new(cover.outputs["Fac"], distance.inputs[0])
-    links.new(distance.outputs[0], line.inputs["Value"])
-    links.new(line.outputs["Result"], strength.inputs[0])
-    links.new(strength.outputs[0], mix.inputs[0])
-    links.new(mapped.outputs["Shader"], mix.inputs[1])
-    links.new(ink.outputs["Emission"], mix.inputs[2])
-    return mix
 
 
 def _fill_ramp(ramp: ColorRamp, palette: str) -> None:

@@ -9,6 +9,7 @@ mod axes;
 mod residual_curves;
 mod trend_bars;
 mod maps;
+mod page_style;
 mod prints;
 mod before_after_plot;
 mod tables;

@@ -1,18 +1,34 @@
 //! `thenar compare`: loads a study, fits and compares, writes the report.
 
-use crate::arguments::CompareArguments;
 use crate::fault::Fault;
 use crate::progress::ProgressLine;
 use crate::results::{self, Output};
 use crate::{interrupt, threads};
+use clap::Args;
 use std::fmt::Write;
 use std::path::Path;
+use std::path::PathBuf;
 use thenar_comparison::Comparison;
 use thenar_comparison::{compare, of_what};
 use thenar_contact::Control;
 use thenar_inference::Options;
 use thenar_recordings::Study;
 use thenar_report::{comparison_html, comparison_json};
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Folder with study.toml.
+    pub study: PathBuf,
+    /// Seed of all that is drawn; the same seed gives the same bytes.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Threads to work with; all if not given. The result does not depend on it.
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
 
 /// Loads, compares, writes, and tells what came out on the terminal.
 ///

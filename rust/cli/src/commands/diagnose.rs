@@ -1,6 +1,6 @@
 //! `thenar diagnose`: loads a study, says what the model leaves out, writes findings and report.
 
-use crate::arguments::CompareArguments;
+use crate::commands::compare::CompareArguments;
 use crate::fault::Fault;
 use crate::progress::ProgressLine;
 use crate::results::{self, Output};

@@ -1,18 +1,90 @@
 //! `thenar press`: reads the meshes, presses, writes the results.
 
-use crate::arguments::{ModelName, PressArguments};
 use crate::fault::Fault;
 use crate::regions::RegionTable;
 use crate::results::Output;
 use crate::{effects, interrupt, materials, protocol, regions, results, threads};
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::path::PathBuf;
 use thenar_contact::{
     Contact, Control, ForceTarget, Keep, Model, Press, Run, Skin, SkinInput, Start, Unsolved,
     Workspace,
 };
 use thenar_recordings::meshes::{self, MeshFile};
 use thenar_surface::{Mesh, Product, Vec3};
+
+#[derive(Debug, Args)]
+pub struct PressArguments {
+    /// Undeformed hand: OBJ, PLY or STL.
+    pub hand: PathBuf,
+    /// Product, in the frame of the (posed) hand: OBJ, PLY or STL.
+    pub product: PathBuf,
+    /// Contact model.
+    #[arg(long, value_enum, default_value_t = ModelName::Layer)]
+    pub model: ModelName,
+    /// CSV of vertex,region: numbers from 0, or names; -1, none or empty for no skin.
+    #[arg(long, value_name = "R.csv")]
+    pub regions: Option<PathBuf>,
+    /// TOML with a table of material numbers by region number, name, or `default`; without it all skin is a fingertip's.
+    #[arg(long, value_name = "M.toml")]
+    pub materials: Option<PathBuf>,
+    /// Writes a contact that does not reach its tolerances as far as it came, graded "do not use"; else it is an error.
+    #[arg(long)]
+    pub keep_unsolved: bool,
+    /// Moves the product until the normal force is this, N.
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        group = "travel"
+    )]
+    pub force: Option<f64>,
+    /// CSV of time_s and depth_mm, offset_mm or force_n: follows it from rest and writes protocol.csv too.
+    #[arg(long, value_name = "P.csv", group = "travel")]
+    pub protocol: Option<PathBuf>,
+    /// TOML with a table `[[effect]]` for each effect: name, amplitude, regions, numbers.
+    #[arg(long, value_name = "E.toml")]
+    pub effects: Option<PathBuf>,
+    /// Where the product moves for --force or --protocol; the mean normal of the contact if not given.
+    #[arg(long, value_name = "x,y,z", value_parser = direction, requires = "travel", allow_hyphen_values = true)]
+    pub direction: Option<[f64; 3]>,
+    /// Unit of all meshes.
+    #[arg(long, value_enum, default_value_t = Unit::Mm)]
+    pub unit: Unit,
+    /// The hand in another posture: the same vertices in the same order.
+    #[arg(long, value_name = "POSED")]
+    pub posed: Option<PathBuf>,
+    /// Threads to work with; all if not given. The result does not depend on it.
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Folder for the results; made if it is not there.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModelName {
+    Layer,
+    Paper,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Unit {
+    Mm,
+    M,
+}
+
+impl Unit {
+    /// Length of the unit, mm.
+    pub fn millimeters(self) -> f64 {
+        match self {
+            Unit::Mm => 1.0,
+            Unit::M => 1000.0,
+        }
+    }
+}
 
 /// Reads, presses, writes, and tells what came out on the terminal.
 ///
@@ -170,4 +242,15 @@ fn report(contact: &Contact, regions: &RegionTable, out: &Path) -> String {
         text += &format!("note: {warning}\n");
     }
     text + &format!("written to {}\n", out.display())
+}
+
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let parts: Result<Vec<f64>, _> = text
+        .split(',')
+        .map(|part| part.trim().parse::<f64>())
+        .collect();
+    match parts.as_deref() {
+        Ok([x, y, z]) => Ok([*x, *y, *z]),
+        _ => Err("expected three numbers such as 0,0,-1".into()),
+    }
 }

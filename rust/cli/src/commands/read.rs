@@ -1,9 +1,10 @@
 //! `thenar read`: what a measurement file or a study holds, its totals checked, and what it does not say.
 
-use crate::arguments::ReadArguments;
 use crate::fault::Fault;
+use clap::Args;
 use std::fmt::{Error, Write};
 use std::path::Path;
+use std::path::PathBuf;
 use thenar_recordings::study::{Data, Study};
 use thenar_recordings::{
     Check, Curve, PressureMap, PressureUnit, ReadOptions, RecordingFile, Source,
@@ -11,6 +12,18 @@ use thenar_recordings::{
 
 /// Most runs of a file that are written out; a map of curves has thousands.
 const MOST_RUNS: usize = 20;
+
+#[derive(Debug, Args)]
+pub struct ReadArguments {
+    /// Export of a pressure mat or indenter, or a folder with study.toml.
+    pub file: PathBuf,
+    /// Which column of a table is what, where the file does not say: travel_mm=-Extension, force=Fz; a minus before the name turns the sign.
+    #[arg(long = "column", value_name = "WHAT=NAME")]
+    pub columns: Vec<String>,
+    /// The one run to read of a workbook or a map of curves.
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<String>,
+}
 
 /// The report on a file or a study's folder.
 ///

@@ -4,7 +4,7 @@ pub mod assembly;
 pub mod bonded_layer;
 pub mod entries;
 pub mod kernel_grid;
-pub mod layer_kernel;
+pub mod kernel_tables;
 pub mod near_field;
 pub mod quantized_rows;
 pub mod stiff_skin_kernel;

@@ -10,7 +10,7 @@ use thenar_surface::SkinDistance;
 
 use super::bonded_layer::Layer;
 use super::kernel_grid::RANGE_IN_THICKNESSES;
-use super::layer_kernel::KernelTables;
+use super::kernel_tables::KernelTables;
 use super::stiff_skin_kernel::StiffSkin;
 use super::tissue_geometry::{Cut, Geometry, Mix};
 use crate::Model;

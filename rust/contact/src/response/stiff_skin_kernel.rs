@@ -1,14 +1,14 @@
 //! The kernel of a layer under a bonded stiff skin, tabulated over distance.
 //!
 //! The kernel of layer and plate (the sibling `plate_on_layer`) is finite at distance 0, so `r` times it is tabulated, not what it lacks of 1/r. For
-//! two places with different transfer functions their geometric mean counts, as in the sibling `layer_kernel`, and the response stays definite.
+//! two places with different transfer functions their geometric mean counts, as in the sibling `kernel_tables`, and the response stays definite.
 
 use libm::j0;
 use rayon::prelude::*;
 
 use super::bonded_layer::Layer;
 use super::kernel_grid::{KNOTS_PER_THICKNESS, RANGE_IN_THICKNESSES, RULE};
-use super::layer_kernel::interpolate;
+use super::kernel_tables::interpolate;
 use super::plate_on_layer::Sheet;
 use super::tissue_geometry::Mix;
 use crate::skin::sites::Sites;
@@ -339,7 +339,7 @@ mod tests {
             ..Sheet::NONE
         };
         let tables = StiffTables::new(&[layer], &[sheet], 200.0);
-        let bare = super::super::layer_kernel::KernelTables::new(&[layer], 200.0);
+        let bare = super::super::kernel_tables::KernelTables::new(&[layer], 200.0);
         for r in [0.5, 1.0, 2.0, 5.0, 12.0] {
             let (found, expected) = (tables.kernel([(0, 0); 2], r), 1.0 / r - bare.psi(0, 0, r));
             assert!(

@@ -149,7 +149,7 @@ fn elliptic(m: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::layer_kernel::KernelTables;
+    use crate::response::kernel_tables::KernelTables;
 
     #[test]
     fn a_disc_is_two_over_its_radius_at_its_middle_and_a_point_far_away() {

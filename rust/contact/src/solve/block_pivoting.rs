@@ -4,9 +4,10 @@
 //! (Kostreva 1978; Judice & Pires 1994). Where the set cycles, or the matrix proves not definite, MPRGP takes over.
 
 use super::conjugate_gradient::{CgEnd, CgLimits, conjugate_gradient};
-use super::lcp::{Accuracy, Compliance, EXACT, ROUGH, Solution};
+use super::lcp::{Accuracy, Compliance, Solution};
 use super::mprgp::mprgp;
 use super::submatrix::Submatrix;
+use super::tolerances::{EXACT, ROUGH};
 use crate::Control;
 
 /// Passes that may go without fewer infeasible entries before single pivots are taken.
@@ -42,7 +43,7 @@ pub fn solve_contact<M: Compliance>(
     let fell_back = scale > 0.0 && !run.pivot(scale, accuracy);
     if fell_back {
         let limits = CgLimits {
-            tolerance: 1e-12 * scale,
+            tolerance: EXACT * scale,
             steps: 200 * n + 2000,
             cancelled: &control.cancelled,
         };

@@ -5,13 +5,7 @@
 use super::row_runs::{Entry, RowRuns};
 use super::submatrix::Submatrix;
 use super::symmetric::Symmetric;
-
-/// Residual from which a level is loose.
-pub(super) const ROUGH: f64 = 1e-4;
-/// Residual at which the set of a large problem is looked at once more: a set that proves wrong later is solved twice.
-const FINE: f64 = 1e-7;
-/// Residual of the certificate.
-pub(super) const EXACT: f64 = 1e-12;
+use super::tolerances::{EXACT, FINE, FIRST, ROUGH};
 
 /// A compliance that contact is solved with, mm/N.
 pub trait Compliance: Symmetric {
@@ -72,7 +66,7 @@ impl Accuracy {
     pub(super) fn levels(self, is_costly: bool) -> &'static [f64] {
         match self {
             Accuracy::Rough if is_costly => &[ROUGH],
-            Accuracy::Rough => &[1e-2, ROUGH],
+            Accuracy::Rough => &[FIRST, ROUGH],
             Accuracy::Full if is_costly => &[FINE, EXACT],
             Accuracy::Full => &[EXACT],
         }

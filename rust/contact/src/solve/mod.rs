@@ -10,6 +10,7 @@ mod lcp;
 mod packed;
 mod submatrix;
 mod symmetric;
+mod tolerances;
 mod mprgp;
 
 pub use block_pivoting::solve_contact;

@@ -7,8 +7,8 @@ use crate::noise::estimate::Noise;
 use crate::observe::measured::{Measured, Phase, Quantity};
 use crate::parameters::parameter::{Kind, Number, Parameter};
 use crate::parameters::priors::{
-    BEYOND_START, COUNTS, DEEPEST_TOUCH, FORCE_ZERO, LIMIT_DEPTH, MODULUS, MOST, MOST_GAIN,
-    MOST_POSITION, THICKNESS, TOUCH, UNKNOWN_TOUCH,
+    BEYOND_START, COUNTS, DEEPEST_TOUCH, FORCE_ZERO, LIMIT_DEPTH, MODULUS, MOST, MOST_POSITION,
+    THICKNESS, TOUCH, UNKNOWN_TOUCH, gain,
 };
 use crate::parameters::sensor_pose::poses;
 
@@ -131,10 +131,6 @@ pub(crate) fn touch(case: Case<'_>, recording: usize) -> Vec<Parameter> {
         }
         Some(between) => vec![one(Kind::Zero(recording), between)],
     }
-}
-
-pub(crate) fn gain(kind: Kind, sd: f64) -> Parameter {
-    Parameter::about(kind, (sd, MOST_GAIN), 1e-4)
 }
 
 /// Credible values of a number of a material, wider where the study starts outside of them.

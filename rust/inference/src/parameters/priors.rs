@@ -1,6 +1,7 @@
 //! The table of priors: bounds and standard deviations of everything that a fit of the mesh model or of the surrogate may change.
 
 use crate::forward::tables::form_ways::WAYS;
+use crate::parameters::parameter::{Kind, Parameter};
 
 /// Credible shear moduli of skin and what lies under it, MPa: from 0.4 kPa (hypodermis as C10 of 0.42 kPa gives 0.84; half of it) to 0.74 MPa
 /// (subcutaneous Young's modulus of 2.2 MPa at 30 N over 3, Isogai 2022).
@@ -34,6 +35,12 @@ pub const MOST: f64 = 6.0;
 
 /// Gains, and the form of the mesh model, may lie this many standard deviations off.
 pub const MOST_GAIN: f64 = 5.0;
+
+/// Prior of a gain about 1, of the instrument or of one recording: the standard deviation `sd`, a part of 1, is the data sheet's, or what
+/// repeats scatter by in proportion ([`crate::noise`]).
+pub(crate) fn gain(kind: Kind, sd: f64) -> Parameter {
+    Parameter::about(kind, (sd, MOST_GAIN), 1e-4)
+}
 
 /// Standard deviation of where a mat lies, mm, where the data sheet does not say; of where a scan lies that was laid on the skin.
 pub const POSITION: f64 = 1.0;
