@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::before_after_plot::plot;
 use crate::comparison_page::page;
+use crate::plots::before_after_plot::plot;
 use crate::svg::escaped;
 use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use crate::maps::{self, Mark};
-use crate::residual_curves::{Against, curve};
+use crate::plots::residual_curves::{Against, curve};
+use crate::plots::trend_bars;
 use crate::svg::escaped;
-use crate::{prints, tables, trend_bars};
+use crate::{prints, tables};
 use thenar_comparison::Place;
 use thenar_comparison::Scanned;
 use thenar_comparison::Trend;

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::plots::trend_bars;
 use crate::svg::escaped;
-use crate::trend_bars;
 use thenar_comparison::PrintRegion;
 use thenar_comparison::Printed;
 use thenar_comparison::{Comparison, RecordingComparison};
