@@ -148,7 +148,7 @@ def _fit(context, strength):
         found = fitting.search_all(fit, search.Asked(*fitting.sums_of(strength.upper())))[0].grasp
     else:
         found = fitting.compute(fit)
-    fitting.finish(context, fit, found, "HAND")
+    fitting.finish(context, fit, found, "AUTO")
 
 
 def _stiffen(hand, factor):

@@ -1,17 +1,21 @@
 """The order of a grasp fit in a scene: read hand and product, fit, write angles and places back."""
 
 import re
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
 import numpy as np
+from mathutils import Matrix
 
 from .. import native, workflow
 from ..grasp_choices import facts
 from ..grasp_fit import fitter, walls
 from ..grasp_fit.task import Goal, Task
 from ..hand import capsules, pads
-from ..hand_bones import reading, roles
+from ..hand_bones import bodies, channels, reading, roles
 from ..hand_look import normals
+from ..hand_shape import framing
+from ..product_objects import bringing
 from ..scene import checks, mesh, read, regions, sizes, units
 from . import force, polishing, search, settings, settling
 from .stage import stage_of
@@ -31,8 +35,9 @@ SETTLE_ROUNDS = 10
 MOST_FRICTION = 99.0
 """A grasp that no friction holds is kept with this one: a property of Blender holds no infinity that is shown well."""
 
-MOVES = ("HAND", "PRODUCT", "FINGERS")
-"""What a fit may carry through the world; with FINGERS hand and product both stay."""
+MOVES = ("AUTO", "HAND", "PRODUCT", "FINGERS")
+"""What a fit may carry through the world: AUTO the product where the hand is part of a body, else the hand; with
+FINGERS hand and product both stay."""
 
 
 @dataclass(frozen=True)
@@ -200,26 +205,56 @@ def use(context, index):
         raise checks.Refusal("the hand's bones changed since the grasps were found; press Grasp again")
     stage = stage_of(fit)
     grasp = stage.carried(fitter.Grasp(angles, place, {}, {}, 0.0, 0, 0.0, (), stage.gauge))
-    finish(context, fit, grasp, "HAND")
+    finish(context, fit, grasp, "AUTO")
     stored.shown = index
     return True
 
 
+def moves_of(context, hand_object, parts, asked="AUTO"):
+    """Which of `MOVES` a fit of these objects makes. Raises `checks.Refusal` for a product that cannot be moved."""
+    if asked == "AUTO":
+        asked = "PRODUCT" if bodies.is_part_of_body(context, hand_object, parts) else "HAND"
+    if asked == "PRODUCT":
+        checks.check_product(context, parts, hand_object)
+        bringing.check(context, parts, (hand_object, reading.armature_of(hand_object)))
+    return asked
+
+
 def finish(context, fit, found, moves):
-    """Write a grasp into the scene: bones, and the place of hand or product. Raises `checks.Refusal`."""
+    """Write a grasp into the scene: bones, and the place of hand or product; all of it or nothing.
+
+    Raises `checks.Refusal`.
+    """
     hand_name, armature_name, part_names = fit.names
     objects = context.scene.objects
     missing = [name for name in (hand_name, armature_name, *part_names) if name not in objects]
     if missing:
         raise checks.Refusal(f"{missing[0]!r} was removed while the grasp was fitted; fit again")
-    armature = objects[armature_name]
+    hand, armature = objects[hand_name], objects[armature_name]
+    parts = [objects[name] for name in part_names]
+    moves = moves_of(context, hand, parts, moves)
     scale = units.mm_per_unit(context.scene)
-    reading.write_angles(armature, fit.hand.rig, fit.hand.joints, found.angles)
+    back = Matrix(reading.in_units(np.linalg.inv(found.place), scale).tolist())
+    goals = [(part, back @ part.matrix_world) for part in parts]
+    with ExitStack() as undo:
+        undo.callback(context.view_layer.update)
+        for bone in [armature.pose.bones[fit.hand.rig.names[number]] for number in fit.hand.joints.bones.values()]:
+            undo.callback(channels.restore, bone, channels.kept(bone))
+        reading.write_angles(armature, fit.hand.rig, fit.hand.joints, found.angles)
+        if moves == "PRODUCT":
+            context.view_layer.update()
+            bringing.bring(context, bringing.carriers(parts, (hand, armature)), goals, undo)
+        undo.pop_all()
     if moves == "HAND":
         reading.move_object(armature, found.place, scale)
-        if objects[hand_name].parent != armature and reading.top_of(objects[hand_name]) != reading.top_of(armature):
-            reading.move_object(objects[hand_name], found.place, scale)
-    elif moves == "PRODUCT":
-        for top in {reading.top_of(objects[name]) for name in part_names}:
-            reading.move_object(top, np.linalg.inv(found.place), scale)
+        if hand.parent != armature and reading.top_of(hand) != reading.top_of(armature):
+            reading.move_object(hand, found.place, scale)
     context.view_layer.update()
+
+
+def bring_into_view(context):
+    """Frame hand and product in every 3D view that does not show them well; of a body its hand alone."""
+    settings = context.scene.thenar
+    parts = workflow.product_parts(settings)
+    if settings.hand is not None and parts:
+        framing.frame_lost(context, lambda: bodies.hand_points(context, settings.hand), parts)

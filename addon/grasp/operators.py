@@ -19,6 +19,7 @@ STRENGTHS = (
     ("CUSTOM", "Custom Depths", "Depths entered below; the forces follow from them"),
 )
 MOVES = (
+    ("AUTO", "Automatic", "The hand goes to the product; where it is part of a body, the product comes to the hand"),
     ("HAND", "Hand", "The hand goes to the product"),
     ("PRODUCT", "Product", "The product comes to the hand"),
     ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
@@ -72,7 +73,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     proximal_mm: _depth("proximal")
     palm_mm: _depth("palm")
     place: EnumProperty(name="Start", items=PLACES, default="LAY")
-    moves: EnumProperty(name="Moves", items=MOVES, default="HAND")
+    moves: EnumProperty(name="Moves", items=MOVES, default="AUTO")
     digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
@@ -104,14 +105,15 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         parts = workflow.product_parts(settings)
         wish = self._wish()
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
+        moves = fitting.moves_of(context, settings.hand, parts, self.moves)
         if fitting.is_searched(wish) and fitting.can_search(fit):
             asked = search.Asked(*fitting.sums_of(self.strength, self.force_n), END_OF[self.end], self.kind)
             found = yield partial(fitting.search_all, fit, asked)
-            fitting.finish(context, fit, found[0].grasp, self.moves)
+            fitting.finish(context, fit, found[0].grasp, moves)
             fitting.keep(context, fit, found)
             return found
         found = yield partial(fitting.compute, fit)
-        fitting.finish(context, fit, found, self.moves)
+        fitting.finish(context, fit, found, moves)
         return found
 
     def _wish(self):
@@ -127,6 +129,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         return fitter.Wish(depths, digits, placed, free_mm)
 
     def _report(self, context, found):
+        fitting.bring_into_view(context)
         if isinstance(found, list):
             return self._report_best(context, found)
         for text in found.warnings:
@@ -174,11 +177,12 @@ grip asked for"""
         wish = fitter.Wish(pads.FIRM_MM, is_placed=True)
         fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish, 1.0)
         found = yield partial(fitting.settle_here, fit, asked.weight_n, asked.total_n or None)
-        fitting.finish(context, fit, found[0], "HAND")
+        fitting.finish(context, fit, found[0], "AUTO")
         asked.shown = -1
         return found
 
     def _report(self, context, found):
+        fitting.bring_into_view(context)
         _, state, friction = found
         level, text = words.held(
             state, (friction, context.scene.thenar_grasps.friction), context.scene.thenar_grasps.total_n or None
@@ -206,6 +210,7 @@ class THENAR_OT_use_grasp(bpy.types.Operator):
         done = running.attempt(self, fitting.use, context, self.index)
         if done is None:
             return {"CANCELLED"}
+        fitting.bring_into_view(context)
         words = "Grasp {number} of {count}; solve to press it"
         count = len(context.scene.thenar_grasps.found)
         self.report({"INFO"}, languages.report(words, number=self.index + 1, count=count))

@@ -36,7 +36,7 @@ def read_rig(context, hand):
     Raises `RigError` or `roles.RoleError` with a sentence for the user.
     """
     armature = armature_of(hand)
-    bones = _ordered(armature)
+    bones = ordered(armature)
     bone_names = tuple(bone.name for bone in bones)
     parents = np.array([bone_names.index(bone.parent.name) if bone.parent else -1 for bone in bones])
     weights = _weights(context, hand, bones)
@@ -63,7 +63,7 @@ def skeleton_of(context, hand):
 
     Raises `RigError` if the mesh has no armature or no vertex group of a bone.
     """
-    bones = _ordered(armature_of(hand))
+    bones = ordered(armature_of(hand))
     bone_names = tuple(bone.name for bone in bones)
     parents = np.array([bone_names.index(bone.parent.name) if bone.parent else -1 for bone in bones])
     heads = np.array([bone.head_local for bone in bones], dtype=np.float64)
@@ -178,11 +178,16 @@ def read_angles(armature, rig, joints):
 
 def move_object(obj, motion_mm, scale):
     """Carry an object through the world by a (4, 4) motion in mm; `scale` is mm per Blender unit."""
+    top = top_of(obj)
+    top.matrix_world = Matrix(in_units(motion_mm, scale).tolist()) @ top.matrix_world
+    bpy.context.view_layer.update()
+
+
+def in_units(motion_mm, scale):
+    """A (4, 4) motion in mm as one in Blender units."""
     motion = motion_mm.copy()
     motion[:3, 3] /= scale
-    top = top_of(obj)
-    top.matrix_world = Matrix(motion.tolist()) @ top.matrix_world
-    bpy.context.view_layer.update()
+    return motion
 
 
 def top_of(obj):
@@ -192,7 +197,7 @@ def top_of(obj):
     return obj
 
 
-def _ordered(armature):
+def ordered(armature):
     """Bones with parents before children."""
     out = []
     waiting = [bone for bone in armature.data.bones if bone.parent is None]

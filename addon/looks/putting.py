@@ -12,6 +12,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ..hand_bones import bodies
 from ..operators import display
 from ..picture_stage import laying, views
 from ..product_objects import copies
@@ -55,7 +56,7 @@ def put(context, kind):
     try:
         home = bpy.data.collections.new(COLLECTION)
         context.scene.collection.children.link(home)
-        hidden, boxed = _put_away(context, kind, [hand, *parts])
+        hidden, boxed = _put_away(context, found.stands_for(kind), [hand, *parts])
         home[_STATE] = json.dumps({"kind": kind, "hidden": hidden, "boxed": boxed})
         shown = _stand_ins(context, kind, (hand, parts, found), home)
         return View(found.turn(kind), shown)
@@ -127,12 +128,14 @@ def renew(context):
 
 @dataclass
 class _Frame:
-    """The hand as posed and as opened, and the opened hand's axes (thumb, fingers, palm) in the world."""
+    """The hand as posed and as opened, and the opened hand's axes (thumb, fingers, palm) in the world. Of a body both
+    are its hand alone, `is_cut`."""
 
     hand: laying.Solid
     opened: laying.Solid
     axes: np.ndarray
     posed: np.ndarray
+    is_cut: bool
 
     @classmethod
     def of(cls, context, hand, kind):
@@ -140,19 +143,27 @@ class _Frame:
 
         Whole only where the look `kind` shows them: else Blender would subdivide one hand more, which takes seconds.
         """
-        posed = laying.still(context, hand, "hand", True) if kind == APART else laying.glimpse(context, hand, "hand")
+        is_cut = bodies.is_part_of_body(context, hand, display.workflow.product_parts(context.scene.thenar))
+        is_whole = kind == APART or is_cut
+        posed = laying.still(context, hand, "hand", True) if is_whole else laying.glimpse(context, hand, "hand")
         opened = laying.opened(context, hand, frozenset() if kind == OPENED else _SUBDIVIDING)
+        for solid in (posed, opened) if is_cut else ():
+            bodies.cut_out(context, hand, solid.mesh)
         scale = units.mm_per_unit(context.scene)
         subject = laying.Subject(posed, opened, [], [], scale)
         axes = views.opened_frame(context, subject)
         start, end = opened.points_mm(scale), posed.points_mm(scale)
         count = min(len(start), len(end))
-        return cls(posed, opened, axes, (views.rotation(start[:count], end[:count]) @ axes.T).T)
+        return cls(posed, opened, axes, (views.rotation(start[:count], end[:count]) @ axes.T).T, is_cut)
 
     def turn(self, kind):
         """The turn (3, 3) of the view on that look, fingers up."""
         _, up, away = self.axes if kind == OPENED else self.posed
         return views.turn(-away if kind == PRODUCT else away, up)
+
+    def stands_for(self, kind):
+        """The look whose real objects are put away: with a body's hand cut out, none of them stays in sight."""
+        return OPENED if self.is_cut and kind in {GLASS, PALM} else kind
 
     def forget(self):
         """Remove the meshes that nothing wears."""
@@ -175,9 +186,11 @@ def _stand_ins(context, kind, scene, home):
             stand_in.data.materials.append(_glass())
             for name in [each.name for each in stand_in.data.color_attributes]:
                 stand_in.data.color_attributes.remove(stand_in.data.color_attributes[name])
+        if found.is_cut:
+            hand = _stand_in(home, hand, found.hand.mesh, Matrix(found.hand.matrix))
         return _corners([hand])
     shown = [_stand_in(home, hand, found.hand.mesh, Matrix(found.hand.matrix))]
-    half_turn = _half_turn(found.posed, _corners([hand]), _corners(parts))
+    half_turn = _half_turn(found.posed, _corners(shown if found.is_cut else [hand]), _corners(parts))
     shown += [_stand_in(home, part, still(context, part), half_turn @ part.matrix_world) for part in parts]
     return _corners(shown)
 

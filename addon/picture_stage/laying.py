@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from .. import names
+from ..hand_bones import bodies
 from ..operators import display
 from ..ownership import own
 from ..scene import mesh, units
@@ -97,8 +98,11 @@ def gather(context):
         for obj in context.scene.objects
         if obj.type in SURFACES and obj not in taken and _top(obj) in tops and not obj.hide_render and obj.visible_get()
     ]
-    posed = still(context, hand, "hand", True)
-    return Subject(posed, opened(context, hand), product, others, units.mm_per_unit(context.scene))
+    shown = [still(context, hand, "hand", True), opened(context, hand)]
+    if bodies.is_part_of_body(context, hand, display.workflow.product_parts(settings)):
+        for solid in shown:
+            bodies.cut_out(context, hand, solid.mesh)
+    return Subject(*shown, product, others, units.mm_per_unit(context.scene))
 
 
 def _product(context, obj):
