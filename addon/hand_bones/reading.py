@@ -1,5 +1,7 @@
 """A hand and its armature read from Blender as a `Rig`, and angles written back to the bones."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from mathutils import Matrix
@@ -10,12 +12,8 @@ from ..rigs.chains import Skeleton
 from ..rigs.recognise import recognise
 from ..scene import mesh, units
 from ..scene.regions import group_weights
-from . import bonemap, rig_axes, roles
+from . import bonemap, held, rig_axes, roles
 from .rig_axes import RigError
-
-FREE_CONSTRAINTS = {"LIMIT_ROTATION", "LIMIT_LOCATION", "LIMIT_SCALE", "LIMIT_DISTANCE"}
-"""Constraints that may stand on a bone the fitter turns; any other would overrule it."""
-
 
 def armature_of(hand):
     """The armature object that deforms `hand`.
@@ -31,7 +29,8 @@ def armature_of(hand):
 def read_rig(context, hand):
     """`(rig, role_names)` of a hand mesh; rig space is the armature's, world in mm.
 
-    Bones with a role stand at rest in `rig.basis`; all others keep the pose they have now.
+    Bones with a role stand at rest in `rig.basis`; all others keep the pose they have now. Where constraints hold the
+    fingers, the bones of a digit hang on each other in `rig`, as they move.
 
     Raises `RigError` or `roles.RoleError` with a sentence for the user.
     """
@@ -55,6 +54,12 @@ def read_rig(context, hand):
             basis[bone_names.index(name)] = np.eye(4)
     axes = np.tile(np.eye(3), (len(bones), 1, 1))
     rig = Rig(bone_names, parents, rest, axes, basis, vertices, weights, world)
+    digits = held.digits_of(armature, stored)
+    if held.is_held(armature, stored):
+        rig = held.linked(rig, stored)
+        rig = replace(rig, basis=held.evaluated_basis(armature, rig, digits))
+    elif held.is_led(armature, stored):
+        rig = replace(rig, basis=held.evaluated_basis(armature, rig, digits))
     return rig_axes.with_axes(rig, stored, armature.thenar_bones.axis), stored
 
 
@@ -106,17 +111,21 @@ def _recognised(armature, skeleton):
 
 
 def read_free_rig(context, hand):
-    """`read_rig` of a hand whose bones are to be turned; raises `RigError` where a constraint would overrule that."""
+    """`read_rig` of a hand whose bones are to be turned; raises `RigError` where they cannot be."""
     rig, stored = read_rig(context, hand)
     _check_joined(rig, stored)
-    bones = armature_of(hand).pose.bones
-    for name in filter(rig.names.__contains__, stored.values()):
-        for constraint in bones[name].constraints:
-            if constraint.type not in FREE_CONSTRAINTS and not constraint.mute and constraint.influence > 0.0:
-                raise RigError(
-                    f"bone {name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
-                )
+    armature = armature_of(hand)
+    if held.is_held(armature, stored):
+        held.check_own(armature)
     return rig, stored
+
+
+def check_unheld(armature, stored):
+    """Raises `RigError` where a constraint would overrule keys on the fingers."""
+    for bone, constraint in held.holders(armature, held.digits_of(armature, stored)):
+        raise RigError(
+            f"bone {bone.name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
+        )
 
 
 def _check_joined(rig, stored):
@@ -155,7 +164,13 @@ def tails(rig, armature):
 
 
 def write_angles(armature, rig, joints, angles):
-    """Turn every bone that has a role; its location and scale are reset."""
+    """Turn every bone that has a role; its location and scale are reset. Constraints that hold fingers are muted.
+
+    Raises `RigError`, with nothing changed, where such a finger cannot be posed.
+    """
+    if held.is_held(armature, _named(rig, joints)):
+        held.write(armature, rig, joints, angles)
+        return
     local = local_rotations(rig, angles)
     for role, bone in joints.bones.items():
         if role == roles.WRIST:
@@ -168,8 +183,12 @@ def write_angles(armature, rig, joints, angles):
 def read_angles(armature, rig, joints):
     """Turns (b, 3) of the bones that have a role, radians, as the armature is posed now."""
     out = np.zeros((len(rig.names), 3))
+    if held.is_held(armature, _named(rig, joints)):
+        basis = held.evaluated_basis(armature, rig, ())
+    else:
+        basis = [armature.pose.bones[name].matrix_basis for name in rig.names]
     for bone in joints.bones.values():
-        turn = np.array(armature.pose.bones[rig.names[bone]].matrix_basis, dtype=np.float64)[:3, :3]
+        turn = np.array(basis[bone], dtype=np.float64)[:3, :3]
         own = rig.axes[bone].T @ (turn / np.linalg.norm(turn, axis=0)) @ rig.axes[bone]
         twist = np.arcsin(np.clip(own[0, 2], -1.0, 1.0))
         out[bone] = np.arctan2(-own[1, 2], own[2, 2]), twist, np.arctan2(-own[0, 1], own[0, 0])
@@ -181,6 +200,10 @@ def move_object(obj, motion_mm, scale):
     top = top_of(obj)
     top.matrix_world = Matrix(in_units(motion_mm, scale).tolist()) @ top.matrix_world
     bpy.context.view_layer.update()
+
+
+def _named(rig, joints):
+    return {role: rig.names[bone] for role, bone in joints.bones.items()}
 
 
 def in_units(motion_mm, scale):

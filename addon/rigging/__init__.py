@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import joining, next_step, operators, overlay, region_map, regions
+from . import controls, joining, next_step, operators, overlay, region_map, regions
 
-CLASSES = (*operators.CLASSES, *joining.CLASSES, *regions.CLASSES, *region_map.CLASSES)
+CLASSES = (*operators.CLASSES, *joining.CLASSES, *controls.CLASSES, *regions.CLASSES, *region_map.CLASSES)
 
 
 def register():

@@ -1,7 +1,8 @@
-"""The button that a rigged hand needs before a grasp, in the main panel: find its bones, or join loose ones."""
+"""The button that a rigged hand needs before a grasp, in the main panel: find its bones, or join loose ones; and after
+one, where a control rig lost its fingers to it, the way back."""
 
 from ..hand.panel import armature_of
-from ..hand_bones import bonemap
+from ..hand_bones import bonemap, held
 from ..panels import main, start, text
 from . import joining
 
@@ -16,7 +17,10 @@ def draw(layout, context):
         text.faint(layout, context, "Which bone is which finger's is not known yet:")
         _big(layout, "thenar.guess_bones", "VIEWZOOM")
         return False
-    if not joining.loose(armature.data.bones, known):
+    if held.is_muted(armature):
+        text.faint(layout, context, "The fingers keep the grasp; their controls do not move them:")
+        layout.operator("thenar.back_to_controls", icon="LOOP_BACK")
+    if not joining.loose(armature, known):
         return False
     text.faint(layout, context, "The fingers' bones do not hang on each other, so that they cannot bend yet:")
     _big(layout, "thenar.join_bones", "CONSTRAINT_BONE")

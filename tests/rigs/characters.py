@@ -3,8 +3,11 @@
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
-from thenar_blender.hand import build, products
+from thenar_blender.grasp import fitting
+from thenar_blender.grasp_fit import fitter
+from thenar_blender.hand import build, pads, products
 from thenar_blender.hand_look import studio
+from thenar_blender.product_objects.parts import product_parts
 
 HEIGHT, SHOULDER, ELBOW = 1.75, (-0.02, -0.62, 0.0), (0.0, -0.3, 0.0)
 """Metres; places in the hand's space, whose fingers point to +Y and whose wrist is at the origin. The arm's length is
@@ -67,3 +70,27 @@ def handle(name="Handle", at=(1.0, 0.5, 0.2)):
     bpy.context.scene.thenar.product = product
     bpy.context.view_layer.update()
     return product
+
+
+def world_of(obj):
+    return np.array(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world, dtype=np.float64)
+
+
+def skin_mm(obj):
+    """World positions (n, 3) of the evaluated mesh, mm."""
+    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    flat = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", flat)
+    world = world_of(obj)
+    return 1000.0 * (flat.reshape(-1, 3) @ world[:3, :3].T + world[:3, 3])
+
+
+def grasp(hand, moves="AUTO", digits=None):
+    """A single light fit of hand and product of the scene, written by `moves`. Returns the fit and the grasp."""
+    context = bpy.context
+    context.view_layer.update()
+    parts = product_parts(context.scene.thenar)
+    fit = fitting.prepare(context, hand, parts, fitter.Wish(pads.LIGHT_MM, digits))
+    found = fitting.compute(fit)
+    fitting.finish(context, fit, found, moves)
+    return fit, found

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import thenar
-from characters import box, character, handle
+from characters import box, character, grasp, handle, skin_mm, world_of
 from mathutils import Matrix
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import fitter, walls
@@ -12,37 +12,12 @@ from thenar_blender.hand import build, pads
 from thenar_blender.hand_bones import bodies
 from thenar_blender.hand_shape import framing
 from thenar_blender.looks import putting
-from thenar_blender.product_objects.parts import product_parts
 from thenar_blender.scene.checks import Refusal
 
 
 @pytest.fixture(scope="module")
 def made():
     return thenar.hand()
-
-
-def world_of(obj):
-    return np.array(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world, dtype=np.float64)
-
-
-def skin_mm(obj):
-    """World positions (n, 3) of the evaluated mesh, mm."""
-    mesh = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    flat = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.attributes["position"].data.foreach_get("vector", flat)
-    world = world_of(obj)
-    return 1000.0 * (flat.reshape(-1, 3) @ world[:3, :3].T + world[:3, 3])
-
-
-def grasp(hand, moves="AUTO", digits=None):
-    """A single light fit of hand and product of the scene, written by `moves`. Returns the fit and the grasp."""
-    context = bpy.context
-    context.view_layer.update()
-    parts = product_parts(context.scene.thenar)
-    fit = fitting.prepare(context, hand, parts, fitter.Wish(pads.LIGHT_MM, digits))
-    found = fitting.compute(fit)
-    fitting.finish(context, fit, found, moves)
-    return fit, found
 
 
 def between(first, second):
