@@ -12,7 +12,7 @@ from ..grasp_choices import facts
 from ..grasp_fit import fitter, walls
 from ..grasp_fit.task import Goal, Task
 from ..hand import capsules, pads
-from ..hand_bones import bodies, channels, held, reading, roles
+from ..hand_bones import bodies, channels, constrained, reading, roles
 from ..hand_look import normals
 from ..hand_shape import framing
 from ..product_objects import bringing
@@ -237,7 +237,7 @@ def finish(context, fit, found, moves):
     back = Matrix(reading.in_units(np.linalg.inv(found.place), scale).tolist())
     goals = [(part, back @ part.matrix_world) for part in parts]
     with ExitStack() as undo:
-        undo.callback(held.reset, armature, held.state_of(armature))
+        undo.callback(constrained.reset, armature, constrained.state_of(armature))
         for bone in [armature.pose.bones[fit.hand.rig.names[number]] for number in fit.hand.joints.bones.values()]:
             undo.callback(channels.restore, bone, channels.kept(bone))
         reading.write_angles(armature, fit.hand.rig, fit.hand.joints, found.angles)

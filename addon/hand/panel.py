@@ -3,7 +3,7 @@
 import bpy
 
 from .. import tabs
-from ..hand_bones import held, roles
+from ..hand_bones import constrained, roles
 from ..hand_shape import thumb_range
 from ..languages import bone, iface
 from ..panels.main import Tab, has_hand
@@ -60,7 +60,7 @@ class THENAR_PT_bones(Tab, bpy.types.Panel):
         for digit in ("thumb", *roles.FINGERS):
             selected.operator("thenar.assign_digit", text=digit.capitalize()).digit = digit
         layout.operator("thenar.join_bones", icon="CONSTRAINT_BONE")
-        if held.is_muted(armature):
+        if constrained.is_muted(armature):
             layout.operator("thenar.back_to_controls", icon="LOOP_BACK")
         region_row = layout.row(align=True)
         region_row.operator("thenar.regions_from_bones", icon="GROUP_VERTEX")

@@ -34,7 +34,7 @@ def _properties():
     out["show_digits"] = BoolProperty(
         name="Show Digits", description="Draw the assigned digits as colored lines in the 3D view"
     )
-    out["held"] = StringProperty()  # what `held` muted, as JSON
+    out["muted"] = StringProperty()  # what `constrained` muted, as JSON
     return out
 
 

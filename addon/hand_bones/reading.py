@@ -12,8 +12,9 @@ from ..rigs.chains import Skeleton
 from ..rigs.recognise import recognise
 from ..scene import mesh, units
 from ..scene.regions import group_weights
-from . import bonemap, held, rig_axes, roles
+from . import bonemap, constrained, rig_axes, roles
 from .rig_axes import RigError
+
 
 def armature_of(hand):
     """The armature object that deforms `hand`.
@@ -54,12 +55,12 @@ def read_rig(context, hand):
             basis[bone_names.index(name)] = np.eye(4)
     axes = np.tile(np.eye(3), (len(bones), 1, 1))
     rig = Rig(bone_names, parents, rest, axes, basis, vertices, weights, world)
-    digits = held.digits_of(armature, stored)
-    if held.is_held(armature, stored):
-        rig = held.linked(rig, stored)
-        rig = replace(rig, basis=held.evaluated_basis(armature, rig, digits))
-    elif held.is_led(armature, stored):
-        rig = replace(rig, basis=held.evaluated_basis(armature, rig, digits))
+    digits = constrained.digits_of(armature, stored)
+    if constrained.is_constrained(armature, stored):
+        rig = constrained.linked(rig, stored)
+        rig = replace(rig, basis=constrained.evaluated_basis(armature, rig, digits))
+    elif constrained.is_led(armature, stored):
+        rig = replace(rig, basis=constrained.evaluated_basis(armature, rig, digits))
     return rig_axes.with_axes(rig, stored, armature.thenar_bones.axis), stored
 
 
@@ -115,14 +116,14 @@ def read_free_rig(context, hand):
     rig, stored = read_rig(context, hand)
     _check_joined(rig, stored)
     armature = armature_of(hand)
-    if held.is_held(armature, stored):
-        held.check_own(armature)
+    if constrained.is_constrained(armature, stored):
+        constrained.check_own(armature)
     return rig, stored
 
 
-def check_unheld(armature, stored):
+def check_unconstrained(armature, stored):
     """Raises `RigError` where a constraint would overrule keys on the fingers."""
-    for bone, constraint in held.holders(armature, held.digits_of(armature, stored)):
+    for bone, constraint in constrained.holders(armature, constrained.digits_of(armature, stored)):
         raise RigError(
             f"bone {bone.name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
         )
@@ -168,8 +169,8 @@ def write_angles(armature, rig, joints, angles):
 
     Raises `RigError`, with nothing changed, where such a finger cannot be posed.
     """
-    if held.is_held(armature, _named(rig, joints)):
-        held.write(armature, rig, joints, angles)
+    if constrained.is_constrained(armature, _named(rig, joints)):
+        constrained.write(armature, rig, joints, angles)
         return
     local = local_rotations(rig, angles)
     for role, bone in joints.bones.items():
@@ -183,8 +184,8 @@ def write_angles(armature, rig, joints, angles):
 def read_angles(armature, rig, joints):
     """Turns (b, 3) of the bones that have a role, radians, as the armature is posed now."""
     out = np.zeros((len(rig.names), 3))
-    if held.is_held(armature, _named(rig, joints)):
-        basis = held.evaluated_basis(armature, rig, ())
+    if constrained.is_constrained(armature, _named(rig, joints)):
+        basis = constrained.evaluated_basis(armature, rig, ())
     else:
         basis = [armature.pose.bones[name].matrix_basis for name in rig.names]
     for bone in joints.bones.values():

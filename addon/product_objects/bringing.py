@@ -31,9 +31,7 @@ def check(context: Context, parts: Sequence[Object], stays: Sequence[Object]) ->
         bring(context, carriers(parts, stays), [(part, trial @ part.matrix_world) for part in parts], undo)
 
 
-def bring(
-    context: Context, moved: Sequence[Object], goals: Sequence[tuple[Object, Matrix]], undo: ExitStack
-) -> None:
+def bring(context: Context, moved: Sequence[Object], goals: Sequence[tuple[Object, Matrix]], undo: ExitStack) -> None:
     """Bring every part to its world matrix, all by one motion of the `carriers`; `undo` gets what takes it back.
 
     Raises `Refusal` for parts that are linked, keyed, or held by a constraint or driver.

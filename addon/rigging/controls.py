@@ -4,7 +4,7 @@ import bpy
 
 from .. import languages
 from ..hand.panel import armature_of
-from ..hand_bones import held
+from ..hand_bones import constrained
 from ..operators import polling
 
 
@@ -19,12 +19,12 @@ and the fingers follow them"""
     @classmethod
     def poll(cls, context):
         armature = armature_of(context)
-        is_muted = armature is not None and held.is_muted(armature)
+        is_muted = armature is not None and constrained.is_muted(armature)
         problem = "" if is_muted else "no constraint of the hand's bones was muted for a grasp"
         return polling.allows(cls, problem, polling.wrong_mode(context), polling.busy())
 
     def execute(self, context):
-        count = held.back(armature_of(context))
+        count = constrained.back(armature_of(context))
         context.view_layer.update()
         self.report({"INFO"}, languages.report("{count} constraints hold the fingers again", count=count))
         return {"FINISHED"}

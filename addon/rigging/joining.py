@@ -4,7 +4,7 @@ import bpy
 
 from .. import languages
 from ..hand.operators import can_pose
-from ..hand_bones import bonemap, held, reading, roles
+from ..hand_bones import bonemap, constrained, reading, roles
 from ..operators import running
 from ..rigs.digits import segments_of
 from ..scene.checks import Refusal
@@ -21,7 +21,7 @@ def join(context, hand):
     known = bonemap.get_map(armature)
     if armature.library is not None or armature.data.library is not None:
         raise Refusal(f"the armature {armature.name!r} is linked from another file; make it local first")
-    if held.is_held(armature, known):
+    if constrained.is_constrained(armature, known):
         raise Refusal(
             f"constraints of a control rig hold the fingers of {armature.name!r}, which need no joining; grasp or pose "
             "the hand as it is"
@@ -50,7 +50,7 @@ def join(context, hand):
 
 def loose(armature, known):
     """Which bones (names) of the assigned digits hang on nothing of their digit's; none where constraints hold them."""
-    if held.is_held(armature, known):
+    if constrained.is_constrained(armature, known):
         return []
     bones = armature.data.bones
     links = [(bones.get(name), bones.get(before)) for name, before in _links(known)]

@@ -2,7 +2,7 @@
 one, where a control rig lost its fingers to it, the way back."""
 
 from ..hand.panel import armature_of
-from ..hand_bones import bonemap, held
+from ..hand_bones import bonemap, constrained
 from ..panels import main, start, text
 from . import joining
 
@@ -17,7 +17,7 @@ def draw(layout, context):
         text.faint(layout, context, "Which bone is which finger's is not known yet:")
         _big(layout, "thenar.guess_bones", "VIEWZOOM")
         return False
-    if held.is_muted(armature):
+    if constrained.is_muted(armature):
         text.faint(layout, context, "The fingers keep the grasp; their controls do not move them:")
         layout.operator("thenar.back_to_controls", icon="LOOP_BACK")
     if not joining.loose(armature, known):

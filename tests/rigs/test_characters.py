@@ -157,7 +157,7 @@ def _driven(product):
     [(_keyed, "has keyframes of its place"), (_constrained, "held by a constraint"), (_driven, "held by a constraint")],
     ids=["keys", "constraint", "driver"],
 )
-def test_a_held_product_is_refused_with_a_remedy(blender, made, hold, words):
+def test_a_constrained_product_is_refused_with_a_remedy(blender, made, hold, words):
     """By the button before anything is computed; neither the product nor a finger moves."""
     hand, rig = character(made)
     product = handle()
@@ -171,7 +171,7 @@ def test_a_held_product_is_refused_with_a_remedy(blender, made, hold, words):
     assert all(np.array_equal(bone.matrix, was) for bone, was in zip(rig.pose.bones, fingers, strict=True))
 
 
-def test_a_product_that_was_held_meanwhile_leaves_the_hand_as_it_was(blender, made):
+def test_a_product_that_was_constrained_meanwhile_leaves_the_hand_as_it_was(blender, made):
     hand, rig = character(made)
     product = handle()
     fit = fitting.prepare(bpy.context, hand, [product], fitter.Wish(pads.LIGHT_MM))

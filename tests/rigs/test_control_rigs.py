@@ -1,4 +1,4 @@
-"""Hands whose fingers a control rig holds: posed with its constraints muted, and given back; Rigify's own among them."""
+"""Hands whose fingers a control rig holds: posed with its constraints muted, and given back; also Rigify's own."""
 
 import bpy
 import numpy as np
@@ -9,7 +9,7 @@ from mathutils import Matrix
 from thenar_blender.grasp_fit import walls
 from thenar_blender.hand import build, pads
 from thenar_blender.hand.skinning import pose_matrices, skin
-from thenar_blender.hand_bones import held, posing, reading, roles
+from thenar_blender.hand_bones import constrained, posing, reading, roles
 from thenar_blender.hand_bones.rig_axes import RigError
 from thenar_blender.rigging import joining
 
@@ -75,7 +75,7 @@ def assert_same(first, second, far=1e-5):
         assert np.abs(matrix - second[name]).max() < far, name
 
 
-def test_a_control_rig_is_read_where_it_stands(blender, made):
+def test_a_control_rig_is_read_in_its_current_pose(blender, made):
     """The hand's own kinematics against Blender's skin: an arm led by a target, a finger bent by its controls."""
     hand, rig = controlled(made)
     posed_by_user(rig)
@@ -98,10 +98,12 @@ def test_a_grasp_reaches_its_pose_and_is_given_back(blender, made):
     gap = walls.Gauge(thenar.Product(skin_mm(product), fit.product_mm[1]), is_thin=False).gaps(skin_mm(hand))
     for pad in fit.hand.pads:
         assert pads.pad_depth(gap[pad.rows]) == pytest.approx(found.depths_mm[pad.name], abs=0.05)
-    assert held.is_muted(rig) and not held.holders(rig, [name for name in before if name.startswith("index")])
+    assert constrained.is_muted(rig) and not constrained.holders(
+        rig, [name for name in before if name.startswith("index")]
+    )
     fit, found = grasp(hand)
     assert bpy.ops.thenar.back_to_controls() == {"FINISHED"}
-    assert not held.is_muted(rig) and holding(rig) == acting, "what the user had muted stays so"
+    assert not constrained.is_muted(rig) and holding(rig) == acting, "what the user had muted stays so"
     assert_same(matrices(rig), before)
     with pytest.raises(RuntimeError, match="(?i)no constraint of the hand's bones was muted"):
         bpy.ops.thenar.back_to_controls()
@@ -119,7 +121,7 @@ def test_the_way_back_outlives_saving_and_undo(blender, made, tmp_path):
     bpy.ops.ed.undo()
     rig = bpy.context.scene.thenar.hand.modifiers[0].object
     bpy.context.view_layer.update()
-    assert not held.is_muted(rig) and holding(rig) == acting
+    assert not constrained.is_muted(rig) and holding(rig) == acting
     assert_same(matrices(rig), before)
     bpy.ops.ed.redo()
     path = str(tmp_path / "grasped.blend")
@@ -156,7 +158,7 @@ def test_a_driven_finger_is_refused_with_all_as_it_was(blender, made):
     with pytest.raises(RigError, match="'middle_middle' did not take the pose"):
         posing.apply_pose(bpy.context, hand, "power_48")
     bpy.context.view_layer.update()
-    assert holding(rig) == acting and not held.is_muted(rig)
+    assert holding(rig) == acting and not constrained.is_muted(rig)
     assert_same(matrices(rig), before)
 
 
@@ -183,7 +185,7 @@ def test_linked_and_overridden_control_rigs_are_refused(blender, made, tmp_path)
         posing.apply_pose(bpy.context, hand, "power_48")
 
 
-def test_held_fingers_need_no_joining(blender, made):
+def test_constrained_fingers_need_no_joining(blender, made):
     hand, rig = controlled(made)
     assert joining.loose(rig, reading.bonemap.get_map(rig)) == []
     with pytest.raises(RuntimeError, match="need no joining"):

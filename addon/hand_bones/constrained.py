@@ -35,7 +35,7 @@ def holders(armature, names):
     ]
 
 
-def is_held(armature, stored):
+def is_constrained(armature, stored):
     """Whether constraints hold fingers, or were muted for a grasp."""
     names = digits_of(armature, stored)
     return bool(holders(armature, names)) or bool(set(names) & set(_record(armature)["pose"]))
@@ -49,15 +49,15 @@ def is_led(armature, stored):
 
 def is_muted(armature):
     """Whether constraints are muted for a grasp."""
-    return bool(armature.thenar_bones.held)
+    return bool(armature.thenar_bones.muted)
 
 
 def check_own(armature):
     """Raises `RigError` where the constraints cannot be muted for good."""
     if armature.library is not None or armature.override_library is not None:
         raise RigError(
-            f"constraints hold the fingers of {armature.name!r}, which is linked from another file, so that they cannot "
-            "be muted; use Object > Relations > Make Local > Selected Objects first"
+            f"constraints hold the fingers of {armature.name!r}, which is linked from another file, so that they "
+            "cannot be muted; use Object > Relations > Make Local > Selected Objects first"
         )
 
 
@@ -129,19 +129,19 @@ def back(armature):
     for bone, values in record["pose"].items():
         if bone in armature.pose.bones:
             channels.restore(armature.pose.bones[bone], values)
-    armature.thenar_bones.held = ""
+    armature.thenar_bones.muted = ""
     return count
 
 
 def state_of(armature):
     """What `reset` takes: the record, and which constraints of bones are muted."""
     mutes = [(bone.name, each.name, each.mute) for bone in armature.pose.bones for each in bone.constraints]
-    return armature.thenar_bones.held, mutes
+    return armature.thenar_bones.muted, mutes
 
 
 def reset(armature, state):
     """Bring record and constraints back to a `state_of`; the pose is the caller's."""
-    armature.thenar_bones.held = state[0]
+    armature.thenar_bones.muted = state[0]
     for bone, name, mute in state[1]:
         constraint = armature.pose.bones[bone].constraints.get(name)
         if constraint is not None and constraint.mute != mute:
@@ -168,11 +168,11 @@ def _mute(armature, names, loose):
         constraint.mute = True
     for name in names:
         record["pose"].setdefault(name, channels.kept(armature.pose.bones[name]))
-    armature.thenar_bones.held = json.dumps(record)
+    armature.thenar_bones.muted = json.dumps(record)
 
 
 def _record(armature):
-    text = armature.thenar_bones.held
+    text = armature.thenar_bones.muted
     return json.loads(text) if text else {"constraints": [], "pose": {}}
 
 
