@@ -15,7 +15,7 @@ _OPERATORS = (
     ("fit_grasp settle_grasp use_grasp more_grasps apply_pose", "guide.html#grasp"),
     ("add_pose_library blend_pose", "guide.html#pose-library"),
     ("guess_bones join_bones assign_digit pick_digits regions_from_bones show_regions", "guide.html#bones"),
-    ("back_to_controls", "guide.html#your-own-hand"),
+    ("back_to_controls", "guide.html#start"),
     ("look look_back report show_pressure show_map select_region", "guide.html#result"),
     ("certify paint_thickness", "guide.html#reference"),
     ("reset_range render_preset", "guide.html#display"),
