@@ -46,9 +46,11 @@ def lines(armature):
     out = {}
     for digit in DIGITS:
         names = [known.get(f"{digit}_{segment}") for segment in digits.segments_of(digit)]
-        heads = [bones[name].head.copy() for name in names if name and name in bones]
+        chain = [bones[name] for name in names if name and name in bones]
+        heads = [bone.head.copy() for bone in chain]
         if len(heads) > 1:
-            heads.append(heads[-1] + 0.8 * (heads[-1] - heads[-2]))
+            rest, before = chain[-1].bone.head_local, chain[-2].bone.head_local
+            heads.append(chain[-1].matrix @ chain[-1].bone.matrix_local.inverted() @ (rest + 0.8 * (rest - before)))
             out[digit] = [armature.matrix_world @ head for head in heads]
     return out
 

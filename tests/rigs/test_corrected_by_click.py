@@ -84,6 +84,20 @@ def test_the_lines_follow_the_posed_joints(blender):
     assert overlay.shown() == {}
 
 
+def test_a_line_ends_in_the_fingertip_that_bends(blender):
+    """The end keeps its place on the last bone, as skin does; a bent joint turns it."""
+    body, rig, truth = scrambled(blender, "makehuman")
+    bpy.ops.thenar.guess_bones()
+    bone = rig.pose.bones[truth["index_distal"]]
+    seen = []
+    for bend in (0.0, 1.2):
+        bone.rotation_mode = "XYZ"
+        bone.rotation_euler.x = bend
+        bpy.context.view_layer.update()
+        seen.append(bone.matrix.inverted() @ (rig.matrix_world.inverted() @ overlay.shown()["index"][-1]))
+    assert (seen[1] - seen[0]).length < 1e-6 and seen[0].length > 0.01
+
+
 def test_lines_of_a_rig_without_metacarpals_and_with_one_digit(blender):
     body, rig, truth = scrambled(blender, "mixamo")
     rig.thenar_bones.show_digits = True

@@ -18,7 +18,9 @@ import time
 LIMIT_S = 120.0
 HAND, FILE, ACCEPT = (1165, 433), (484, 100), (1135, 614)
 ADD, JOIN, GRASP, SOLVE = (1165, 258), (1165, 403), (1165, 335), (1165, 335)
-OPENED, APART = (1096, 304), (1215, 326)
+AFTER_CONTROLS = 72
+"""Pixels that Solve is farther down where constraints were muted, for the way back to the controls stands above it."""
+OPENED, PALM, PRODUCT, APART = (1096, 304), (1215, 304), (1096, 326), (1215, 326)
 """Where the buttons are in Blender 5.2's sidebar and file browser at their default sizes."""
 RIG = os.environ.get("THENAR_RIG", "")
 IS_BLEND = RIG.endswith(".blend")
@@ -129,16 +131,18 @@ def drive(bpy, ui):
     yield 4.0
     ui.shot("d4_searching")
     yield from until(lambda: len(bpy.context.scene.thenar_grasps.found) > 0)
-    yield 1.0
+    yield 2.0
     mark("grasp")
-    yield from press(ui, SOLVE)
+    is_muted = any(obj.thenar_bones.muted for obj in bpy.data.objects)
+    yield from press(ui, (SOLVE[0], SOLVE[1] + AFTER_CONTROLS * is_muted))
     yield from until(lambda: state.hand.thenar.shows_pressure)
     took = time.monotonic() - began
     yield 1.0
     mark("map")
+    print(f"FORCE {state.result.force_n:.1f} N solved, {bpy.context.scene.thenar_grasps.found[0].total_n:.1f} N found")
     print(f"STOPWATCH {', '.join(marks)}; map {took:.1f} s of {LIMIT_S:g} s")
     yield 2.0
-    for name, place in (("opened", OPENED), ("apart", APART)):
+    for name, place in (("opened", OPENED), ("palm", PALM), ("product", PRODUCT), ("apart", APART)):
         yield from press(ui, place)
         yield 3.0
         ui.shot(f"d9_{name}")
