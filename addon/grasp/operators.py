@@ -217,12 +217,13 @@ class THENAR_OT_use_grasp(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class THENAR_OT_add_sample(bpy.types.Operator):
+class THENAR_OT_add_sample(computing.Computing, bpy.types.Operator):
     """Add a complete scene to try: hand, product, camera, light and materials, ready to solve"""
 
     bl_idname = "thenar.add_sample"
     bl_label = "Add Sample"
     bl_options = {"REGISTER", "UNDO"}
+    noun = "Sample"
 
     kind: EnumProperty(
         name="Sample",
@@ -234,11 +235,12 @@ class THENAR_OT_add_sample(bpy.types.Operator):
     def poll(cls, context):
         return can_make(cls, context)
 
-    def execute(self, context):
-        made = running.attempt(self, samples.add_sample_scene, context, self.kind)
-        if not made:
-            return {"CANCELLED"}
-        tabs.open_after_hand(context)
+    def steps(self, context):
+        return samples.scene_steps(context, self.kind)
+
+    def _report(self, context, made):
+        tabs.open_after_hand(bpy.context)
+        running.redraw(bpy.context)
         return {"FINISHED"}
 
 

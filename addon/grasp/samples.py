@@ -2,12 +2,14 @@
 
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from .. import steps
 from ..grasp_fit import fitter
 from ..hand import build, pads, poses, products
 from ..hand.skinning import skin
@@ -15,7 +17,7 @@ from ..hand_bones import posing, reading, roles
 from ..hand_look import studio
 from ..moving_samples import rolling
 from ..scene.units import mm_per_unit
-from . import fitting
+from . import added, fitting
 
 FILE_SUFFIX = ".blend"
 RANGE_KPA = 150.0
@@ -53,16 +55,22 @@ def add_sample(context, kind):
 
     Raises `KeyError` for an unknown kind, and `Refusal` if the hand cannot be made.
     """
+    return steps.at_once(sample_steps(context, kind))
+
+
+def sample_steps(context, kind):
+    """`add_sample` as the steps of a computation: hand and fit are computed by any thread."""
     sample = SAMPLES[kind]
+    made = yield _make_hand
     scene = context.scene
     studio.set_units(scene)
-    hand, rig = build.add_hand(context, build.make())
+    hand, rig = build.add_hand(context, made)
     _add_sleeve(context, rig)
     product = studio.add_mesh(context, sample.product, sample.shape(), sample.material())
     parts = [studio.add_mesh(context, name, shape(), material()) for name, shape, material in sample.extras]
     for part in parts:
         part.parent = product
-    sample.meet(context, hand, rig, product)
+    yield from sample.meet(context, hand, rig, product)
     _stand_up(context, (rig, product), sample.stand)
     _stage(context, hand, product, sample)
     settings = scene.thenar
@@ -71,15 +79,23 @@ def add_sample(context, kind):
     return hand, product
 
 
-def add_sample_scene(context, kind):
-    """`add_sample` into the current scene if it is empty, else into a new one that the window shows; its 3D views look
-    through the sample's camera. Returns True."""
-    if context.scene.objects:
-        context.window.scene = bpy.data.scenes.new(f"Thenar {SAMPLES[kind].label}")
-        context = bpy.context
-    add_sample(context, kind)
-    _look_through_camera([context.window.screen] if context.window else [])
+def scene_steps(context, kind):
+    """The steps of a sample in the current scene if it is empty, else in a new one that the window shows; its 3D views
+    look through the sample's camera. Returns True. Ended before, they leave the file as it was."""
+    with added.taken_back_unless_whole(context):
+        if context.scene.objects:
+            context.window.scene = bpy.data.scenes.new(f"Thenar {SAMPLES[kind].label}")
+            context = bpy.context
+        yield from sample_steps(context, kind)
+        _look_through_camera([context.window.screen] if context.window else [])
     return True
+
+
+def _make_hand(cancel, progress):
+    """Arrays of the sample's hand."""
+    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
+    watch.report("Making the hand", 0.0)
+    return build.make(cancel=cancel)
 
 
 def _power(targets_mm, height_mm=0.0, force_n=None):
@@ -91,7 +107,8 @@ def _power(targets_mm, height_mm=0.0, force_n=None):
         wish = fitter.Wish(targets_mm, axis=(0.0, 0.0, 1.0), center=(0.0, 0.0, height_mm))
         with _earlier_twist(rig):
             job = fitting.prepare(context, hand, [product], wish, force_n)
-            fitting.finish(context, job, fitting.compute(job), "HAND")
+            found = yield partial(fitting.compute, job)
+            fitting.finish(context, job, found, "HAND")
 
     return meet
 
@@ -119,6 +136,7 @@ def _kept(pose, place):
         shift, turn = place
         rig.matrix_world = Matrix.Translation(np.array(shift) / mm_per_unit(context.scene)) @ _euler(turn)
         context.view_layer.update()
+        yield steps.PAUSE
 
     return meet
 
@@ -133,7 +151,8 @@ def _press(pose, digits, targets_mm, tilt_deg):
         place = _let_down(fitting.read_hand(context, hand), rig, digits, targets_mm)
         reading.move_object(rig, place, mm_per_unit(context.scene))
         job = fitting.prepare(context, hand, [product], fitter.Wish(targets_mm, digits, is_placed=True))
-        fitting.finish(context, job, fitting.compute(job), "HAND")
+        found = yield partial(fitting.compute, job)
+        fitting.finish(context, job, found, "HAND")
 
     return meet
 
@@ -157,7 +176,7 @@ def _rolled(meet, bone):
     def meet_and_roll(context, hand, rig, product):
         product.location.z = -0.5 * max(product.dimensions)
         context.view_layer.update()
-        meet(context, hand, rig, product)
+        yield from meet(context, hand, rig, product)
         rolling.roll(context, rig, product, bone)
 
     return meet_and_roll

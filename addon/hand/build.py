@@ -25,7 +25,7 @@ class BuildError(Refusal):
     """The hand cannot be made; the message is for the user."""
 
 
-def make(**shape):
+def make(cancel=None, **shape):
     """Arrays of a hand from the native module, and the `shape` asked for; keywords as `thenar.hand`.
 
     Raises `BuildError` with the module's own sentence if the module is missing or refuses the sizes.
@@ -33,7 +33,7 @@ def make(**shape):
     if native.module is None:
         raise BuildError(native.problem())
     try:
-        return {**native.module.hand(**shape), "shape": shape}
+        return {**native.module.hand(**shape, cancel=cancel), "shape": shape}
     except (*native.error_types(), ValueError) as error:
         raise BuildError(str(error)) from error
 
