@@ -44,7 +44,7 @@ def steps(context, path, wish):
     checks.check_hand(context, hand)
     rig, role_names = reading.read_free_rig(context, hand)
     armature = reading.armature_of(hand)
-    reading.check_unheld(armature, role_names)
+    reading.check_unconstrained(armature, role_names)
     found = roles.resolve(rig, role_names, reading.own_limits(armature, rig))
     own = "right" if found.side > 0.0 else "left"
     side = wish.side or own

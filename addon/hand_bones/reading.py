@@ -127,6 +127,11 @@ def check_unconstrained(armature, stored):
         raise RigError(
             f"bone {bone.name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
         )
+    if constrained.is_constrained(armature, stored):
+        raise RigError(
+            f"constraints of the fingers of {armature.name!r} are muted for a grasp only; press Back to the Controls "
+            "under Bones, then mute or remove them"
+        )
 
 
 def _check_joined(rig, stored):

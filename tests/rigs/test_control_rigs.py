@@ -1,5 +1,7 @@
 """Hands whose fingers a control rig holds: posed with its constraints muted, and given back; also Rigify's own."""
 
+import json
+
 import bpy
 import numpy as np
 import pytest
@@ -192,6 +194,23 @@ def test_constrained_fingers_need_no_joining(blender, made):
         bpy.ops.thenar.join_bones()
     posing.apply_pose(bpy.context, hand, "power_48")
     assert joining.loose(rig, reading.bonemap.get_map(rig)) == [], "muted for a grasp, they still need none"
+
+
+def test_pose_files_want_fingers_without_constraints(blender, made, tmp_path):
+    """Keys on a bone that a constraint holds would not be seen, nor would they fit where it is muted for a grasp."""
+    hand, rig = controlled(made)
+    path = tmp_path / "pose.json"
+    path.write_text(json.dumps({"hand_pose": [0.2] * 45}))
+    before, acting = matrices(rig), holding(rig)
+    with pytest.raises(RuntimeError, match=r"(?i)bone '.*' is held by its constraint 'Copy Transforms'; mute it"):
+        bpy.ops.thenar.load_hand_pose(filepath=str(path))
+    assert holding(rig) == acting
+    assert_same(matrices(rig), before)
+    posing.apply_pose(bpy.context, hand, "power_48")
+    grasped = matrices(rig)
+    with pytest.raises(RuntimeError, match="(?i)muted for a grasp only; press Back to the Controls"):
+        bpy.ops.thenar.load_hand_pose(filepath=str(path))
+    assert_same(matrices(rig), grasped)
 
 
 def test_a_generated_rigify_rig_is_posed_and_given_back(blender):
