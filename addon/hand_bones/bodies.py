@@ -34,8 +34,6 @@ def is_part_of_body(context, hand, parts=()):
     knuckles = _knuckles(armature, _known(armature, found))
     if not len(knuckles):
         return False
-    if len(found.hands) > 1:
-        return True
     limit = REACH * _breadth(context, armature, knuckles)
     into = np.linalg.inv(np.array(armature.matrix_world))
     for skin in _skins(context, armature, hand):
@@ -45,7 +43,8 @@ def is_part_of_body(context, hand, parts=()):
         points = _surface(skin.data) @ matrix[:3, :3].T + matrix[:3, 3]
         if (np.linalg.norm(points - knuckles.mean(axis=0), axis=1) > limit).any():
             return True
-    return False
+    # A file of one hand may keep the other one's groups, without skin.
+    return len(found.hands) > 1 and len(recognise(reading.skeleton_of(context, hand)).hands) > 1
 
 
 def hand_skin(context, hand, surface):

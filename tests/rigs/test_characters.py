@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 import thenar
 from characters import box, character, grasp, handle, skin_mm, world_of
+from makers import KINDS
 from mathutils import Matrix
+from rig_scenes import into_scene
 from thenar_blender.grasp import fitting
 from thenar_blender.grasp_fit import fitter, walls
 from thenar_blender.hand import build, pads
@@ -81,6 +83,20 @@ def test_what_is_part_of_a_body(blender, made):
     far.scale = (100.0, 100.0, 100.0)
     context.view_layer.update()
     assert bodies.is_part_of_body(context, hand)
+
+
+def test_two_hands_on_one_armature_are_a_body(blender, monkeypatch):
+    """Also without arms; but not where the other hand's groups are empty, as a file of one hand keeps them."""
+    monkeypatch.setattr(bodies, "REACH", np.inf)
+    rig = KINDS["makehuman"]()
+    right, left = (set(rig.truth[side].values()) for side in ("right", "left"))
+    pair, _ = into_scene(rig, only=right | left)
+    assert bodies.is_part_of_body(bpy.context, pair)
+    alone, _ = into_scene(rig, only=right)
+    assert not bodies.is_part_of_body(bpy.context, alone)
+    for name in left:
+        alone.vertex_groups.new(name=name)
+    assert not bodies.is_part_of_body(bpy.context, alone)
 
 
 def test_parts_keep_their_places_to_each_other(blender, made):
