@@ -3,6 +3,7 @@
 import bpy
 
 from .. import maps, names, status, tabs
+from ..hand_bones import bonemap, roles
 from ..languages import iface
 from ..presets import kinds, menus
 from ..product_objects.parts import product_parts
@@ -233,12 +234,18 @@ before_grasp = []
 
 
 def _is_posed(hand):
-    """Whether a bone of the hand was turned or moved from its rest."""
+    """Whether a bone of the fingers, or any where these are not known, was turned or moved from its rest."""
     rigs = [
         modifier.object for modifier in hand.modifiers if modifier.type == "ARMATURE" and modifier.object is not None
     ]
-    bones = [bone for rig in rigs if rig.pose is not None for bone in rig.pose.bones]
+    bones = [bone for rig in rigs if rig.pose is not None for bone in _fingers(rig)]
     return any(bone.matrix_basis.to_quaternion().angle > AT_REST or bone.location.length > AT_REST for bone in bones)
+
+
+def _fingers(rig):
+    """Pose bones of the assigned fingers; all of a rig that has none assigned: the arm of a body may be posed."""
+    named = [name for role, name in bonemap.get_map(rig).items() if role != roles.WRIST]
+    return [rig.pose.bones[name] for name in named if name in rig.pose.bones] or list(rig.pose.bones)
 
 
 AT_REST = 1e-3

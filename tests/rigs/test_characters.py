@@ -14,6 +14,7 @@ from thenar_blender.hand import build, pads
 from thenar_blender.hand_bones import bodies
 from thenar_blender.hand_shape import framing
 from thenar_blender.looks import putting
+from thenar_blender.panels import main
 from thenar_blender.scene.checks import Refusal
 
 
@@ -245,3 +246,15 @@ def test_one_undo_takes_the_grasp_of_a_body_back(blender, made):
     assert np.allclose(world_of(bpy.data.objects["Handle"]), place, atol=1e-6)
     rig = next(obj for obj in bpy.data.objects if obj.type == "ARMATURE")
     assert all(bone.matrix_basis == Matrix.Identity(4) for bone in rig.pose.bones) and name in bpy.data.objects
+
+
+def test_grasp_is_offered_to_a_character_whose_arm_is_posed(blender, made):
+    """What counts is whether the fingers rest: animators pose the arm first."""
+    hand, rig = character(made)
+    rig.pose.bones["upper_arm"].rotation_mode = "XYZ"
+    rig.pose.bones["upper_arm"].rotation_euler = (0.4, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    assert not main._is_posed(hand)
+    rig.pose.bones["ring_middle"].rotation_mode = "XYZ"
+    rig.pose.bones["ring_middle"].rotation_euler = (0.4, 0.0, 0.0)
+    assert main._is_posed(hand)
