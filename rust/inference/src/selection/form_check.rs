@@ -66,6 +66,11 @@ impl<'a> FormCheck<'a> {
         0.5 * (self.base.deviance - deviance) / overdispersion - PENALTY * numbers as f64
     }
 
+    /// The study's surrogate with the form free.
+    pub(crate) fn surrogate(&self) -> &Surrogate<'a> {
+        &self.surrogate
+    }
+
     /// Coherent misfit per sample that parameters and form leave, in variances of the noise.
     pub fn left(&self) -> f64 {
         self.lack_of_fit / self.samples

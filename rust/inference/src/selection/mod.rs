@@ -5,6 +5,7 @@ pub mod candidates;
 pub(crate) mod candidate_fits;
 pub mod ladder;
 pub mod form_check;
+pub mod profile_interval;
 pub mod model_weights;
 pub mod cross_validation;
 pub(crate) mod negative_control;

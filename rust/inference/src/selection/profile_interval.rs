@@ -1,0 +1,251 @@
+//! Profile-likelihood intervals of an effect's own parameters (Venzon & Moolgavkar 1988), and which of them a study leaves open.
+//!
+//! A parameter whose interval reaches an end of its admissible range is practically non-identifiable (Raue et al. 2009): recordings bound it from
+//! one side, or not at all.
+
+use thenar_contact::effects::Effect;
+
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::mechanism::{Law, Mechanism, Scales};
+use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::surrogate::surrogate_data::Surrogate;
+use crate::least_squares::surrogate_fit::{Refit, refit};
+use crate::observe::measured::Measured;
+use crate::parameters::surrogate_parameter::Kind;
+use crate::selection::candidates::singles;
+use crate::selection::form_check::FormCheck;
+use crate::selection::scored::{Rungs, Scored};
+
+/// Root of the rise of the deviance at the ends of a 90 % interval: 1.645^2 is the 90 % point of chi-squared with one degree of freedom.
+const ROOT: f64 = 1.644_854;
+/// Part of it within which an end is found.
+const NEAR: f64 = 0.04;
+/// Most fits for one end.
+const MOST_FITS: usize = 8;
+/// Part of a bracket that a step leaves on either side.
+const INSIDE: f64 = 0.1;
+
+/// The 90 % interval of one parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Value at the optimum.
+    pub value: f64,
+    /// Its ends; an end that is open is that of the admissible range.
+    pub ends: (f64, f64),
+    /// Whether the recordings leave the lower and the upper end open.
+    pub is_open: (bool, bool),
+}
+
+impl Interval {
+    /// Both intervals and what is between them.
+    fn joined(self, other: Interval) -> Interval {
+        Interval {
+            value: self.value,
+            ends: (
+                self.ends.0.min(other.ends.0),
+                self.ends.1.max(other.ends.1),
+            ),
+            is_open: (
+                self.is_open.0 || other.is_open.0,
+                self.is_open.1 || other.is_open.1,
+            ),
+        }
+    }
+}
+
+/// What recordings say of one mechanism of an explanation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profiled {
+    /// By its own parameters, over all variants that are not excluded.
+    pub numbers: Vec<Interval>,
+    /// Variants of its law that are not excluded, in the order of the candidates; the fitted one is among them.
+    pub variants: Vec<Mechanism>,
+}
+
+impl Profiled {
+    /// Whether the size of the mechanism excludes that it does nothing: its interval holds no value with which it does, and it is bounded on
+    /// one side at least.
+    pub fn excludes_absence(&self, mechanism: &Mechanism) -> bool {
+        let size = self.numbers[0];
+        let is_above = size.ends.0 > 0.0 && !size.is_open.0;
+        match mechanism.law {
+            Law::Saturation(_) => !size.is_open.1,
+            Law::Floor(_) => !size.is_open.0,
+            // Shares of neighboring branches stand for each other: their sum is judged, not the first.
+            Law::Relaxation { .. } if mechanism.effect == Effect::RateIndependentLoss => true,
+            _ => is_above || (size.ends.1 < 0.0 && !size.is_open.1),
+        }
+    }
+}
+
+/// Profiles every mechanism of an explanation: on skin whose form was only measured with that form free, since a name is held against it there.
+pub fn profiled(
+    ready: &PreparedStudy,
+    rungs: &Rungs,
+    measured: &[Measured],
+    of: &Scored,
+) -> Vec<Profiled> {
+    let check = FormCheck::new(ready, measured, rungs);
+    let plain = ready.surrogate();
+    let surrogate = check.as_ref().map_or(&plain, FormCheck::surrogate);
+    let known = ready.shared.len();
+    let (shared, own) = of.refit.at.split_at(known);
+    let free = vec![0.0; surrogate.shared.len() - known];
+    let start = [shared, &free, own].concat();
+    let samples = rungs.samples.max(1) as f64;
+    let one = |number: usize| {
+        let all = variants(&of.mechanisms, (number, ready.scales));
+        let models: Vec<Model<'_>> = all
+            .iter()
+            .map(|set| Model::new(surrogate, set))
+            .collect();
+        let fits: Vec<Refit> = models
+            .iter()
+            .map(|model| refit(surrogate, model, &start))
+            .collect();
+        let least = fits.iter().map(|f| f.deviance).fold(f64::INFINITY, f64::min);
+        let overdispersion = match &check {
+            Some(_) => (least / samples).max(1.0),
+            None => rungs.overdispersion,
+        };
+        let mut found: Option<Profiled> = None;
+        for ((set, model), best) in all.iter().zip(models).zip(fits) {
+            let mut profile = Profile {
+                surrogate,
+                model,
+                best,
+                least,
+                overdispersion,
+            };
+            if profile.root(profile.best.deviance) > ROOT {
+                continue;
+            }
+            let numbers = profile.intervals(number);
+            let variant = set[number].clone();
+            match &mut found {
+                None => {
+                    found = Some(Profiled {
+                        numbers,
+                        variants: vec![variant],
+                    });
+                }
+                Some(known) => {
+                    known.variants.push(variant);
+                    let each = known.numbers.iter_mut().zip(numbers);
+                    each.for_each(|(a, b)| *a = a.joined(b));
+                }
+            }
+        }
+        found.unwrap_or(Profiled {
+            numbers: Vec::new(),
+            variants: Vec::new(),
+        })
+    };
+    (0..of.mechanisms.len()).map(one).collect()
+}
+
+/// The explanation with every variant of one of its laws that differs in a number which is tried and not fitted.
+fn variants(of: &[Mechanism], (number, scales): (usize, Scales)) -> Vec<Vec<Mechanism>> {
+    let own = &of[number];
+    let is_variant = |other: &Mechanism| match (&own.law, &other.law) {
+        (Law::Tabulated(_), Law::Tabulated(_)) => true,
+        (Law::Softening { start: a, .. }, Law::Softening { start: b, .. }) => a == b,
+        _ => false,
+    };
+    let all = singles(scales).into_iter();
+    let mut found: Vec<Mechanism> = all
+        .filter(|other| other.effect == own.effect && is_variant(other))
+        .collect();
+    if !found.contains(own) {
+        found = vec![own.clone()];
+    }
+    let with = |variant: Mechanism| {
+        let mut set = of.to_vec();
+        set[number] = variant;
+        set
+    };
+    found.into_iter().map(with).collect()
+}
+
+/// The profile likelihood about an optimum.
+struct Profile<'a> {
+    surrogate: &'a Surrogate<'a>,
+    model: Model<'a>,
+    best: Refit,
+    /// Deviance of the best variant.
+    least: f64,
+    overdispersion: f64,
+}
+
+impl Profile<'_> {
+    /// Root of a deviance's rise over the least.
+    fn root(&self, deviance: f64) -> f64 {
+        ((deviance - self.least) / self.overdispersion).max(0.0).sqrt()
+    }
+
+    /// Of every parameter of one mechanism.
+    fn intervals(&mut self, mechanism: usize) -> Vec<Interval> {
+        let all = self.model.coordinates.iter().enumerate();
+        let own: Vec<usize> = all
+            .filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == mechanism))
+            .map(|(k, _)| k)
+            .collect();
+        own.into_iter().map(|k| self.interval(k)).collect()
+    }
+
+    fn interval(&mut self, coordinate: usize) -> Interval {
+        let bounds = self.model.coordinates[coordinate].bounds;
+        let ends = [bounds.0, bounds.1].map(|bound| self.end(coordinate, bound));
+        self.model.coordinates[coordinate].bounds = bounds;
+        Interval {
+            value: self.best.at[coordinate],
+            ends: (ends[0].unwrap_or(bounds.0), ends[1].unwrap_or(bounds.1)),
+            is_open: (ends[0].is_none(), ends[1].is_none()),
+        }
+    }
+
+    /// The end toward a bound; None where the deviance does not rise enough as far as there.
+    fn end(&mut self, coordinate: usize, bound: f64) -> Option<f64> {
+        let from = self.best.at[coordinate];
+        let own = self.root(self.best.deviance);
+        let error = self.best.covariance[(coordinate, coordinate)].max(0.0).sqrt();
+        let toward = |step: f64| match bound < from {
+            true => (from - step).max(bound),
+            false => (from + step).min(bound),
+        };
+        let mut at = self.best.at.clone();
+        let (mut inner, mut outer) = ((from, own), None::<(f64, f64)>);
+        let mut next = toward(ROOT * error);
+        for _ in 0..MOST_FITS {
+            if next == from {
+                return None;
+            }
+            self.model.coordinates[coordinate].bounds = (next, next);
+            let held = refit(self.surrogate, &self.model, &at);
+            let root = self.root(held.deviance);
+            if (root / ROOT - 1.0).abs() < NEAR {
+                return Some(next);
+            }
+            if root > ROOT {
+                outer = Some((next, root));
+            } else {
+                if next == bound {
+                    return None;
+                }
+                (inner, at) = ((next, root), held.at);
+            }
+            next = match outer {
+                Some((far, rise)) => {
+                    let share = (ROOT - inner.1) / (rise - inner.1).max(f64::MIN_POSITIVE);
+                    inner.0 + (far - inner.0) * share.clamp(INSIDE, 1.0 - INSIDE)
+                }
+                None => {
+                    let factor = (ROOT / root.max(0.1 * ROOT)).clamp(1.2, 4.0);
+                    toward((next - from).abs() * factor)
+                }
+            };
+        }
+        // The last value that is excluded, or, where none was met, the bound.
+        outer.map(|(far, _)| far)
+    }
+}
