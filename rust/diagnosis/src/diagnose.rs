@@ -13,6 +13,7 @@ use crate::channels::slides::add_friction;
 use crate::findings::{Diagnosis, Suggestion, Verdict};
 use crate::gates::decision::Decision;
 use crate::gates::pair_gates::is_pair;
+use crate::gates::size_gate::{Sized, open_note};
 use crate::grasp::diagnose_grasps;
 use thenar_comparison::Comparison;
 use thenar_comparison::compare;
@@ -137,16 +138,16 @@ fn explained(
     (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, InferenceError> {
-    let (decision, gain) =
-        crate::gates::form_gate::decide(ready, rungs, fitting.measured(), options.seed);
-    let asked = (&decision.cannot_tell[..], quiet);
+    let decided = crate::gates::form_gate::decide(ready, rungs, fitting.measured(), options.seed);
+    let measured = (fitting.measured(), options.seed);
+    let sized = crate::gates::size_gate::decide(ready, rungs, measured, decided);
+    let asked = (&sized.decision.cannot_tell[..], quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
-    let ladder = (ready, rungs, decision);
     Ok(told(
         (study, ceiling),
         (comparison, fitting),
-        (ladder, next, gain),
+        ((ready, rungs, sized), next),
     ))
 }
 
@@ -168,14 +169,19 @@ fn untested(courses: &[ForceRecording]) -> Option<String> {
 }
 
 /// What was prepared, what the rungs found, and what they decide.
-type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Decision<'a>);
+type Climbed<'a> = (&'a PreparedStudy, &'a Rungs, Sized<'a>);
 
 /// All that is said, from what was found.
 fn told(
     (study, ceiling): (&Study, Option<Ceiling>),
     (comparison, fitting): (Comparison, &Fitting),
-    ((ready, rungs, decision), next, gain): (Climbed<'_>, Vec<Suggestion>, Option<Gain>),
+    ((ready, rungs, sized), next): (Climbed<'_>, Vec<Suggestion>),
 ) -> Diagnosis {
+    let Sized {
+        decision,
+        gain,
+        profiled,
+    } = sized;
     let probabilities = thenar_inference::selection::model_weights::probabilities(rungs, |pair| {
         is_pair(pair, rungs)
     });
@@ -186,7 +192,7 @@ fn told(
         findings: crate::findings_content::findings(
             study,
             (ready, rungs),
-            &decision,
+            (&decision, &profiled),
             &probabilities,
         ),
         unlisted: None,
@@ -196,7 +202,7 @@ fn told(
         smallest_seen: crate::gates::detection_limits::smallest_seen(ready, rungs),
         record_next: next,
         materials: crate::findings_content::materials(&fitting.replay, (ready, rungs), &decision),
-        effects: crate::findings_content::effects(ready, &decision),
+        effects: crate::findings_content::effects(ready, (&decision, &profiled)),
         rivals: crate::findings_content::rivals(ready, rungs, &probabilities),
         curves: crate::findings_content::curves(ready, rungs, &decision),
         evidence: crate::findings_content::evidence(ready, rungs),
@@ -223,6 +229,8 @@ fn told(
     found
         .notes
         .extend(decision.named.and_then(crate::effect_numbers::use_note));
+    let open: Vec<String> = found.findings.iter().filter_map(open_note).collect();
+    found.notes.extend(open);
     add_notes(study, &mut found, ready);
     ceiling
         .into_iter()

@@ -1,10 +1,9 @@
 //! Estimates of a fitted effect in the catalogue's terms and units, with intervals.
 
-use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 
 use crate::findings::{Number, Switched};
-use thenar_inference::forward::surrogate::candidate_model::Model;
+use crate::free_numbers::{Free, HALF, Three, interval, of_number, tried_interval};
 use thenar_inference::forward::surrogate::mechanism::{
     DeformationMeasure, Law, Mechanism, UseAtStart,
 };
@@ -12,72 +11,24 @@ use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::forward::surrogate::relaxation_spectrum::Spectrum;
 use thenar_inference::forward::surrogate::tissue_laws::RAMP;
 use thenar_inference::forward::tables::elastic_table::radius;
-use thenar_inference::forward::tables::stiff_skin::{ratio, thickness};
-use thenar_inference::least_squares::surrogate_fit::Refit;
-use thenar_inference::parameters::surrogate_parameter::Kind;
+use thenar_inference::forward::tables::stiff_skin::{THICKNESSES_MM, ratio};
+use thenar_inference::selection::candidates::SOFTENING_TRAVELS;
+use thenar_inference::selection::profile_interval::Profiled;
 use thenar_inference::selection::scored::Scored;
 
-/// Half width of a 90 % interval in standard errors.
-const HALF: f64 = 1.645;
 /// Share of the force that the catalogue's drainage loses, with its own drained Poisson's ratio of 0.3.
 const DROP: f64 = 0.285_714;
 /// Time, in a^2 / D, of the main branch of the catalogue's drainage.
 const MAIN_BRANCH: f64 = 0.605;
 
-/// A mechanism's free numbers, with what is known of their errors.
-pub struct Free {
-    /// In the model's order.
-    pub values: Vec<f64>,
-    /// Covariance of their errors.
-    covariance: DMatrix<f64>,
-    /// The pulp's modulus at first touch as it was fitted with them, MPa.
-    shear_mpa: f64,
-}
-
-impl Free {
-    /// Those of mechanism `number` of a model.
-    pub fn of(ready: &PreparedStudy, scored: &Scored, number: usize) -> Free {
-        let surrogate = ready.surrogate();
-        let model = Model::new(&surrogate, &scored.mechanisms);
-        let all = model.coordinates.iter().enumerate();
-        let own = all.filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == number));
-        let own: Vec<usize> = own.map(|(k, _)| k).collect();
-        Free::taken(&scored.refit, &own)
-    }
-
-    /// Those of a fit.
-    fn taken(refit: &Refit, own: &[usize]) -> Free {
-        Free {
-            values: own.iter().map(|k| refit.at[*k]).collect(),
-            covariance: refit.covariance.select_rows(own).select_columns(own),
-            shear_mpa: libm::exp(refit.at[0]),
-        }
-    }
-
-    /// A sum of the numbers, each times its weight, and its standard error.
-    pub fn sum(&self, weights: &[f64]) -> (f64, f64) {
-        let value = self.values.iter().zip(weights).map(|(v, w)| v * w).sum();
-        let weights = DVector::from_column_slice(weights);
-        let variance = (&self.covariance * &weights).dot(&weights);
-        (value, variance.max(0.0).sqrt())
-    }
-
-    /// The first number and its standard error.
-    pub fn first(&self) -> (f64, f64) {
-        let mut weights = vec![0.0; self.values.len()];
-        weights[0] = 1.0;
-        self.sum(&weights)
-    }
-}
-
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
 pub fn numbers_of_effect(
     ready: &PreparedStudy,
-    scored: &Scored,
+    (scored, profiled): (&Scored, &[Profiled]),
     number: usize,
 ) -> (Vec<Number>, Switched) {
     let mechanism = &scored.mechanisms[number];
-    let free = Free::of(ready, scored, number);
+    let free = Free::of(ready, scored, number).with(profiled.get(number));
     let effect = mechanism.effect;
     let (amplitude, numbers) = values(ready, mechanism, &free);
     let switched = Switched {
@@ -140,7 +91,6 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
     choices
 }
 
-type Three = (f64, f64, f64);
 type Named = (&'static str, f64, f64, f64);
 /// Amplitude of an effect whose other numbers say how much.
 const WHOLE: Three = (1.0, 1.0, 1.0);
@@ -159,9 +109,16 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
             ..
         } => {
             let shares = interval(free, &|x| x.clamp(0.0, 0.95));
+            let laws = free.laws(&mechanism.law);
+            let is_kept = |tried: f64| {
+                let near = |law: &&&Law| matches!(law, Law::Softening { travel_mm, .. } if (travel_mm / tried - 1.0).abs() < 1e-9);
+                laws.iter().any(|law| near(&law))
+            };
+            let tried = SOFTENING_TRAVELS.map(|over| over * ready.scales.deepest);
+            let travel = tried_interval(*travel_mm, &tried, is_kept);
             let shape = vec![
-                ("travel_mm", *travel_mm, travel_mm / 2.0, travel_mm * 2.0),
-                ("recovery_s", *recovery_s, 5.0, 1000.0),
+                ("travel_mm", travel.0, travel.1, travel.2),
+                ("recovery_s", *recovery_s, *recovery_s, *recovery_s),
             ];
             (shares, shape)
         }
@@ -170,7 +127,9 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
             let work = ("work_j_per_m2", work.0, work.1, work.2);
             (WHOLE, vec![work, reach(ready, free)])
         }
-        Law::Tabulated(form) if mechanism.effect == Effect::StiffSkin => (WHOLE, skin(*form, free)),
+        Law::Tabulated(form) if mechanism.effect == Effect::StiffSkin => {
+            (WHOLE, skin((*form, &mechanism.law), free))
+        }
         law => {
             let listed = one(ready, (mechanism.effect, law)).map(|(name, scale)| {
                 let three = interval(free, &*scale);
@@ -182,10 +141,15 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
 }
 
 /// Modulus and thickness of a stiff skin.
-fn skin(form: usize, free: &Free) -> Vec<Named> {
+fn skin((form, law): (usize, &Law), free: &Free) -> Vec<Named> {
     let pulp = 3.0 * free.shear_mpa;
     let modulus = interval(free, &|x| pulp * ratio(x));
-    let thick = thickness(form);
+    let laws = free.laws(law);
+    let is_kept = |mm: f64| {
+        let is_it = |l: &&Law| matches!(l, Law::Tabulated(k) if THICKNESSES_MM[*k].to_bits() == mm.to_bits());
+        laws.iter().any(|l| is_it(l))
+    };
+    let thick = tried_interval(THICKNESSES_MM[form], &THICKNESSES_MM, is_kept);
     vec![
         ("modulus_mpa", modulus.0, modulus.1, modulus.2),
         ("thickness_mm", thick.0, thick.1, thick.2),
@@ -194,17 +158,8 @@ fn skin(form: usize, free: &Free) -> Vec<Named> {
 
 /// Range of a grip.
 fn reach(ready: &PreparedStudy, free: &Free) -> Named {
-    let (log, error) = free.sum(&[0.0, 1.0]);
-    let range = libm::exp(log) * ready.scales.deepest * RAMP;
-    let factor = libm::exp(HALF * error).min(MOST);
-    ("range_mm", range, range / factor, range * factor)
-}
-
-/// The first number and the ends of its interval, in other terms.
-fn interval(free: &Free, scale: &dyn Fn(f64) -> f64) -> Three {
-    let (value, error) = free.first();
-    let ends = [0.0, -HALF * error, HALF * error].map(|off| scale(value + off));
-    (ends[0], ends[1], ends[2])
+    let range = of_number(free, 1, &|log| libm::exp(log) * ready.scales.deepest * RAMP);
+    ("range_mm", range.0, range.1, range.2)
 }
 
 /// A number in the catalogue's terms, of the model's own.
@@ -256,19 +211,43 @@ const OUTER: f64 = 1.090_8;
 
 /// Amplitude and times of a load that fades by a smooth spectrum.
 fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
-    // A period so many widths from the median, and its interval.
+    let seen = seen_periods(ready);
+    let median_open = free
+        .profile(1)
+        .map_or((false, false), |known| known.is_open);
+    // A period so many widths from the median, and its interval: open beyond what the recordings last, and shorter than their steps.
     let period = |widths: f64| {
         let (log, error) = free.sum(&[0.0, 1.0, widths]);
-        let factor = libm::exp(HALF * error).min(MOST);
+        let factor = libm::exp(HALF * error);
         let period = libm::exp(log);
-        (period, period / factor, period * factor)
+        let (low, high) = (period / factor, period * factor);
+        let is_open = (
+            median_open.0 || low < seen.0 || factor > MOST,
+            median_open.1 || high > seen.1 || factor > MOST,
+        );
+        (
+            period,
+            if is_open.0 {
+                f64::NEG_INFINITY
+            } else {
+                low.min(seen.1)
+            },
+            if is_open.1 {
+                f64::INFINITY
+            } else {
+                high.max(seen.0)
+            },
+        )
     };
     if effect == Effect::Drainage {
         let over = MAIN_BRANCH * ready.scales.radius.powi(2);
         let (middle, low, high) = period(0.0);
         let name = "diffusivity_mm2_per_s";
-        let diffusivity = (name, over / middle, over / high, over / low);
-        return (within(free.first(), 1.0 / DROP), vec![diffusivity]);
+        let end = |of: f64, open: f64| if of.is_finite() { over / of } else { open };
+        let ends = (end(high, f64::NEG_INFINITY), end(low, f64::INFINITY));
+        let diffusivity = (name, over / middle, ends.0, ends.1);
+        let share = interval(free, &|x| (x / DROP).clamp(0.0, 0.99));
+        return (share, vec![diffusivity]);
     }
     let names = ["time_1_s", "time_2_s", "time_3_s"];
     let times = names.into_iter().zip([-OUTER, 0.0, OUTER]);
@@ -279,10 +258,26 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
     let third = 1.0 / 3.0;
     let weights = ["weight_1", "weight_2", "weight_3"].map(|name| (name, third, third, third));
     let numbers = times.chain(weights).collect();
-    (within(free.first(), 1.0), numbers)
+    (interval(free, &|x| x.clamp(0.0, 0.99)), numbers)
 }
 
-/// Largest factor on a period that is stated as its interval.
+/// Shortest and longest period that recordings can show, s: the least time between readings, and the longest recording.
+fn seen_periods(ready: &PreparedStudy) -> (f64, f64) {
+    let mut seen = (f64::INFINITY, 0.0);
+    for course in &ready.courses {
+        let steps = course
+            .rows
+            .windows(2)
+            .map(|two| two[1].time_s - two[0].time_s);
+        seen.0 = steps.filter(|s| *s > 0.0).fold(seen.0, f64::min);
+        if let (Some(first), Some(last)) = (course.rows.first(), course.rows.last()) {
+            seen.1 = f64::max(seen.1, last.time_s - first.time_s);
+        }
+    }
+    seen
+}
+
+/// Largest factor on a number that is stated as its interval; beyond it the number is open on both sides.
 const MOST: f64 = 30.0;
 
 /// Amplitude and length of a load that is lost with travel.
@@ -295,8 +290,11 @@ fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
     };
     let mean = libm::exp(mean_log);
     // Half of a length's step either way, widened by how little the shares are known.
-    let factor = libm::exp(1.0 + HALF * error / sum.max(1e-3)).min(MOST);
-    let length = ("length_mm", mean, mean / factor, mean * factor);
+    let factor = libm::exp(1.0 + HALF * error / sum.max(1e-3));
+    let length = match factor > MOST {
+        true => ("length_mm", mean, f64::NEG_INFINITY, f64::INFINITY),
+        false => ("length_mm", mean, mean / factor, mean * factor),
+    };
     (within((sum, error), 1.0), vec![length])
 }
 
@@ -356,24 +354,5 @@ mod tests {
         assert_eq!(names(WHOLE, &[]), ["amplitude"]);
         let part = (0.34, 0.31, 0.37);
         assert_eq!(names(part, &[modulus]), ["amplitude", "modulus_mpa"]);
-    }
-
-    #[test]
-    fn standard_error_of_a_sum_includes_covariance() {
-        let refit = Refit {
-            at: vec![7.0, 1.0, 2.0],
-            deviance: 0.0,
-            residual: Vec::new(),
-            simulated: Vec::new(),
-            covariance: DMatrix::from_row_slice(
-                3,
-                3,
-                &[1.0, 0.5, 0.5, 0.5, 4.0, -2.0, 0.5, -2.0, 9.0],
-            ),
-        };
-        let free = Free::taken(&refit, &[1, 2]);
-        assert_eq!(free.first(), (1.0, 2.0));
-        assert_eq!(free.sum(&[1.0, 1.0]), (3.0, 3.0));
-        assert_eq!(free.sum(&[0.0, 1.0]), (2.0, 3.0));
     }
 }

@@ -39,28 +39,52 @@ impl Verdict {
     }
 }
 
-/// A number with its 90 % interval.
+/// A number with its 90 % interval by the profile likelihood.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
     /// Name in the catalogue, with its unit.
     pub name: &'static str,
-    /// Value.
+    /// Value with which the effect is switched on; where the interval is open no estimate.
     pub value: f64,
-    /// Ends of the interval.
+    /// Ends of the interval; infinite where the recordings do not bound the number on that side.
     pub interval: (f64, f64),
     /// Unit.
     pub unit: &'static str,
 }
 
 impl Number {
-    /// The interval, and the unit if it has one.
-    pub fn told(&self) -> (String, &'static str) {
+    /// Whether recordings bound it on both sides.
+    pub fn is_bounded(&self) -> bool {
+        self.interval.0.is_finite() && self.interval.1.is_finite()
+    }
+
+    /// The value, or a dash where it is no estimate; the interval or the bound; and the unit if it has one.
+    pub fn in_words(&self) -> (String, String, &'static str) {
         let (low, high) = self.interval;
-        let between = match low < high {
-            true => format!("{low:.4} to {high:.4}"),
-            false => "not fitted".to_owned(),
+        let between = match (low.is_finite(), high.is_finite()) {
+            (true, true) if low < high => format!("{} to {}", digits(low), digits(high)),
+            (true, true) => "not fitted".to_owned(),
+            (true, false) => format!("at least {}", digits(low)),
+            (false, true) => format!("at most {}", digits(high)),
+            (false, false) => "not determined".to_owned(),
         };
-        (between, if self.unit == "1" { "" } else { self.unit })
+        let value = match self.is_bounded() {
+            true => digits(self.value),
+            false => "\u{2013}".to_owned(),
+        };
+        (
+            value,
+            between,
+            if self.unit == "1" { "" } else { self.unit },
+        )
+    }
+}
+
+/// Three digits at least, four decimals at most.
+fn digits(value: f64) -> String {
+    match value.abs() >= 100.0 {
+        true => format!("{value:.0}"),
+        false => format!("{value:.4}"),
     }
 }
 

@@ -13,13 +13,14 @@ use thenar_inference::checks::signatures::looked_for;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::least_squares::huber::{HUBER, huber};
 use thenar_inference::parameters::surrogate_priors::is_form_known;
+use thenar_inference::selection::profile_interval::Profiled;
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Findings of what is named.
 pub fn findings(
     study: &Study,
     (ready, rungs): (&PreparedStudy, &Rungs),
-    decision: &Decision<'_>,
+    (decision, profiled): (&Decision<'_>, &[Profiled]),
     probabilities: &[(Vec<&'static str>, f64)],
 ) -> Vec<Finding> {
     let Some(named) = decision.named else {
@@ -38,7 +39,7 @@ pub fn findings(
     let of = |number: usize| {
         let mechanism = &named.mechanisms[number];
         let entry = mechanism.effect.entry();
-        let (numbers, _) = numbers_of_effect(ready, named, number);
+        let (numbers, _) = numbers_of_effect(ready, (named, profiled), number);
         let kind = match (named.mechanisms.len(), mechanism.is_instrument()) {
             (1, true) => Kind::Instrument(form),
             (1, false) => Kind::Skin(form),
@@ -221,12 +222,15 @@ pub fn materials(
 }
 
 /// Effects as the model takes them.
-pub fn effects(ready: &PreparedStudy, decision: &Decision<'_>) -> Vec<Switched> {
+pub fn effects(
+    ready: &PreparedStudy,
+    (decision, profiled): (&Decision<'_>, &[Profiled]),
+) -> Vec<Switched> {
     let Some(named) = decision.named else {
         return Vec::new();
     };
     (0..named.mechanisms.len())
-        .map(|k| numbers_of_effect(ready, named, k).1)
+        .map(|k| numbers_of_effect(ready, (named, profiled), k).1)
         .collect()
 }
 

@@ -5,6 +5,7 @@
 mod wording;
 mod track_record;
 mod findings;
+mod free_numbers;
 mod effect_numbers;
 mod channels;
 mod gates;

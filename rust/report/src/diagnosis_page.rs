@@ -134,11 +134,10 @@ fn share(of: f64) -> String {
 }
 
 fn number(of: &Number) -> String {
-    let (between, unit) = of.told();
+    let (value, between, unit) = of.in_words();
     format!(
-        "<tr><td class='left'>{}</td><td>{:.4}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
+        "<tr><td class='left'>{}</td><td>{value}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
         spoken(of.name, unit),
-        of.value
     )
 }
 

@@ -53,8 +53,11 @@ fn summary(study: &Study, found: &Diagnosis, out: &Path) -> String {
     for finding in &found.findings {
         text += &format!("{} ({})\n", finding.effect, finding.confidence.in_words());
         for number in &finding.numbers {
-            let (between, unit) = number.told();
-            let line = format!("  {} = {:.4} ({between}) {unit}", number.name, number.value);
+            let (value, between, unit) = number.in_words();
+            let line = match number.is_bounded() {
+                true => format!("  {} = {value} ({between}) {unit}", number.name),
+                false => format!("  {}: {between} {unit}", number.name),
+            };
             text += line.trim_end();
             text += "\n";
         }

@@ -2,7 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
-use crate::effect_numbers::Free;
+use crate::free_numbers::Free;
 use crate::gates::decision::needed;
 use thenar_inference::forward::surrogate::candidate_model::Model;
 use thenar_inference::forward::surrogate::force_recording::ForceRecording;

@@ -4,4 +4,5 @@ pub mod decision;
 pub mod pair_gates;
 pub mod held_out_gate;
 pub mod form_gate;
+pub mod size_gate;
 pub mod detection_limits;

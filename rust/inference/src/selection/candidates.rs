@@ -11,6 +11,9 @@ use crate::forward::tables::stiff_skin::THICKNESSES_MM;
 /// Periods of a spectrum in travel, over the largest depth.
 const TRAVELS: [f64; 3] = [0.08, 0.4, 2.0];
 
+/// Travel after which 63 % of a softening is lost, over the largest depth.
+pub const SOFTENING_TRAVELS: [f64; 3] = [0.25, 0.8, 2.5];
+
 /// Depths at which skin lets go, over the largest depth: before the tool is out, as it leaves, above the skin, and not at all.
 const LETS_GO: [f64; 6] = [0.12, 0.0, -0.1, -0.2, -0.35, -10.0];
 
@@ -70,7 +73,7 @@ fn softening(scales: Scales) -> impl Iterator<Item = Mechanism> {
     };
     starts
         .iter()
-        .flat_map(move |start| [0.25, 0.8, 2.5].map(|travel| one(start, travel)))
+        .flat_map(move |start| SOFTENING_TRAVELS.map(|travel| one(start, travel)))
 }
 
 fn instrument() -> Vec<Mechanism> {

@@ -41,10 +41,7 @@ impl Interval {
     fn joined(self, other: Interval) -> Interval {
         Interval {
             value: self.value,
-            ends: (
-                self.ends.0.min(other.ends.0),
-                self.ends.1.max(other.ends.1),
-            ),
+            ends: (self.ends.0.min(other.ends.0), self.ends.1.max(other.ends.1)),
             is_open: (
                 self.is_open.0 || other.is_open.0,
                 self.is_open.1 || other.is_open.1,
@@ -95,15 +92,15 @@ pub fn profiled(
     let samples = rungs.samples.max(1) as f64;
     let one = |number: usize| {
         let all = variants(&of.mechanisms, (number, ready.scales));
-        let models: Vec<Model<'_>> = all
-            .iter()
-            .map(|set| Model::new(surrogate, set))
-            .collect();
+        let models: Vec<Model<'_>> = all.iter().map(|set| Model::new(surrogate, set)).collect();
         let fits: Vec<Refit> = models
             .iter()
             .map(|model| refit(surrogate, model, &start))
             .collect();
-        let least = fits.iter().map(|f| f.deviance).fold(f64::INFINITY, f64::min);
+        let least = fits
+            .iter()
+            .map(|f| f.deviance)
+            .fold(f64::INFINITY, f64::min);
         let overdispersion = match &check {
             Some(_) => (least / samples).max(1.0),
             None => rungs.overdispersion,
@@ -180,7 +177,9 @@ struct Profile<'a> {
 impl Profile<'_> {
     /// Root of a deviance's rise over the least.
     fn root(&self, deviance: f64) -> f64 {
-        ((deviance - self.least) / self.overdispersion).max(0.0).sqrt()
+        ((deviance - self.least) / self.overdispersion)
+            .max(0.0)
+            .sqrt()
     }
 
     /// Of every parameter of one mechanism.
@@ -208,7 +207,9 @@ impl Profile<'_> {
     fn end(&mut self, coordinate: usize, bound: f64) -> Option<f64> {
         let from = self.best.at[coordinate];
         let own = self.root(self.best.deviance);
-        let error = self.best.covariance[(coordinate, coordinate)].max(0.0).sqrt();
+        let error = self.best.covariance[(coordinate, coordinate)]
+            .max(0.0)
+            .sqrt();
         let toward = |step: f64| match bound < from {
             true => (from - step).max(bound),
             false => (from + step).min(bound),

@@ -17,7 +17,7 @@ use crate::forward::tables::table_presses::{ratios, tables};
 use crate::interpolation::{Table, interval, mixed};
 
 /// Thicknesses that are tried, mm: a fingertip's horny layer has 0.3 (Adams 2013), all of its skin above the pulp about a millimetre.
-pub(crate) const THICKNESSES_MM: [f64; 3] = [0.3, 0.5, 0.9];
+pub const THICKNESSES_MM: [f64; 3] = [0.3, 0.5, 0.9];
 /// Moduli over that of pulp at which a skin is tabulated; the first is none.
 const RATIOS: [f64; 6] = [1.0, 2.5, 6.0, 15.0, 40.0, 100.0];
 /// The largest of them.
@@ -41,17 +41,6 @@ pub fn ratio(at: f64) -> f64 {
     let k = (at.max(0.0) as usize).min(last);
     let share = at.max(0.0) - k as f64;
     libm::exp(mixed(&RATIOS.map(libm::log), (k, share)))
-}
-
-/// A thickness that is tried, mm, and the next ones below and above, which explain recordings nearly alike; beyond the ends in the same
-/// ratio.
-pub fn thickness(form: usize) -> (f64, f64, f64) {
-    let own = THICKNESSES_MM[form];
-    let next = |at: Option<usize>| at.and_then(|at| THICKNESSES_MM.get(at).copied());
-    let (below, above) = (next(form.checked_sub(1)), next(Some(form + 1)));
-    let low = below.or(above.map(|above| own * own / above));
-    let high = above.or(below.map(|below| own * own / below));
-    (own, low.unwrap_or(own), high.unwrap_or(own))
 }
 
 /// Tables of `places`, whose base tables are given, by thickness; materials have one modulus.
@@ -237,13 +226,5 @@ mod tests {
         }
         assert!((ratio(1.5) / (2.5f64 * 6.0).sqrt() - 1.0).abs() < 1e-12);
         assert_eq!(ratio(-0.2), 1.0);
-    }
-
-    #[test]
-    fn thickness_interval_spans_neighboring_tables() {
-        let all: Vec<(f64, f64, f64)> = (0..THICKNESSES_MM.len()).map(thickness).collect();
-        assert_eq!(all[1], (0.5, 0.3, 0.9));
-        assert!((all[0].1 / 0.18 - 1.0).abs() < 1e-12 && all[0].2 == 0.5);
-        assert!((all[2].2 / 1.62 - 1.0).abs() < 1e-12 && all[2].1 == 0.5);
     }
 }

@@ -1,0 +1,174 @@
+//! Gate of size: an effect whose size the recordings leave open, so that it may as well be absent, is no finding.
+//!
+//! The rule is practical identifiability by the profile likelihood (`thenar_inference::selection::profile_interval`). What is there, and of
+//! which the size is bounded from one side alone, is named with that bound; what would bound it is advised.
+
+use crate::findings::{Finding, Number};
+use crate::gates::decision::{self, Decision, silent};
+use crate::gates::held_out_gate::predicted_by_protocols;
+use crate::wording::effect_in_words;
+use thenar_contact::effects::Effect;
+use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
+use thenar_inference::observe::measured::Measured;
+use thenar_inference::selection::cross_validation::Gain;
+use thenar_inference::selection::profile_interval::{Profiled, profiled};
+use thenar_inference::selection::scored::{Rungs, Scored};
+
+/// What is named, what it gains on held-out recordings, and what is known of its numbers.
+pub struct Sized<'a> {
+    /// The decision.
+    pub decision: Decision<'a>,
+    /// The gain of what is named.
+    pub gain: Option<Gain>,
+    /// By mechanism of what is named.
+    pub profiled: Vec<Profiled>,
+}
+
+/// A decision without the effects of which nothing is determined.
+pub fn decide<'a>(
+    ready: &PreparedStudy,
+    rungs: &'a Rungs,
+    (measured, seed): (&[Measured], u64),
+    (decision, gain): (Decision<'a>, Option<Gain>),
+) -> Sized<'a> {
+    let of = |scored: &Scored| profiled(ready, rungs, measured, scored);
+    let known = decision.named.map(of).unwrap_or_default();
+    let kept = decision
+        .named
+        .map(|named| determined(named, &known))
+        .unwrap_or_default();
+    let Some(named) = decision
+        .named
+        .filter(|named| kept.len() < named.mechanisms.len())
+    else {
+        return Sized {
+            decision,
+            gain,
+            profiled: known,
+        };
+    };
+    let single = kept.first().and_then(|effect| {
+        let is_it = |s: &&Scored| s.mechanisms[0].effect == *effect;
+        rungs.singles.iter().find(is_it)
+    });
+    let found = single.and_then(|single| {
+        let found = predicted_by_protocols((ready, rungs), measured, (single, seed));
+        let (gain, predicts) = found?;
+        let known = of(single);
+        let is_kept = predicts && determined(single, &known).len() == 1;
+        is_kept.then_some((single, gain, known))
+    });
+    let reason = open(named, &kept);
+    match found {
+        Some((single, gain, profiled)) => Sized {
+            decision: decision::named(single, &reason),
+            gain: Some(gain),
+            profiled,
+        },
+        None => Sized {
+            decision: silent(decision::nothing(ready, rungs), &reason),
+            gain: None,
+            profiled: Vec::new(),
+        },
+    }
+}
+
+/// Effects of an explanation whose size excludes that they are absent.
+fn determined(named: &Scored, known: &[Profiled]) -> Vec<Effect> {
+    let both = named.mechanisms.iter().zip(known);
+    let there = both.filter(|(mechanism, of)| of.excludes_absence(mechanism));
+    there.map(|(mechanism, _)| mechanism.effect).collect()
+}
+
+fn open(named: &Scored, kept: &[Effect]) -> String {
+    let effects = named.mechanisms.iter().map(|m| m.effect);
+    let left: Vec<Effect> = effects.filter(|effect| !kept.contains(effect)).collect();
+    let names: Vec<String> = left.iter().map(|e| effect_in_words(e.name())).collect();
+    let advice: Vec<&str> = left.iter().map(|e| bounding(e.name())).collect();
+    format!(
+        "suspected is {}, of which these recordings determine no size, so that it may be absent; to determine it, {}",
+        names.join(" and "),
+        advice.join(", and ")
+    )
+}
+
+/// What is said of a finding's numbers that recordings do not bound on both sides, and what would bound them; None where all are bounded.
+pub fn open_note(finding: &Finding) -> Option<String> {
+    let is_open = |n: &&Number| !n.is_bounded();
+    let open: Vec<String> = finding
+        .numbers
+        .iter()
+        .filter(is_open)
+        .map(|n| {
+            let (_, between, unit) = n.in_words();
+            let name = n.name.strip_suffix(&format!("_{}", unit.to_lowercase()));
+            let name = name.unwrap_or(n.name).replace('_', " ");
+            format!("its {name} is {between} {unit}")
+                .trim_end()
+                .to_owned()
+        })
+        .collect();
+    if open.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "{}: that it is there is determined, its numbers not all: {} (90 % profile likelihood). To bound them, {}",
+        effect_in_words(finding.effect),
+        open.join(", "),
+        bounding(finding.effect)
+    ))
+}
+
+/// The recording that bounds an effect's numbers.
+fn bounding(effect: &str) -> &'static str {
+    match effect {
+        "stiff_skin" => {
+            "press a ball or a flat punch of 1 to 3 mm radius at the same site: a small tool shows the skin, a large one the pulp under it"
+        }
+        "relaxation" | "drainage" => {
+            "press as fast as the machine can, read in finer steps of time, and hold for ten times as long"
+        }
+        "rate_independent_loss" => "press to three depths and let go from each, several times",
+        "cycle_softening" => "press ten times in a row to one depth, and again to half of it",
+        "adhesion" => "let go slowly, with finer steps as the tool leaves the skin",
+        "bone" | "stiffening_law" | "compressibility" => {
+            "press deeper, with a second tool of another size at the same site"
+        }
+        "saturation" => "press harder, so that more readings lie at the ceiling",
+        "threshold" => {
+            "press more slowly about first touch, so that more readings lie near the floor"
+        }
+        _ => "repeat each protocol more often",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic_rungs::scored;
+    use thenar_contact::effects::Effect::{Offset, StiffSkin};
+    use thenar_inference::selection::profile_interval::Interval;
+
+    fn of(ends: (f64, f64), is_open: (bool, bool)) -> Profiled {
+        let value = 0.5 * (ends.0 + ends.1);
+        Profiled {
+            numbers: vec![Interval {
+                value,
+                ends,
+                is_open,
+            }],
+            variants: Vec::new(),
+        }
+    }
+
+    /// Open toward more is a bound; what may be none, in either sign, determines nothing.
+    #[test]
+    fn an_effect_that_may_be_absent_is_not_determined() {
+        let kept = |effect, profile: Profiled| determined(&scored(&[effect], 9.0), &[profile]);
+        assert_eq!(kept(StiffSkin, of((0.4, 5.0), (false, true))), [StiffSkin]);
+        assert!(kept(StiffSkin, of((0.0, 3.0), (true, false))).is_empty());
+        assert!(kept(StiffSkin, of((0.0, 5.0), (true, true))).is_empty());
+        assert_eq!(kept(Offset, of((-0.4, -0.1), (false, false))), [Offset]);
+        assert!(kept(Offset, of((-0.4, 0.1), (false, false))).is_empty());
+    }
+}
