@@ -16,6 +16,7 @@ use crate::design::planned_recording::{Press, RecordingNoise, course};
 use crate::design::profile_likelihood::ProfilePoint;
 use crate::distributions::log_normal_cdf;
 use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::derivatives::Slopes;
 use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::surrogate::surrogate_data::Surrogate;
@@ -248,8 +249,9 @@ fn slopes(
     own: &Range<usize>,
 ) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let (mut shared, mut others) = (Vec::new(), Vec::new());
+    let of = Slopes::new(surrogate, (model, at), (course, forces));
     for (number, coordinate) in model.coordinates.iter().enumerate() {
-        let found = surrogate.slopes((model, at), (number, course), forces);
+        let found = of.by(number);
         if !own.contains(&number) {
             shared.push(found.unwrap_or_else(|| vec![0.0; forces.len()]));
         } else if let Some(slope) = found {

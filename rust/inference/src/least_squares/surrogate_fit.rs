@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use nalgebra::DMatrix;
 
 use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::derivatives::Slopes;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::least_squares::huber::HUBER;
 use crate::least_squares::levenberg_marquardt::{
@@ -71,11 +72,11 @@ impl Objective for Candidate<'_> {
         let Candidate(surrogate, model) = self;
         let rows = point.whitened.residual.len();
         let mut jacobian = DMatrix::zeros(rows, model.coordinates.len());
-        for number in 0..model.coordinates.len() {
-            for (c, course) in surrogate.courses.iter().enumerate() {
-                let forces = &point.simulated[c];
-                let found = surrogate.slopes((model, &point.at), (number, c), forces);
-                let Some(slopes) = found else {
+        for (c, course) in surrogate.courses.iter().enumerate() {
+            let forces = &point.simulated[c];
+            let of = Slopes::new(surrogate, (model, &point.at), (c, forces));
+            for number in 0..model.coordinates.len() {
+                let Some(slopes) = of.by(number) else {
                     continue;
                 };
                 for (row, slope) in course.rows.iter().zip(slopes) {

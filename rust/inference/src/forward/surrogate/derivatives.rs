@@ -1,38 +1,94 @@
 //! Derivatives of the surrogate's forces by its parameters.
 
-use crate::forward::surrogate::candidate_model::Model;
+use std::cell::OnceCell;
+
+use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
+use crate::forward::surrogate::stiffness_slopes::Stiffness;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::parameters::surrogate_parameter::Kind;
 
-impl Surrogate<'_> {
-    /// Derivative of one recording's forces by a coordinate, or None where it does not matter.
-    pub fn slopes(
-        &self,
-        (model, at): (&Model<'_>, &[f64]),
-        (number, course): (usize, usize),
-        forces: &[f64],
-    ) -> Option<Vec<f64>> {
-        let coordinate = &model.coordinates[number];
-        if !self.matters(model, coordinate.kind, course) {
+/// Derivatives of one recording's forces at a point.
+pub struct Slopes<'a> {
+    surrogate: &'a Surrogate<'a>,
+    model: &'a Model<'a>,
+    at: &'a [f64],
+    set: Setting,
+    course: usize,
+    forces: &'a [f64],
+    stiffness: Option<Stiffness>,
+    /// By the depth of first touch, be it the tool's or the recording's.
+    by_touch: OnceCell<Vec<f64>>,
+}
+
+impl<'a> Slopes<'a> {
+    /// Of a recording whose forces at the point are known.
+    pub fn new(
+        surrogate: &'a Surrogate<'a>,
+        (model, at): (&'a Model<'a>, &'a [f64]),
+        (course, forces): (usize, &'a [f64]),
+    ) -> Slopes<'a> {
+        let set = model.setting(surrogate, at);
+        Slopes {
+            stiffness: surrogate.stiffness((model, &set), (course, forces)),
+            surrogate,
+            model,
+            at,
+            set,
+            course,
+            forces,
+            by_touch: OnceCell::new(),
+        }
+    }
+
+    /// By a coordinate, or None where it does not matter.
+    pub fn by(&self, number: usize) -> Option<Vec<f64>> {
+        let kind = self.model.coordinates[number].kind;
+        if !self.surrogate.matters(self.model, kind, self.course) {
             return None;
         }
-        let known = self.in_proportion((model, at), (coordinate.kind, course), forces);
-        if known.is_some() {
-            return known;
+        if matches!(kind, Kind::Touch(_) | Kind::Zero(_)) {
+            return Some(
+                self.by_touch
+                    .get_or_init(|| self.difference(number))
+                    .clone(),
+            );
         }
+        let point = (self.model, &self.set);
+        let is_proportion = matches!(kind, Kind::Gain(_))
+            && self
+                .model
+                .mechanisms
+                .iter()
+                .all(Mechanism::is_read_in_proportion);
+        let known = match (&self.stiffness, is_proportion) {
+            (_, true) => Some(self.forces.to_vec()),
+            (Some(of), _) => self
+                .surrogate
+                .stiffness_slopes(point, (kind, self.course), of),
+            _ => None,
+        };
+        Some(known.unwrap_or_else(|| self.difference(number)))
+    }
+
+    /// By a difference of forces, toward the farther bound.
+    fn difference(&self, number: usize) -> Vec<f64> {
+        let coordinate = &self.model.coordinates[number];
         let (low, high) = coordinate.bounds;
-        let step = match high - at[number] > at[number] - low {
+        let step = match high - self.at[number] > self.at[number] - low {
             true => coordinate.step,
             false => -coordinate.step,
         };
-        let mut moved = at.to_vec();
+        let mut moved = self.at.to_vec();
         moved[number] += step;
-        let moved = self.forces(model, &model.setting(self, &moved), course);
-        let slope = moved.iter().zip(forces).map(|(b, a)| (b - a) / step);
-        Some(slope.collect())
+        let set = self.model.setting(self.surrogate, &moved);
+        let moved = self.surrogate.forces(self.model, &set, self.course);
+        let slope = moved.iter().zip(self.forces).map(|(b, a)| (b - a) / step);
+        slope.collect()
     }
+}
 
+impl Surrogate<'_> {
     /// Whether a recording's forces depend on a number.
     fn matters(&self, model: &Model<'_>, kind: Kind, course: usize) -> bool {
         let one = &self.courses[course];
@@ -45,32 +101,6 @@ impl Surrogate<'_> {
             },
             Kind::SharedForm(site, _) => site == self.elastic.site_of[one.place],
             Kind::First | Kind::Limit => true,
-        }
-    }
-
-    /// The derivative by the logarithm of a factor on all that is read of a depth, where it is one: not beside what the instrument adds to
-    /// the force or takes off, nor, of the elastic answer, beside what remembers or clings.
-    fn in_proportion(
-        &self,
-        (model, at): (&Model<'_>, &[f64]),
-        (kind, course): (Kind, usize),
-        forces: &[f64],
-    ) -> Option<Vec<f64>> {
-        let all = |known: fn(&Mechanism) -> bool| model.mechanisms.iter().all(known);
-        match kind {
-            Kind::Gain(_) if all(Mechanism::is_read_in_proportion) => Some(forces.to_vec()),
-            Kind::Scale(_) if all(Mechanism::is_in_proportion) => Some(forces.to_vec()),
-            Kind::Form(..) | Kind::SharedForm(..) if all(Mechanism::is_in_proportion) => {
-                let depths = self.depths(model, &model.setting(self, at), (course, forces));
-                let way = |depth: f64| match kind {
-                    Kind::Form(place, way) => self.form_of_tool(place, depth)[way],
-                    Kind::SharedForm(_, form) => self.form_of_site(depth)[form],
-                    _ => 0.0,
-                };
-                let slope = |(d, f): (&f64, &f64)| f * way(*d);
-                Some(depths.iter().zip(forces).map(slope).collect())
-            }
-            _ => None,
         }
     }
 }
@@ -121,8 +151,8 @@ mod tests {
         };
         let (low, high) = (beside(-1e-5), beside(1e-5));
         let forces = surrogate.all_forces(model, at).concat();
-        let slopes = surrogate
-            .slopes((model, at), (number, 0), &forces)
+        let slopes = Slopes::new(surrogate, (model, at), (0, &forces))
+            .by(number)
             .expect("slopes");
         let most = slopes.iter().fold(1e-3, |most: f64, s| most.max(s.abs()));
         let ends = low.iter().zip(&high);

@@ -88,7 +88,7 @@ impl Surrogate<'_> {
             let answer = self.answer(model, set, one.place);
             let way = SpringHistory {
                 depths: &depths,
-                touches: &answer.touches,
+                touches: &answer.touches[..answer.springs.len()],
                 relaxation_branches: &relaxation_branches,
                 shares: &shares,
             };

@@ -217,14 +217,6 @@ impl Mechanism {
     pub(crate) fn is_read_in_proportion(&self) -> bool {
         !self.is_instrument() || matches!(self.law, Law::GainStep { .. })
     }
-
-    /// True where the tool's elastic answer at a depth is a factor on all that is read there.
-    pub(crate) fn is_in_proportion(&self) -> bool {
-        matches!(
-            self.law,
-            Law::Tabulated(_) | Law::Stiffening(..) | Law::Softening { .. } | Law::GainStep { .. }
-        )
-    }
 }
 
 /// What the scales of a study are, from which variants are chosen.

@@ -10,6 +10,7 @@ pub mod tissue_laws;
 pub(crate) mod instrument_laws;
 pub(crate) mod stiffness_factor;
 pub(crate) mod force_prediction;
+pub(crate) mod stiffness_slopes;
 pub(crate) mod derivatives;
 pub mod prepared_study;
 #[cfg(test)]

@@ -34,17 +34,50 @@ pub(crate) fn branch_decay(steps: &[f64]) -> Vec<(f64, f64)> {
     steps.iter().map(one).collect()
 }
 
+/// By row and spring that touches, the length that memory takes off what an elastic spring bears, mm.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Lost {
+    lengths: Vec<f64>,
+    /// Number of springs that touch.
+    count: usize,
+}
+
+impl Lost {
+    /// By row, the force that memory adds (below 0: takes off) on springs of that stiffness, N/mm.
+    pub(crate) fn forces(&self, springs: &[f64]) -> Vec<f64> {
+        let row = |lost: &[f64]| springs.iter().zip(lost).map(|(k, lost)| k * lost).sum();
+        self.lengths
+            .chunks_exact(self.count.max(1))
+            .map(row)
+            .collect()
+    }
+}
+
 /// By row, force over what elastic springs bear: `sum_j k_j (s_j - max(d - d_j, 0))`, with stiffness `springs` (N/mm).
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub(crate) fn relaxation_loss(way: &SpringHistory<'_>, springs: &[f64]) -> Vec<f64> {
+    let lost = lost_lengths(way);
+    match lost.count {
+        0 => vec![0.0; way.depths.len()],
+        _ => lost.forces(springs),
+    }
+}
+
+/// What memory takes off every spring.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
+pub(crate) fn lost_lengths(way: &SpringHistory<'_>) -> Lost {
     let deepest = way.depths.iter().fold(0.0, |most: f64, d| most.max(*d));
     // A spring that never touches bears nothing.
-    let touching = way.touches.iter().take(springs.len());
-    let touches: Vec<f64> = touching.copied().take_while(|t| *t < deepest).collect();
+    let touches: Vec<f64> = way
+        .touches
+        .iter()
+        .copied()
+        .take_while(|t| *t < deepest)
+        .collect();
     let count = touches.len();
     let (mut last, mut length, mut borne) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
     let mut left = vec![vec![0.0; count]; way.relaxation_branches.len()];
-    let row = |(n, depth): (usize, &f64)| {
+    let mut lengths = Vec::with_capacity(count * way.depths.len());
+    for (n, depth) in way.depths.iter().enumerate() {
         for ((length, borne), touch) in length.iter_mut().zip(&mut borne).zip(&touches) {
             *length = (depth - touch).max(0.0);
             *borne = *length;
@@ -67,9 +100,8 @@ pub(crate) fn relaxation_loss(way: &SpringHistory<'_>, springs: &[f64]) -> Vec<f
         }
         last.copy_from_slice(&length);
         // Skin that does not cling does not pull.
-        let each = springs.iter().zip(&borne).zip(&length);
-        each.map(|((k, borne), length)| k * (borne.max(0.0) - length))
-            .sum()
-    };
-    way.depths.iter().enumerate().map(row).collect()
+        let each = borne.iter().zip(&length);
+        lengths.extend(each.map(|(borne, length)| borne.max(0.0) - length));
+    }
+    Lost { lengths, count }
 }

@@ -24,11 +24,17 @@ impl Surrogate<'_> {
         let share = (depth / self.elastic.limit_depth).clamp(0.0, 1.0);
         let modulus = set.first * (1.0 - share) + set.limit * share;
         let mut log = set.scale[place];
-        log += sum(&set.form[place], &self.form_of_tool(place, depth));
-        log += sum(
+        let is_off = |sizes: &[f64]| sizes.iter().any(|size| *size != 0.0);
+        let (of_tool, of_site) = (
+            &set.form[place],
             &set.shared_form[self.elastic.site_of[place]],
-            &self.form_of_site(depth),
         );
+        if is_off(of_tool) {
+            log += sum(of_tool, &self.form_of_tool(place, depth));
+        }
+        if is_off(of_site) {
+            log += sum(of_site, &self.form_of_site(depth));
+        }
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             match &mechanism.law {
                 Law::Tabulated(form) => {
