@@ -143,7 +143,7 @@ def _entry(found, index):
     finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
     numbers = finding.get("parameters") or {}
-    rows = [Row(wording.number_title(key, numbers), wording.value(number)) for key, number in numbers.items()]
+    rows = [Row(wording.number_title(key, numbers), wording.estimate(number)) for key, number in numbers.items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     record = finding.get("track_record") or {}
@@ -238,7 +238,7 @@ def _gain(fit):
             yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
     score = fit.get("log_score")
     if score and score.get("value") is not None:
-        text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])} nats"
+        text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])}"
         if score.get("placebo") is not None:
             most = wording.number(max(score["placebo"], 0.0))
             text += f"; by the same change on the wrong recordings and moments (negative control) by {most} at most"

@@ -87,6 +87,17 @@ def value(told):
     return f"{text} ({between})" if between else text
 
 
+def estimate(told):
+    """A finding's number: `value`, or the bound where recordings bound it from one side alone: `at least 0.2 MPa`."""
+    low, high = told.get("low", 0.0), told.get("high", 0.0)
+    if low is not None and high is not None:
+        return value(told)
+    if low is None and high is None:
+        return "not determined"
+    word, end = ("at most", high) if low is None else ("at least", low)
+    return f"{word} {number(end)} {UNITS.get(told.get('unit'), told.get('unit') or '')}".rstrip()
+
+
 def least(seen):
     """The detection limit of an effect; `not detectable` where it is out of reason or not known."""
     size = seen.get("value")

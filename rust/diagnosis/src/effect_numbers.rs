@@ -109,13 +109,15 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
             ..
         } => {
             let shares = interval(free, &|x| x.clamp(0.0, 0.95));
-            let laws = free.laws(&mechanism.law);
-            let is_kept = |tried: f64| {
-                let near = |law: &&&Law| matches!(law, Law::Softening { travel_mm, .. } if (travel_mm / tried - 1.0).abs() < 1e-9);
-                laws.iter().any(|law| near(&law))
-            };
+            let travels = free
+                .laws(&mechanism.law)
+                .into_iter()
+                .filter_map(|law| match law {
+                    Law::Softening { travel_mm, .. } => Some(*travel_mm),
+                    _ => None,
+                });
             let tried = SOFTENING_TRAVELS.map(|over| over * ready.scales.deepest);
-            let travel = tried_interval(*travel_mm, &tried, is_kept);
+            let travel = tried_interval(*travel_mm, &tried, &travels.collect::<Vec<f64>>());
             let shape = vec![
                 ("travel_mm", travel.0, travel.1, travel.2),
                 ("recovery_s", *recovery_s, *recovery_s, *recovery_s),
@@ -144,12 +146,12 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
 fn skin((form, law): (usize, &Law), free: &Free) -> Vec<Named> {
     let pulp = 3.0 * free.shear_mpa;
     let modulus = interval(free, &|x| pulp * ratio(x));
-    let laws = free.laws(law);
-    let is_kept = |mm: f64| {
-        let is_it = |l: &&Law| matches!(l, Law::Tabulated(k) if THICKNESSES_MM[*k].to_bits() == mm.to_bits());
-        laws.iter().any(|l| is_it(l))
-    };
-    let thick = tried_interval(THICKNESSES_MM[form], &THICKNESSES_MM, is_kept);
+    let kept = free.laws(law).into_iter().filter_map(|law| match law {
+        Law::Tabulated(form) => Some(THICKNESSES_MM[*form]),
+        _ => None,
+    });
+    let kept: Vec<f64> = kept.collect();
+    let thick = tried_interval(THICKNESSES_MM[form], &THICKNESSES_MM, &kept);
     vec![
         ("modulus_mpa", modulus.0, modulus.1, modulus.2),
         ("thickness_mm", thick.0, thick.1, thick.2),

@@ -74,12 +74,10 @@ impl Free {
         })
     }
 
-    /// Variants of the law that are not excluded; the fitted one where none was asked for.
+    /// The fitted law, and its variants that are not excluded.
     pub fn laws<'a>(&'a self, own: &'a Law) -> Vec<&'a Law> {
-        match &self.profiled {
-            Some(known) => known.variants.iter().map(|m| &m.law).collect(),
-            None => vec![own],
-        }
+        let known = self.profiled.iter().flat_map(|known| &known.variants);
+        std::iter::once(own).chain(known.map(|m| &m.law)).collect()
     }
 
     /// The first number and its standard error.
@@ -118,10 +116,11 @@ pub fn of_number(free: &Free, number: usize, scale: &dyn Fn(f64) -> f64) -> Thre
     )
 }
 
-/// A number that is tried at a few values, and the next values below and above those that are not excluded; open where there is none.
-pub fn tried_interval(value: f64, tried: &[f64], is_kept: impl Fn(f64) -> bool) -> Three {
-    let first = tried.iter().position(|t| is_kept(*t)).unwrap_or(0);
-    let last = tried.iter().rposition(|t| is_kept(*t)).unwrap_or(first);
+/// A number that is tried at a few values: the next values below and above those that are kept; open where there is none.
+pub fn tried_interval(value: f64, tried: &[f64], kept: &[f64]) -> Three {
+    let is_kept = |t: &f64| kept.iter().any(|k| (k / t - 1.0).abs() < 1e-9);
+    let first = tried.iter().position(is_kept).unwrap_or(0);
+    let last = tried.iter().rposition(is_kept).unwrap_or(first);
     let low = first.checked_sub(1).map_or(f64::NEG_INFINITY, |k| tried[k]);
     let high = tried.get(last + 1).copied().unwrap_or(f64::INFINITY);
     (value, low, high)
@@ -130,6 +129,20 @@ pub fn tried_interval(value: f64, tried: &[f64], is_kept: impl Fn(f64) -> bool) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What is not excluded lies between the next values that are; beyond the first and the last nothing was tried.
+    #[test]
+    fn interval_of_tried_values_is_open_at_the_ends() {
+        let open = (f64::NEG_INFINITY, f64::INFINITY);
+        let of = |kept: &[f64]| {
+            let (_, low, high) = tried_interval(kept[0], &[0.3, 0.5, 0.9], kept);
+            (low, high)
+        };
+        assert_eq!(of(&[0.5]), (0.3, 0.9));
+        assert_eq!(of(&[0.3]), (open.0, 0.5));
+        assert_eq!(of(&[0.9, 0.5]), (0.3, open.1));
+        assert_eq!(of(&[0.9, 0.3]), open);
+    }
 
     #[test]
     fn standard_error_of_a_sum_includes_covariance() {

@@ -6,6 +6,7 @@ use thenar_recordings::Study;
 
 use crate::findings::Suggestion;
 use crate::gates::decision::{are_clocks, have_sizes, lead, opponents};
+use crate::wording::effect_in_words;
 use thenar_inference::design::candidate_recordings::{CandidateRecording, RecordedSoFar, placed};
 use thenar_inference::design::expected_discrimination::{Discrimination, ModelPair};
 use thenar_inference::design::profile_likelihood::profile;
@@ -181,9 +182,9 @@ fn told(
         },
     );
     let text = format!(
-        "Press with {with}, {times} times{each}: {} and {} then differ",
-        pair[0].replace('_', " "),
-        pair[1].replace('_', " ")
+        "Press with {with}, {times} times{each}: {} and {} predict different forces there",
+        effect_in_words(pair[0]),
+        effect_in_words(pair[1])
     );
     Suggestion {
         text,

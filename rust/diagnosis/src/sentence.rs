@@ -15,24 +15,25 @@ pub fn sentence(
     let names = names.join(" and ");
     let sure = sureness(findings);
     match verdict {
-        Verdict::NothingMissing => {
-            "Nothing is missing at this noise: the study's own parameters explain the recordings."
-                .into()
-        }
-        Verdict::Parameters => {
-            "Only the parameters were off: with the fitted moduli nothing is missing at this noise."
-                .into()
-        }
-        Verdict::InsufficientData => {
-            format!("Too little was recorded to say what is missing: {reason}.")
-        }
+        Verdict::NothingMissing => format!(
+            "Nothing is missing: with the study's own parameters the simulation agrees with the recordings within their noise.{}",
+            suspicion(reason)
+        ),
+        Verdict::Parameters => format!(
+            "No effect is missing, but the stiffness of the tissue was off: with fitted moduli the simulation agrees with the recordings within \
+             their noise.{}",
+            suspicion(reason)
+        ),
+        Verdict::InsufficientData => format!(
+            "Too little was recorded to say what is missing: {reason}. Record next: the same presses again, each at least twice, and one with a hold."
+        ),
         Verdict::Unlisted => {
             format!("Something is missing that is not in the list of effects: {reason}.")
         }
         Verdict::CannotTell => {
             let told: Vec<String> = pairs
                 .iter()
-                .map(|[a, b]| format!("{} and {}", effect_in_words(a), effect_in_words(b)))
+                .map(|[a, b]| format!("{} from {}", effect_in_words(a), effect_in_words(b)))
                 .collect();
             let with: Vec<String> = beside.iter().map(|name| effect_in_words(name)).collect();
             let with = match with.is_empty() {
@@ -40,26 +41,32 @@ pub fn sentence(
                 false => format!(", each of them together with {}", with.join(" and ")),
             };
             format!(
-                "These recordings cannot tell {} apart{with}.{}",
+                "Something is missing, but these recordings cannot distinguish {}{with}.{}",
                 told.join(", nor "),
                 next.first().map_or(String::new(), advised)
             )
         }
         Verdict::Instrument if findings.is_empty() => {
-            "It is the instrument, not the skin: what stands out in the maps stays with the sensels."
+            "The instrument is at fault, not the skin: the deviation in the pressure maps stays at the same sensels of the mat."
                 .into()
         }
-        Verdict::Instrument => {
-            format!("It is the instrument: {names} ({sure}).")
-        }
+        Verdict::Instrument => format!("The instrument is at fault, not the skin: {names}.{sure}"),
         Verdict::MissingPhysics => {
             let when = findings.first().and_then(|f| f.when.as_ref());
             let when = when.map_or(String::new(), |w| {
-                format!(", seen most {}", phase_in_words(w.phase))
+                format!(" It shows most {}.", phase_in_words(w.phase))
             });
             let gained = gain.map_or(String::new(), predicted);
-            format!("What is missing is {names} ({sure}){when}{gained}.")
+            format!("The simulation lacks {names}.{when}{gained}{sure}")
         }
+    }
+}
+
+/// Where nothing is named, that something is suspected.
+fn suspicion(reason: &str) -> &'static str {
+    match reason.contains("suspected") {
+        true => " An effect is suspected, but these recordings do not settle it (see the notes).",
+        false => "",
     }
 }
 
@@ -69,7 +76,17 @@ fn sureness(findings: &[Finding]) -> String {
     let least = findings
         .iter()
         .min_by(|a, b| frequency(a).total_cmp(&frequency(b)));
-    least.map_or(String::new(), |f| f.confidence.in_words())
+    match least.map(|f| f.confidence.frequency()) {
+        None => String::new(),
+        Some(Some(share)) => format!(
+            " At least {:.0} % of such findings were right in studies whose truth was known.",
+            100.0 * share
+        ),
+        Some(None) => {
+            " How often such a finding is right has not been measured: check it with one more recording."
+                .to_owned()
+        }
+    }
 }
 
 /// Share of the reducible error from which it is stated, if all of its interval is above 0: otherwise noise decides how large it is.
@@ -78,11 +95,11 @@ const TELLING: f64 = 0.3;
 /// How much better held-out recordings are predicted.
 fn predicted(gain: &Gain) -> String {
     if gain.removed < TELLING || gain.interval.0 < 0.0 {
-        return "; it is small against the noise, yet held-out recordings are predicted better with it"
+        return " It is small against the noise, but recordings that were not used for the fit are predicted better with it."
             .to_owned();
     }
     format!(
-        "; with it {:.0} % of the reducible error of held-out recordings goes away",
+        " With it, the simulation predicts recordings that were not used for the fit: {:.0} % of its error beyond noise is gone.",
         100.0 * gain.removed
     )
 }
@@ -140,7 +157,7 @@ mod tests {
                 "unused",
             )
         };
-        let apart = "These recordings cannot tell another thickness of the tissue over bone and fixture compliance apart";
+        let apart = "Something is missing, but these recordings cannot distinguish another thickness of the tissue over bone from compliance of the fixture";
         assert_eq!(told(&[]), format!("{apart}."));
         let with = ", each of them together with a zero error of the sensor.";
         assert_eq!(told(&["offset"]), format!("{apart}{with}"));

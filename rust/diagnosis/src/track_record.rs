@@ -99,11 +99,8 @@ impl Confidence {
     /// In words.
     pub fn in_words(&self) -> String {
         match self.frequency() {
-            Some(share) => format!(
-                "on calibration studies right in at least {:.0} % of such findings",
-                100.0 * share
-            ),
-            None => "how often such a finding is right was not measured".to_owned(),
+            Some(share) => format!("at least {:.0} % of such findings are right", 100.0 * share),
+            None => "confidence not measured".to_owned(),
         }
     }
 }

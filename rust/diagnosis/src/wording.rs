@@ -16,6 +16,12 @@ pub fn effect_in_words(effect: &str) -> String {
         "saturation" => "a sensor that saturates".into(),
         "threshold" => "a sensor that is blind to small forces".into(),
         "timing" => "a clock that is late".into(),
+        "relaxation" => "relaxation of the tissue".into(),
+        "drainage" => "drainage of fluid from the tissue".into(),
+        "rate_independent_loss" => "an energy loss that does not depend on speed".into(),
+        "adhesion" => "adhesion of the skin to the tool".into(),
+        "fixture_compliance" => "compliance of the fixture".into(),
+        "dead_cells" => "dead cells of the mat".into(),
         other => other.replace('_', " "),
     }
 }

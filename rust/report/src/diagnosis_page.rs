@@ -35,12 +35,12 @@ pub fn diagnosis_html(found: &Diagnosis) -> String {
         .collect();
     let _ = writeln!(
         html,
-        "<h3>What stands behind it</h3><ul>{notes}</ul></section>\n<section><h2>With parameters alone</h2><p class='sentence'>{}</p>{}</section>",
+        "<h3>Notes</h3><ul>{notes}</ul></section>\n<section><h2>With parameters alone</h2><p class='sentence'>{}</p>{}</section>",
         escaped(&found.comparison.sentence),
         match found.verdict {
             Verdict::NothingMissing | Verdict::Parameters => "",
             _ =>
-                "<p class='meta'>This weighs all that is left at once; what stands above was sought cause by cause, which finds smaller effects.</p>",
+                "<p class='meta'>This test weighs all residuals at once. The findings above were tested cause by cause, which detects smaller effects.</p>",
         }
     );
     page(&found.comparison, (&found.sentence, &html))
@@ -167,7 +167,7 @@ fn signs(consequences: &[(String, bool)]) -> String {
         return String::new();
     }
     let row = |(sentence, holds): &(String, bool)| {
-        let told = if *holds { "holds" } else { "does not hold" };
+        let told = if *holds { "seen" } else { "not seen" };
         format!(
             "<tr><td class='left'>{}</td><td class='left'>{told}</td></tr>",
             escaped(sentence)
@@ -175,7 +175,7 @@ fn signs(consequences: &[(String, bool)]) -> String {
     };
     let rows: String = consequences.iter().map(row).collect();
     format!(
-        "<table><tr><th class='left'>what must show if it is there</th><th class='left'>in these recordings</th></tr>{rows}</table>\n"
+        "<table><tr><th class='left'>expected sign of the effect</th><th class='left'>in these recordings</th></tr>{rows}</table>\n"
     )
 }
 
@@ -196,7 +196,7 @@ fn gained(gain: &Gain) -> String {
     format!(
         "<p>Predictions of recordings that were held out, {held_out}: {:.2} standard deviations of the noise before, {:.2} \
 after; repeats predict one another to {:.2}. {share} \
-Their log predictive density rises by {:.1} nats (plug-in estimate of the elpd difference); by the same change on the wrong recordings at the wrong \
+Their log predictive density rises by {:.1} (plug-in estimate of the elpd difference); by the same change on the wrong recordings at the wrong \
 moments it rises by {:.1} at most (99 of 100 draws).</p>\n",
         gain.before.rms, gain.after.rms, gain.floor.rms, gain.log_score, gain.placebo
     )
@@ -217,7 +217,7 @@ fn rivals(all: &[Rival]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let mut html = "<h3>What was tried</h3><table><tr><th class='left'>explanation</th><th>evidence, nats</th><th>probability</th>\
+    let mut html = "<h3>What was tried</h3><table><tr><th class='left'>explanation</th><th>log evidence</th><th>probability</th>\
 <th>shared misfit left</th><th>load</th><th>hold</th><th>unload</th><th>rest</th></tr>"
         .to_owned();
     for rival in all.iter().take(12) {
@@ -235,7 +235,7 @@ fn rivals(all: &[Rival]) -> String {
         }
         html += "</tr>";
     }
-    html + "</table><p class='meta'>Evidence over parameters alone; the last four columns say in which phase it accrued. A pair one of which is not needed \
+    html + "</table><p class='meta'>Log evidence (minus half the QAIC difference) over parameters alone; the last four columns say in which phase it accrued. A pair one of which is not needed \
 counts as the other alone, and has no probability of its own.</p>\n"
 }
 

@@ -90,7 +90,7 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         "Before: 0.21 N (0.18–0.24)",
         "Noise floor: 0.03 N (0.02–0.04)",
         "96 % (91 % to > 99 %) of the reducible error is removed.",
-        "The log predictive density of held-out recordings rises by 374 nats; by the same change on the wrong "
+        "The log predictive density of held-out recordings rises by 374; by the same change on the wrong "
         "recordings and moments (negative control) by 35.3 at most.",
         "Evaluated on 2 held-out recordings: 'sphere 1' and 'sphere 2'.",
         "Detection limit, adhesion: 0.02 J/m²",

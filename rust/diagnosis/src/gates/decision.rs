@@ -55,7 +55,7 @@ pub struct Decision<'a> {
 pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     if ready.noise.degrees.is_none() {
         let reason = format!(
-            "no protocol was repeated, so that noise cannot be told from what is missing; {}",
+            "no protocol was repeated, so that noise and a missing effect look alike; {}",
             suspected(rungs)
         );
         return silent(Verdict::InsufficientData, &reason);
@@ -100,7 +100,7 @@ fn suspected(rungs: &Rungs) -> String {
     names.sort();
     match names.len() {
         1 => format!("{} is suspected", names[0]),
-        _ => format!("suspected, and not told apart, are {}", names.join(", ")),
+        _ => format!("suspected, and not distinguished, are {}", names.join(", ")),
     }
 }
 

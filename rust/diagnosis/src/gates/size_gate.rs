@@ -101,9 +101,7 @@ pub fn open_note(finding: &Finding) -> Option<String> {
         .filter(is_open)
         .map(|n| {
             let (_, between, unit) = n.in_words();
-            let name = n.name.strip_suffix(&format!("_{}", unit.to_lowercase()));
-            let name = name.unwrap_or(n.name).replace('_', " ");
-            format!("its {name} is {between} {unit}")
+            format!("its {} is {between} {unit}", number_in_words(n.name, unit))
                 .trim_end()
                 .to_owned()
         })
@@ -112,11 +110,24 @@ pub fn open_note(finding: &Finding) -> Option<String> {
         return None;
     }
     Some(format!(
-        "{}: that it is there is determined, its numbers not all: {} (90 % profile likelihood). To bound them, {}",
+        "{}: its presence is determined, its size not fully: {} (90 % profile likelihood); to determine it, {}",
         effect_in_words(finding.effect),
         open.join(", "),
         bounding(finding.effect)
     ))
+}
+
+/// A number's name without its unit.
+fn number_in_words(name: &str, unit: &str) -> String {
+    match name {
+        "time_1_s" => "shortest time constant".to_owned(),
+        "time_2_s" => "middle time constant".to_owned(),
+        "time_3_s" => "longest time constant".to_owned(),
+        _ => {
+            let ending = format!("_{}", unit.to_lowercase().replace('/', "_per_"));
+            name.strip_suffix(&ending).unwrap_or(name).replace('_', " ")
+        }
+    }
 }
 
 /// The recording that bounds an effect's numbers.

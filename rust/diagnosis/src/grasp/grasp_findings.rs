@@ -229,14 +229,14 @@ fn signs(explained: &Explained, named: &Weighed) -> Vec<(String, bool)> {
     if let Cause::Relaxation(_) = named.cause {
         let (fall, all) = falling(explained);
         signs.push((
-            format!("pressure falls at unchanged contact in {fall} of {all} regions and holds, corrected for what the fingers moved"),
+            format!("pressure falls at unchanged contact in {fall} of {all} places (each part of the hand in each hold), corrected for finger motion"),
             10 * fall >= 7 * all,
         ));
         signs.extend(trace_sign(explained));
     }
     if let Some(gain) = named.held_out {
         let text = format!(
-            "each hold is predicted better with it by the others, by {gain:.1} nats in all"
+            "each hold is predicted better with it by the others: their log predictive density rises by {gain:.1} in all"
         );
         signs.push((text, gain > 0.0));
     }

@@ -250,3 +250,59 @@ impl Profile<'_> {
         outer.map(|(far, _)| far)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+    use crate::observe::measured::Phase;
+
+    const SIGMA_N: f64 = 0.05;
+
+    /// A flat punch of 10 N/mm pressed to 2 mm and read with an offset: the interval of one of its effect's numbers.
+    fn of(effect: (Effect, Law), offset_n: f64, overdispersion: f64) -> (Interval, Refit) {
+        let read = |k: u32| -> Reading {
+            let depth = f64::from(k) / 40.0;
+            (depth, depth, Phase::Load, 10.0 * depth + offset_n)
+        };
+        let punch = tool(2.0, |depth| 10.0 * depth, |_| 1.0);
+        let readings = (0..=80).map(read).collect();
+        let (ready, _) = ready(vec![punch], &[(0, readings)], SIGMA_N);
+        let surrogate = ready.surrogate();
+        let (effect, law) = effect;
+        let all = [Mechanism { effect, law }];
+        let model = Model::new(&surrogate, &all);
+        let best = refit(&surrogate, &model, &[]);
+        let mut profile = Profile {
+            surrogate: &surrogate,
+            least: best.deviance,
+            model,
+            best: best.clone(),
+            overdispersion,
+        };
+        (profile.intervals(0)[0], best)
+    }
+
+    /// An offset adds to the force and to nothing else, so that its likelihood is normal: 1.645 standard errors either way.
+    #[test]
+    fn interval_of_a_linear_parameter_is_the_normal_one() {
+        for overdispersion in [1.0f64, 4.0] {
+            let (found, best) = of((Effect::Offset, Law::Offset), 0.3, overdispersion);
+            let last = best.at.len() - 1;
+            let error = best.covariance[(last, last)].sqrt() * overdispersion.sqrt();
+            assert_eq!(found.is_open, (false, false));
+            for (end, wanted) in [(found.ends.0, -ROOT), (found.ends.1, ROOT)] {
+                let at = (end - best.at[last]) / error;
+                assert!((at / wanted - 1.0).abs() < 2.0 * NEAR, "{at} {wanted}");
+            }
+        }
+    }
+
+    /// A creep whose own time is thirty years adds nothing in two seconds: its size is open on both sides.
+    #[test]
+    fn parameter_that_recordings_do_not_show_is_open() {
+        let none = Law::Drift { time_s: 1e9 };
+        let (found, _) = of((Effect::Drift, none), 0.0, 1.0);
+        assert_eq!(found.is_open, (true, true), "{found:?}");
+    }
+}
