@@ -87,8 +87,9 @@ def test_a_finger_in_counts_is_compared_by_shape_and_its_second_lobe_stands_out(
 
 
 SUSPECTED = {
-    "force_ramps": "suspected, and not told apart, are drainage, rate independent loss, relaxation",
-    "gel_creep": "adhesion is suspected",
+    "force_ramps": "suspected, and not distinguished, are an energy loss that does not depend on speed, "
+    "drainage of fluid from the tissue, relaxation of the tissue",
+    "gel_creep": "adhesion of the skin to the tool is suspected",
 }
 
 

@@ -72,11 +72,9 @@ impl Number {
             true => digits(self.value),
             false => "\u{2013}".to_owned(),
         };
-        (
-            value,
-            between,
-            if self.unit == "1" { "" } else { self.unit },
-        )
+        let is_known = low.is_finite() || high.is_finite();
+        let has_unit = is_known && self.unit != "1";
+        (value, between, if has_unit { self.unit } else { "" })
     }
 }
 

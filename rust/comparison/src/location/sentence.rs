@@ -46,11 +46,11 @@ fn of_limits(place: &Place) -> String {
         Carrier::Skin => "it stays with the skin when the mat is moved",
         Carrier::Sensor => "it stays with the mat's sensels when the mat is moved",
         Carrier::CannotTell => {
-            "whether it stays with the skin or with the mat cannot be told from these poses"
+            "whether it stays with the skin or with the mat cannot be decided from these poses"
         }
     };
     format!(
-        "; places nearer than {:.1} mm cannot be told apart, and {stays}",
+        "; the place is known to {:.1} mm, and {stays}",
         place.resolution_mm
     )
 }

@@ -101,9 +101,12 @@ pub fn open_note(finding: &Finding) -> Option<String> {
         .filter(is_open)
         .map(|n| {
             let (_, between, unit) = n.in_words();
-            format!("its {} is {between} {unit}", number_in_words(n.name, unit))
-                .trim_end()
-                .to_owned()
+            format!(
+                "its {} is {between} {unit}",
+                number_in_words(n.name, n.unit)
+            )
+            .trim_end()
+            .to_owned()
         })
         .collect();
     if open.is_empty() {

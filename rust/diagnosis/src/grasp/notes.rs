@@ -35,8 +35,8 @@ pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
         .collect();
     match found.verdict {
         Verdict::NothingMissing => format!(
-            "Nothing is missing: what changes in {} is posture, and no region, no course in time and no part of the mat stands out beyond what the \
-             model's own form allows.",
+            "Nothing is missing: what changes in {} is posture, and no region of the hand, no change over time and no part of the mat deviates by more than \
+             the model itself may be off.",
             match explained.holds.len() {
                 1 => "this hold".to_owned(),
                 count => format!("these {count} holds"),
@@ -45,7 +45,7 @@ pub(super) fn sentence(explained: &Explained, found: &Diagnosis) -> String {
         Verdict::CannotTell => {
             let pair = found.cannot_tell.first().map_or(["", ""], |pair| *pair);
             let [a, b] = pair.map(|name| name.replace('_', " "));
-            format!("{} These recordings cannot tell {a} from {b}.", parts.join(" "))
+            format!("{} These recordings cannot distinguish {a} from {b}.", parts.join(" "))
         }
         Verdict::Unlisted => format!(
             "Something changes in these holds that no listed cause explains; most of it in {}.",

@@ -152,19 +152,19 @@ pub fn form_note(elastic: &Elastic) -> String {
     let places = &elastic.places[..elastic.studied];
     let balls = places.iter().filter(|place| place.is_exact).count();
     let known = format!(
-        "a ball on flat skin is pressed without a mesh, and its force known to {} %",
+        "the force of a ball on flat skin is known to {} %, since it is pressed without a mesh",
         100.0 * FORM_ERROR[0][0]
     );
     match (balls, places.len() - balls) {
         (0, _) if !elastic.is_flat && !elastic.is_bone_stated => format!(
-            "pressed on the mesh, over bone without end; its forces may be off by {meshed} % over a narrow bone. State the bone \
-             (bone_half_width_mm in [skin.materials]) and smaller effects can be named: then it is {} %",
+            "the width of the bone is not stated: over a narrow bone the simulated forces may be off by {meshed} %. State it \
+             (bone_half_width_mm in [skin.materials]) to have smaller effects named: then it is {} %",
             off(SHARED_FORM[0])
         ),
-        (0, _) => format!("pressed on the mesh; its forces may be off by {meshed} %"),
+        (0, _) => format!("the simulated forces may be off by {meshed} %"),
         (_, 0) => known,
         (_, others) => format!(
-            "{known}; that of {others} of {} tools, on the mesh, to {meshed} %",
+            "{known}; that of {others} of {} tools, pressed on the mesh, to {meshed} %",
             places.len()
         ),
     }
