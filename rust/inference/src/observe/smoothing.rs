@@ -9,8 +9,7 @@ const PRICE: f64 = 1.4;
 /// Fewest values that are smoothed.
 const LEAST: usize = 6;
 
-/// A smooth course through values at growing times: the straight line, unless the course of which generalized cross-validation expects the
-/// least error has the lower BIC (Schwarz 1978). Cross-validation alone follows the noise in some series, and stages move along lines.
+/// A smooth course through values at growing times: the one of which generalized cross-validation expects the least error.
 ///
 /// Fewer than 6 values, or times that do not grow, are returned as they are. A straight line is left as it is.
 pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Vec<f64> {
@@ -20,45 +19,19 @@ pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Vec<f64> {
         return values.to_vec();
     }
     let penalty = Penalty::new(time);
-    let squares_of = |course: &[f64]| -> f64 {
-        let pairs = values.iter().zip(course);
-        pairs.map(|(v, c)| (v - c).powi(2)).sum()
-    };
-    let mut best = (f64::INFINITY, values.to_vec(), 0.0);
+    let mut best = (f64::INFINITY, values.to_vec());
     for step in POWERS.0 * STEPS..=POWERS.1 * STEPS {
         let strength = libm::pow(10.0, f64::from(step) / f64::from(STEPS));
         let (course, freedom) = penalty.smooth(values, strength);
-        let squares = squares_of(&course);
+        let pairs = values.iter().zip(&course);
+        let squares: f64 = pairs.map(|(v, c)| (v - c).powi(2)).sum();
         let left = (n as f64 - PRICE * freedom).max(1e-3);
         let score = squares / (left * left);
         if score < best.0 {
-            best = (score, course, freedom);
+            best = (score, course);
         }
     }
-    let (_, course, freedom) = best;
-    let line = line(time, values);
-    let fall = n as f64 * libm::log(squares_of(&line) / squares_of(&course));
-    // Not a number where both meet all values: then they are the same.
-    match fall > (freedom - LINE) * libm::log(n as f64) {
-        true => course,
-        false => line,
-    }
-}
-
-/// Degrees of freedom of a line.
-const LINE: f64 = 2.0;
-
-/// The straight line of least squares.
-fn line(time: &[f64], values: &[f64]) -> Vec<f64> {
-    let n = time.len() as f64;
-    let (t, v) = (time.iter().sum::<f64>() / n, values.iter().sum::<f64>() / n);
-    let (mut over, mut under) = (0.0, 0.0);
-    for (time, value) in time.iter().zip(values) {
-        over += (time - t) * (value - v);
-        under += (time - t).powi(2);
-    }
-    let slope = over / under;
-    time.iter().map(|time| v + slope * (time - t)).collect()
+    best.1
 }
 
 /// The square of second differences, in units of the mean step, as a matrix with two bands above its diagonal.
@@ -181,23 +154,6 @@ mod tests {
             }
             assert!((freedom - inverse.trace()).abs() < 1e-9, "{freedom}");
         }
-    }
-
-    /// A line has two degrees of freedom: of 50 white values of variance 1 each, the squared errors of a fit to it add up to 2 on average.
-    #[test]
-    fn a_line_is_known_as_well_as_least_squares_knows_it() {
-        let mut random = Random::new(11);
-        let time: Vec<f64> = (0..50).map(f64::from).collect();
-        let mut squares = 0.0;
-        let series = 60;
-        for _ in 0..series {
-            let values: Vec<f64> = time.iter().map(|t| 0.2 * t + random.normal()).collect();
-            let found = smoothed(&time, &values);
-            let off = found.iter().zip(&time).map(|(f, t)| (f - 0.2 * t).powi(2));
-            squares += off.sum::<f64>();
-        }
-        let mean = squares / f64::from(series);
-        assert!((1.5..2.6).contains(&mean), "{mean}");
     }
 
     /// A line of 60 noisy values is known to about a fifth of the noise; a bend stays.
