@@ -138,9 +138,7 @@ fn explained(
     (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, InferenceError> {
-    let decided = crate::gates::form_gate::decide(ready, rungs, fitting.measured(), options.seed);
-    let measured = (fitting.measured(), options.seed);
-    let sized = crate::gates::size_gate::decide(ready, rungs, measured, decided);
+    let sized = crate::gates::size_gate::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&sized.decision.cannot_tell[..], quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
@@ -177,11 +175,7 @@ fn told(
     (comparison, fitting): (Comparison, &Fitting),
     ((ready, rungs, sized), next): (Climbed<'_>, Vec<Suggestion>),
 ) -> Diagnosis {
-    let Sized {
-        decision,
-        gain,
-        profiled,
-    } = sized;
+    let decision = &sized.decision;
     let probabilities = thenar_inference::selection::model_weights::probabilities(rungs, |pair| {
         is_pair(pair, rungs)
     });
@@ -189,26 +183,21 @@ fn told(
         comparison,
         verdict: decision.verdict,
         sentence: String::new(),
-        findings: crate::findings_content::findings(
-            study,
-            (ready, rungs),
-            (&decision, &profiled),
-            &probabilities,
-        ),
+        findings: crate::findings_content::findings(study, (ready, rungs), &sized, &probabilities),
         unlisted: None,
         names_90: thenar_inference::selection::model_weights::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
-        gain,
+        gain: sized.gain.clone(),
         smallest_seen: crate::gates::detection_limits::smallest_seen(ready, rungs),
         record_next: next,
-        materials: crate::findings_content::materials(&fitting.replay, (ready, rungs), &decision),
-        effects: crate::findings_content::effects(ready, (&decision, &profiled)),
+        materials: crate::findings_content::materials(&fitting.replay, (ready, rungs), decision),
+        effects: crate::findings_content::effects(ready, &sized),
         rivals: crate::findings_content::rivals(ready, rungs, &probabilities),
-        curves: crate::findings_content::curves(ready, rungs, &decision),
+        curves: crate::findings_content::curves(ready, rungs, decision),
         evidence: crate::findings_content::evidence(ready, rungs),
         notes: vec![decision.reason.clone()],
     };
-    found.names_90 = with_what_is_said(found.names_90, &decision);
+    found.names_90 = with_what_is_said(found.names_90, decision);
     let mut reason = decision.reason.clone();
     let unmodeled_repeat_noise =
         thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise(

@@ -7,22 +7,23 @@ use thenar_recordings::Study;
 use crate::effect_numbers::numbers_of_effect;
 use crate::findings::{Curve, Finding, Rival, Switched, When, Where};
 use crate::gates::decision::Decision;
+use crate::gates::size_gate::Sized;
 use crate::track_record::{Confidence, Form, Kind};
 use crate::wording::{PHASES, phase_number};
 use thenar_inference::checks::signatures::looked_for;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::least_squares::huber::{HUBER, huber};
 use thenar_inference::parameters::surrogate_priors::is_form_known;
-use thenar_inference::selection::profile_interval::Profiled;
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Findings of what is named.
 pub fn findings(
     study: &Study,
     (ready, rungs): (&PreparedStudy, &Rungs),
-    (decision, profiled): (&Decision<'_>, &[Profiled]),
+    sized: &Sized<'_>,
     probabilities: &[(Vec<&'static str>, f64)],
 ) -> Vec<Finding> {
+    let (decision, profiled) = (&sized.decision, &sized.profiled[..]);
     let Some(named) = decision.named else {
         return Vec::new();
     };
@@ -222,10 +223,8 @@ pub fn materials(
 }
 
 /// Effects as the model takes them.
-pub fn effects(
-    ready: &PreparedStudy,
-    (decision, profiled): (&Decision<'_>, &[Profiled]),
-) -> Vec<Switched> {
+pub fn effects(ready: &PreparedStudy, sized: &Sized<'_>) -> Vec<Switched> {
+    let (decision, profiled) = (&sized.decision, &sized.profiled[..]);
     let Some(named) = decision.named else {
         return Vec::new();
     };

@@ -5,6 +5,7 @@
 
 use crate::findings::{Finding, Number};
 use crate::gates::decision::{self, Decision, silent};
+use crate::gates::form_gate;
 use crate::gates::held_out_gate::predicted_by_protocols;
 use crate::wording::effect_in_words;
 use thenar_contact::effects::Effect;
@@ -24,13 +25,14 @@ pub struct Sized<'a> {
     pub profiled: Vec<Profiled>,
 }
 
-/// A decision without the effects of which nothing is determined.
+/// What the gates before this one decide, without the effects of which nothing is determined.
 pub fn decide<'a>(
     ready: &PreparedStudy,
     rungs: &'a Rungs,
-    (measured, seed): (&[Measured], u64),
-    (decision, gain): (Decision<'a>, Option<Gain>),
+    measured: &[Measured],
+    seed: u64,
 ) -> Sized<'a> {
+    let (decision, gain) = form_gate::decide(ready, rungs, measured, seed);
     let of = |scored: &Scored| profiled(ready, rungs, measured, scored);
     let known = decision.named.map(of).unwrap_or_default();
     let kept = decision
