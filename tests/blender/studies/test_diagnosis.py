@@ -11,7 +11,7 @@ import pytest
 import small_studies
 import stage
 from thenar_blender import native
-from thenar_blender.diagnosis import curves, diagnosing, freshness, letter, reading, wording
+from thenar_blender.diagnosis import curves, diagnosing, freshness, letter, reading
 from thenar_blender.scene.checks import Refusal
 
 
@@ -110,19 +110,6 @@ def test_the_letter_tells_size_place_time_and_gain(diagnose):
         0.238,
         0.143,
     ]
-
-
-@pytest.mark.parametrize(
-    ("ends", "said"),
-    [
-        ((0.1, 0.4), "0.2 MPa (0.1–0.4)"),
-        ((0.1, None), "at least 0.1 MPa"),
-        ((None, 0.4), "at most 0.4 MPa"),
-        ((None, None), "not determined"),
-    ],
-)
-def test_a_number_without_both_ends_is_a_bound(ends, said):
-    assert wording.estimate({"value": 0.2, "low": ends[0], "high": ends[1], "unit": "MPa"}) == said
 
 
 def test_curves_of_the_clearest_recordings_are_kept_and_drawn(diagnose):
