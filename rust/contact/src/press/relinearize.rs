@@ -5,7 +5,7 @@ use thenar_surface::Vec3;
 use super::displacement_field::{field, keep_out_of_product, lifted_sites};
 use super::live::extrapolation;
 use super::live::extrapolation::OuterLoads;
-use super::live::reused_sites::{keep_solution, reused_sites, strays};
+use super::live::reused_sites::{keep_solution, keep_strays, reused_sites, strays};
 use super::setting::SolveSetting;
 use super::solution::SolvedContact;
 use super::zone_state::ZoneState;
@@ -73,6 +73,7 @@ pub fn solve(
         keep_out_of_product(skin, setting, &state.found(), &mut field);
         let (worst, lifted) = lifted_sites(skin, setting, (&field, &state.zone), tolerance);
         keep_solution(pressing, setting, &state.found());
+        keep_strays(pressing, &state.found(), round, &far);
         if (lifted.is_empty() && far.is_empty()) || round == MOST_ROUNDS {
             state.complementarity = state.complementarity.max(stray);
             let written = Written {

@@ -54,9 +54,28 @@ pub struct LiveContact {
     pub zone: Vec<u32>,
     /// The solution of each of them, by site.
     pub met: Vec<Option<ReusedSite>>,
+    /// Sites that exceeded the tolerance while they were reused, ascending, and in how many more presses they are solved at once.
+    pub strayed: Vec<(u32, u32)>,
 }
 
 impl LiveContact {
+    /// Has these `sites` (ascending) solved at once in so many `presses`.
+    pub fn solve_at_once(&mut self, sites: &[u32], presses: u32) {
+        self.strayed
+            .retain(|(site, _)| sites.binary_search(site).is_err());
+        self.strayed
+            .extend(sites.iter().map(|&site| (site, presses)));
+        self.strayed.sort_unstable();
+    }
+
+    /// One press less for all sites that strayed.
+    pub fn count_down(&mut self) {
+        self.strayed.retain_mut(|(_, presses)| {
+            *presses -= 1;
+            *presses > 0
+        });
+    }
+
     /// Solution of a site, if it was in the zone.
     pub fn of(&self, site: u32) -> Option<&ReusedSite> {
         self.met.get(site as usize)?.as_ref()

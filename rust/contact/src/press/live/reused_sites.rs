@@ -24,6 +24,9 @@ const STRAY: f64 = 4.5e-3;
 /// Relative change of a site's weight since it was solved that leaves its solution: a fifth of that error. A region's weights
 /// all follow the overlap of its parts that move.
 const SAME_WEIGHT: f64 = 1e-3;
+/// Presses in which a site is solved at once after it strayed: in contact it moves little as long as it is solved, so that no
+/// trend shows how far it would stray again (tests pass from 0, which solves every other press twice, to 1000).
+const SOLVED_AT_ONCE: u32 = 16;
 /// Share of that error from which a site is solved because it is expected to exceed it.
 const EARLY: f64 = 0.9;
 
@@ -58,7 +61,13 @@ pub fn reused_sites(
     }
     changed.sort();
     let reach = strayed.map_or(REACH, |_| REACH_AGAIN);
-    let is_open = near(skin, &changed, reach);
+    let mut is_open = near(skin, &changed, reach);
+    if strayed.is_none() && !changed.is_empty() {
+        let before: Vec<u32> = last.strayed.iter().map(|(site, _)| *site).collect();
+        for (is_open, is_near) in is_open.iter_mut().zip(near(skin, &before, REACH_AGAIN)) {
+            *is_open |= is_near;
+        }
+    }
     let held = zone.iter().zip(met);
     let held = held.map(|(&site, met)| met.is_some() && !is_open[site as usize]);
     let held: Vec<bool> = held.collect();
@@ -138,6 +147,25 @@ pub fn keep_solution(
     }
     kept.zone.clear();
     kept.zone.extend_from_slice(found.zone);
+}
+
+/// Keeps which reused sites of a `round` are among those that strayed (`far`), for the next presses.
+pub fn keep_strays(
+    pressing: &mut Pressing<'_>,
+    found: &ZoneSolution<'_>,
+    round: usize,
+    far: &[u32],
+) {
+    let kept = &mut pressing.workspace.live_contact;
+    if round == 1 {
+        kept.count_down();
+    }
+    let is_reused = |site: &u32| {
+        let place = found.zone.binary_search(site);
+        place.is_ok_and(|k| found.is_reused.get(k) == Some(&true))
+    };
+    let reused: Vec<u32> = far.iter().copied().filter(is_reused).collect();
+    kept.solve_at_once(&reused, SOLVED_AT_ONCE);
 }
 
 /// Largest error of travel along the press directions over the deepest penetration, and the sites beyond the tolerance: reused
