@@ -51,7 +51,7 @@ pub fn warnings_of(
 ) -> Vec<Warning> {
     let of_meshes = skin.warnings().iter().chain(product.warnings());
     let mut said: Vec<Warning> = of_meshes.cloned().map(Warning::Note).collect();
-    said.extend(size(posed));
+    said.extend(size(skin, posed));
     let thickness = pressed_thickness(skin, &pressed.detection);
     let reached = pressed.detection.max_penetration.iter().zip(thickness);
     for (index, (depth, thickness)) in reached.enumerate() {
@@ -118,14 +118,17 @@ fn region(skin: &Skin, index: usize, (depth, thickness): (f64, f64)) -> Vec<Warn
     said
 }
 
-fn size(posed: &Mesh) -> Option<Warning> {
-    let mut low = Vec3::repeat(f64::INFINITY);
-    let mut high = Vec3::repeat(f64::NEG_INFINITY);
-    for &vertex in posed.triangles().iter().flatten() {
-        let p = &posed.positions()[vertex as usize];
-        (low, high) = (low.inf(p), high.sup(p));
+fn size(skin: &Skin, posed: &Mesh) -> Option<Warning> {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for (vertex, p) in posed.positions().iter().enumerate() {
+        if !skin.adjacency.neighbors(vertex).is_empty() {
+            for axis in 0..3 {
+                (low[axis], high[axis]) = (low[axis].min(p[axis]), high[axis].max(p[axis]));
+            }
+        }
     }
-    let extent = (high - low).max();
+    let extents = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let extent = extents.into_iter().fold(f64::NEG_INFINITY, f64::max);
     (extent < CREDIBLE_SIZE.0 || extent > CREDIBLE_SIZE.1).then_some(Warning::HandSize { extent })
 }
 

@@ -85,12 +85,24 @@ fn overlap_volumes(skin: &Skin, detection: &Detection) -> Vec<f64> {
 /// Stiffens tissue by the depth at its own place, as a factor of the site's weight: the response stays symmetric and definite.
 fn stiffen(skin: &Skin, detection: &Detection, response: &mut SiteResponse) {
     let exponents: Vec<f64> = skin.tissue.materials.iter().map(|m| m.stiffening).collect();
-    let exponents = skin.sites.blended(&exponents);
-    let curvature = skin.tissue.curvature(&skin.sites);
+    let curvatures: Vec<f64> = skin
+        .tissue
+        .materials
+        .iter()
+        .map(|m| 1.0 / m.thickness_mm)
+        .collect();
     for (site, &vertex) in skin.sites.vertex.iter().enumerate() {
         let depth = -detection.distances[vertex as usize];
-        if depth > 0.0 && exponents[site] > 0.0 {
-            let growth = deep_tissue::growth(exponents[site], depth * curvature[site]);
+        if depth <= 0.0 {
+            continue;
+        }
+        let exponent = skin.sites.blended_at(site, &exponents);
+        if exponent > 0.0 {
+            let curvature = match &skin.tissue.geometry.curvature {
+                Some(field) => field[site],
+                None => skin.sites.blended_at(site, &curvatures),
+            };
+            let growth = deep_tissue::growth(exponent, depth * curvature);
             response.weight[site] /= growth.sqrt();
             response.modulus[site] *= growth;
         }

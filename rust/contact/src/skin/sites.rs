@@ -108,10 +108,15 @@ impl Sites {
 
     /// Values of `of_region` blended at every site.
     pub fn blended(&self, of_region: &[f64]) -> Vec<f64> {
-        self.blend
-            .iter()
-            .map(|share| share.iter().map(|&(r, w)| w * of_region[r as usize]).sum())
+        (0..self.blend.len())
+            .map(|site| self.blended_at(site, of_region))
             .collect()
+    }
+
+    /// The same at one site.
+    pub fn blended_at(&self, site: usize, of_region: &[f64]) -> f64 {
+        let shares = self.blend[site].iter();
+        shares.map(|&(r, w)| w * of_region[r as usize]).sum()
     }
 }
 
