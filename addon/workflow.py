@@ -16,7 +16,7 @@ from .ownership import own, owned
 from .product_objects import parts as parts_of
 from .properties import effect_settings
 from .properties.material_settings import ANATOMY, MATERIAL_NUMBERS
-from .results import certificate, comfort, grades, sentences
+from .results import certificate, comfort, grades, holding, sentences
 from .results import result as results
 from .scene import checks, read, sizes, state, units, write
 from .scene.units import Floats
@@ -253,6 +253,8 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, report, notes)
+    friction = context.scene.thenar_grasps.friction
+    results.add_holding(result, (yield partial(holding.of_press, job.reading.hand.posed_mm, contact, friction)))
     if result.reason_kind == grades.NO_CONTACT:
         result.passes_between = yield partial(between.passes, job.product, _posed(job))
     result.state_hash = state_hash(context)

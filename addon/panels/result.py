@@ -47,7 +47,21 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
             _pair(box, "Shear force", f"{result.shear_n:.1f} N")
             _pair(box, "Peak shear", f"{result.shear_peak_kpa:.0f} kPa")
             _pair(box, "Slipping area", iface("{share:.0%} of the area", share=result.slipping))
+        if result.is_held_known:
+            _draw_holding(layout.box().column(align=True), result)
         draw_maps(layout, context.scene.thenar)
+
+
+def _draw_holding(box, result):
+    """How well the product is held: force closure, and the wrench that is resisted in every direction."""
+    _pair(box, iface("Force closure (friction {friction:.2f})", friction=result.held_friction), _closed(result))
+    if result.is_force_closed:
+        _pair(box, "Smallest wrench resisted", iface("{share:.0%} of the grip", share=result.held_share))
+        _pair(box, "In any direction", f"{result.held_n:.0f} N, {result.held_n * result.held_arm_mm / 1e3:.2f} N m")
+
+
+def _closed(result):
+    return "yes" if result.is_force_closed else "no"
 
 
 def _draw_grade(layout, context, result):

@@ -20,7 +20,7 @@ def fill(result: PropertyGroup, job: Any, contact: Any, written: WriteReport, no
     """Fill `scene.thenar.result` from a native contact, the write report and the contact's notes. Returns it."""
     result.region_index = 0
     result.reference.is_valid, result.reference.note = False, ""
-    result.schema, result.is_valid = names.SCHEMA, True
+    result.schema, result.is_valid, result.is_held_known = names.SCHEMA, True, False
     result.hand_name, result.product_name = job.hand_name, ", ".join(job.part_names)
     result.model, result.vertices = job.model, len(job.reading.hand.rest_mm)
     result.effects = ", ".join(f"{effect.name} {effect.amplitude:g}" for effect in job.effects)
@@ -67,9 +67,20 @@ def _add_grip(result: PropertyGroup, job: Any, contact: Any) -> None:
     result.grip_share = float((yielded[soft] / thickness[job.grip.of_vertex[soft]]).max(initial=0.0))
 
 
+def add_holding(result: PropertyGroup, held: Any) -> None:
+    """Keep a `holding.Holding`: how well the product is held; without one nothing is said of it."""
+    result.is_held_known = held is not None
+    if held is None:
+        return
+    result.is_force_closed, result.held_share = held.quality.is_closed, held.quality.least
+    result.held_n = held.quality.least * held.sum_n
+    result.held_friction, result.held_arm_mm = held.friction, held.arm_mm
+
+
 def clear(result: PropertyGroup) -> None:
     """Forget the result."""
     _clear_rows(result)
+    result.is_held_known = False
     result.is_valid = result.reference.is_valid = False
     result.input_hash = result.state_hash = result.comfort = result.comfort_source = ""
     result.grade = result.reason = result.reason_kind = ""
@@ -115,6 +126,7 @@ def as_dict(result):
         "comfort": result.comfort,
         "comfort_source": result.comfort_source,
         "reference": _reference_dict(result),
+        "holding": _holding_dict(result),
         "offset_mm": result.offset_mm,
         "grip_mm": result.grip_mm,
         "grip_share_of_thickness": result.grip_share,
@@ -210,6 +222,19 @@ def _items(record):
 def _row_dict(row):
     keys = ("name", "force_n", "area_mm2", "peak_kpa", "mean_kpa", "depth_mm", "shear_modulus_kpa", "threshold_kpa")
     return {key: getattr(row, key) for key in keys} | {"over_threshold_mm2": row.over_mm2}
+
+
+def _holding_dict(result):
+    """How well the product is held (Ferrari and Canny 1992), or None where that was not computed, as in Live."""
+    if not result.is_held_known:
+        return None
+    return {
+        "friction": result.held_friction,
+        "is_force_closed": result.is_force_closed,
+        "smallest_wrench_share": result.held_share,
+        "smallest_wrench_n": result.held_n,
+        "torque_arm_mm": result.held_arm_mm,
+    }
 
 
 def _reference_dict(result):
