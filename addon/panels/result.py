@@ -54,14 +54,11 @@ class THENAR_PT_result(Tab, bpy.types.Panel):
 
 def _draw_holding(box, result):
     """How well the product is held: force closure, and the wrench that is resisted in every direction."""
-    _pair(box, iface("Force closure (friction {friction:.2f})", friction=result.held_friction), _closed(result))
+    closed = "yes" if result.is_force_closed else "no"
+    _pair(box, "Force closure", f"{iface(closed)}, μ {result.held_friction:.2f}")
     if result.is_force_closed:
-        _pair(box, "Smallest wrench resisted", iface("{share:.0%} of the grip", share=result.held_share))
+        _pair(box, "Smallest wrench", iface("{share:.0%} of the grip", share=result.held_share))
         _pair(box, "In any direction", f"{result.held_n:.0f} N, {result.held_n * result.held_arm_mm / 1e3:.2f} N m")
-
-
-def _closed(result):
-    return "yes" if result.is_force_closed else "no"
 
 
 def _draw_grade(layout, context, result):

@@ -36,8 +36,10 @@ def test_firm_grasps_balance_and_carry_what_was_asked(blender, scene, bar):
     assert total == pytest.approx(FIRM_N, rel=0.1)
     assert np.linalg.norm(net) < SURFACE * total
     best = blender.context.scene.thenar_grasps.found[0]
-    solved = np.linalg.norm(blender.context.scene.thenar.result.force_vector_n)
+    result = blender.context.scene.thenar.result
+    solved = np.linalg.norm(result.force_vector_n)
     assert solved < 0.05 * total
+    assert result.is_force_closed and 0.0 < result.held_n < result.held_friction * total, "a turn about the bar's axis"
     assert best.net_n == pytest.approx(solved, abs=0.02 * total)
     assert best.friction < 0.1
 

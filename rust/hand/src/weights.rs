@@ -17,6 +17,13 @@ pub struct VertexWeights {
 
 /// Sharing across a joint reaches this share of the shorter neighbouring bone to both sides (practice: 30 to 35 %).
 const JOINT_REACH: f64 = 0.34;
+/// A smooth step is so much steeper in its middle than a line of the same reach.
+const STEEPEST: f64 = 1.5;
+/// Palm skin in front of a knuckle follows the finger so much farther from it than skin of the back, mm (reference size).
+const PALM_EASE: f64 = 16.0;
+/// Palmar skin changes over from palm to finger so far beyond the MCP, mm (reference size): between the base crease, 14 to 20 mm
+/// beyond it, and the distal palm crease, 7 to 10 mm before it (Bugbee & Botte 1993).
+const PALMAR_CREASE: f64 = 3.0;
 /// Smoothing passes at 2.5 mm spacing.
 const PASSES: f64 = 6.0;
 /// The most the thenar mass follows the thumb's metacarpal (practice: 50 to 70 %).
@@ -78,25 +85,46 @@ fn beyond(along: f64, joint: f64, reach: f64) -> f64 {
     smooth_step(0.5 + 0.5 * (along - joint) / reach)
 }
 
+/// How far to both sides of a joint skin has to share, mm, which lies `palmar` mm from the joint's axis on the side that closes.
+///
+/// Bent by `t`, the two sides of a fold meet in the plane that halves the angle. A vertex `s` beyond the joint with share
+/// `1/2 + s / (2 L)` stays on its own side of it if `L > palmar tan(t / 2)`.
+fn fold_reach(bone: &Bone, palmar: f64) -> f64 {
+    STEEPEST * palmar * (0.5 * (bone.rest_flexion + bone.limits.flexion.1)).tan()
+}
+
 fn first_guess(skeleton: &Skeleton, bones: &[Bone], place: &Place) -> Vec<f64> {
     let mut row = vec![0.0; bones.len()];
     let [l1, l2, l3] = skeleton.digits[place.digit].lengths();
     let along = place.station.along;
     let scale = skeleton.lengthwise();
-    let near = 1.0 - smooth_step((place.distance - 1.5) / 4.0);
-    let second = beyond(along, l1, JOINT_REACH * l1.min(l2));
-    let third = beyond(along, l1 + l2, JOINT_REACH * l2.min(l3));
-    let (digit, first_bone) = if place.digit == THUMB {
-        let own = smooth_step((along - 0.35 * l1) / (0.45 * l1)) * near;
-        (own, THUMB_METACARPAL)
+    let palmar = place.station.palmar.max(0.0);
+    let is_thumb = place.digit == THUMB;
+    let first_bone = if is_thumb {
+        THUMB_METACARPAL
     } else {
-        // Palmar skin creases beyond the joint, the back stretches over it.
-        let joint = if place.station.palmar > 0.0 { 7.0 } else { 1.0 } * scale;
-        (
-            beyond(along, joint, 11.0 * scale) * near,
-            metacarpal(place.digit) + 1,
-        )
+        metacarpal(place.digit) + 1
     };
+    let fold = |bone: usize| fold_reach(&bones[bone], palmar);
+    let second = beyond(
+        along,
+        l1,
+        (JOINT_REACH * l1.min(l2)).max(fold(first_bone + 1)),
+    );
+    let third = beyond(
+        along,
+        l1 + l2,
+        (JOINT_REACH * l2.min(l3)).max(fold(first_bone + 2)),
+    );
+    let ease = if is_thumb { 0.0 } else { PALM_EASE } * scale * smooth_step(palmar / (6.0 * scale));
+    let near = 1.0 - smooth_step((place.distance - 1.5) / (4.0 + ease));
+    let own = if is_thumb {
+        smooth_step((along - 0.35 * l1) / (0.45 * l1))
+    } else {
+        let joint = if palmar > 0.0 { PALMAR_CREASE } else { 1.0 } * scale;
+        beyond(along, joint, (11.0 * scale).max(fold(first_bone)))
+    };
+    let digit = own * near;
     let mut first = digit * (1.0 - second);
     for finger in 0..THUMB {
         let share = first * web_share(skeleton, place, finger);

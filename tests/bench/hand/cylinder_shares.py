@@ -65,7 +65,9 @@ def measured(diameter):
     }
     of_fingers = {name: value for name, value in force.items() if name.startswith(FINGERS[1:])}
     for phalanx in PHALANGES:
-        parts[phalanx] = sum(value for name, value in of_fingers.items() if f"_{phalanx}" in name) / total
+        parts[f"{phalanx} phalanges"] = (
+            sum(value for name, value in of_fingers.items() if f"_{phalanx}" in name) / total
+        )
     parts["palm"] = sum(value for name, value in force.items() if re.search("palm|thenar", name)) / total
     left = float(np.linalg.norm(result.force_vector_n)) / total
     return {"total_n": total, "left": left, "parts": parts, "cpu_s": cpu, "held": result.held_share}
@@ -100,11 +102,14 @@ def report(rows):
     slopes = {name: float(np.polyfit(sizes, 100.0 * each, 1)[0]) * 10.0 for name, each in parts.items()}
     ranges = {finger: 100.0 * float(np.ptp(parts[finger])) for finger in FINGERS}
     most = max(ranges, key=ranges.get)
-    rises, falls = slopes["distal"] > 0.0, slopes["proximal"] < 0.0
+    rises, falls = slopes["distal phalanges"] > 0.0, slopes["proximal phalanges"] < 0.0
+    by_size = ", ".join(
+        f"{name} {slopes[name]:+.1f}" for name in (*(f"{each} phalanges" for each in PHALANGES), "palm")
+    )
     trends = (
-        f"by 10 mm of diameter: distal {slopes['distal']:+.1f}, middle {slopes['middle']:+.1f}, proximal "
-        f"{slopes['proximal']:+.1f}, palm {slopes['palm']:+.1f} points of 100; the share that changes most is the "
-        f"{most}'s (" + ", ".join(f"{name} {value:.0f}" for name, value in ranges.items()) + " points)"
+        f"by 10 mm of diameter: {by_size} points of 100; the share that changes most is the {most}'s ("
+        + ", ".join(f"{name} {value:.0f}" for name, value in ranges.items())
+        + " points)"
     )
     print(trends)
     each = [sentence(diameter, row) for diameter, row in rows.items()]

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import stage
 from mathutils import Euler, Matrix
+from thenar_blender.results import result as results
 
 
 def triangle_areas(obj):
@@ -45,6 +46,15 @@ def test_moment_is_about_the_worlds_origin():
     wanted = np.array(turn) @ moment + np.cross(shift_mm, turned)
     assert np.array(moved.moment_nmm) == pytest.approx(wanted, abs=1e-3 * np.linalg.norm(wanted))
     assert np.array(moved.center_mm) == pytest.approx(np.array(turn) @ center + shift_mm, abs=0.01)
+
+
+def test_a_pad_on_a_plate_holds_nothing_from_one_side():
+    stage.scene()
+    result = stage.solve()
+    assert result.is_held_known and not result.is_force_closed and result.held_n == 0.0
+    kept = results.as_dict(result)["holding"]
+    assert kept["friction"] == pytest.approx(0.38) and kept["smallest_wrench_share"] == 0.0
+    assert 0.5 < kept["torque_arm_mm"] < 8.0, "within the pad's radius of the middle of the forces"
 
 
 def test_written_surface_does_not_penetrate():
