@@ -118,13 +118,16 @@ index and middle finger within 21 degrees at every width of a median hand."""
 
 HELD_BOTTLE = {
     **_fingers(
-        (5.0, 34.53, 61.73, 21.56), (11.69, 46.1, 58.68, 43.0), (11.9, 39.82, 52.2, 36.4), (15.46, 35.86, 34.84, 22.59)
+        (2.39, 36.62, 58.01, 28.55),
+        (5.89, 47.35, 60.01, 39.19),
+        (12.03, 40.17, 52.88, 31.92),
+        (2.19, 32.73, 46.9, 24.13),
     ),
-    **_thumb((5.73, 10.61, -40.0), -9.78, 13.8),
-    **_cup(3.77, 3.69),
+    **_thumb((8.55, 11.73, -38.18), -9.0, 21.62),
+    **_cup(2.4, 0.61),
 }
-HELD_BOTTLE["thumb_proximal"]["abduction"] = 4.45
-HELD_BOTTLE_AT = (-24.55, 78.49, -64.97), (115.411, -68.513, 47.42)
+HELD_BOTTLE["thumb_proximal"]["abduction"] = 3.34
+HELD_BOTTLE_AT = (-22.92, 79.25, -61.13), (108.859, -70.243, 53.976)
 """A median right hand on `products.bottle`, and where it stands: mm and Euler XYZ degrees in the bottle's space. The
-search of *Grasp* found it (light, power): 60 N in sum over the skin, in balance. Kept as numbers, for the first sample
-shall open at once."""
+search of *Grasp* found it (light, power), and *Settle* balanced it at 60 N in sum over the skin. Kept as numbers, for
+the first sample shall open at once."""

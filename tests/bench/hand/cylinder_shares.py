@@ -18,7 +18,7 @@ import numpy as np
 TESTS = Path(__file__).resolve().parents[2]
 COMMAND = "target/venv/bin/python tests/bench/hand/cylinder_shares.py"
 DIAMETERS_MM = (30, 40, 50, 60, 70, 80, 90, 100)
-LENGTH_MM = 130.0
+LENGTH_MM = 200.0
 FINGERS = ("thumb", "index", "middle", "ring", "little")
 PHALANGES = ("distal", "middle", "proximal")
 PUBLISHED = (
@@ -77,8 +77,8 @@ def cylinder(diameter):
     """A closed cylinder along z: vertices (n, 3), mm, and triangles (m, 3)."""
     from handles.random_products import revolved
 
-    along = np.linspace(-0.5 * LENGTH_MM, 0.5 * LENGTH_MM, 66)
-    across = np.full(66, 0.5 * diameter)
+    along = np.linspace(-0.5 * LENGTH_MM, 0.5 * LENGTH_MM, 101)
+    across = np.full(101, 0.5 * diameter)
     return revolved(np.r_[0.0, across, 0.0], np.r_[along[0], along, along[-1]], 96)
 
 
