@@ -139,7 +139,7 @@ def _cost(rows):
 
 def _anatomy(rows):
     """Joints bent back, the thumb's pad, and skin in skin, over all grasps."""
-    held = [row for row in rows.values() if "force_n" in row and "dip_back_deg" in row]
+    held = [row for row in rows.values() if "net_n" in row and "dip_back_deg" in row]
     if not held:
         return "no grasp was held"
     back = sum(row["dip_back_deg"] > MOST_BACK_DEG for row in held)
@@ -147,11 +147,12 @@ def _anatomy(rows):
     off = sorted(row["thumb_off_deg"] for row in power) or [0.0]
     facing = sum(angle <= MOST_OFF_DEG for angle in off)
     folded = sum(row["in_skin"] > 0 for row in held)
+    left = max(row["net_n"] / row["force_n"] for row in held)
     return (
         f"last joint bent back beyond {MOST_BACK_DEG:g} degrees in {back} of {len(held)}; thumb's pad within "
         f"{MOST_OFF_DEG:g} degrees of facing the index finger's in {facing} of {len(power)} power grips, "
         f"{off[len(off) // 2]:.0f} in the middle; skin more than 1 mm deep in skin in {folded}, at most "
-        f"{max(row['in_skin'] for row in held)} vertices"
+        f"{max(row['in_skin'] for row in held)} vertices; at most {100 * left:.1f} % of the forces left over"
     )
 
 

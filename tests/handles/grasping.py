@@ -169,6 +169,7 @@ def claimed(result):
     """What the add-on says of its result."""
     return {
         "force_n": result.force_n,
+        "net_n": float(np.linalg.norm(result.force_vector_n)),
         "area_mm2": result.area_mm2,
         "peak_kpa": result.peak_kpa,
         "patch_peak_kpa": result.patch_peak_kpa,
