@@ -26,6 +26,8 @@ PUBLISHED = (
     "thumb's most (152 volunteers, three sizes, J. Hand Therapy 30 (2017) 529)"
 )
 MOST_POINTS = 7.0
+"""No published share changes by more over the sizes, points of 100."""
+
 BALANCED = 0.02
 """Net force over the sum of forces that is wanted of a settled grasp."""
 
