@@ -281,7 +281,7 @@ SAMPLES = {
             "palm_press",
             ("palm", "index", "middle", "ring", "little"),
             {"palm": 3.5, "proximal": 1.5, "middle": 1.2, "distal": 1.5},
-            (0, 0, 0),
+            (6, 0, 0),
         ),
         (90, 0, 0),
         (158.0, 4.0, 520.0),
