@@ -137,6 +137,6 @@ print(os.waitstatus_to_exitcode(status), time.monotonic() - began < 3.0)
 
 def test_cycles_of_solve_cancel_and_quit_end_well():
     """The bench, cut short."""
-    bench = HERE.parent / "bench" / "quit_cycles.py"
+    bench = HERE.parent / "bench" / "window" / "quit_cycles.py"
     done = subprocess.run([sys.executable, bench, "24"], capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
