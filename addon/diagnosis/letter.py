@@ -1,4 +1,7 @@
-"""The diagnosis as a letter: what a designer reads, in order, from the library's findings. Knows nothing of layout."""
+"""The diagnosis as a letter: what a designer reads, in order, from the library's findings. Knows nothing of layout.
+
+The sentence below the heading is the library's: `rust/diagnosis/src/verdict_sentence.rs`, for grasps `grasp/notes.rs`.
+"""
 
 from dataclasses import dataclass
 

@@ -5,9 +5,7 @@ import numpy as np
 
 from .. import colormap, maps
 from ..hand_look.shader import Tree
-
-INK = (0.10, 0.05, 0.05)
-"""Of the line along the edge of the contact, scene-linear."""
+from ..skin_display import contact_border
 
 
 def material(look):
@@ -35,7 +33,7 @@ def laid_over(light, held, look):
     shown = light * (1.0 - np.minimum(cover + line, 1.0))[..., None]
     seen = (cover + line) > 1e-4
     colors = colormap.to_linear(colormap.srgb(scale.palette, share[seen]))
-    shown[seen] += cover[seen, None] * colors + line[seen, None] * np.array(INK)
+    shown[seen] += cover[seen, None] * colors + line[seen, None] * np.array(contact_border.COLOR[:3])
     return shown
 
 

@@ -5,7 +5,7 @@ from bpy.types import Node, NodeTree
 from .. import maps
 
 COLOR = (0.10, 0.05, 0.05, 1.0)
-"""Scene-linear. The width is `maps.LINE_MM`, which pictures made without a shader take as well."""
+"""Scene-linear, in shaders and in pictures. The width is `maps.LINE_MM`."""
 
 
 def lined(tree: NodeTree, cover: Node, mapped: Node) -> Node:

@@ -2,6 +2,7 @@
 #![doc = include_str!("../README.md")]
 #![warn(missing_docs)]
 
+mod center_of_pressure;
 mod comparison;
 mod location;
 mod prints;

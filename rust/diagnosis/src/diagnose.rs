@@ -225,7 +225,7 @@ fn told(
         .into_iter()
         .for_each(|seen| add_ceiling(&mut found, seen));
     add_friction(study, &mut found);
-    found.sentence = crate::sentence::sentence(
+    found.sentence = crate::verdict_sentence::sentence(
         found.verdict,
         (&found.findings, found.gain.as_ref()),
         (&found.cannot_tell, &decision.beside, &found.record_next),

@@ -14,7 +14,7 @@ mod unlisted_finding;
 mod unlisted;
 mod next_recording;
 mod place;
-mod sentence;
+mod verdict_sentence;
 mod findings_json;
 mod grasp;
 mod diagnose;

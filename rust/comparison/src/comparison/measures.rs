@@ -1,7 +1,6 @@
 //! The table of measures of a recording: what was read, and what the simulation shows before and after the fit.
 
-use nalgebra::Vector3;
-
+use crate::center_of_pressure;
 use crate::comparison::instrument_view::{
     self, N_PER_KPA_MM2, Shown, area_of, force_noise, force_of, peak_of,
 };
@@ -180,8 +179,8 @@ fn of_shape(shown: &Shown, mat: &Mat) -> Vec<Measure> {
 
 /// Distance of the centers of pressure and overlap of the areas of contact.
 fn of_place(shown: &Shown, mat: &Mat) -> [Measure; 4] {
-    let center = center_of(&shown.measured, mat);
-    let apart = |values: &[f64]| (center_of(values, mat) - center).norm();
+    let center = center_of_pressure::center(&shown.measured, mat);
+    let apart = |values: &[f64]| (center_of_pressure::center(values, mat) - center).norm();
     let row = |name, label, unit, of: &dyn Fn(&[f64]) -> f64, noise| Measure {
         name,
         label,
@@ -199,7 +198,7 @@ fn of_place(shown: &Shown, mat: &Mat) -> [Measure; 4] {
             "Distance of the centers of pressure",
             "mm",
             &apart,
-            center_noise(shown, mat, center),
+            center_of_pressure::noise((&shown.measured, &shown.sigma), mat, center),
         ),
         row(
             "overlap",
@@ -258,26 +257,9 @@ fn told(values: &[f64], of: &dyn Fn(&[f64]) -> f64) -> f64 {
     }
 }
 
-fn center_of(values: &[f64], mat: &Mat) -> Vector3<f64> {
-    let (mut sum, mut weight) = (Vector3::zeros(), 0.0);
-    for (k, value) in values.iter().enumerate().filter(|(_, value)| **value > 0.0) {
-        sum += mat.centers[k] * (value * mat.areas[k]);
-        weight += value * mat.areas[k];
-    }
-    sum / weight
-}
-
 fn peak_noise(shown: &Shown) -> f64 {
     let at = (0..shown.measured.len())
         .filter(|k| !shown.measured[*k].is_nan())
         .max_by(|a, b| shown.measured[*a].total_cmp(&shown.measured[*b]));
     at.map_or(f64::NAN, |at| shown.sigma[at])
-}
-
-fn center_noise(shown: &Shown, mat: &Mat, center: Vector3<f64>) -> f64 {
-    let touching = || (0..shown.measured.len()).filter(|k| shown.measured[*k] > 0.0);
-    let total: f64 = touching().map(|k| shown.measured[k] * mat.areas[k]).sum();
-    let squares = touching()
-        .map(|k| ((mat.centers[k] - center) * (shown.sigma[k] * mat.areas[k])).norm_squared());
-    squares.sum::<f64>().sqrt() / total
 }
