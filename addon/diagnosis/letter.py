@@ -18,7 +18,8 @@ HEADINGS = {
     "unlisted": "Not in the list",
     "insufficient_data": "Too few recordings",
 }
-
+UNNAMED = "No effect is named"
+"""Instead, where more than noise is left; the library's sentence begins with it."""
 
 _UNSAID = {"nothing_missing", "parameters", "unlisted"}
 """Verdicts after which the list of what it might be says nothing: what is small enough is on it, or it is none."""
@@ -100,7 +101,7 @@ def write(found):
     bars, gain = _fit(found.get("fit") or {})
     return Letter(
         verdict=found["verdict"],
-        heading=HEADINGS[found["verdict"]],
+        heading=_heading(found),
         sentence=found.get("sentence") or "",
         entries=tuple(_entry(found, index) for index in range(len(found.get("findings", ())))),
         depends=tuple(_depends(found.get("unlisted") or {})),
@@ -117,6 +118,10 @@ def write(found):
         moduli=tuple(_moduli(found)),
         notes=tuple(text[:1].upper() + text[1:].rstrip(".") + "." for text in found.get("notes") or () if text),
     )
+
+
+def _heading(found):
+    return UNNAMED if found["sentence"].startswith(UNNAMED) else HEADINGS[found["verdict"]]
 
 
 def lines(letter):

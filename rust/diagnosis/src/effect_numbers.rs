@@ -223,22 +223,16 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
         let factor = libm::exp(HALF * error);
         let period = libm::exp(log);
         let (low, high) = (period / factor, period * factor);
+        // Wholly outside of what recordings show it is the law's extrapolation, and no bound.
+        let is_outside = low > seen.1 || high < seen.0;
         let is_open = (
-            median_open.0 || low < seen.0 || factor > MOST,
-            median_open.1 || high > seen.1 || factor > MOST,
+            median_open.0 || low < seen.0 || factor > MOST || is_outside,
+            median_open.1 || high > seen.1 || factor > MOST || is_outside,
         );
         (
             period,
-            if is_open.0 {
-                f64::NEG_INFINITY
-            } else {
-                low.min(seen.1)
-            },
-            if is_open.1 {
-                f64::INFINITY
-            } else {
-                high.max(seen.0)
-            },
+            if is_open.0 { f64::NEG_INFINITY } else { low },
+            if is_open.1 { f64::INFINITY } else { high },
         )
     };
     if effect == Effect::Drainage {

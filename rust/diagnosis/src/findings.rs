@@ -39,7 +39,7 @@ impl Verdict {
     }
 }
 
-/// A number with its 90 % interval by the profile likelihood.
+/// A number with its 90 % interval, by the profile likelihood or, of periods and lengths, the standard error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
     /// Name in the catalogue, with its unit.
@@ -78,12 +78,14 @@ impl Number {
     }
 }
 
-/// Three digits at least, four decimals at most.
+/// Three digits, for sizes of any unit.
 fn digits(value: f64) -> String {
-    match value.abs() >= 100.0 {
-        true => format!("{value:.0}"),
-        false => format!("{value:.4}"),
+    if value == 0.0 {
+        return "0".to_owned();
     }
+    let before = libm::log10(value.abs().max(1e-12)).floor();
+    let after = (2.0 - before).clamp(0.0, 14.0) as usize;
+    format!("{value:.after$}")
 }
 
 /// Where a finding is.

@@ -15,15 +15,23 @@ pub fn sentence(
     let names = names.join(" and ");
     let sure = sureness(findings);
     match verdict {
-        Verdict::NothingMissing => format!(
-            "Nothing is missing: with the study's own parameters the simulation agrees with the recordings within their noise.{}",
-            suspicion(reason)
-        ),
-        Verdict::Parameters => format!(
+        Verdict::NothingMissing if is_more_than_noise(reason) => {
+            "No effect is named, though the recordings differ from the simulation by more than their noise: they do not settle why (see the notes)."
+                .to_owned()
+        }
+        Verdict::Parameters if is_more_than_noise(reason) => {
+            "No effect is named. The stiffness of the tissue was off, and with fitted moduli the recordings still differ from the simulation by \
+             more than their noise: they do not settle why (see the notes)."
+                .to_owned()
+        }
+        Verdict::NothingMissing => {
+            "Nothing is missing: with the study's own parameters the simulation agrees with the recordings within their noise.".to_owned()
+        }
+        Verdict::Parameters => {
             "No effect is missing, but the stiffness of the tissue was off: with fitted moduli the simulation agrees with the recordings within \
-             their noise.{}",
-            suspicion(reason)
-        ),
+             their noise."
+                .to_owned()
+        }
         Verdict::InsufficientData => format!(
             "Too little was recorded to say what is missing: {reason}. Record next: the same presses again, each at least twice, and one with a hold."
         ),
@@ -57,17 +65,27 @@ pub fn sentence(
                 format!(" It shows most {}.", phase_in_words(w.phase))
             });
             let gained = gain.map_or(String::new(), predicted);
-            format!("The simulation lacks {names}.{when}{gained}{sure}")
+            let of = |kind: &str| {
+                let all = findings.iter().filter(|f| f.kind == kind);
+                let all: Vec<String> = all.map(|f| effect_in_words(f.effect)).collect();
+                all.join(" and ")
+            };
+            let instrument = match of("instrument") {
+                none if none.is_empty() => none,
+                some => format!(" The instrument is at fault as well: {some}."),
+            };
+            format!(
+                "The simulation lacks {}.{instrument}{when}{gained}{sure}",
+                of("tissue")
+            )
         }
     }
 }
 
-/// Where nothing is named, that something is suspected.
-fn suspicion(reason: &str) -> &'static str {
-    match reason.contains("suspected") {
-        true => " An effect is suspected, but these recordings do not settle it (see the notes).",
-        false => "",
-    }
+/// Whether more than noise was left where nothing is named: an effect is suspected, or repeats agree on a misfit.
+fn is_more_than_noise(reason: &str) -> bool {
+    reason.contains("misfit")
+        || reason.contains("suspected") && !reason.contains("nothing is suspected")
 }
 
 /// How often findings of the least sure kind are right; one that was not measured is less sure than any other.
@@ -147,6 +165,22 @@ mod tests {
     }
 
     #[test]
+    fn agreement_is_not_claimed_where_something_is_suspected_or_left() {
+        let told = |verdict, reason: &str| sentence(verdict, (&[], None), (&[], &[], &[]), reason);
+        for verdict in [Verdict::NothingMissing, Verdict::Parameters] {
+            for reason in ["suspected is a stiff skin", "repeats agree on a misfit"] {
+                let said = told(verdict, reason);
+                assert!(
+                    said.starts_with("No effect is named") && !said.contains("agrees"),
+                    "{said}"
+                );
+            }
+            let said = told(verdict, "no listed effect explains more than noise would");
+            assert!(said.contains("agrees"), "{said}");
+        }
+    }
+
+    #[test]
     fn sentence_names_the_effects_common_to_all_rivals() {
         let pairs = [["bone", "fixture_compliance"]];
         let told = |beside: &[&'static str]| {
@@ -157,7 +191,7 @@ mod tests {
                 "unused",
             )
         };
-        let apart = "Something is missing, but these recordings cannot distinguish another thickness of the tissue over bone from compliance of the fixture";
+        let apart = "Something is missing, but these recordings cannot distinguish a thicker or thinner tissue over the bone from compliance of the fixture";
         assert_eq!(told(&[]), format!("{apart}."));
         let with = ", each of them together with a zero error of the sensor.";
         assert_eq!(told(&["offset"]), format!("{apart}{with}"));

@@ -5,9 +5,9 @@ use thenar_inference::observe::measured::Phase;
 /// Words for an effect.
 pub fn effect_in_words(effect: &str) -> String {
     match effect {
-        "bone" => "another thickness of the tissue over bone".into(),
+        "bone" => "a thicker or thinner tissue over the bone".into(),
         "stiff_skin" => "a stiff skin over soft pulp".into(),
-        "stiffening_law" => "another law of stiffening".into(),
+        "stiffening_law" => "tissue that stiffens in another way than given".into(),
         "inclusion" => "a place that is stiffer or softer".into(),
         "compressibility" => "tissue that gives up volume".into(),
         "drift" => "drift of the sensor".into(),
@@ -19,6 +19,7 @@ pub fn effect_in_words(effect: &str) -> String {
         "relaxation" => "relaxation of the tissue".into(),
         "drainage" => "drainage of fluid from the tissue".into(),
         "rate_independent_loss" => "an energy loss that does not depend on speed".into(),
+        "cycle_softening" => "softening by repeated presses".into(),
         "adhesion" => "adhesion of the skin to the tool".into(),
         "fixture_compliance" => "compliance of the fixture".into(),
         "dead_cells" => "dead cells of the mat".into(),

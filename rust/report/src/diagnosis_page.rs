@@ -137,7 +137,7 @@ fn number(of: &Number) -> String {
     let (value, between, unit) = of.in_words();
     format!(
         "<tr><td class='left'>{}</td><td>{value}</td><td>{between}</td><td class='left'>{unit}</td></tr>",
-        spoken(of.name, unit),
+        spoken(of.name, if of.unit == "1" { "" } else { of.unit }),
     )
 }
 

@@ -62,7 +62,8 @@ def test_an_effect_below_the_noise_is_named_if_held_out_recordings_confirm_it(ca
 def test_a_name_that_held_out_recordings_hardly_confirm_is_only_suspected(tmp_path):
     """A pocket that collapses: softening by use explains 7.5 nats of it, of which half are confirmed."""
     said = found("case_312", tmp_path)
-    assert said["findings"] == [] and any("cycle softening is suspected" in note for note in said["notes"])
+    suspected = "softening by repeated presses is suspected"
+    assert said["findings"] == [] and any(suspected in note for note in said["notes"])
 
 
 def test_a_ceiling_that_one_protocol_alone_reaches_is_confirmed_by_its_repeats(tmp_path):
@@ -80,7 +81,8 @@ def test_a_stiff_skin_bends_as_the_one_that_was_planted(case, tmp_path):
     told, (thickness_mm, modulus_mpa) = finding["parameters"], SKINS[case]
     bending = told["modulus_mpa"]["value"] * told["thickness_mm"]["value"] ** 3
     assert 0.6 < bending / (modulus_mpa * thickness_mm**3) < 1.6
-    assert told["thickness_mm"]["low"] < thickness_mm < told["thickness_mm"]["high"]
+    low, high = (told["thickness_mm"][end] for end in ("low", "high"))
+    assert (low is None or low < thickness_mm) and (high is None or thickness_mm < high)
 
 
 @pytest.mark.parametrize("case", READ)

@@ -3,8 +3,8 @@
 //! The rule is practical identifiability by the profile likelihood (`thenar_inference::selection::profile_interval`). What is there, and of
 //! which the size is bounded from one side alone, is named with that bound; what would bound it is advised.
 
-use crate::findings::{Finding, Number};
-use crate::gates::decision::{self, Decision, silent};
+use crate::findings::{Finding, Number, Verdict};
+use crate::gates::decision::{self, Decision, UNLISTED, needed, silent};
 use crate::gates::form_gate;
 use crate::gates::held_out_gate::predicted_by_protocols;
 use crate::wording::effect_in_words;
@@ -12,6 +12,7 @@ use thenar_contact::effects::Effect;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::observe::measured::Measured;
 use thenar_inference::selection::cross_validation::Gain;
+use thenar_inference::selection::form_check::FormCheck;
 use thenar_inference::selection::profile_interval::{Profiled, profiled};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
@@ -51,7 +52,8 @@ pub fn decide<'a>(
     };
     let single = kept.first().and_then(|effect| {
         let is_it = |s: &&Scored| s.mechanisms[0].effect == *effect;
-        rungs.singles.iter().find(is_it)
+        let single = rungs.singles.iter().find(is_it);
+        single.filter(|single| single.qaic_gain >= needed(&single.mechanisms[0]))
     });
     let found = single.and_then(|single| {
         let found = predicted_by_protocols((ready, rungs), measured, (single, seed));
@@ -68,10 +70,28 @@ pub fn decide<'a>(
             profiled,
         },
         None => Sized {
-            decision: silent(decision::nothing(ready, rungs), &reason),
+            decision: unnamed(ready, rungs, measured, &reason),
             gain: None,
             profiled: Vec::new(),
         },
+    }
+}
+
+/// Nothing is named: what is left over may still be more than any listed effect takes up.
+fn unnamed<'a>(
+    ready: &PreparedStudy,
+    rungs: &'a Rungs,
+    measured: &[Measured],
+    reason: &str,
+) -> Decision<'a> {
+    let without_form = || rungs.base.lack_of_fit / rungs.samples.max(1) as f64;
+    let left = FormCheck::new(ready, measured, rungs).map_or_else(without_form, |it| it.left());
+    match left > UNLISTED {
+        true => silent(
+            Verdict::Unlisted,
+            &format!("repeats agree on a misfit that no listed effect takes up; {reason}"),
+        ),
+        false => silent(decision::nothing(ready, rungs), reason),
     }
 }
 
@@ -115,7 +135,7 @@ pub fn open_note(finding: &Finding) -> Option<String> {
         return None;
     }
     Some(format!(
-        "{}: its presence is determined, its size not fully: {} (90 % profile likelihood); to determine it, {}",
+        "{}: its presence is determined, its size not fully: {} (90 %); to determine it, {}",
         effect_in_words(finding.effect),
         open.join(", "),
         bounding(finding.effect)

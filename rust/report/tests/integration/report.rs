@@ -295,6 +295,6 @@ fn page_of_a_diagnosis_shows_which_signs_hold() {
         evidence: Vec::new(),
         notes: Vec::new(),
     });
-    assert!(page.contains("force &lt; peak</td><td class='left'>holds<"));
-    assert!(page.contains("loop opens</td><td class='left'>does not hold<"));
+    assert!(page.contains("force &lt; peak</td><td class='left'>seen<"));
+    assert!(page.contains("loop opens</td><td class='left'>not seen<"));
 }
