@@ -235,6 +235,8 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
     """
     fields = yield partial(written.edged, written.fields_of(contact, job), contact, job)
     settings = context.scene.thenar
+    friction = context.scene.thenar_grasps.friction
+    held = yield partial(holding.of_press, job.reading.hand.posed_mm, contact, friction)
     hand, parts = settings.hand, product_parts(settings)
     if hand is None or hand.name != job.hand_name or tuple(part.name for part in parts) != job.part_names:
         raise checks.Refusal("hand or product were changed while solving; solve again")
@@ -253,8 +255,7 @@ def finish(context: Context, job: Job, contact: "native.Contact") -> Steps[Prope
     job.seconds["write"] = time.perf_counter() - started
     notes = [*sentences.remarks(contact, job), *_left_out(job)]
     result = results.fill(settings.result, job, contact, report, notes)
-    friction = context.scene.thenar_grasps.friction
-    results.add_holding(result, (yield partial(holding.of_press, job.reading.hand.posed_mm, contact, friction)))
+    results.add_holding(result, held)
     if result.reason_kind == grades.NO_CONTACT:
         result.passes_between = yield partial(between.passes, job.product, _posed(job))
     result.state_hash = state_hash(context)

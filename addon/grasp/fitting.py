@@ -15,7 +15,7 @@ from ..hand import capsules, pads
 from ..hand_bones import bodies, channels, constrained, reading, roles
 from ..hand_look import normals
 from ..hand_shape import framing
-from ..product_objects import bringing
+from ..product_objects import bringing, copies
 from ..scene import checks, mesh, read, regions, sizes, units
 from . import force, polishing, search, settings, settling
 from .stage import stage_of
@@ -205,7 +205,7 @@ def use(context, index):
         raise checks.Refusal("the hand's bones changed since the grasps were found; press Grasp again")
     stage = stage_of(fit)
     grasp = stage.carried(fitter.Grasp(angles, place, {}, {}, 0.0, 0, 0.0, (), stage.gauge))
-    finish(context, fit, grasp, "AUTO")
+    finish(context, fit, grasp, stored.placed())
     stored.shown = index
     return True
 
@@ -244,6 +244,9 @@ def finish(context, fit, found, moves):
         if moves == "PRODUCT":
             context.view_layer.update()
             bringing.bring(context, bringing.carriers(parts, (hand, armature)), goals, undo)
+            for copy in filter(None, [copies.find_copy(part.name) for part in parts]):
+                undo.callback(setattr, copy, "matrix_world", copy.matrix_world.copy())
+                copy.matrix_world = back @ copy.matrix_world
         undo.pop_all()
     if moves == "HAND":
         reading.move_object(armature, found.place, scale)

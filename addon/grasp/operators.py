@@ -12,17 +12,12 @@ from ..hand.operators import can_make, can_pose
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
 from . import fitting, samples, search, words
+from .settings import MOVES
 
 STRENGTHS = (
     ("LIGHT", "Light", "60 N in sum over the skin, as in a loose hold"),
     ("FIRM", "Firm", "200 N in sum over the skin, a power grasp below the strongest one"),
     ("CUSTOM", "Custom Depths", "Depths entered below; the forces follow from them"),
-)
-MOVES = (
-    ("AUTO", "Automatic", "The hand goes to the product; where it is part of a body, the product comes to the hand"),
-    ("HAND", "Hand", "The hand goes to the product"),
-    ("PRODUCT", "Product", "The product comes to the hand"),
-    ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
 )
 PLACES = (
     ("LAY", "Search", "Ways to hold the product are tried; where hand and product stand does not count"),
@@ -73,7 +68,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     proximal_mm: _depth("proximal")
     palm_mm: _depth("palm")
     place: EnumProperty(name="Start", items=PLACES, default="LAY")
-    moves: EnumProperty(name="Moves", items=MOVES, default="AUTO")
+    moves: EnumProperty(name="Moves", items=MOVES, default="AUTO", options={"SKIP_SAVE"})
     digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
@@ -84,6 +79,11 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         return polling.allows(cls, polling.no_product(context)) and can_pose(cls, context)
+
+    def invoke(self, context, event):
+        if not self.properties.is_property_set("moves"):
+            self.moves = context.scene.thenar_grasps.moves
+        return super().invoke(context, event)
 
     def draw(self, context):
         layout = self.layout
@@ -177,7 +177,7 @@ grip asked for"""
         wish = fitter.Wish(pads.FIRM_MM, is_placed=True)
         fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish, 1.0)
         found = yield partial(fitting.settle_here, fit, asked.weight_n, asked.total_n or None)
-        fitting.finish(context, fit, found[0], "AUTO")
+        fitting.finish(context, fit, found[0], asked.placed())
         asked.shown = -1
         return found
 

@@ -31,7 +31,7 @@ class THENAR_PT_grasp(Tab, bpy.types.Panel):
         box = layout.column()
         box.use_property_split = True
         box.use_property_decorate = False
-        for name in ("weight_n", "total_n", "friction"):
+        for name in ("moves", "weight_n", "total_n", "friction"):
             box.prop(stored, name)
         box.operator("thenar.settle_grasp", icon="CON_FLOOR")
 

@@ -4,12 +4,19 @@ import json
 
 import bpy
 import numpy as np
-from bpy.props import CollectionProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import CollectionProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 FRICTION = 0.38
 """Static friction of palmar skin on aluminium; 0.50 on textured vinyl, 0.27 on paper (Buchholz 1988)."""
 
 WEIGHT_MOST_N = 500.0
+
+MOVES = (
+    ("AUTO", "Automatic", "The hand goes to the product; where it is part of a body, the product comes to the hand"),
+    ("HAND", "Hand", "The hand goes to the product"),
+    ("PRODUCT", "Product", "The product comes to the hand"),
+    ("FINGERS", "Fingers Only", "Hand and product stay; only the fingers close"),
+)
 
 
 class ThenarGrasp(bpy.types.PropertyGroup):
@@ -48,6 +55,12 @@ class ThenarGrasps(bpy.types.PropertyGroup):
         min=0.0,
         soft_max=400.0,
     )
+    moves: EnumProperty(
+        name="Moves",
+        description="What a grasp moves, apart from the fingers: the hand, the product, or neither",
+        items=MOVES,
+        default="AUTO",
+    )
     friction: FloatProperty(
         name="Friction",
         description="Coefficient of friction between skin and product that holds what the normal forces leave over",
@@ -55,6 +68,10 @@ class ThenarGrasps(bpy.types.PropertyGroup):
         max=2.0,
         default=FRICTION,
     )
+
+    def placed(self):
+        """What a grasp that has a place of its own moves: `moves`, or its default where that is the fingers alone."""
+        return "AUTO" if self.moves == "FINGERS" else self.moves
 
 
 def keep(scene, names, rows):

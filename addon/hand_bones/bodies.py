@@ -47,6 +47,18 @@ def is_part_of_body(context, hand, parts=()):
     return len(found.hands) > 1 and len(recognise(reading.skeleton_of(context, hand)).hands) > 1
 
 
+def along_fingers(hand):
+    """World direction (3) from the knuckles to the last bones of the fingers at rest; None where they are not known."""
+    try:
+        rig = reading.armature_of(hand)
+    except RigError:
+        return None
+    known, bones = _known(rig, recognise(_skeleton(rig, hand), bonemap.side_of(rig))), rig.data.bones
+    pairs = [(known.get(f"{finger}_proximal", ""), known.get(f"{finger}_distal", "")) for finger in roles.FINGERS]
+    found = [np.array(bones[b].head_local - bones[a].head_local) for a, b in pairs if a in bones and b in bones]
+    return np.array(rig.matrix_world)[:3, :3] @ np.mean(found, axis=0) if found else None
+
+
 def hand_skin(context, hand, surface):
     """Which vertices (n,) of a mesh with the groups of `hand` are its hand's: wrist and bones below carry them."""
     armature = reading.armature_of(hand)

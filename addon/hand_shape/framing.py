@@ -8,6 +8,8 @@ ROOM = 2.5
 """Distance of the view over half the longest side: all of it is seen at the lens of a new view."""
 LEAST_SHARE = 0.2
 """Things that span less of a view's shorter side are not seen well."""
+MOST_HANDS = 3.0
+"""A product longer than so many hands need not be in view whole."""
 
 
 def frame(context, *objects):
@@ -23,10 +25,15 @@ def frame(context, *objects):
 
 
 def frame_lost(context, hand_points, parts):
-    """Frame a hand (`hand_points` gives (n, 3), world units) and product parts in the views that do not show them."""
+    """Frame a hand (`hand_points` gives (n, 3), world units) and product parts in the views that do not show them.
+
+    Parts much longer than the hand do not count.
+    """
     if bpy.app.background or context.window is None:
         return
-    points = np.concatenate([hand_points(), corners(parts)])
+    hand = hand_points()
+    small = [part for part in parts if np.ptp(corners([part]), axis=0).max() <= MOST_HANDS * np.ptp(hand, axis=0).max()]
+    points = np.concatenate([hand, corners(small)]) if small else hand
     box = _box(points)
     for area in context.window.screen.areas:
         if area.type == "VIEW_3D" and not is_seen(np.array(area.spaces.active.region_3d.perspective_matrix), box):

@@ -91,15 +91,18 @@ def gather(context):
     copied = {obj.thenar.copy_of for obj in carriers}
     plain = [part for part in display.workflow.product_parts(settings) if part not in carriers]
     product += [still(context, part, "product", False) for part in plain if part.name not in copied]
-    tops = {_top(obj) for obj in (hand, *display.workflow.product_parts(settings))}
-    taken = {hand, *carriers, *display.workflow.product_parts(settings)}
+    parts = display.workflow.product_parts(settings)
+    is_body = bodies.is_part_of_body(context, hand, parts)
+    # Clothes, eyes and hair hang on a body: of it the hand alone is shown.
+    tops = {_top(obj) for obj in (hand, *parts)} - ({_top(hand)} if is_body else set())
+    taken = {hand, *carriers, *parts}
     others = [
         still(context, obj, "other", False)
         for obj in context.scene.objects
         if obj.type in SURFACES and obj not in taken and _top(obj) in tops and not obj.hide_render and obj.visible_get()
     ]
     shown = [still(context, hand, "hand", True), opened(context, hand)]
-    if bodies.is_part_of_body(context, hand, display.workflow.product_parts(settings)):
+    if is_body:
         for solid in shown:
             bodies.cut_out(context, hand, solid.mesh)
     return Subject(*shown, product, others, units.mm_per_unit(context.scene))

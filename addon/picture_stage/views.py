@@ -4,6 +4,7 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
+from ..hand_bones import bodies
 from ..scene import mesh, units
 
 _GRIP_AWAY, _GRIP_UP = (0.15, 0.08, 0.98), (0.92, 0.32, -0.2)
@@ -59,6 +60,9 @@ def opened_frame(context, subject):
 
 
 def _towards_tips(context, points, force):
+    along = bodies.along_fingers(context.scene.thenar.hand)
+    if along is not None:
+        return along
     for modifier in context.scene.thenar.hand.modifiers:
         if modifier.type == "ARMATURE" and modifier.object is not None:
             rig, bones = modifier.object, modifier.object.data.bones

@@ -14,7 +14,8 @@ TOLERANCE = 0.02
 
 LEAST = 1e-3
 STEPS = 600
-"""Points that are added at most; the bounds found so far are returned then."""
+MOST_FACETS = 20_000
+"""Points that are added, and facets that are made, at most; the bounds found so far are returned then."""
 
 JOGGLE = 1e-7
 """Supporting points are moved so little, in parts of the largest wrench, so that no facet is degenerate."""
@@ -65,15 +66,15 @@ class Holding:
     arm_mm: float
 
 
-def of_press(posed_mm, contact, friction, _cancel=None, _progress=None):
+def of_press(posed_mm, contact, friction, cancel=None, _progress=None):
     """The `Holding` of a native contact of the posed hand (n, 3), or None where nothing presses."""
     force = np.asarray(contact.force_n)
     used = np.flatnonzero(force > 0.0)
     push = -np.nan_to_num(np.asarray(contact.product_normal)[used]) * force[used, None]
-    return of_skin(posed_mm[used] + np.asarray(contact.displacement_mm)[used], push, friction)
+    return of_skin(posed_mm[used] + np.asarray(contact.displacement_mm)[used], push, friction, cancel)
 
 
-def of_skin(points, push, friction):
+def of_skin(points, push, friction, cancel=None):
     """The `Holding` of pressed skin, or None where nothing presses.
 
     `points` (k, 3) mm, `push` (k, 3) normal forces on the product there, N. Moments are about the middle of the
@@ -87,10 +88,10 @@ def of_skin(points, push, friction):
     about = size @ points / size.sum()
     arm = max(float(np.linalg.norm(points - about, axis=1).max()), 1e-9)
     contacts = Contacts(points, push / size[:, None], friction, about, arm)
-    return Holding(measure(contacts), friction, float(size.sum()), arm)
+    return Holding(measure(contacts, cancel), friction, float(size.sum()), arm)
 
 
-def measure(contacts):
+def measure(contacts, cancel=None):
     """The `Quality` of contacts.
 
     A polytope of wrenches grows from the inside: the facet nearest to zero is pushed out to the farthest wrench there
@@ -104,6 +105,8 @@ def measure(contacts):
     hull = _Hull(corners)
     most, worst = np.inf, np.zeros(SIZE)
     for _ in range(STEPS):
+        if len(hull.offsets) > MOST_FACETS or (cancel is not None and cancel.is_set()):
+            break
         nearest = int(hull.offsets.argmin())
         way, least = hull.normals[nearest], float(hull.offsets[nearest])
         point, reach = wrenches.farthest(way)
