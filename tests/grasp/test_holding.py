@@ -1,5 +1,7 @@
 """Force closure and the smallest wrench resisted, against closed forms and a linear program of another library."""
 
+import threading
+
 import numpy as np
 import pytest
 from scipy.optimize import linprog
@@ -64,6 +66,21 @@ def test_random_points_resist_what_a_linear_program_finds(seed):
     inward = -points + 0.2 * rng.normal(0.0, 1.0, points.shape)
     inward /= np.linalg.norm(inward, axis=1)[:, None]
     agrees_with_a_linear_program(holding.Contacts(25.0 * points, inward, 0.6, rng.normal(0.0, 3.0, 3), 30.0))
+
+
+def test_a_ball_held_all_around_resists_a_turn_least_and_the_work_is_bounded():
+    """A turn about any axis: the coefficient for each newton at the radius. Thousands of facets are alike here."""
+    count, friction = 400, 0.3
+    height, turn = 1.0 - (2.0 * np.arange(count) + 1.0) / count, np.arange(count) * np.pi * (3.0 - np.sqrt(5.0))
+    ring = np.sqrt(1.0 - height**2)
+    outward = np.stack([ring * np.cos(turn), ring * np.sin(turn), height], axis=1)
+    contacts = holding.Contacts(20.0 * outward, -outward, friction, np.zeros(3), 20.0)
+    held = holding.measure(contacts)
+    assert 0.9 * friction < held.least <= friction and 0.99 * friction <= held.most < 1.1 * friction
+    stopped = threading.Event()
+    stopped.set()
+    early = holding.measure(contacts, stopped)
+    assert 0.0 <= early.least <= held.most and early.least < held.least, "a cancelled search ends at once"
 
 
 @pytest.mark.parametrize("seed", range(4))
