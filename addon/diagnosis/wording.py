@@ -87,15 +87,15 @@ def value(told):
     return f"{text} ({between})" if between else text
 
 
-def estimate(told):
+def estimate(stated):
     """A finding's number: `value`, or the bound where recordings bound it from one side alone: `at least 0.2 MPa`."""
-    low, high = told.get("low", 0.0), told.get("high", 0.0)
+    low, high = stated.get("low", 0.0), stated.get("high", 0.0)
     if low is not None and high is not None:
-        return value(told)
+        return value(stated)
     if low is None and high is None:
         return "not determined"
     word, end = ("at most", high) if low is None else ("at least", low)
-    return f"{word} {number(end)} {UNITS.get(told.get('unit'), told.get('unit') or '')}".rstrip()
+    return f"{word} {number(end)} {UNITS.get(stated.get('unit'), stated.get('unit') or '')}".rstrip()
 
 
 def least(seen):

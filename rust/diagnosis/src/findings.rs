@@ -3,6 +3,7 @@
 use crate::track_record::Confidence;
 use crate::unlisted_finding::Unlisted;
 use thenar_comparison::Comparison;
+use thenar_inference::number_format::number;
 use thenar_inference::selection::cross_validation::Gain;
 
 /// The answer in one word.
@@ -62,30 +63,20 @@ impl Number {
     pub fn in_words(&self) -> (String, String, &'static str) {
         let (low, high) = self.interval;
         let between = match (low.is_finite(), high.is_finite()) {
-            (true, true) if low < high => format!("{} to {}", digits(low), digits(high)),
+            (true, true) if low < high => format!("{} to {}", number(low), number(high)),
             (true, true) => "not fitted".to_owned(),
-            (true, false) => format!("at least {}", digits(low)),
-            (false, true) => format!("at most {}", digits(high)),
+            (true, false) => format!("at least {}", number(low)),
+            (false, true) => format!("at most {}", number(high)),
             (false, false) => "not determined".to_owned(),
         };
         let value = match self.is_bounded() {
-            true => digits(self.value),
+            true => number(self.value),
             false => "\u{2013}".to_owned(),
         };
         let is_known = low.is_finite() || high.is_finite();
         let has_unit = is_known && self.unit != "1";
         (value, between, if has_unit { self.unit } else { "" })
     }
-}
-
-/// Three digits, for sizes of any unit.
-fn digits(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let before = libm::log10(value.abs().max(1e-12)).floor();
-    let after = (2.0 - before).clamp(0.0, 14.0) as usize;
-    format!("{value:.after$}")
 }
 
 /// Where a finding is.

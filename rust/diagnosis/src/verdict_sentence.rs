@@ -166,16 +166,17 @@ mod tests {
 
     #[test]
     fn agreement_is_not_claimed_where_something_is_suspected_or_left() {
-        let told = |verdict, reason: &str| sentence(verdict, (&[], None), (&[], &[], &[]), reason);
+        let said_of =
+            |verdict, reason: &str| sentence(verdict, (&[], None), (&[], &[], &[]), reason);
         for verdict in [Verdict::NothingMissing, Verdict::Parameters] {
             for reason in ["suspected is a stiff skin", "repeats agree on a misfit"] {
-                let said = told(verdict, reason);
+                let said = said_of(verdict, reason);
                 assert!(
                     said.starts_with("No effect is named") && !said.contains("agrees"),
                     "{said}"
                 );
             }
-            let said = told(verdict, "no listed effect explains more than noise would");
+            let said = said_of(verdict, "no listed effect explains more than noise would");
             assert!(said.contains("agrees"), "{said}");
         }
     }

@@ -8,7 +8,7 @@ use crate::svg::escaped;
 use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};
 use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
-use thenar_inference::number_format::capital;
+use thenar_inference::number_format::{self, capital};
 use thenar_inference::selection::cross_validation::{Gain, HeldOutBy};
 
 /// Recordings that are drawn.
@@ -105,7 +105,7 @@ fn corrected(of: &Correction) -> String {
         .factors
         .knots
         .iter()
-        .map(|at| format!("<th>{}</th>", size(*at)))
+        .map(|at| format!("<th>{}</th>", number_format::number(*at)))
         .collect();
     let [going_in, going_out] = [0, 1].map(|side| cells(&of.factors.change[side]));
     let out = match going_in == going_out {
@@ -151,25 +151,15 @@ fn choice((name, option): &(&'static str, &'static str)) -> String {
     format!("<tr><td class='left'>{name}</td><td>{option}</td><td></td><td></td></tr>")
 }
 
-/// Three digits, for sizes of any unit.
-fn size(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let before = libm::log10(value.abs().max(1e-9)).floor();
-    let after = (2.0 - before).clamp(0.0, 9.0) as usize;
-    format!("{value:.after$}")
-}
-
 /// What must show in the recordings if the effect is there, and whether it does.
 fn signs(consequences: &[(String, bool)]) -> String {
     if consequences.is_empty() {
         return String::new();
     }
     let row = |(sentence, holds): &(String, bool)| {
-        let told = if *holds { "seen" } else { "not seen" };
+        let word = if *holds { "seen" } else { "not seen" };
         format!(
-            "<tr><td class='left'>{}</td><td class='left'>{told}</td></tr>",
+            "<tr><td class='left'>{}</td><td class='left'>{word}</td></tr>",
             escaped(sentence)
         )
     };
@@ -260,7 +250,7 @@ fn smallest(found: &Diagnosis) -> String {
         return String::new();
     }
     let row = |(name, value, unit): &(&'static str, Option<f64>, &'static str)| {
-        let size = value.map_or_else(|| "at no size".to_owned(), size);
+        let size = value.map_or_else(|| "at no size".to_owned(), number_format::number);
         format!(
             "<tr><td class='left'>{}</td><td>{size}</td><td class='left'>{}</td></tr>",
             escaped(&name.replace('_', " ")),
@@ -291,14 +281,7 @@ alone, blue with {what}. Below, the same less what parameters alone give: dots w
 
 #[cfg(test)]
 mod tests {
-    use super::{nats, size, spoken};
-
-    #[test]
-    fn a_size_of_any_unit_has_three_digits() {
-        let told = [0.000_123_4, 0.0567, 0.2, 12.345, 4321.0].map(size);
-        assert_eq!(told, ["0.000123", "0.0567", "0.200", "12.3", "4321"]);
-        assert_eq!(size(0.0), "0");
-    }
+    use super::{nats, spoken};
 
     #[test]
     fn a_number_is_called_without_its_unit() {

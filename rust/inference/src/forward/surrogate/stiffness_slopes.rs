@@ -30,7 +30,7 @@ fn is_affine(mechanism: &Mechanism) -> bool {
 }
 
 impl Surrogate<'_> {
-    /// The elastic response of a recording; None beside a mechanism that is not affine.
+    /// The elastic response of a recording; None with a mechanism that is not affine.
     pub(crate) fn stiffness(
         &self,
         (model, set): (&Model<'_>, &Setting),
