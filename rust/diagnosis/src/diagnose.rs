@@ -226,7 +226,7 @@ fn told(
         .for_each(|seen| add_ceiling(&mut found, seen));
     add_friction(study, &mut found);
     found.sentence = crate::verdict_sentence::sentence(
-        found.verdict,
+        (found.verdict, decision.is_more_than_noise),
         (&found.findings, found.gain.as_ref()),
         (&found.cannot_tell, &decision.beside, &found.record_next),
         &reason,

@@ -47,6 +47,8 @@ pub struct Decision<'a> {
     pub cannot_tell: Vec<[&'static str; 2]>,
     /// What every explanation holds that is within reach, if they are of two effects each.
     pub beside: Vec<&'static str>,
+    /// Whether recordings differ by more than their noise although nothing is named.
+    pub is_more_than_noise: bool,
     /// Why, for the notes.
     pub reason: String,
 }
@@ -79,7 +81,16 @@ pub(crate) fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
         named: None,
         cannot_tell: Vec::new(),
         beside: Vec::new(),
+        is_more_than_noise: false,
         reason: reason.to_owned(),
+    }
+}
+
+/// Nothing is named, though the recordings differ by more than their noise: it is suspected only, or may be of the form.
+pub(crate) fn unsettled_misfit<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
+    Decision {
+        is_more_than_noise: true,
+        ..silent(verdict, reason)
     }
 }
 
@@ -290,6 +301,7 @@ pub fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
         named: Some(scored),
         cannot_tell: Vec::new(),
         beside: Vec::new(),
+        is_more_than_noise: false,
         reason: reason.to_owned(),
     }
 }
@@ -307,6 +319,7 @@ fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a
         named: None,
         cannot_tell: seen,
         beside: Vec::new(),
+        is_more_than_noise: false,
         reason: reason.to_owned(),
     }
 }

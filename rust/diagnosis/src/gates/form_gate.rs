@@ -4,7 +4,9 @@
 //! measured to be against solids of pads (`priors::MEASURED_FORM`). Every threshold stays as it is.
 
 use crate::findings::Verdict;
-use crate::gates::decision::{self, Decision, UNLISTED, needed, opponents, silent};
+use crate::gates::decision::{
+    self, Decision, UNLISTED, needed, opponents, silent, unsettled_misfit,
+};
 use crate::gates::held_out_gate::{self, predicted_by_protocols};
 use crate::wording::effect_in_words;
 use thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise;
@@ -186,7 +188,7 @@ impl<'a> Gate<'a, '_> {
                 &format!("repeats agree on a misfit that no listed effect takes up; {reason}"),
             );
         }
-        silent(decision::nothing(self.ready, self.beyond.rungs), &reason)
+        unsettled_misfit(decision::nothing(self.ready, self.beyond.rungs), &reason)
     }
 
     /// A misfit without a name may be one of form; what differs between repeats is none.
@@ -201,7 +203,7 @@ impl<'a> Gate<'a, '_> {
             "repeats agree on a misfit that no listed effect explains, but it is no more than {}",
             self.form()
         );
-        silent(decision::nothing(self.ready, self.beyond.rungs), &reason)
+        unsettled_misfit(decision::nothing(self.ready, self.beyond.rungs), &reason)
     }
 
     fn form(&self) -> &'static str {

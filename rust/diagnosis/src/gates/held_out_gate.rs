@@ -167,6 +167,7 @@ fn unnamed<'a>(
         100.0 * gain.removed.max(0.0),
     );
     Decision {
+        is_more_than_noise: true,
         reason,
         ..decision::undetected(ready, rungs)
     }

@@ -4,7 +4,7 @@
 //! which the size is bounded from one side alone, is named with that bound; what would bound it is advised.
 
 use crate::findings::{Finding, Number, Verdict};
-use crate::gates::decision::{self, Decision, UNLISTED, needed, silent};
+use crate::gates::decision::{self, Decision, UNLISTED, needed, silent, unsettled_misfit};
 use crate::gates::form_gate;
 use crate::gates::held_out_gate::predicted_by_protocols;
 use crate::wording::effect_in_words;
@@ -91,7 +91,7 @@ fn unnamed<'a>(
             Verdict::Unlisted,
             &format!("repeats agree on a misfit that no listed effect takes up; {reason}"),
         ),
-        false => silent(decision::nothing(ready, rungs), reason),
+        false => unsettled_misfit(decision::nothing(ready, rungs), reason),
     }
 }
 
