@@ -9,6 +9,7 @@ from makers import KINDS
 from mathutils import Matrix
 from rig_scenes import into_scene
 from thenar_blender.hand_bones import bodies
+from thenar_blender.picture_stage import views
 from thenar_blender.product_objects import bringing, copies
 
 
@@ -138,5 +139,7 @@ def test_fingers_of_one_hand_of_a_body_point_from_its_knuckles(blender, kind, si
     bones, truth = armature.data.bones, rig.truth[side]
     knuckle, end = (np.array(bones[truth[f"middle_{part}"]].head_local) for part in ("proximal", "distal"))
     wanted = np.array(armature.matrix_world)[:3, :3] @ (end - knuckle)
+    nothing = np.zeros((1, 3)), np.zeros(1)
+    assert views._towards_tips(bpy.context, *nothing) @ wanted > 0.0, "pictures have the fingers up"
     along = bodies.along_fingers(hand)
     assert along @ wanted > 0.8 * np.linalg.norm(along) * np.linalg.norm(wanted)
