@@ -32,7 +32,7 @@ STARTS = {
 def grasp(mesh, percentile, start, dump=None):
     """Grasps the mesh (vertices mm, triangles), turned by the start. Returns a row: refused at a step, or numbers.
 
-    `dump`: a path for the arrays that Solve hands to the module, as .npz.
+    `dump`: a path for the arrays that Solve hands to the module and for the skin that it shows, as .npz.
     """
     bpy.ops.wm.read_homefile(use_empty=True)
     product = _add(mesh, STARTS[start])
@@ -55,6 +55,8 @@ def grasp(mesh, percentile, start, dump=None):
             return row | {"refused": step, "text": str(error).strip().splitlines()[0][:300]}
         row[f"{step}_s"] = round(time.monotonic() - started, 2)
         row[f"{step}_cpu_s"] = round(time.process_time() - cpu, 2)
+    if dump:
+        keep_shown(dump, settings.hand, product)
     return row | measured(settings.hand, before, product) | claimed(settings.result)
 
 
@@ -74,6 +76,16 @@ def save(path):
         product_vertices=product.vertices_mm,
         product_triangles=product.triangles,
     )
+
+
+def keep_shown(path, hand, product):
+    """Adds what is drawn after Solve to the arrays of `save`: `shown` (n, 3), `shown_product` (m, 3) in the world, mm,
+    and `shown_product_triangles`."""
+    with np.load(path) as kept:
+        arrays = dict(kept)
+    arrays["shown"], _ = seen(hand)
+    arrays["shown_product"], arrays["shown_product_triangles"] = seen(product)
+    np.savez_compressed(path, **arrays)
 
 
 def register():

@@ -82,12 +82,12 @@ def _turn(rest, posed):
 
 
 def grasp_row(path):
-    """The row of a grasp that `handles.py --dump` kept."""
+    """The row of a grasp that `handles.py --dump` kept, its skin pressed by the product."""
     kept = np.load(path)
     names = json.loads(str(kept["region_names"]))
     palm = np.isin(kept["regions"], [k for k, name in enumerate(names) if name in ("hypothenar", "palm_hollow")])
-    product = kept["product_vertices"], kept["product_triangles"]
-    return row(kept["vertices"], kept["posed"], kept["triangles"], palm, product)
+    product = kept["shown_product"], kept["shown_product_triangles"]
+    return row(kept["vertices"], kept["shown"], kept["triangles"], palm, product)
 
 
 def pose_rows():
