@@ -11,13 +11,15 @@ from ..grasp import settling
 from ..grasp_fit import fitter
 from ..grasp_fit import load as loads
 from ..grasp_fit.least_squares import minimize
-from ..grasp_fit.task import Task
+from ..grasp_fit.task import ARM_MM, Task, free_angles
+from ..hand.skinning import FLEXION
+from ..hand_bones.roles import COLUMNS, angle_bounds
 from ..scene.checks import Refusal
 from . import parts, views
 
 ROUNDS = 10
 EVALUATIONS = 25
-HALVINGS = 3
+HALVINGS = 4
 """Rounds of pressing at most, evaluations of the fit in each, and how often a step that does not help is halved."""
 
 GAIN = 0.02
@@ -27,14 +29,29 @@ STALLED = 2
 DEEP_MM = 30.0
 """What a millimetre of skin counts that is deeper than its tissue allows, mm: such a force is not to be reached."""
 
+CROSSED_MM = 200.0
+"""What a finger counts that stands in a thin wall, mm."""
+
+STEP = 0.004
+FARTHEST = 0.05
+POLISHES = 6
+DAMPING = 1e-4
+"""Radians by which slopes are taken; a shift of the hand is counted at `task.ARM_MM`. No step turns a joint farther
+than `FARTHEST`. So many steps; their damping in parts of the trace."""
+
+TINY = 1e-9
+BALANCE_ROWS = 7
+"""Rows of a `load.Load`: force, moment, sum."""
+
 
 @dataclass(frozen=True)
 class Target:
     """What to reach. `views` of a fit and the `wanted` values of each, `weights` that make residuals mm of them.
 
     `measure(state)` gives the values of each view as the contact model says them. `wishes(state, depths)` the depth
-    (p,) that the pads are drawn to, from those (p,) they have. What the forces leave over counts `balance_mm`.
-    `is_reached(values)`: whether no further round is needed.
+    (p,) that the pads are drawn to, from those (p,) they have. `is_reached(values)`: whether no further round is needed.
+    What the forces leave over counts `balances_mm` for all of them, first and last: a posture in balance is found
+    first, and gives way to the target in the end.
     """
 
     views: tuple
@@ -43,7 +60,7 @@ class Target:
     measure: object
     wishes: object
     is_reached: object
-    balance_mm: float = 6.0
+    balances_mm: tuple = (20.0, 5.0)
 
 
 @dataclass(frozen=True)
@@ -69,27 +86,44 @@ class Reached:
     x: np.ndarray
     spare_mm: np.ndarray
 
+    def depths(self):
+        """Depth of every pad (p,), mm."""
+        return np.array([self.state.grasp.depths_mm[pad.name] for pad in self.task.hand.pads])
+
 
 def reach(stage, start, target, watch=fitter.ALONE, rounds=ROUNDS):
     """The best `Reached`. Raises `Refusal` where not even the start can be pressed."""
-    search = _Search(stage, start, target, watch)
-    best, stalled = search.begin(), 0
-    for count in range(rounds):
-        if target.is_reached(best.values) or stalled >= STALLED:
-            break
-        watch.report("Reaching the target", count / rounds)
-        fitter.leave_if_cancelled(watch)
-        after = search.stepped(best)
-        if after is None:
-            break
-        stalled = stalled + 1 if after.cost > (1.0 - GAIN) * best.cost else 0
-        best = after
-    return best
+    best = None
+    for number, balance_mm in enumerate(target.balances_mm):
+        search, stalled = _Search(stage, start, (target, balance_mm), watch), 0
+        best = search.begin() if best is None else search.again(best)
+        for count in range(rounds):
+            if stalled >= STALLED or (number == len(target.balances_mm) - 1 and target.is_reached(best.values)):
+                break
+            watch.report("Reaching the target", (number + count / rounds) / len(target.balances_mm))
+            fitter.leave_if_cancelled(watch)
+            after = search.stepped(best)
+            if after is None:
+                break
+            stalled = stalled + 1 if after.cost > (1.0 - GAIN) * best.cost else 0
+            best = after
+    return _polished(search, best)
+
+
+def slopes_of(stage, start, target, reached):
+    """How the rows of the first view change with the unknowns (f, d) at a `Reached`, in the view's own unit."""
+    search = _Search(stage, start, (target, 0.0), fitter.ALONE)
+    load = search.load(reached)
+    task = search.task(reached.depths(), load)
+    task.residuals(reached.x)
+    rows = sum(len(each.wanted) for each in load.watched) + BALANCE_ROWS
+    return task.jacobian(reached.x)[-rows:][: len(target.wanted[0])] / target.weights[0][:, None]
 
 
 class _Search:
-    def __init__(self, stage, start, target, watch):
-        self.stage, self.start, self.target, self.watch = stage, start, target, watch
+    def __init__(self, stage, start, asked, watch):
+        self.stage, self.start, self.watch = stage, start, watch
+        self.target, self.balance_mm = asked
         hand = stage.fit.press.reading.hand
         self.areas = loads.vertex_areas(hand.rest_mm, hand.triangles)
         pads, count = stage.hand.pads, len(hand.rest_mm)
@@ -102,29 +136,30 @@ class _Search:
 
     def begin(self):
         """The start, pressed; its fingers closed first where it asks for that."""
-        task = self._task(self.depths, None)
+        task = self.task(self.depths, None)
         x = task.start.copy()
         x[:-6] = [self.start.angles[bone, column] for bone, column, _ in task.dofs]
         return self._pressed(task, np.clip(x, task.bounds[:, 0], task.bounds[:, 1]))
 
+    def again(self, best):
+        """The same posture with its cost here."""
+        return replace(best, cost=self._cost(best.state, best.values, best.spare_mm))
+
     def stepped(self, best):
         """A better `Reached` than `best`, or None."""
-        depths = np.array([best.state.grasp.depths_mm[pad.name] for pad in self.stage.hand.pads])
-        task = self._task(self.target.wishes(best.state, depths), self._load(best))
+        task = self.task(self.target.wishes(best.state, best.depths()), self.load(best))
         solved = minimize(task.problem(), best.x, EVALUATIONS, cancelled=self.watch.cancelled)
         step = solved.x - best.x
         for _ in range(HALVINGS):
             fitter.leave_if_cancelled(self.watch)
-            try:
-                after = self._pressed(task, best.x + step)
-            except (Refusal, native.module.SolveError):
-                after = None
+            after = self.pressed_at(replace(best, task=task), best.x + step)
             if after is not None and after.cost < best.cost:
                 return after
             step = 0.5 * step
         return None
 
-    def _task(self, wishes, load):
+    def task(self, wishes, load):
+        """The fit that draws pads to depths (p,) with a load, with the start for its posture at rest."""
         goal = settling.goal_of(wishes, None, None, load)
         begin = (self.start.grasp.place, self.start.grasp.angles)
         return Task(self.start.hand, self.stage.gauge, goal, begin, self.start.wish)
@@ -136,22 +171,42 @@ class _Search:
         gap = task.state[2][1]
         spare = np.array([pad.limit_mm + float(gap[rows].min()) for pad, rows in _pads_in(task)])
         values = self.target.measure(state)
+        return Reached(state, values, self._cost(state, values, spare), task, x, spare)
+
+    def _cost(self, state, values, spare):
+        return float(np.square(self.rows(state, values, spare)).sum())
+
+    def rows(self, state, values, spare):
+        """Everything that a pressed state misses, mm."""
         rows = [w * (v - a) for w, v, a in zip(self.target.weights, values, self.target.wanted, strict=True)]
         left = np.concatenate([state.net_n, state.moment_nmm / loads.ARM_MM]) / max(state.total_n, 1e-9)
-        deep = np.minimum(spare, 0.0)
-        rows += [self.target.balance_mm * left, DEEP_MM * deep, [DEEP_MM * state.sunk_mm]]
-        rows += [[settling.CROSSED * 10.0 * (fitter.CROSSED_TEXT in grasp.warnings)]]
-        return Reached(state, values, float(sum(np.square(row).sum() for row in rows)), task, x, spare)
+        rows += [self.balance_mm * left, DEEP_MM * np.minimum(spare, 0.0), [DEEP_MM * state.sunk_mm]]
+        rows += [[CROSSED_MM * (fitter.CROSSED_TEXT in state.grasp.warnings)]]
+        return np.concatenate(rows)
 
-    def _load(self, best):
+    def pressed_at(self, best, x):
+        """The `Reached` at the unknowns `x` of the fit of `best`, or None where it cannot be pressed."""
+        try:
+            return self._pressed(best.task, np.clip(x, best.task.bounds[:, 0], best.task.bounds[:, 1]))
+        except (Refusal, native.module.SolveError):
+            fitter.leave_if_cancelled(self.watch)
+            return None
+
+    def load(self, best):
         """What the next fit shall reach, with what the press showed where it begins."""
         force = np.asarray(best.state.contact.force_n)
         gap = settling.gaps_of(self.stage, best.state.grasp)
         stiffness = loads.stiffness_of(self.stage.hand.pads, self.areas, gap, force)
         total = max(best.state.total_n, 1.0)
-        balance = loads.Load(stiffness, np.zeros(3), total, self.target.balance_mm, np.zeros(3), np.zeros(3))
+        balance = loads.Load(stiffness, np.zeros(3), total, max(self.balance_mm, TINY), np.zeros(3), np.zeros(3))
         best.task.residuals(best.x)
-        here = views.pressed_of(loads.Touched(best.task.rows, *best.task.state[2]), stiffness)
+        touched = loads.Touched(best.task.rows, *best.task.state[2])
+        here, left = views.pressed_of(touched, stiffness), total / max(self.balance_mm, TINY) * balance.residuals(touched)
+        balance = replace(
+            balance,
+            outer_n=best.state.net_n - left[:3],
+            outer_moment_nmm=best.state.moment_nmm - loads.ARM_MM * left[3:6],
+        )
         watched = [
             views.Watched(view, wanted, value - view.values(here), weight)
             for view, wanted, value, weight in zip(
@@ -161,6 +216,61 @@ class _Search:
         count = self.deep.count
         watched.append(views.Watched(self.deep, np.zeros(count), np.zeros(count), np.full(count, DEEP_MM)))
         return views.Load(balance, tuple(watched))
+
+
+def _polished(search, best):
+    """The last of a target by presses alone: slopes of it by bending each digit and moving the hand a little."""
+    if search.target.is_reached(best.values):
+        return best
+    ways = _ways(best.task)
+    base = search.rows(best.state, best.values, best.spare_mm)
+    columns = []
+    for way in ways:
+        fitter.leave_if_cancelled(search.watch)
+        after = search.pressed_at(best, best.x + STEP * way)
+        columns.append(np.zeros_like(base) if after is None else (_rows(search, after) - base) / STEP)
+    slopes = np.stack(columns, axis=1)
+    for count in range(POLISHES):
+        search.watch.report("Reaching the target", 0.9 + 0.1 * count / POLISHES)
+        fitter.leave_if_cancelled(search.watch)
+        base = _rows(search, best)
+        square = slopes.T @ slopes
+        share = np.linalg.solve(square + DAMPING * np.trace(square) * np.eye(len(ways)), -slopes.T @ base)
+        share *= min(1.0, FARTHEST / max(float(np.abs(share).max()), 1e-12))
+        after, halvings = None, 0
+        while halvings < HALVINGS:
+            after = search.pressed_at(best, best.x + share @ ways)
+            if after is not None and after.cost < best.cost:
+                break
+            share, halvings = 0.5 * share, halvings + 1
+        else:
+            break
+        change = _rows(search, after) - base
+        slopes = slopes + np.outer(change - slopes @ share, share) / (share @ share)
+        best = after
+        if search.target.is_reached(best.values):
+            break
+    return best
+
+
+def _rows(search, reached):
+    return search.rows(reached.state, reached.values, reached.spare_mm)
+
+
+def _ways(task):
+    """Motions (k, d) of a fit's unknowns: each finger bent in all its joints, each joint of the thumb, each way of the
+    hand that is free."""
+    roles = [role.partition("_")[0] for _, _, role in task.dofs]
+    bends = [column == FLEXION for _, column, _ in task.dofs]
+    out = []
+    for digit in [role for role in dict.fromkeys(roles) if role != "thumb"]:
+        way = np.zeros(len(task.start))
+        way[:-6] = [one == digit and is_bent for one, is_bent in zip(roles, bends, strict=True)]
+        out.append(way)
+    single = np.eye(len(task.start))
+    out += [single[k] for k, role in enumerate(roles) if role == "thumb"]
+    out += [ARM_MM * each for each in single[-6:] if task.bounds[each > 0.0, 1] > task.bounds[each > 0.0, 0]]
+    return np.array(out)
 
 
 def start_of(stage, grasp, wish, wanted, most=None):
@@ -176,9 +286,6 @@ def start_of(stage, grasp, wish, wanted, most=None):
 
 def _within(hand, angles, most):
     """The hand with joints that turn no farther than `most` from `angles` (b, 3), and not past their own limits."""
-    from ..grasp_fit.task import free_angles
-    from ..hand_bones.roles import COLUMNS, angle_bounds
-
     names = {column: name for name, column in COLUMNS.items()}
     limits = dict(hand.joints.limits)
     for bone, column, role in free_angles(hand.joints):
