@@ -25,6 +25,7 @@ from . import (
     tabs,
 )
 from .grasp_choices import more as more_grasps
+from .grasp_targets import operators as grasp_targets
 from .properties import settings
 from .views import viewport
 
@@ -41,6 +42,7 @@ _MODULES = (
     rigging,
     grasp,
     more_grasps,
+    grasp_targets,
     grasp_data,
     pose_library,
     hand_shape,

@@ -4,6 +4,7 @@ import bpy
 
 from .. import status
 from ..grasp_choices import panel as choices
+from ..grasp_targets import panel as targets
 from ..panels.main import Tab
 
 
@@ -31,7 +32,12 @@ class THENAR_PT_grasp(Tab, bpy.types.Panel):
         box = layout.column()
         box.use_property_split = True
         box.use_property_decorate = False
-        for name in ("moves", "weight_n", "total_n", "friction"):
+        box.prop(stored, "moves")
+        box.prop(context.scene.thenar_targets, "kind")
+        if context.scene.thenar_targets.kind != "TOTAL":
+            targets.draw(box, context)
+            return
+        for name in ("weight_n", "total_n", "friction"):
             box.prop(stored, name)
         box.operator("thenar.settle_grasp", icon="CON_FLOOR")
 

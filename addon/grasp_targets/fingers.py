@@ -1,11 +1,7 @@
 """Force by finger as a target: what each digit and the palm shall carry. No Blender objects."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
-from ..grasp import settling
-from ..grasp_fit import fitter
 from ..grasp_fit import load as loads
 from ..scene.checks import Refusal
 from . import parts, reaching, views

@@ -3,6 +3,7 @@ again from there, within the limits of the joints. No Blender objects.
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -22,12 +23,24 @@ EVALUATIONS = 25
 HALVINGS = 4
 """Rounds of pressing at most, evaluations of the fit in each, and how often a step that does not help is halved."""
 
+NEAR_MM2 = 6.0
+"""A search that misses no more is not repeated."""
+
 GAIN = 0.02
 STALLED = 2
 """So many rounds that lower the cost by less than this share end the search."""
 
 DEEP_MM = 30.0
 """What a millimetre of skin counts that is deeper than its tissue allows, mm: such a force is not to be reached."""
+
+MOST_MPA = settling.MOST_MPA
+EASED = 0.97
+HARD_MM = 300.0
+"""No pad shall press harder, as in `settling`; the fit is held to this share of it; what a pad counts that
+presses with twice of it, mm."""
+
+BODY_MM = 3.0
+"""Skin outside the pads may lie this deep in the product, or as deep as it did in the beginning."""
 
 CROSSED_MM = 200.0
 """What a finger counts that stands in a thin wall, mm."""
@@ -49,7 +62,7 @@ class Target:
     """What to reach. `views` of a fit and the `wanted` values of each, `weights` that make residuals mm of them.
 
     `measure(state)` gives the values of each view as the contact model says them. `wishes(state, depths)` the depth
-    (p,) that the pads are drawn to, from those (p,) they have. `is_reached(values)`: whether no further round is needed.
+    (p,) that the pads are drawn to, from those (p,) they have. `is_reached(values)`: whether the search may end.
     What the forces leave over counts `balances_mm` for all of them, first and last: a posture in balance is found
     first, and gives way to the target in the end.
     """
@@ -77,7 +90,8 @@ class Start:
 @dataclass(frozen=True)
 class Reached:
     """The best that was found: the pressed `state`, the `values` of the target's views, the `cost`, mm2, the last
-    fit's `task` there with its unknowns `x`, and how much of each pad the tissue still allows, `spare_mm` (p,)."""
+    fit's `task` there with its unknowns `x`, and how much deeper each pad may be pressed, and then the other skin,
+    `spare_mm` (p + 1,)."""
 
     state: settling.State
     values: tuple
@@ -92,29 +106,49 @@ class Reached:
 
 
 def reach(stage, start, target, watch=fitter.ALONE, rounds=ROUNDS):
-    """The best `Reached`. Raises `Refusal` where not even the start can be pressed."""
+    """The best `Reached`. Raises `Refusal` where not even the start can be pressed.
+
+    Where the target is not reached by way of a posture in balance, it is sought without that, too.
+    """
+    ways = [target.balances_mm, target.balances_mm[-1:]][: len(target.balances_mm)]
+    best = None
+    for number, balances_mm in enumerate(ways):
+        own = fitter.Watch(partial(_in_part, watch, (number, len(ways))), watch.cancel)
+        found = _reached(stage, start, replace(target, balances_mm=balances_mm), own, rounds)
+        best = found if best is None or found.cost < best.cost else best
+        if best.cost < NEAR_MM2:
+            break
+    return best
+
+
+def _in_part(watch, part, words, share):
+    number, count = part
+    watch.report(words, (number + share) / count)
+
+
+def _reached(stage, start, target, watch, rounds):
     best = None
     for number, balance_mm in enumerate(target.balances_mm):
-        search, stalled = _Search(stage, start, (target, balance_mm), watch), 0
-        best = search.begin() if best is None else search.again(best)
+        trial, stalled = _Search(stage, start, (target, balance_mm), watch), 0
+        best = trial.begin() if best is None else trial.again(best)
         for count in range(rounds):
             if stalled >= STALLED or (number == len(target.balances_mm) - 1 and target.is_reached(best.values)):
                 break
             watch.report("Reaching the target", (number + count / rounds) / len(target.balances_mm))
             fitter.leave_if_cancelled(watch)
-            after = search.stepped(best)
+            after = trial.stepped(best)
             if after is None:
                 break
             stalled = stalled + 1 if after.cost > (1.0 - GAIN) * best.cost else 0
             best = after
-    return _polished(search, best)
+    return _polished(trial, best)
 
 
 def slopes_of(stage, start, target, reached):
     """How the rows of the first view change with the unknowns (f, d) at a `Reached`, in the view's own unit."""
-    search = _Search(stage, start, (target, 0.0), fitter.ALONE)
-    load = search.load(reached)
-    task = search.task(reached.depths(), load)
+    trial = _Search(stage, start, (target, 0.0), fitter.ALONE)
+    load = trial.load(reached)
+    task = trial.task(reached.depths(), load)
     task.residuals(reached.x)
     rows = sum(len(each.wanted) for each in load.watched) + BALANCE_ROWS
     return task.jacobian(reached.x)[-rows:][: len(target.wanted[0])] / target.weights[0][:, None]
@@ -127,10 +161,9 @@ class _Search:
         hand = stage.fit.press.reading.hand
         self.areas = loads.vertex_areas(hand.rest_mm, hand.triangles)
         pads, count = stage.hand.pads, len(hand.rest_mm)
-        limit = np.full(count, np.inf)
-        for pad in pads:
-            limit[pad.rows] = pad.limit_mm
-        self.deep = views.TooDeep(parts.spread(pads, np.arange(len(pads)), count), limit, len(pads))
+        part = parts.spread(pads, np.arange(len(pads)), count)
+        self.part = np.where(part < 0, len(pads), part)
+        self.limits = np.array([*(pad.limit_mm for pad in pads), max(BODY_MM, start.grasp.deepest_body_mm)])
         self.aim = settling.Aim(np.zeros(3), np.zeros(3))
         self.depths = np.array([start.grasp.depths_mm[pad.name] for pad in pads])
 
@@ -169,7 +202,10 @@ class _Search:
         state = settling.pressed(self.stage, grasp, self.aim, self.watch.cancel)
         task.residuals(x)
         gap = task.state[2][1]
-        spare = np.array([pad.limit_mm + float(gap[rows].min()) for pad, rows in _pads_in(task)])
+        count = len(self.stage.hand.pads)
+        lowest = [float(gap[rows].min(initial=np.inf)) for rows in task.groups]
+        lowest = np.array([*lowest[:count], min(lowest[count:], default=np.inf)])
+        spare = self.limits + lowest
         values = self.target.measure(state)
         return Reached(state, values, self._cost(state, values, spare), task, x, spare)
 
@@ -181,6 +217,7 @@ class _Search:
         rows = [w * (v - a) for w, v, a in zip(self.target.weights, values, self.target.wanted, strict=True)]
         left = np.concatenate([state.net_n, state.moment_nmm / loads.ARM_MM]) / max(state.total_n, 1e-9)
         rows += [self.balance_mm * left, DEEP_MM * np.minimum(spare, 0.0), [DEEP_MM * state.sunk_mm]]
+        rows += [HARD_MM * np.maximum(state.peaks_mpa / MOST_MPA - 1.0, 0.0)]
         rows += [[CROSSED_MM * (fitter.CROSSED_TEXT in state.grasp.warnings)]]
         return np.concatenate(rows)
 
@@ -201,7 +238,8 @@ class _Search:
         balance = loads.Load(stiffness, np.zeros(3), total, max(self.balance_mm, TINY), np.zeros(3), np.zeros(3))
         best.task.residuals(best.x)
         touched = loads.Touched(best.task.rows, *best.task.state[2])
-        here, left = views.pressed_of(touched, stiffness), total / max(self.balance_mm, TINY) * balance.residuals(touched)
+        here = views.pressed_of(touched, stiffness)
+        left = total / balance.weight_mm * balance.residuals(touched)
         balance = replace(
             balance,
             outer_n=best.state.net_n - left[:3],
@@ -213,48 +251,53 @@ class _Search:
                 self.target.views, self.target.wanted, best.values, self.target.weights, strict=True
             )
         ]
-        count = self.deep.count
-        watched.append(views.Watched(self.deep, np.zeros(count), np.zeros(count), np.full(count, DEEP_MM)))
+        count = len(self.limits)
+        eased = np.minimum((EASED * MOST_MPA / np.maximum(best.state.peaks_mpa, 1e-9)) ** (1.0 / loads.POWER), 1.0)
+        limits = self.limits.copy()
+        deepest = np.maximum(limits - best.spare_mm, 0.3)[:-1]
+        limits[:-1] = np.where(eased < 1.0, np.minimum(limits[:-1], deepest * eased), limits[:-1])
+        deep = views.TooDeep(self.part, limits[self.part], count)
+        watched.append(views.Watched(deep, np.zeros(count), np.zeros(count), np.full(count, DEEP_MM)))
         return views.Load(balance, tuple(watched))
 
 
-def _polished(search, best):
+def _polished(trial, best):
     """The last of a target by presses alone: slopes of it by bending each digit and moving the hand a little."""
-    if search.target.is_reached(best.values):
+    if trial.target.is_reached(best.values):
         return best
     ways = _ways(best.task)
-    base = search.rows(best.state, best.values, best.spare_mm)
+    base = trial.rows(best.state, best.values, best.spare_mm)
     columns = []
     for way in ways:
-        fitter.leave_if_cancelled(search.watch)
-        after = search.pressed_at(best, best.x + STEP * way)
-        columns.append(np.zeros_like(base) if after is None else (_rows(search, after) - base) / STEP)
+        fitter.leave_if_cancelled(trial.watch)
+        after = trial.pressed_at(best, best.x + STEP * way)
+        columns.append(np.zeros_like(base) if after is None else (_rows(trial, after) - base) / STEP)
     slopes = np.stack(columns, axis=1)
     for count in range(POLISHES):
-        search.watch.report("Reaching the target", 0.9 + 0.1 * count / POLISHES)
-        fitter.leave_if_cancelled(search.watch)
-        base = _rows(search, best)
+        trial.watch.report("Reaching the target", 0.9 + 0.1 * count / POLISHES)
+        fitter.leave_if_cancelled(trial.watch)
+        base = _rows(trial, best)
         square = slopes.T @ slopes
         share = np.linalg.solve(square + DAMPING * np.trace(square) * np.eye(len(ways)), -slopes.T @ base)
         share *= min(1.0, FARTHEST / max(float(np.abs(share).max()), 1e-12))
         after, halvings = None, 0
         while halvings < HALVINGS:
-            after = search.pressed_at(best, best.x + share @ ways)
+            after = trial.pressed_at(best, best.x + share @ ways)
             if after is not None and after.cost < best.cost:
                 break
             share, halvings = 0.5 * share, halvings + 1
         else:
             break
-        change = _rows(search, after) - base
+        change = _rows(trial, after) - base
         slopes = slopes + np.outer(change - slopes @ share, share) / (share @ share)
         best = after
-        if search.target.is_reached(best.values):
+        if trial.target.is_reached(best.values):
             break
     return best
 
 
-def _rows(search, reached):
-    return search.rows(reached.state, reached.values, reached.spare_mm)
+def _rows(trial, reached):
+    return trial.rows(reached.state, reached.values, reached.spare_mm)
 
 
 def _ways(task):
@@ -293,8 +336,3 @@ def _within(hand, angles, most):
         here = angles[bone, column]
         limits[bone, column] = (max(min(low, here), here - most), min(max(high, here), here + most))
     return replace(hand, joints=replace(hand.joints, limits=limits))
-
-
-def _pads_in(task):
-    """Each pad with the places of its vertices among those that a task looks at."""
-    return zip(task.hand.pads, task.groups, strict=False)

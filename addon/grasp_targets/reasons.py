@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..languages import iface, report
-from . import fingers, parts, reaching
+from . import parts, reaching
 
 MISS, MISS_N = 0.05, 0.5
 """A force counts as reached within this share of the wanted one, or so many newtons."""
@@ -19,27 +19,15 @@ MAIN = 0.3
 SPARE_MM = 0.1
 """Tissue that may be pressed no deeper than this more is pressed as deep as it is thick."""
 
+HARD = 0.93
+"""A pad that presses with this share of the greatest pressure allowed cannot be pressed harder."""
+
 ROUNDS = 4
 """Rounds without balance that show whether balance is the reason."""
 
 REACHED, CLEAR, CLEAR_AT_LIMIT = "REACHED", "CLEAR", "CLEAR_AT_LIMIT"
-LIMIT, TISSUE, BALANCE, OTHER = "LIMIT", "TISSUE", "BALANCE", "OTHER"
-WORDS = {
-    CLEAR: "it does not touch the product from here",
-    CLEAR_AT_LIMIT: "its joints are at their limits before it touches the product",
-    LIMIT: "its joints are at their limits",
-    TISSUE: "its skin is pressed as deep as its tissue allows",
-    BALANCE: "the forces on the product would be out of balance",
-    OTHER: "no posture near this one carries it with the other forces",
-}
-NAMES = {
-    "thumb": "Thumb",
-    "index": "Index",
-    "middle": "Middle",
-    "ring": "Ring",
-    "little": "Little",
-    "palm": "Palm",
-}
+LIMIT, TISSUE, HARD_SPOT, SIDE = "LIMIT", "TISSUE", "HARD_SPOT", "SIDE"
+BALANCE, OTHER = "BALANCE", "OTHER"
 
 
 @dataclass(frozen=True)
@@ -83,6 +71,10 @@ def _cause(stage, number, forces, at):
         return CLEAR_AT_LIMIT if _is_closed(stage, parts.PARTS[number], reached) else CLEAR
     if is_short and reached.spare_mm[pads].min() < SPARE_MM:
         return TISSUE
+    if is_short and reached.state.peaks_mpa[pads].max() > HARD * reaching.MOST_MPA:
+        return HARD_SPOT
+    if is_short and reached.spare_mm[-1] < SPARE_MM:
+        return SIDE
     return LIMIT if _is_held(parts.PARTS[number], slopes if is_short else -slopes, reached) else OTHER
 
 
@@ -124,17 +116,28 @@ def line(row):
     """What is said of one part."""
     words = "{part} {wanted:.0f} N wanted, {have:.1f} N reached"
     text = report(words, part=_name(row), wanted=row.wanted_n, have=row.reached_n)
-    return text if row.reason == REACHED else report("{text}: {why}", text=text, why=report(WORDS[row.reason]))
+    return text if row.reason == REACHED else report("{text}: {why}", text=text, why=_why(row.reason))
 
 
 def _name(row):
-    return iface(NAMES[row.part])
+    return iface(row.part.capitalize())
+
+
+def _why(reason):
+    most_kpa = 1e3 * reaching.MOST_MPA
+    return {
+        CLEAR: report("it does not touch the product from here"),
+        CLEAR_AT_LIMIT: report("its joints are at their limits before it touches the product"),
+        LIMIT: report("its joints are at their limits"),
+        TISSUE: report("its skin is pressed as deep as its tissue allows"),
+        HARD_SPOT: report("its skin presses with {most:.0f} kPa, the most that is allowed", most=most_kpa),
+        SIDE: report("skin outside its pads is in the product"),
+        BALANCE: report("the forces on the product would be out of balance"),
+        OTHER: report("no posture near this one carries it with the other forces"),
+    }[reason]
 
 
 def wanted_of(values):
     """Forces (6,) by `parts.PARTS`, NaN where a part is free, from newtons by part, 0 for free."""
     wanted = np.array([values[part] for part in parts.PARTS], float)
     return np.where(wanted > 0.0, wanted, np.nan)
-
-
-__all__ = ["NAMES", "Row", "fingers", "line", "rows_of", "sentence", "wanted_of"]

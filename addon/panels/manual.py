@@ -12,6 +12,7 @@ _OPERATORS = (
     ("add_sample add_product accept_size scale_product pick pick_hand add_hand make_hand", "guide.html#start"),
     ("solve clear apply grasp_lighter show_place select_place", "guide.html#thenar"),
     ("refine_skin", "guide.html#finer-skin"),
+    ("reach_target", "guide.html#targets"),
     ("fit_grasp settle_grasp use_grasp more_grasps apply_pose", "guide.html#grasp"),
     ("add_pose_library blend_pose", "guide.html#pose-library"),
     ("guess_bones join_bones assign_digit pick_digits regions_from_bones show_regions", "guide.html#bones"),
@@ -42,6 +43,7 @@ _OPERATORS = (
 """Operators by name behind `bpy.ops.thenar.`, and where they are explained; the first that fits."""
 
 _TYPES = (
+    ("thenartargets thenartargetrow", "guide.html#targets"),
     ("thenargrasp thenargrasps", "guide.html#grasp"),
     ("thenarbonemap", "guide.html#bones"),
     ("thenarhandshape", "guide.html#hand-shape"),

@@ -1,0 +1,70 @@
+"""The button that brings the hand to its target. Registration of all targets, too."""
+
+from functools import partial
+
+import bpy
+
+from .. import workflow
+from ..grasp import fitting
+from ..grasp_fit import fitter
+from ..hand import pads
+from ..hand.operators import can_pose
+from ..operators import computing, polling
+from ..scene.checks import Refusal
+from . import conduct, parts, reasons, settings
+
+
+class THENAR_OT_reach_target(computing.Computing, bpy.types.Operator):
+    """Bend and move the hand a little from where it is until it reaches the target: forces by finger, or what a \
+recording read"""
+
+    bl_idname = "thenar.reach_target"
+    bl_label = "Reach Target"
+    bl_options = {"REGISTER", "UNDO"}
+    noun = "Reaching the target"
+
+    @classmethod
+    def poll(cls, context):
+        return polling.allows(cls, polling.no_product(context)) and can_pose(cls, context)
+
+    def steps(self, context):
+        stored, asked = context.scene.thenar_targets, context.scene.thenar_grasps
+        if stored.kind == settings.TOTAL:
+            raise Refusal("the target is a total force; press Settle for it, or choose another target")
+        wanted = reasons.wanted_of({part: getattr(stored, f"{part}_n") for part in parts.PARTS})
+        fit = prepared(context, 0.0 if asked.moves == "FINGERS" else 40.0)
+        found = yield partial(conduct.by_finger, fit, wanted)
+        fitting.finish(context, fit, found.grasp, asked.moves)
+        asked.shown = -1
+        settings.keep(context.scene, found.rows)
+        return found
+
+    def _report(self, context, found):
+        fitting.bring_into_view(context)
+        level, text = reasons.sentence(found.rows)
+        self.report({level}, text)
+        return {"FINISHED"}
+
+
+def prepared(context, free_mm):
+    """The `fitting.Fit` of the scene's hand from where it is, its place free by `free_mm`. Raises `Refusal`."""
+    chosen = context.scene.thenar
+    wish = fitter.Wish(pads.FIRM_MM, is_placed=True, free_mm=free_mm)
+    return fitting.prepare(context, chosen.hand, workflow.product_parts(chosen), wish, 1.0)
+
+
+CLASSES = (*settings.CLASSES, THENAR_OT_reach_target)
+
+
+def register():
+    """Register the operator and what a scene keeps of targets."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    settings.register_properties()
+
+
+def unregister():
+    """Unregister them again."""
+    settings.unregister_properties()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
