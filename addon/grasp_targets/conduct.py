@@ -8,7 +8,7 @@ from ..grasp import settling
 from ..grasp.stage import stage_of
 from ..grasp_fit import fitter
 from ..hand import pads as pads_of_hand
-from . import fingers, parts, reaching, reasons
+from . import fingers, reaching, reasons, recording
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ def by_finger(fit, wanted_n, cancel=None, progress=None):
     stage = stage_of(fit)
     target = fingers.target_of(stage, wanted_n)
     first = grasp_here(stage)
-    closed = closing(stage.hand.pads, first, np.isfinite(wanted_n))
+    closed = fingers.clear_of(stage.hand.pads, first, np.isfinite(wanted_n))
     start = reaching.start_of(stage, first, fit.wish, closed)
     reached = reaching.reach(stage, start, target, watch)
     rows = reasons.rows_of(stage, start, target, reached, wanted_n)
@@ -45,12 +45,22 @@ def grasp_here(stage):
     return replace(taken, depths_mm=depths, deepest_body_mm=float(-gap[~of_pads].min(initial=0.0)))
 
 
-def closing(pads, grasp, is_asked):
-    """Depths (p,) by which the digits are closed that shall carry and hang clear of the product; NaN for the others.
-
-    `is_asked` (6,): of which of `parts.PARTS` something is wanted.
-    """
-    of_pad = parts.parts_of_pads(pads)
-    depths = np.array([grasp.depths_mm[pad.name] for pad in pads])
-    is_clear = np.array([depths[of_pad == part].max(initial=-np.inf) < 0.0 for part in range(len(parts.PARTS))])
-    return np.where((is_clear & is_asked)[of_pad], fingers.FIRST_DEPTH_MM, np.nan)
+def by_recording(fit, seat, asked, cancel=None, progress=None):
+    """`recording.Explained` of a `fitting.Fit`. `seat`: a `laying.Seat`; `asked`: the `laying.Lie` of the mat, and the
+    rule of the frame with its number. Raises `Refusal`, `RecordingError`."""
+    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
+    lie, frame = asked
+    stage = stage_of(fit)
+    recorded = recording.read(seat, lie, frame, stage.world)
+    first = grasp_here(stage)
+    before = recording.match_of(stage, first, recorded, cancel)
+    found = recording.explain(stage, first, fit.wish.free_mm, recorded, watch)
+    after = recording.match(stage, found.state, recorded)
+    if after.cells_kpa >= before.cells_kpa:
+        return recording.Explained(stage.carried(first), before, before, float(recorded.force_n.sum()), 0.0, 0.0)
+    turned = np.degrees(np.abs(found.state.grasp.angles - first.angles).max())
+    middle = stage.hand.rig.moved(first.place).world_from_rig[:3, 3]
+    motion = found.state.grasp.place @ np.linalg.inv(first.place)
+    moved = np.linalg.norm(motion[:3, :3] @ middle + motion[:3, 3] - middle)
+    grasp = stage.carried(replace(found.state.grasp, force_n=found.state.total_n))
+    return recording.Explained(grasp, before, after, float(recorded.force_n.sum()), float(turned), float(moved))

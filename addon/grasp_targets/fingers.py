@@ -19,7 +19,8 @@ FACTORS = (0.5, 1.6)
 """The depth that a pad is drawn to changes by no more in one round."""
 
 FIRST_DEPTH_MM = 1.5
-"""Depth that pads are drawn to which hang clear of the product."""
+LEAST_N = 0.5
+"""Depth that pads are drawn to which hang clear of the product and of which so much is wanted."""
 
 
 def target_of(stage, wanted_n):
@@ -64,14 +65,30 @@ def check(pads, wanted_n):
 
 def wished(pads, wanted_n, force_n, depths):
     """Depths (p,) that pads are drawn to: as they are, deeper or higher by what their part's force lacks."""
-    have = parts.forces_by_part(pads, force_n)
+    return drawn(depths, parts.forces_by_part(pads, force_n), wanted_n, parts.parts_of_pads(pads))
+
+
+def drawn(depths, have, wanted, of_pad):
+    """The same for any parts: forces that they `have` and that are `wanted`, N, NaN where one is free; `of_pad` (p,)
+    the part of each pad."""
     out = depths.copy()
-    for number, part in enumerate(parts.parts_of_pads(pads)):
-        if not np.isfinite(wanted_n[part]):
+    for number, part in enumerate(of_pad):
+        if not np.isfinite(wanted[part]):
             continue
         if have[part] > 0.0 and depths[number] > 0.0:
-            ratio = (wanted_n[part] / have[part]) ** (1.0 / loads.POWER)
+            ratio = (wanted[part] / have[part]) ** (1.0 / loads.POWER)
             out[number] = depths[number] * np.clip(ratio, *FACTORS)
-        elif have[part] <= 0.0:
+        elif have[part] <= 0.0 and wanted[part] >= LEAST_N:
             out[number] = FIRST_DEPTH_MM
     return out
+
+
+def clear_of(pads, grasp, is_asked):
+    """Depths (p,) by which the digits are closed that shall carry and hang clear of the product; NaN for the others.
+
+    `is_asked` (6,): of which of `parts.PARTS` something is wanted.
+    """
+    of_pad = parts.parts_of_pads(pads)
+    depths = np.array([grasp.depths_mm[pad.name] for pad in pads])
+    is_clear = np.array([depths[of_pad == part].max(initial=-np.inf) < 0.0 for part in range(len(parts.PARTS))])
+    return np.where((is_clear & is_asked)[of_pad], FIRST_DEPTH_MM, np.nan)

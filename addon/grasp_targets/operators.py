@@ -10,8 +10,10 @@ from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_pose
 from ..operators import computing, polling
+from ..recordings import comparing, laying
+from ..recordings import settings as recordings
 from ..scene.checks import Refusal
-from . import conduct, parts, reasons, settings
+from . import conduct, explained, parts, reasons, settings
 
 
 class THENAR_OT_reach_target(computing.Computing, bpy.types.Operator):
@@ -31,17 +33,28 @@ recording read"""
         stored, asked = context.scene.thenar_targets, context.scene.thenar_grasps
         if stored.kind == settings.TOTAL:
             raise Refusal("the target is a total force; press Settle for it, or choose another target")
-        wanted = reasons.wanted_of({part: getattr(stored, f"{part}_n") for part in parts.PARTS})
-        fit = prepared(context, 0.0 if asked.moves == "FINGERS" else 40.0)
-        found = yield partial(conduct.by_finger, fit, wanted)
+        free_mm = 0.0 if asked.moves == "FINGERS" else 40.0
+        if stored.kind == settings.FINGERS:
+            wanted = reasons.wanted_of({part: getattr(stored, f"{part}_n") for part in parts.PARTS})
+            fit = prepared(context, free_mm)
+            found = yield partial(conduct.by_finger, fit, wanted)
+        else:
+            item = of_mat(context)
+            seat, frame = comparing.seat_of(context), (item.frame_rule, item.frame)
+            fit = prepared(context, free_mm)
+            found = yield partial(conduct.by_recording, fit, seat, (laying.lie_of(item), frame))
         fitting.finish(context, fit, found.grasp, asked.moves)
         asked.shown = -1
-        settings.keep(context.scene, found.rows)
+        if stored.kind == settings.FINGERS:
+            settings.keep(context.scene, found.rows)
+        else:
+            stored.explained = "\n".join(explained.lines(found))
         return found
 
     def _report(self, context, found):
         fitting.bring_into_view(context)
-        level, text = reasons.sentence(found.rows)
+        by_finger = isinstance(found, conduct.ByFinger)
+        level, text = reasons.sentence(found.rows) if by_finger else explained.sentence(found)
         self.report({level}, text)
         return {"FINISHED"}
 
@@ -51,6 +64,16 @@ def prepared(context, free_mm):
     chosen = context.scene.thenar
     wish = fitter.Wish(pads.FIRM_MM, is_placed=True, free_mm=free_mm)
     return fitting.prepare(context, chosen.hand, workflow.product_parts(chosen), wish, 1.0)
+
+
+def of_mat(context):
+    """The recording of a mat that is chosen. Raises `Refusal` where none is."""
+    item = recordings.chosen(context)
+    if item is None:
+        raise Refusal("no recording is loaded to be explained; load one under Record, and lay its mat on the product")
+    if item.kind != recordings.MAP:
+        raise Refusal(f"'{item.name}' is no recording of a mat; choose one of a mat in the list under Record")
+    return item
 
 
 CLASSES = (*settings.CLASSES, THENAR_OT_reach_target)

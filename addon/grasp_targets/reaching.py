@@ -3,7 +3,6 @@ again from there, within the limits of the joints. No Blender objects.
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -79,12 +78,14 @@ class Target:
 @dataclass(frozen=True)
 class Start:
     """Where a search begins and may lead: the `grasp` of the own frame, the `hand` with the limits of its joints, the
-    `wish` that says how far its place may move, and the `angles` (b, 3) from which the first fit begins."""
+    `wish` that says how far its place may move, and the `angles` (b, 3) from which the first fit begins; or all
+    its unknowns `x` of an earlier search from the same grasp."""
 
     grasp: fitter.Grasp
     hand: fitter.Hand
     wish: fitter.Wish
     angles: np.ndarray
+    x: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,7 @@ def reach(stage, start, target, watch=fitter.ALONE, rounds=ROUNDS):
     ways = [target.balances_mm, target.balances_mm[-1:]][: len(target.balances_mm)]
     best = None
     for number, balances_mm in enumerate(ways):
-        own = fitter.Watch(partial(_in_part, watch, (number, len(ways))), watch.cancel)
+        own = in_part(watch, number, len(ways))
         found = _reached(stage, start, replace(target, balances_mm=balances_mm), own, rounds)
         best = found if best is None or found.cost < best.cost else best
         if best.cost < NEAR_MM2:
@@ -121,9 +122,13 @@ def reach(stage, start, target, watch=fitter.ALONE, rounds=ROUNDS):
     return best
 
 
-def _in_part(watch, part, words, share):
-    number, count = part
-    watch.report(words, (number + share) / count)
+def in_part(watch, number, count):
+    """The watch of one of `count` parts of a computation."""
+
+    def said(words, share):
+        watch.report(words, (number + share) / count)
+
+    return fitter.Watch(said, watch.cancel)
 
 
 def _reached(stage, start, target, watch, rounds):
@@ -170,6 +175,8 @@ class _Search:
     def begin(self):
         """The start, pressed; its fingers closed first where it asks for that."""
         task = self.task(self.depths, None)
+        if self.start.x is not None:
+            return self._pressed(task, self.start.x)
         x = task.start.copy()
         x[:-6] = [self.start.angles[bone, column] for bone, column, _ in task.dofs]
         return self._pressed(task, np.clip(x, task.bounds[:, 0], task.bounds[:, 1]))

@@ -1,6 +1,6 @@
 """Forces by finger: forces of a posture that is known are wanted, from another posture; what cannot be is said.
 
-Forces are summed from the solved skin by the hand's vertex groups as Blender stores them: nothing of it is the search's.
+Forces are summed from the solved skin by vertex groups as Blender stores them: nothing of it is the search's.
 """
 
 from dataclasses import replace
