@@ -54,13 +54,17 @@ def by_recording(fit, seat, asked, cancel=None, progress=None):
     recorded = recording.read(seat, lie, frame, stage.world)
     first = grasp_here(stage)
     before = recording.match_of(stage, first, recorded, cancel)
+    recorded_n = float(recorded.force_n.sum())
+    stays = recording.Explained(stage.carried(first), before, before, recorded_n, 0.0, 0.0)
+    if before.is_noise(recorded_n):
+        return stays
     found = recording.explain(stage, first, fit.wish.free_mm, recorded, watch)
     after = recording.match(stage, found.state, recorded)
     if after.cells_kpa >= before.cells_kpa:
-        return recording.Explained(stage.carried(first), before, before, float(recorded.force_n.sum()), 0.0, 0.0)
+        return stays
     turned = np.degrees(np.abs(found.state.grasp.angles - first.angles).max())
     middle = stage.hand.rig.moved(first.place).world_from_rig[:3, 3]
     motion = found.state.grasp.place @ np.linalg.inv(first.place)
     moved = np.linalg.norm(motion[:3, :3] @ middle + motion[:3, 3] - middle)
     grasp = stage.carried(replace(found.state.grasp, force_n=found.state.total_n))
-    return recording.Explained(grasp, before, after, float(recorded.force_n.sum()), float(turned), float(moved))
+    return recording.Explained(grasp, before, after, recorded_n, float(turned), float(moved))

@@ -8,14 +8,17 @@ LITTLE = 0.1
 
 def sentence(found):
     """Report level and sentence for a `recording.Explained`."""
-    is_better = removed(found) >= LITTLE
-    level = "INFO" if is_better and not found.is_gain_as_good else "WARNING"
+    is_explained = found.before.is_noise(found.recorded_n) or (removed(found) >= LITTLE and not found.is_gain_as_good)
+    level = "INFO" if is_explained else "WARNING"
     return level, " ".join(lines(found))
 
 
 def lines(found):
     """What is said, a line for each thing: what posture removed, forces, motions, what a gain does, what it is not."""
     before, after = found.before, found.after
+    if before.is_noise(found.recorded_n):
+        words = "The hand explains the recording as it is, within the noise assumed: {left:.1f} kPa rms by cell."
+        return [report(words, left=before.cells_kpa)]
     if removed(found) < LITTLE:
         words = "No posture near this one explains the recording: {left:.1f} kPa rms by cell are left over."
         first = report(words, left=after.cells_kpa)

@@ -27,6 +27,9 @@ WEIGHT_MM = 60.0
 SHARE, FLOOR = 0.1, 0.03
 """Noise of a cell, assumed: this share of its pressure and this share of the largest."""
 
+ALIKE = 0.05
+"""Forces over a mat differ by noise within this share: noise of single cells is averaged out in their sum."""
+
 SPREADS_MM = (8.0, 5.0)
 """Pressure is compared after it was spread by normal distributions of these, the wider first: it leads fingers that
 press between other cells. A cell of a common mat is about 5 mm wide."""
@@ -77,12 +80,18 @@ class Recorded:
 @dataclass(frozen=True)
 class Match:
     """How well a posture explains a recording: root mean square `cells_kpa` of what is left over by cell, the `force_n`
-    that the mat would read, and the `gain` of the mat with which it explains most, with what is then left over."""
+    that the mat would read, and the `gain` of the mat with which it explains most, with what is then left over.
+    `in_noise`: the root mean square of the same over the noise assumed; up to 1 there is nothing to explain."""
 
     cells_kpa: float
     force_n: float
     gain: float
     gained_kpa: float
+    in_noise: float = np.inf
+
+    def is_noise(self, recorded_n):
+        """Whether nothing is left to explain: cells differ by the noise assumed, and forces hardly."""
+        return self.in_noise <= 1.0 and abs(self.force_n / recorded_n - 1.0) <= ALIKE
 
 
 @dataclass(frozen=True)
@@ -164,7 +173,7 @@ def _by_pads(stage, measured):
     pads = stage.hand.pads
     numbers = np.arange(len(pads))
     view = views.ByPart(parts.spread(pads, numbers, len(stage.hand.rig.vertices)), len(pads))
-    size = np.sqrt((SHARE * measured) ** 2 + (FLOOR * measured.max()) ** 2)
+    size = _noise(measured, measured.max())
     weight = WEIGHT_MM / size / np.linalg.norm(measured / size)
 
     def measure(state):
@@ -186,7 +195,7 @@ def _by_cells(recorded, stage, spread_mm):
     chosen = chosen[:: -(-len(chosen) // CELLS)]
     view = views.ByCell(recorded.centers[chosen], spread_mm)
     wanted = view.of_forces(recorded.centers[read], recorded.force_n[read])
-    noise = np.sqrt((SHARE * wanted) ** 2 + (FLOOR * wanted.max()) ** 2)
+    noise = _noise(wanted, wanted.max())
     weight = WEIGHT_MM / noise / np.linalg.norm(wanted / noise)
     area = np.nan_to_num(recorded.mat["area_mm2"])
 
@@ -233,4 +242,11 @@ def match(stage, state, recorded):
     gain = float(here @ there) / square if square > 0.0 else np.nan
     left, gained = here - there, here - (gain if square > 0.0 else 0.0) * there
     force = float(there @ np.asarray(recorded.mat["area_mm2"])[is_on]) / views.KPA
-    return Match(np.sqrt(left @ left / count), force, gain, np.sqrt(gained @ gained / count))
+    over = left / _noise(np.maximum(here, there), here.max())
+    rms = [float(np.sqrt(each @ each / count)) for each in (left, gained, over)]
+    return Match(rms[0], force, gain, rms[1], rms[2])
+
+
+def _noise(values, largest):
+    """Standard deviation, in the unit of `values`, that a reading is assumed to have."""
+    return np.sqrt((SHARE * values) ** 2 + (FLOOR * largest) ** 2)
