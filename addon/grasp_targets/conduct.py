@@ -52,6 +52,7 @@ def by_recording(fit, seat, asked, cancel=None, progress=None):
     lie, frame = asked
     stage = stage_of(fit)
     recorded = recording.read(seat, lie, frame, stage.world)
+    recording.check_lies(stage, recorded)
     first = grasp_here(stage)
     before = recording.match_of(stage, first, recorded, cancel)
     recorded_n = float(recorded.force_n.sum())

@@ -24,6 +24,8 @@ def lines(found):
         first = report(words, left=after.cells_kpa)
     else:
         words = "Explained by posture: {share:.0%} of the difference, {before:.1f} to {after:.1f} kPa rms by cell."
+        other = "A posture removes {share:.0%} of the difference, {before:.1f} to {after:.1f} kPa rms by cell."
+        words = other if found.is_gain_as_good else words
         first = report(words, share=removed(found), before=before.cells_kpa, after=after.cells_kpa)
     words = "Force {before:.0f} N before, {after:.0f} N now, {recorded:.0f} N recorded."
     out = [first, report(words, before=before.force_n, after=after.force_n, recorded=found.recorded_n)]

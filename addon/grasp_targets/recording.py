@@ -37,6 +37,9 @@ press between other cells. A cell of a common mat is about 5 mm wide."""
 NEAREST_MM = 30.0
 """Cells that read belong to the pad that is nearest, if that is no farther."""
 
+OFF_MM = 5.0
+"""Cells farther from the product's surface do not lie on it."""
+
 CELLS = 900
 """No more cells are compared: evenly left out."""
 
@@ -129,6 +132,18 @@ def read(seat, lie, request, world):
     if out.force_n.sum() <= 0.0:
         raise Refusal("the chosen frame of the recording reads nothing on this product; choose another frame")
     return out
+
+
+def check_lies(stage, recorded):
+    """Refuse a mat that is not laid on the product. Raises `Refusal`."""
+    is_read = recorded.force_n > 0.0
+    far = np.abs(stage.gauge.product.gap_mm(recorded.centers[is_read])["gap_mm"]) > OFF_MM
+    share = recorded.force_n[is_read][far].sum() / recorded.force_n.sum()
+    if share > 0.5:
+        raise Refusal(
+            f"{share:.0%} of the recorded force lies more than {OFF_MM:.0f} mm off the product; lay the mat on it "
+            "under Record first"
+        )
 
 
 def explain(stage, first, free_mm, recorded, watch=fitter.ALONE):

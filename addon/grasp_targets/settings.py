@@ -15,7 +15,7 @@ MOST_N = 500.0
 def _newtons(part):
     return FloatProperty(
         name=f"{part} (N)",
-        description=f"Sum of forces that the skin of the {part.lower()} shall carry, N; 0: any",
+        description="Sum of forces that the skin of this part shall carry, N; 0: any",
         min=0.0,
         max=MOST_N,
         soft_max=100.0,
