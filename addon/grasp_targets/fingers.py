@@ -23,8 +23,9 @@ LEAST_N = 0.5
 """Depth that pads are drawn to which hang clear of the product and of which so much is wanted."""
 
 
-def target_of(stage, wanted_n):
-    """The `reaching.Target` of forces by part (6,), N, NaN where a part is free.
+def target_of(stage, first, wanted_n):
+    """The `reaching.Target` of forces by part (6,), N, NaN where a part is free: its pads are drawn to the depth that
+    they have in the grasp `first`.
 
     Raises `Refusal` where all are free, or a part has no skin.
     """
@@ -35,13 +36,15 @@ def target_of(stage, wanted_n):
     numbers = np.where(is_asked, np.cumsum(is_asked) - 1, -1)[parts.parts_of_pads(pads)]
     view = views.ByPart(parts.spread(pads, numbers, len(stage.hand.rig.vertices)), len(asked))
     wanted = wanted_n[asked]
+    is_free = ~is_asked[parts.parts_of_pads(pads)]
+    begun = np.array([first.depths_mm[pad.name] for pad in pads])
     size = np.maximum(wanted, max(LEAST_SHARE * wanted.sum(), 1.0))
 
     def measure(state):
         return (parts.forces_by_part(pads, np.asarray(state.contact.force_n))[asked],)
 
     def wishes(state, depths):
-        return wished(pads, wanted_n, np.asarray(state.contact.force_n), depths)
+        return np.where(is_free, begun, wished(pads, wanted_n, np.asarray(state.contact.force_n), depths))
 
     def is_reached(values):
         return bool((np.abs(values[0] - wanted) <= REACHED * size).all())

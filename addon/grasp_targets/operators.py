@@ -16,6 +16,10 @@ from ..scene.checks import Refusal
 from . import conduct, explained, parts, reasons, settings
 
 
+FREE_MM = 15.0
+"""The hand moves no farther, nor turns farther at `task.ARM_MM`: the posture shall be one near the present one."""
+
+
 class THENAR_OT_reach_target(computing.Computing, bpy.types.Operator):
     """Bend and move the hand a little from where it is until it reaches the target: forces by finger, or what a \
 recording read"""
@@ -33,7 +37,7 @@ recording read"""
         stored, asked = context.scene.thenar_targets, context.scene.thenar_grasps
         if stored.kind == settings.TOTAL:
             raise Refusal("the target is a total force; press Settle for it, or choose another target")
-        free_mm = 0.0 if asked.moves == "FINGERS" else 40.0
+        free_mm = 0.0 if asked.moves == "FINGERS" else FREE_MM
         if stored.kind == settings.FINGERS:
             wanted = reasons.wanted_of({part: getattr(stored, f"{part}_n") for part in parts.PARTS})
             fit = prepared(context, free_mm)
