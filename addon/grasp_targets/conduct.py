@@ -29,7 +29,7 @@ def by_finger(fit, wanted_n, cancel=None, progress=None):
     closed = fingers.clear_of(stage.hand.pads, first, np.isfinite(wanted_n))
     start = reaching.start_of(stage, first, fit.wish, closed)
     reached = reaching.reach(stage, start, target, watch)
-    rows = reasons.rows_of(stage, start, target, reached, wanted_n)
+    rows = reasons.rows_of(reasons.Search(stage, start, target, watch), reached, wanted_n)
     return ByFinger(stage.carried(replace(reached.state.grasp, force_n=reached.state.total_n)), rows)
 
 

@@ -15,7 +15,6 @@ from ..recordings import settings as recordings
 from ..scene.checks import Refusal
 from . import conduct, explained, parts, reasons, settings
 
-
 FREE_MM = 15.0
 """The hand moves no farther, nor turns farther at `task.ARM_MM`: the posture shall be one near the present one."""
 

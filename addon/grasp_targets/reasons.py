@@ -40,8 +40,19 @@ class Row:
     reason: str
 
 
-def rows_of(stage, start, target, reached, wanted_n):
+@dataclass(frozen=True)
+class Search:
+    """What a search was made of: the arguments of `reaching.reach`."""
+
+    stage: object
+    start: reaching.Start
+    target: reaching.Target
+    watch: object
+
+
+def rows_of(search, reached, wanted_n):
     """A `Row` for every part of which a force is wanted (6,), N, NaN where none is."""
+    stage, start, target = search.stage, search.start, search.target
     asked = np.flatnonzero(np.isfinite(wanted_n))
     slopes, freed, out = None, None, []
     for row, number in enumerate(asked):
@@ -51,7 +62,7 @@ def rows_of(stage, start, target, reached, wanted_n):
             slopes = reaching.slopes_of(stage, start, target, reached) if slopes is None else slopes
             reason = _cause(stage, number, (wanted, have), (slopes[row], reached))
         if reason == OTHER:
-            freed = _without_balance(stage, start, target, reached) if freed is None else freed
+            freed = _without_balance(search, reached) if freed is None else freed
             reason = OTHER if is_missed(wanted, float(freed[row])) else BALANCE
         out.append(Row(parts.PARTS[number], wanted, have, reason))
     return out
@@ -95,11 +106,11 @@ def _is_closed(stage, part, reached):
     return bool(own) and max(task.bounds[k, 1] - x[k] for k in own) < CLOSE_RAD
 
 
-def _without_balance(stage, start, target, reached):
+def _without_balance(search, reached):
     """The forces that the target's parts reach where balance does not count."""
-    loose = replace(target, balances_mm=(0.0,))
-    begin = replace(start, angles=reached.state.grasp.angles)
-    return reaching.reach(stage, begin, loose, rounds=ROUNDS).values[0]
+    loose = replace(search.target, balances_mm=(0.0,))
+    begin = replace(search.start, x=reached.x)
+    return reaching.reach(search.stage, begin, loose, search.watch, ROUNDS).values[0]
 
 
 def sentence(rows):
