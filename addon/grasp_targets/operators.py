@@ -66,7 +66,13 @@ def prepared(context, free_mm):
     """The `fitting.Fit` of the scene's hand from where it is, its place free by `free_mm`. Raises `Refusal`."""
     chosen = context.scene.thenar
     wish = fitter.Wish(pads.FIRM_MM, is_placed=True, free_mm=free_mm)
-    return fitting.prepare(context, chosen.hand, workflow.product_parts(chosen), wish, 1.0)
+    fit = fitting.prepare(context, chosen.hand, workflow.product_parts(chosen), wish, 1.0)
+    if not fitting.can_search(fit):
+        raise Refusal(
+            f"'{chosen.hand.name}' is shown with other vertices than it is posed with; switch its Subdivision off, "
+            "reach the target, and switch it on again"
+        )
+    return fit
 
 
 def of_mat(context):

@@ -143,6 +143,10 @@ def test_bad_wishes_are_refused_and_the_hand_stays(held):
     with pytest.raises(RuntimeError, match="[Nn]o force by finger is wanted"):
         held.ops.thenar.reach_target()
     want(held, index=10.0)
+    level = scene.thenar.hand.modifiers.new("Subdivision", "SUBSURF")
+    with pytest.raises(RuntimeError, match="Subdivision off"):
+        held.ops.thenar.reach_target()
+    scene.thenar.hand.modifiers.remove(level)
     listed = scene.thenar.hand.thenar.materials
     for number in [k for k, each in enumerate(listed) if each.name.startswith("index")][::-1]:
         listed.remove(number)
