@@ -11,13 +11,13 @@ from mathutils import Matrix, Vector
 
 from .. import steps
 from ..grasp_fit import fitter
-from ..hand import build, pads, poses, products
+from ..hand import added, build, pads, poses, products
 from ..hand.skinning import skin
 from ..hand_bones import posing, reading, roles
 from ..hand_look import studio
 from ..moving_samples import rolling
 from ..scene.units import mm_per_unit
-from . import added, fitting
+from . import fitting
 
 FILE_SUFFIX = ".blend"
 RANGE_KPA = 150.0
@@ -61,10 +61,10 @@ def add_sample(context, kind):
 def sample_steps(context, kind):
     """`add_sample` as the steps of a computation: hand and fit are computed by any thread."""
     sample = SAMPLES[kind]
-    made = yield _make_hand
+    made = yield build.making()
     scene = context.scene
     studio.set_units(scene)
-    hand, rig = build.add_hand(context, made)
+    hand, rig = yield from build.adding(context, made)
     _add_sleeve(context, rig)
     product = studio.add_mesh(context, sample.product, sample.shape(), sample.material())
     parts = [studio.add_mesh(context, name, shape(), material()) for name, shape, material in sample.extras]
@@ -89,13 +89,6 @@ def scene_steps(context, kind):
         yield from sample_steps(context, kind)
         _look_through_camera([context.window.screen] if context.window else [])
     return True
-
-
-def _make_hand(cancel, progress):
-    """Arrays of the sample's hand."""
-    watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
-    watch.report("Making the hand", 0.0)
-    return build.make(cancel=cancel)
 
 
 def _power(targets_mm, height_mm=0.0, force_n=None):

@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from .. import native
+from .. import native, steps
 from ..hand_bones import roles
 from ..hand_bones.bonemap import set_map
 from ..hand_look import look, shader, studio
@@ -38,14 +38,32 @@ def make(cancel=None, **shape):
         raise BuildError(str(error)) from error
 
 
+def making(**shape):
+    """`make` as the work of a computation in steps, which any thread may do."""
+
+    def work(cancel, progress):
+        if progress is not None:
+            progress("Making the hand", 0.0)
+        return make(cancel=cancel, **shape)
+
+    return work
+
+
 def add_hand(context, made):
     """Link mesh and armature of the `made` hand to the scene; returns `(hand, rig)` at the world's origin.
 
     A hand that says of which `shape` it is can be edited later.
     """
+    return steps.at_once(adding(context, made))
+
+
+def adding(context, made):
+    """`add_hand` as steps, with pauses in which the window has its turn."""
     unit = 1.0 / mm_per_unit(context.scene)
     rig = _add_armature(context, made, unit)
-    hand = _add_mesh(context, made, unit)
+    yield steps.PAUSE
+    hand = yield from _add_mesh(context, made, unit)
+    yield steps.PAUSE
     hand.parent = rig
     modifier = hand.modifiers.new("Hand Rig", "ARMATURE")
     modifier.object = rig
@@ -73,6 +91,7 @@ def group_names(made):
 
 
 def _add_mesh(context, made, unit):
+    """The steps of the mesh with its groups and its look; returns the object."""
     mesh = bpy.data.meshes.new(MESH_NAME)
     positions = np.asarray(made["vertices_mm"], np.float64) * unit
     triangles = np.asarray(made["triangles"], np.int32)
@@ -89,7 +108,9 @@ def _add_mesh(context, made, unit):
     hand = bpy.data.objects.new(MESH_NAME, mesh)
     context.scene.collection.objects.link(hand)
     _add_groups(hand, made)
+    yield steps.PAUSE
     look.mark_skin(mesh, made)
+    yield steps.PAUSE
     mesh.materials.append(shader.skin_material(mm_per_unit(context.scene)))
     skin_look.apply(hand)
     return hand
@@ -100,12 +121,13 @@ def _add_groups(hand, made):
     weights = np.asarray(made["weights"], np.float64)
     for column, bone in enumerate(made["bones"]):
         group = hand.vertex_groups.new(name=bone["name"])
-        steps = np.round(weights[:, column] * 4096.0).astype(int)
-        order = np.argsort(steps, kind="stable")
-        values, starts = np.unique(steps[order], return_index=True)
-        for value, rows in zip(values, np.split(order, starts[1:]), strict=True):
+        shares = np.round(weights[:, column] * 4096.0).astype(int)
+        order = np.argsort(shares, kind="stable")
+        values, starts = np.unique(shares[order], return_index=True)
+        rows, bounds = order.tolist(), [*starts.tolist(), len(order)]
+        for k, value in enumerate(values.tolist()):
             if value > 0:
-                group.add(rows.tolist(), value / 4096.0, "REPLACE")
+                group.add(rows[bounds[k] : bounds[k + 1]], value / 4096.0, "REPLACE")
     regions = np.asarray(made["regions"])
     for region, name in enumerate(group_names(made)):
         group = hand.vertex_groups.new(name=name)

@@ -7,18 +7,19 @@ from .. import languages, status, tabs
 from ..hand_bones import posing
 from ..hand_bones.reading import armature_of
 from ..hand_shape import framing
-from ..operators import polling, running
+from ..operators import computing, polling, running
 from ..panels import preferences
-from . import build
+from . import added, build
 from .poses import LABELS
 
 
-class THENAR_OT_make_hand(bpy.types.Operator):
+class THENAR_OT_make_hand(computing.Computing, bpy.types.Operator):
     """Add a rigged hand of measured proportions, with its regions and tissue"""
 
     bl_idname = "thenar.make_hand"
     bl_label = "Make Hand"
     bl_options = {"REGISTER", "UNDO"}
+    noun = "Hand"
 
     sex: EnumProperty(name="Sex", items=(("male", "Male", ""), ("female", "Female", "")))
     side: EnumProperty(name="Side", items=(("right", "Right", ""), ("left", "Left", "")))
@@ -36,26 +37,32 @@ class THENAR_OT_make_hand(bpy.types.Operator):
     def invoke(self, context, event):
         """From a button, the preferences say which hand."""
         preferences.fill(context, self.properties, {"sex": "sex", "side": "side", "percentile": "percentile"})
-        return self.execute(context)
+        return super().invoke(context, event)
 
-    def execute(self, context):
-        hand = running.attempt(self, self._make, context)
-        if hand is None:
-            return {"CANCELLED"}
-        tabs.open_after_hand(context)
-        words = "'{name}' has {vertices:,} vertices"
-        self.report({"INFO"}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)))
-        return {"FINISHED"}
-
-    def _make(self, context):
+    def steps(self, context):
+        """The hand is made next to the window; ended on the way, the file is as it was."""
         shape = {"percentile": self.percentile, "sex": self.sex, "side": self.side, "spacing_mm": self.spacing_mm}
         for name in ("length_mm", "breadth_mm"):
             if getattr(self, name) > 0.0:
                 shape[name] = getattr(self, name)
-        hand, _ = build.add_hand(context, build.make(**shape))
-        context.scene.thenar.hand = hand
-        framing.frame(context, hand)
-        return hand
+        return hand_steps(context, shape)
+
+    def _report(self, context, hand):
+        tabs.open_after_hand(context)
+        running.redraw(context)
+        words = "'{name}' has {vertices:,} vertices"
+        self.report({"INFO"}, languages.report(words, name=hand.name, vertices=len(hand.data.vertices)))
+        return {"FINISHED"}
+
+
+def hand_steps(context, shape):
+    """The steps of a hand of this `shape`, chosen as the scene's hand and looked at. Returns the hand."""
+    with added.taken_back_unless_whole(context):
+        made = yield build.making(**shape)
+        hand, _ = yield from build.adding(context, made)
+    context.scene.thenar.hand = hand
+    framing.frame(context, hand)
+    return hand
 
 
 class THENAR_OT_apply_pose(bpy.types.Operator):
