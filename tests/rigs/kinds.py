@@ -32,19 +32,19 @@ def fingers(made, side, hand, name, **options):
     """Add the digits of one hand below bone `hand`; `name(digit, k)` gives a bone's name or None.
 
     Options: `metacarpals` (bones 0), `tips` (leaf bones without skin), `tip_skin`, `digits`, `on` (digit -> parent),
-    `points`, `spacer` (a bone without skin in front of each digit).
+    `points`, `helper(digit, k)` (name of a bone without skin between bone k and the one before it, or None).
     """
     sign = dict(bodies.sides())[side]
     points = options.get("points") or bodies.hand_points()
     for digit in options.get("digits", DIGITS):
         parent = options.get("on", {}).get(digit, hand)
         first = 0 if options.get("metacarpals") and digit != "thumb" else 1
-        if options.get("spacer"):
-            place = 0.5 * points[digit, 1] if digit == "thumb" else 0.6 * points[digit, 1]
-            parent = made.builder.add(options["spacer"](digit), parent, bodies.place_hand(sign, place), False)
         for k in range(first, 4):
-            bone = name(digit, k)
-            made.builder.add(bone, parent, bodies.place_hand(sign, points[digit, k]))
+            bone, place = name(digit, k), bodies.place_hand(sign, points[digit, k])
+            between = options["helper"](digit, k) if options.get("helper") else None
+            if between is not None:
+                parent = made.builder.add(between, parent, place, False)
+            made.builder.add(bone, parent, place)
             segment = SEGMENTS[k] if digit != "thumb" else ("metacarpal", "proximal", "distal")[k - 1]
             made.truth[side][f"{digit}_{segment}"] = parent = bone
         if options.get("tips"):

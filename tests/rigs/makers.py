@@ -141,8 +141,16 @@ def _rigify(prefix):
     return made
 
 
+def auto_rig_pro_bone(digit, k):
+    """Name without the side of a bone that carries skin: the finger's first phalanx and the thumb's metacarpal lack the
+    c_ of controls, all others are controls too (as public scripts map
+    them to Daz and Unreal)."""
+    word = {"little": "pinky"}.get(digit, digit)
+    return {0: f"c_{word}1_base", 1: f"{word}1"}.get(k, f"c_{word}{k}")
+
+
 def auto_rig_pro():
-    """Auto-Rig Pro: lower-case sides, control bones without skin above each deform bone, c_index1_base metacarpals."""
+    """Auto-Rig Pro: lower-case sides, c_index1_base metacarpals, bones without skin that bend all phalanges at once."""
     made = Made()
     hands, _ = trunk(
         made,
@@ -157,9 +165,9 @@ def auto_rig_pro():
             made,
             side,
             hand,
-            lambda d, k, m=side[0], w=word: f"c_{w.get(d, d)}{k}.{m}" if k else f"c_{w.get(d, d)}1_base.{m}",
+            lambda d, k, m=side[0]: f"{auto_rig_pro_bone(d, k)}.{m}",
             metacarpals=True,
-            spacer=lambda d, m=side[0]: f"c_{d}_ctrl.{m}",
+            helper=lambda d, k, m=side[0], w=word: f"c_{w.get(d, d)}{k}_rot.{m}" if k else None,
         )
     return made
 

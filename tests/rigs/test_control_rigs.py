@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import thenar
 from characters import grasp, handle, skin_mm, world_of
+from controls import assert_same, holding, matrices
 from mathutils import Matrix
 from thenar_blender.grasp_fit import walls
 from thenar_blender.hand import build, pads
@@ -60,21 +61,6 @@ def posed_by_user(rig):
         rig.pose.bones[name].rotation_mode = "XYZ"
         rig.pose.bones[name].rotation_euler = (0.3, 0.0, 0.0)
     bpy.context.view_layer.update()
-
-
-def matrices(rig):
-    return {bone.name: np.array(bone.matrix) for bone in rig.pose.bones}
-
-
-def holding(rig):
-    """`(bone, constraint)` names of all that act."""
-    return {(bone.name, each.name) for bone in rig.pose.bones for each in bone.constraints if not each.mute}
-
-
-def assert_same(first, second, far=1e-5):
-    assert first.keys() == second.keys()
-    for name, matrix in first.items():
-        assert np.abs(matrix - second[name]).max() < far, name
 
 
 def test_a_control_rig_is_read_in_its_current_pose(blender, made):
