@@ -62,14 +62,34 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     noun = "Fit"
 
-    strength: EnumProperty(name="Strength", items=STRENGTHS, default="FIRM", translation_context=languages.FORCE)
+    strength: EnumProperty(
+        name="Strength",
+        description="How deep the pads press into the product",
+        items=STRENGTHS,
+        default="FIRM",
+        translation_context=languages.FORCE,
+    )
     distal_mm: _depth("distal")
     middle_mm: _depth("middle")
     proximal_mm: _depth("proximal")
     palm_mm: _depth("palm")
-    place: EnumProperty(name="Start", items=PLACES, default="LAY")
-    moves: EnumProperty(name="Moves", items=MOVES, default="AUTO", options={"SKIP_SAVE"})
-    digits: EnumProperty(name="Digits", items=DIGITS, options={"ENUM_FLAG"}, default={digit[0] for digit in DIGITS})
+    place: EnumProperty(
+        name="Start", description="Where hand and product are when the fit begins", items=PLACES, default="LAY"
+    )
+    moves: EnumProperty(
+        name="Moves",
+        description="What is moved to the other: hand, arm or product",
+        items=MOVES,
+        default="AUTO",
+        options={"SKIP_SAVE"},
+    )
+    digits: EnumProperty(
+        name="Digits",
+        description="Digits that touch the product",
+        items=DIGITS,
+        options={"ENUM_FLAG"},
+        default={digit[0] for digit in DIGITS},
+    )
     force_n: FloatProperty(
         name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
     )
@@ -227,6 +247,7 @@ class THENAR_OT_add_sample(computing.Computing, bpy.types.Operator):
 
     kind: EnumProperty(
         name="Sample",
+        description="Product, and how the hand meets it",
         items=[(kind, sample.label, "") for kind, sample in samples.SAMPLES.items()],
         default="cylinder_48",
     )

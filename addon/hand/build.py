@@ -43,7 +43,7 @@ def making(**shape):
 
     def work(cancel, progress):
         if progress is not None:
-            progress("Making the hand", 0.0)
+            progress("making the hand", 0.0)
         return make(cancel=cancel, **shape)
 
     return work

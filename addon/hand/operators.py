@@ -21,8 +21,14 @@ class THENAR_OT_make_hand(computing.Computing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     noun = "Hand"
 
-    sex: EnumProperty(name="Sex", items=(("male", "Male", ""), ("female", "Female", "")))
-    side: EnumProperty(name="Side", items=(("right", "Right", ""), ("left", "Left", "")))
+    sex: EnumProperty(
+        name="Sex",
+        description="Sex whose measured sizes the hand has",
+        items=(("male", "Male", ""), ("female", "Female", "")),
+    )
+    side: EnumProperty(
+        name="Side", description="Right or left hand", items=(("right", "Right", ""), ("left", "Left", ""))
+    )
     percentile: FloatProperty(
         name="Percentile", description="Size among adults of that sex", min=1.0, max=99.0, default=50.0
     )
@@ -72,7 +78,12 @@ class THENAR_OT_apply_pose(bpy.types.Operator):
     bl_label = "Apply Pose"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: EnumProperty(name="Pose", items=[(name, label, "") for name, label in LABELS.items()], default="relaxed")
+    name: EnumProperty(
+        name="Pose",
+        description="Joint angles that the fingers take",
+        items=[(name, label, "") for name, label in LABELS.items()],
+        default="relaxed",
+    )
 
     @classmethod
     def poll(cls, context):

@@ -59,12 +59,22 @@ class ThenarHandShape(bpy.types.PropertyGroup):
     built: StringProperty(options={"HIDDEN"})
     problem: StringProperty(options={"HIDDEN"})
     sex: EnumProperty(
-        name="Sex", items=(("male", "Male", ""), ("female", "Female", "")), options=set(), update=_shape_changed
+        name="Sex",
+        description="Sex whose measured sizes the hand has",
+        items=(("male", "Male", ""), ("female", "Female", "")),
+        options=set(),
+        update=_shape_changed,
     )
     side: EnumProperty(
-        name="Side", items=(("right", "Right", ""), ("left", "Left", "")), options=set(), update=_shape_changed
+        name="Side",
+        description="Right or left hand",
+        items=(("right", "Right", ""), ("left", "Left", "")),
+        options=set(),
+        update=_shape_changed,
     )
-    size: EnumProperty(name="Size", items=SIZES, options=set(), update=_size_changed)
+    size: EnumProperty(
+        name="Size", description="Size by percentile, or measured", items=SIZES, options=set(), update=_size_changed
+    )
     percentile: FloatProperty(
         name="Percentile",
         description="Size among adults of that sex",
@@ -114,7 +124,7 @@ class ThenarHandShape(bpy.types.PropertyGroup):
         options=set(),
         update=_look_changed,
     )
-    nails: EnumProperty(name="Nails", items=NAILS, options=set(), update=_look_changed)
+    nails: EnumProperty(name="Nails", description="Look of the nails", items=NAILS, options=set(), update=_look_changed)
     polish: FloatVectorProperty(
         name="Polish",
         description="Color of the polish",

@@ -31,21 +31,27 @@ def _live_switched(_self, context):
 class ThenarRegionResult(bpy.types.PropertyGroup):
     """What one region, or one finger, carries; `name` is the region's."""
 
-    force_n: FloatProperty(name="Force (N)")
-    area_mm2: FloatProperty(name="Area (mm²)")
-    peak_kpa: FloatProperty(name="Peak (kPa)")
-    mean_kpa: FloatProperty(name="Mean (kPa)")
-    depth_mm: FloatProperty(name="Depth (mm)")
-    shear_modulus_kpa: FloatProperty(name="G (kPa)")
-    threshold_kpa: FloatProperty(name="Threshold (kPa)")
-    over_mm2: FloatProperty(name="Over the Threshold (mm²)")
-    reference_n: FloatProperty(name="Reference Force (N)")
+    force_n: FloatProperty(name="Force (N)", description="Normal force of the region, N")
+    area_mm2: FloatProperty(name="Area (mm²)", description="Contact area of the region, mm²")
+    peak_kpa: FloatProperty(name="Peak (kPa)", description="Highest pressure in the region, kPa")
+    mean_kpa: FloatProperty(name="Mean (kPa)", description="Mean pressure over the region's contact area, kPa")
+    depth_mm: FloatProperty(
+        name="Depth (mm)", description="Largest overlap of the region with the product before contact, mm"
+    )
+    shear_modulus_kpa: FloatProperty(name="G (kPa)", description="Shear modulus of the region under this contact, kPa")
+    threshold_kpa: FloatProperty(
+        name="Threshold (kPa)", description="Pressure that the region is compared with, kPa; 0: not assessed"
+    )
+    over_mm2: FloatProperty(name="Over the Threshold (mm²)", description="Area of the region over its threshold, mm²")
+    reference_n: FloatProperty(
+        name="Reference Force (N)", description="Normal force of the region in the reference solve, N"
+    )
 
 
 class ThenarStage(bpy.types.PropertyGroup):
     """Seconds of one stage of the solve; `name` is the stage."""
 
-    seconds: FloatProperty(name="Seconds")
+    seconds: FloatProperty(name="Seconds", description="Time that the stage took, s")
 
 
 class ThenarText(bpy.types.PropertyGroup):

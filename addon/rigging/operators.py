@@ -22,7 +22,11 @@ class THENAR_OT_assign_digit(bpy.types.Operator):
     bl_label = "Assign Digit"
     bl_options = {"REGISTER", "UNDO"}
 
-    digit: EnumProperty(name="Digit", items=[(digit, digit.capitalize(), "") for digit in assigning.DIGITS])
+    digit: EnumProperty(
+        name="Digit",
+        description="Digit of the chosen bones",
+        items=[(digit, digit.capitalize(), "") for digit in assigning.DIGITS],
+    )
 
     @classmethod
     def poll(cls, context):
