@@ -292,8 +292,11 @@ def solve(context: Context) -> PropertyGroup:
 def _left_out(job: Job) -> Iterator[str]:
     """What a press of one moment does not know."""
     waiting = [effect_settings.title(used.name).lower() for used in job.effects if _waits(used)]
-    if waiting:
-        yield f"{' and '.join(waiting)} act{'s' if len(waiting) == 1 else ''} over time: bake to see it"
+    listed = " and ".join(waiting)
+    if len(waiting) == 1:
+        yield f"{listed} acts over time: bake to see it"
+    elif waiting:
+        yield f"{listed} act over time: bake to see it"
 
 
 def _waits(used: effects.UsedEffect) -> bool:

@@ -20,6 +20,8 @@ BONE = "Thenar: bone"
 """Context of the parts of a finger: Middle is the bone between two others there, not the finger."""
 LAW = "Thenar: law"
 """Context of the laws of an effect: Power is a power law there, not a power grip."""
+SENTENCE = "Thenar: sentence"
+"""Context of templates of sentences that are kept in English; see `sentences`."""
 CONTEXTS = ("*", "Operator", OWN, FORCE, BONE, LAW)
 """Contexts in which an entry without one holds: Blender's default, its operators, ours."""
 
@@ -45,6 +47,11 @@ def report(template, **values):
 def bone(name):
     """A bone of a finger by its capitalized part, `Distal`, in the user's language."""
     return bpy.app.translations.pgettext_iface(name, BONE)
+
+
+def kept(template):
+    """The template of a sentence that is kept in English, in the user's language."""
+    return bpy.app.translations.pgettext_iface(template, SENTENCE)
 
 
 def inside(title):

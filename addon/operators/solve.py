@@ -3,6 +3,7 @@
 import bpy
 
 from .. import languages, tabs, workflow
+from ..languages import sentences
 from ..panels import preferences
 from ..results import grades
 from ..scene import regions
@@ -62,7 +63,7 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
         else:
             display.refresh(context)
         for text in result.warnings:
-            self.report({"WARNING"}, running.sentence(text.name))
+            self.report({"WARNING"}, running.sentence(sentences.shown(text.name)))
         numbers = languages.report(
             "{force_n:.1f} N on {area_cm2:.1f} cm², peak {peak_kpa:.0f} kPa, mean {mean_kpa:.0f} kPa",
             force_n=result.force_n,
@@ -74,7 +75,8 @@ class THENAR_OT_solve(computing.Computing, bpy.types.Operator):
             self.report({"INFO"}, numbers)
         else:
             grade = languages.report(grades.title(result.grade))
-            self.report({"WARNING"}, f"{grade}: {result.reason} ({numbers})")
+            reason = sentences.shown(result.reason)
+            self.report({"WARNING"}, f"{grade}: {reason} ({numbers})")
         return {"FINISHED"}
 
 

@@ -72,7 +72,7 @@ def _draw_grade(layout, context, result):
     if not result.reason:
         return
     heading = grades.heading(result.reason_kind)
-    if heading and iface(heading) != heading:  # the reason itself is English
+    if heading and iface(heading) != heading and text.spoken(result.reason) == result.reason:  # it stays English
         text.paragraph(box, context, heading)
     text.paragraph(box, context, result.reason)
     if result.reason_vertex >= 0:

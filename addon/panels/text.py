@@ -4,7 +4,7 @@ import re
 import unicodedata
 
 from .. import languages, status
-from ..languages import iface
+from ..languages import iface, sentences
 
 _UNIT = re.compile(r"(?<=\d) (?=(?:%|[kM]?Pa|mm²?|cm²|s|N|min|Hz)(?:\W|$))")
 """The blank between a number and its unit, at which no line ends."""
@@ -64,9 +64,9 @@ def _is_wide(letter):
 def paragraph(layout, context, text, icon=""):
     """The text on as many lines as it needs, with a capital first, and its icon before it. Returns the column.
 
-    A text that has a translation is shown in the user's language.
+    A text, or a sentence of the library, that has a translation is shown in the user's language.
     """
-    text = iface(text)
+    text = spoken(text)
     column = layout.column(align=True)
     letters = width(context) - (_ICON if icon else 0)
     for number, line in enumerate(wrapped(text[:1].upper() + text[1:], letters)):
@@ -75,6 +75,12 @@ def paragraph(layout, context, text, icon=""):
         else:
             column.label(text=line)
     return column
+
+
+def spoken(text):
+    """A text, or a sentence of the library, in the user's language."""
+    words = iface(text)
+    return words if words != text else sentences.shown(text)
 
 
 def faint(layout, context, text):

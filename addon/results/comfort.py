@@ -104,14 +104,15 @@ def _sentence(region_names, thresholds, areas):
     worst = sorted((area, name) for name, area in zip(region_names, over, strict=True) if area > 0.0)[::-1]
     if worst:
         listed = ", ".join(f"{sentences.region_title(name)} {_area(area)}" for area, name in worst[:_NAMED])
-        more = f" and {len(worst) - _NAMED} more regions" if len(worst) > _NAMED else ""
-        share = sum(over) / max(touched, 1e-12)
-        text = f"{_area(sum(over))} ({share:.0%} of the contact) exceeds its threshold: {listed}{more}"
+        if len(worst) > _NAMED:
+            listed = f"{listed} and {len(worst) - _NAMED} more regions"
+        area, share = _area(sum(over)), sum(over) / max(touched, 1e-12)
+        text = f"{area} ({share:.0%} of the contact) exceeds its threshold: {listed}"
     else:
         text = "No pressure exceeds its threshold"
-    if unknown:
-        text += "; one region has no threshold" if unknown == 1 else f"; {unknown} regions have no threshold"
-    return text
+    if unknown == 1:
+        return f"{text}; one region has no threshold"
+    return f"{text}; {unknown} regions have no threshold" if unknown else text
 
 
 def _area(area_mm2):

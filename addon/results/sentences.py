@@ -49,5 +49,5 @@ def _with_others(group: list[Any], region_names: Sequence[str]) -> str:
     first, *others = group
     regions = (other.region for other in others)
     places = [region_title(region_names[region]) for region in regions if region is not None]
-    text: str = first.text
-    return text + (f" (also: {', '.join(places)})" if places else "")
+    text, listed = str(first.text), ", ".join(places)
+    return f"{text} (also: {listed})" if places else text

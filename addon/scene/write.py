@@ -226,8 +226,8 @@ def _notes(product: read.ProductReading) -> Iterator[str]:
 def _listed(parts: list[str]) -> str:
     """Names in quotes; of many the first two, and how many more."""
     shown = parts if len(parts) <= MOST_NAMED else parts[:2]
-    more = f" and {len(parts) - len(shown)} others" if len(shown) < len(parts) else ""
-    return ", ".join(f"'{name}'" for name in shown) + more
+    listed, others = ", ".join(f"'{name}'" for name in shown), len(parts) - len(shown)
+    return f"{listed} and {others} others" if others else listed
 
 
 def clear(context: Context, hand: Object, parts: Sequence[Object]) -> None:

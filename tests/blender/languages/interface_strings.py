@@ -11,6 +11,7 @@ import re
 import sys
 from pathlib import Path
 
+import sentence_templates
 import source_strings
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -142,8 +143,12 @@ def of_sources(root=ROOT):
 
 @functools.cache
 def everything():
-    """(context, string) -> where it stands: classes, sources, names made of data. Thenar must be registered."""
-    return {**of_data(), **of_sources()[0], **of_classes()}
+    """(context, string) -> where it stands: classes, sources, names made of data, sentences that are kept in English.
+    Thenar must be registered."""
+    from thenar_blender import languages
+
+    kept = {(languages.SENTENCE, text): where for text, where in sentence_templates.everything().items()}
+    return {**kept, **of_data(), **of_sources()[0], **of_classes()}
 
 
 def main():

@@ -30,7 +30,7 @@ def compared(wanted, table):
         key = (context, english) if (context, english) in table else ("", english)
         used.add(key)
         if not table.get(key):
-            missing.setdefault(("", english), where)
+            missing.setdefault((context if context == languages.SENTENCE else "", english), where)
     return missing, [key for key in table if key not in used]
 
 
