@@ -17,6 +17,15 @@ _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 
 def shown(text):
     """The sentence in the user's language; as it is where no template fits or the language is English."""
+    small = text[:1].lower() + text[1:]  # a capital may have been put there since
+    for each in dict.fromkeys((text, small)):
+        words = _translated(each)
+        if words != each:
+            return words
+    return text
+
+
+def _translated(text):
     for pattern, template in _patterns():
         found = pattern.fullmatch(text)
         if found is not None:

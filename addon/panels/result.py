@@ -171,8 +171,8 @@ class THENAR_PT_reference(OfResult, bpy.types.Panel):
         for row in result.regions:
             if row.force_n > 0.0 or row.reference_n > 0.0:
                 _compared(box, iface(brief(row.name)), _three(row.force_n, row.reference_n, ".1f"))
-        if reference.note:
-            text.paragraph(layout, context, reference.note, "ERROR")
+        for note in filter(None, reference.note.split(". ")):
+            text.paragraph(layout, context, note, "ERROR")
 
 
 def _three(fast, reference, digits):

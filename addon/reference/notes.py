@@ -22,7 +22,11 @@ def of(tissue: Any, found: Any) -> Iterator[str]:
     active = [effect.name for effect in tissue.job.effects if effect.amplitude > 0.0 and effect.name != "bone"]
     if active:
         listed = ", ".join(effect_settings.title(name).lower() for name in active)
-        yield f"the reference has no effects: {listed} act{'s' * (len(active) == 1)} in the fast result alone"
+        yield (
+            f"the reference has no effects: {listed} acts in the fast result alone"
+            if len(active) == 1
+            else f"the reference has no effects: {listed} act in the fast result alone"
+        )
     gaps = native.module.Product(tissue.product_mm, tissue.job.reading.product.triangles).gap_mm(tissue.posed_mm)
     inside = np.asarray(gaps["gap_mm"]) < 0.0
     bare = int((inside & ~tissue.can_touch).sum())
@@ -58,7 +62,7 @@ def of(tissue: Any, found: Any) -> Iterator[str]:
 
 
 def _vertices(count: int) -> str:
-    return f"{count} vert{'ex' if count == 1 else 'ices'}"
+    return "1 vertex" if count == 1 else f"{count} vertices"
 
 
 def _spacing(tissue: Any, found: Any) -> float:

@@ -17,6 +17,7 @@ AUDIT = "rust/surface/src/mesh/audit.rs"
 MESHES = "the hand", "the product"
 """What these sentences call the meshes."""
 PYTHON = {
+    "addon/reference/notes.py": {"of", "_vertices"},
     "addon/results/grades.py": {"judge"},
     "addon/results/sentences.py": {"_with_others"},
     "addon/results/comfort.py": {"_sentence"},

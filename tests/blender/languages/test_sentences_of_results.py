@@ -42,6 +42,7 @@ def test_every_template_is_found_again_in_its_sentence_with_all_numbers(language
         wanted = languages.table(language)[languages.SENTENCE, template]
         assert words == wanted.format(**dict(zip(re.findall(r"\{(\w+)\}", template), numbers, strict=True))), template
         assert not ENGLISH.search(words), words
+        assert sentences.shown(sentence[:1].upper() + sentence[1:]) == words
 
 
 def solved(scene):
