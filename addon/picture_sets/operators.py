@@ -110,9 +110,14 @@ def no_result(context):
     return "" if context.scene.thenar.result.is_valid else "there is no result to show; press Solve first"
 
 
+def has_folder(chosen):
+    """Whether pictures have a folder: one next to a file that was never saved is none."""
+    return bool(bpy.data.filepath) or not chosen.folder.startswith("//")
+
+
 def _folder(chosen):
     """The folder of pictures. Raises `Refusal` where the file was never saved and the folder is named after it."""
-    if chosen.folder.startswith("//") and not bpy.data.filepath:
+    if not has_folder(chosen):
         raise Refusal("the file was never saved, so there is no folder for pictures; save it, or choose a Folder")
     return Path(bpy.path.abspath(chosen.folder))
 

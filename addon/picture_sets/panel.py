@@ -3,6 +3,7 @@
 import bpy
 
 from .. import status, tabs
+from ..panels import text
 from ..panels.main import Tab
 from . import operators, order
 
@@ -38,6 +39,8 @@ class THENAR_PT_pictures(Tab, bpy.types.Panel):
         column.use_property_split = True
         column.use_property_decorate = False
         column.prop(chosen, "folder")
+        if not operators.has_folder(chosen):
+            text.paragraph(column, context, "Save the file first, or choose a folder", "INFO")
         column.prop(chosen, "height")
         column.prop(chosen, "with_percentiles")
         column.prop(chosen, "film_frames")

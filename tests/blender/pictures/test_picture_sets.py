@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -147,6 +148,10 @@ def test_nobodys_file_is_replaced(solved, tmp_path):
 def test_unsaved_file_asks_for_a_folder(solved):
     with pytest.raises(RuntimeError, match="never saved"):
         bpy.ops.thenar.picture(kind=orders.GRIP)
+    chosen = bpy.context.scene.thenar_pictures
+    assert not operators.has_folder(chosen), "the panel says so before the button is pressed"
+    chosen.folder = tempfile.gettempdir()
+    assert operators.has_folder(chosen)
 
 
 @pytest.mark.parametrize("change", [{"kind": "PORTRAIT"}, {"height": 3}, {"target": "x.tiff"}])
