@@ -50,7 +50,7 @@ def drive(bpy, ui):
             yield 1
             for tab, pages in PAGES.items():
                 bpy.context.window_manager.thenar_tabs.tab = tab
-                yield from turn(ui, x, -90)
+                yield from turn(ui, x, -90 if pages[number] > 1 else 0)  # over a short tab it would zoom the view
                 for page in range(pages[number]):
                     ui.shot(f"{language}_{scale:g}_{tab}_{page}")
                     yield from turn(ui, x, WHEEL if page < pages[number] - 1 else 0)
