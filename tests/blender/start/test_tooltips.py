@@ -23,19 +23,19 @@ WITHOUT_UNIT = {
 """Ratios, directions and scales: what a number without unit is."""
 
 
-def below(base):
-    """Registered classes of the add-on below a class of Blender."""
+def below(base, package="thenar_blender"):
+    """Registered classes of a package below a class of Blender."""
     for cls in base.__subclasses__():
-        yield from below(cls)
-        if cls.__module__.startswith("thenar_blender") and getattr(cls, "is_registered", False):
+        yield from below(cls, package)
+        if cls.__module__.startswith(package) and getattr(cls, "is_registered", False):
             yield cls
 
 
-def titled():
+def titled(package="thenar_blender"):
     """(`Class.property`, RNA property) of all that a user can meet: those with a title of their own."""
     for base in (bpy.types.Operator, bpy.types.PropertyGroup, bpy.types.AddonPreferences):
-        for cls in below(base):
-            own = {name for each in cls.__mro__ if "thenar_blender" in each.__module__
+        for cls in below(base, package):
+            own = {name for each in cls.__mro__ if each.__module__.startswith(package)
                    for name in inspect.get_annotations(each)}  # fmt: skip
             for prop in rna_of(cls).properties:
                 if prop.identifier in own and not prop.is_hidden and prop.name != prop.identifier:
@@ -77,9 +77,9 @@ def test_planted_properties_without_tooltip_or_unit_are_found():
 
 
 class PlantedGroup(bpy.types.PropertyGroup):
-    """A group as one of the add-on's, whose number lacks a unit."""
+    """A group of another package, whose number lacks a unit."""
 
-    __module__ = "thenar_blender.planted"
+    __module__ = "planted_package.settings"
     __annotations__ = {"length": bpy.props.FloatProperty(name="Length", description="Of the hand")}
 
 
@@ -87,7 +87,7 @@ def test_a_planted_group_of_the_add_on_is_walked(scene):
     """A walk that misses a class would pass by mistake."""
     bpy.utils.register_class(PlantedGroup)
     try:
-        assert lacks(dict(titled())["PlantedGroup.length"]) == "unit"
+        assert lacks(dict(titled("planted_package"))["PlantedGroup.length"]) == "unit"
     finally:
         bpy.utils.unregister_class(PlantedGroup)
 
