@@ -19,7 +19,7 @@ HEADINGS = {
     "insufficient_data": "Too few recordings",
 }
 UNNAMED = "No effect is named"
-"""Instead, where more than noise is left; the library's sentence begins with it."""
+"""Instead, where nothing is named and more than noise is left."""
 
 _UNSAID = {"nothing_missing", "parameters", "unlisted"}
 """Verdicts after which the list of what it might be says nothing: what is small enough is on it, or it is none."""
@@ -121,7 +121,8 @@ def write(found):
 
 
 def _heading(found):
-    return UNNAMED if found["sentence"].startswith(UNNAMED) else HEADINGS[found["verdict"]]
+    is_unnamed = found.get("is_more_than_noise") and found["verdict"] in ("nothing_missing", "parameters")
+    return UNNAMED if is_unnamed else HEADINGS[found["verdict"]]
 
 
 def lines(letter):
@@ -204,9 +205,13 @@ def _phases(found):
 
 
 def _rivals(found):
-    """What cannot be told apart, and what else the name may be at 90 %."""
+    """What cannot be told apart, what is suspected only, and what else the name may be at 90 %."""
     for effects in found.get("cannot_tell", ()):
         yield f"These recordings cannot distinguish {wording.apart(effects)}."
+    suspected = found.get("suspected")
+    if suspected:
+        words = wording.listed(wording.name(effect) for effect in suspected)
+        yield f"Suspected only, not a finding: {words}. See the notes for what would settle it."
     sets = found.get("names_90") or []
     if len(sets) > 1 and found["verdict"] not in _UNSAID:
         words = [wording.listed(wording.name(effect) for effect in effects) or "nothing" for effects in sets]

@@ -9,7 +9,7 @@ SCHEMA = 1
 NAMED = {"missing_physics", "instrument"}
 """Verdicts that name something which can be switched on."""
 VERDICTS = NAMED | {"nothing_missing", "parameters", "cannot_tell", "unlisted", "insufficient_data"}
-_LISTS = ("findings", "names_90", "cannot_tell", "record_next")
+_LISTS = ("findings", "names_90", "cannot_tell", "suspected", "record_next")
 
 
 @lru_cache(maxsize=8)

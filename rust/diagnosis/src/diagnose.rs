@@ -187,6 +187,8 @@ fn told(
         unlisted: None,
         names_90: thenar_inference::selection::model_weights::names_90(&probabilities),
         cannot_tell: decision.cannot_tell.clone(),
+        suspected: decision.suspected.clone(),
+        is_more_than_noise: decision.is_more_than_noise,
         gain: sized.gain.clone(),
         smallest_seen: crate::gates::detection_limits::smallest_seen(ready, rungs),
         record_next: next,

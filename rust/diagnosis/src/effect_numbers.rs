@@ -214,15 +214,23 @@ const OUTER: f64 = 1.090_8;
 /// Amplitude and times of a load that fades by a smooth spectrum.
 fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
     let seen = seen_periods(ready);
-    let median_open = free
-        .profile(1)
-        .map_or((false, false), |known| known.is_open);
-    // A period so many widths from the median, and its interval: open beyond what the recordings last, and shorter than their steps.
+    let median = of_number(free, 1, &libm::exp);
+    let median_open = (!median.1.is_finite(), !median.2.is_finite());
+    // A period so many widths from the median, and its interval: open beyond what the recordings last, and shorter than their steps. The
+    // median is a number of the fit, with a profile of its own; the others are sums of two.
     let period = |widths: f64| {
         let (log, error) = free.sum(&[0.0, 1.0, widths]);
         let factor = libm::exp(HALF * error);
         let period = libm::exp(log);
-        let (low, high) = (period / factor, period * factor);
+        let by_error = (period / factor, period * factor);
+        let (low, high) = match widths == 0.0 {
+            true => (
+                if median_open.0 { by_error.0 } else { median.1 },
+                if median_open.1 { by_error.1 } else { median.2 },
+            ),
+            false => by_error,
+        };
+        let factor = (high / low).sqrt();
         // Wholly outside of what recordings show it is the law's extrapolation, and no bound.
         let is_outside = low > seen.1 || high < seen.0;
         let is_open = (
@@ -279,6 +287,11 @@ const MOST: f64 = 30.0;
 /// Amplitude and length of a load that is lost with travel.
 fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
     let (sum, error) = free.sum(&vec![1.0; lengths.len()]);
+    let share = free.sum_interval((sum, error), &|x| x.clamp(0.0, 0.99));
+    let half = match share.1.is_finite() && share.2.is_finite() {
+        true => 0.5 * (share.2 - share.1),
+        false => f64::INFINITY,
+    };
     let each = free.values.iter().zip(lengths);
     let mean_log = match sum > 0.0 {
         true => each.map(|(f, p)| f * libm::log(*p)).sum::<f64>() / sum,
@@ -286,22 +299,12 @@ fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
     };
     let mean = libm::exp(mean_log);
     // Half of a length's step either way, widened by how little the shares are known.
-    let factor = libm::exp(1.0 + HALF * error / sum.max(1e-3));
+    let factor = libm::exp(1.0 + half / sum.max(1e-3));
     let length = match factor > MOST {
         true => ("length_mm", mean, f64::NEG_INFINITY, f64::INFINITY),
         false => ("length_mm", mean, mean / factor, mean * factor),
     };
-    (within((sum, error), 1.0), vec![length])
-}
-
-/// A share times `scale` and its interval, between none and nearly all.
-fn within((share, error): (f64, f64), scale: f64) -> Three {
-    let one = |x: f64| (x * scale).clamp(0.0, 0.99);
-    (
-        one(share),
-        one(share - HALF * error),
-        one(share + HALF * error),
-    )
+    (share, vec![length])
 }
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits

@@ -40,7 +40,7 @@ impl Verdict {
     }
 }
 
-/// A number with its 90 % interval, by the profile likelihood or, of periods and lengths, the standard error.
+/// A number with its 90 % interval, by the profile likelihood or, of the outer time constants, the standard error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
     /// Name in the catalogue, with its unit.
@@ -243,6 +243,10 @@ pub struct Diagnosis {
     pub unlisted: Option<Unlisted>,
     /// Sets of names kept at 90 %.
     pub names_90: Vec<Vec<&'static str>>,
+    /// Effects that are suspected and not named: they explain more than noise would, and a gate refused them.
+    pub suspected: Vec<&'static str>,
+    /// Whether recordings differ by more than their noise although nothing is named.
+    pub is_more_than_noise: bool,
     /// Pairs that cannot be told apart.
     pub cannot_tell: Vec<[&'static str; 2]>,
     /// Predictions of what was held out; None where nothing is named.

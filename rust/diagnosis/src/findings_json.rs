@@ -37,6 +37,8 @@ pub fn findings_json(found: &Diagnosis) -> String {
         "unlisted": found.unlisted.as_ref().map(unlisted),
         "names_90": found.names_90,
         "cannot_tell": found.cannot_tell,
+        "suspected": found.suspected,
+        "is_more_than_noise": found.is_more_than_noise,
         "fit": fit(found.gain.as_ref()),
         "smallest_seen": smallest,
         "record_next": found.record_next.iter().map(suggestion).collect::<Vec<_>>(),

@@ -74,6 +74,22 @@ impl Free {
         })
     }
 
+    /// The sum of free shares and the ends of its interval, in other terms: by the profile likelihood of the sum (see
+    /// `Profiled::numbers`), or by its standard error where none was asked for.
+    pub fn sum_interval(&self, (sum, error): (f64, f64), scale: &dyn Fn(f64) -> f64) -> Three {
+        let known = self.profiled.as_ref().and_then(|of| of.numbers.first());
+        let Some(known) = known else {
+            let ends = [-HALF * error, HALF * error].map(|off| scale(sum + off));
+            return (scale(sum), ends[0], ends[1]);
+        };
+        let end = |end: f64, is_open: bool, open: f64| if is_open { open } else { scale(end) };
+        (
+            scale(sum),
+            end(known.ends.0.min(sum), known.is_open.0, f64::NEG_INFINITY),
+            end(known.ends.1.max(sum), known.is_open.1, f64::INFINITY),
+        )
+    }
+
     /// The fitted law, and its variants that are not excluded.
     pub fn laws<'a>(&'a self, own: &'a Law) -> Vec<&'a Law> {
         let known = self.profiled.iter().flat_map(|known| &known.variants);

@@ -138,6 +138,8 @@ pub fn without_curves(study: &Study, comparison: Comparison) -> Diagnosis {
         unlisted: None,
         names_90: Vec::new(),
         cannot_tell: Vec::new(),
+        suspected: Vec::new(),
+        is_more_than_noise: false,
         gain: None,
         smallest_seen: Vec::new(),
         record_next: Vec::new(),

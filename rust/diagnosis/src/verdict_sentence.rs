@@ -171,7 +171,6 @@ mod tests {
         };
         for verdict in [Verdict::NothingMissing, Verdict::Parameters] {
             let said = of(verdict, true);
-            // The letter takes its heading from how this begins.
             assert!(said.starts_with("No effect is named") && !said.contains("agrees"));
             assert!(of(verdict, false).contains("agrees"));
         }

@@ -9,9 +9,10 @@ Truths: `nothing` (a rigid sphere in an incompressible half-space: Sneddon 1965,
 Science 3:47, of which Hertz is the limit at small depth) and `relaxation` (the same with a modulus that fades in two
 terms; Lee and Radok 1960, Journal of Applied Mechanics 27:438, valid while the contact does not shrink, so that these
 recordings end with their hold), `cycle_softening` (the modulus loses a share of up to 15 to 40 % as work is done on the
-tissue: damage D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session) and `nothing_in_cycles`
-(the sessions of `cycle_softening`, and nothing missing). Such a session begins with four cycles, and states the order
-of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each repeat begins
+tissue: damage D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session), `nothing_in_cycles`
+(the sessions of `cycle_softening`, and nothing missing) and `saturation` (the presses of `nothing`, read by a cell that
+clips at 75 to 92 % of the largest force of the tool that needs least). A session of
+cycles begins with four, and states the order of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each repeat begins
 as the first of its protocol did.
 
 Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
@@ -49,7 +50,8 @@ NOISES = (
     "stray",
     "mixture",
 )
-TRUTHS = ("nothing", "relaxation", "cycle_softening", "nothing_in_cycles")
+TRUTHS = ("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation")
+CEILING = (0.75, 0.92)
 MODULUS_MPA = (0.006, 0.02)
 RADIUS_MM = (4.0, 9.0)
 DEEPEST_MM = (0.8, 1.6)
@@ -118,6 +120,8 @@ def draw(seed, truth, noise):
         session = _Session(truth, modulus, random)
         protocols = [(tool, speed, has_hold) for tool in radii for speed in speeds]
         return Case(radii, session.recordings((radii, deepest), protocols, (reader, repeats, samples)), deepest, None)
+    if truth == "saturation":
+        reader.ceiling_n = random.uniform(*CEILING) * modulus * pressed(np.array([deepest]), first)[0]
     recordings = []
     for tool, radius in radii.items():
         for speed in speeds:
@@ -234,6 +238,7 @@ class _Reader:
             "in_proportion": 0.002,
         }
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
+        self.ceiling_n = np.inf
 
     def clocked(self, time, depth):
         """The moments at which samples were taken, and the true depths then."""
@@ -264,7 +269,7 @@ class _Reader:
         if self.family == "clock":
             least = 0.1 * np.diff(time).min()
             time = np.sort(time + min(0.004, least) * random.standard_normal(n)) + 0.1 * least * np.arange(n)
-        return np.column_stack([time - time[0], stated, read])
+        return np.column_stack([time - time[0], stated, np.minimum(read, self.ceiling_n)])
 
 
 def _patch(deepest):

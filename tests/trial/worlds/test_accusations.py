@@ -80,7 +80,7 @@ def test_a_table_of_accusations_ends_with_1(tmp_path, monkeypatch, capsys):
 
 
 def test_a_truth_that_a_world_has_not_is_refused(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["accusations.py", "--truth", "saturation"])
+    monkeypatch.setattr(sys, "argv", ["accusations.py", "--truth", "bone"])
     with pytest.raises(SystemExit):
         accusations.arguments()
     assert "closed_forms has the truths nothing, relaxation" in capsys.readouterr().err

@@ -29,6 +29,12 @@ def test_step_fades_as_its_terms_do():
     assert found == pytest.approx(0.7 + 0.2 * np.exp(-3.0 / 0.5) + 0.1 * np.exp(-3.0 / 4.0), rel=3e-3)
 
 
+def test_a_clipped_cell_reads_one_largest_value_in_all_recordings():
+    case = closed_forms.draw(3, "saturation", "white")
+    most = {recording.table[:, 2].max() for recording in case.recordings}
+    assert len(most) == 1 and all((one.table[:, 2] == max(most)).sum() > 1 for one in case.recordings)
+
+
 @pytest.mark.parametrize("noise", closed_forms.NOISES)
 def test_draws_repeat_and_clocks_go_forward(noise):
     one, other = (closed_forms.draw(4, "nothing", noise) for _ in range(2))

@@ -210,6 +210,7 @@ pub fn add_friction(study: &Study, found: &mut Diagnosis) {
     };
     let (ratio, error) = (seen.ratio.0.abs(), seen.ratio.1);
     if ratio > CLEAR.1 && ratio > CLEAR.0 * error && !seen.is_friction() {
+        found.suspected.push("friction");
         found.notes.push(format!(
             "slides: the force along the skin is {ratio:.3} of the normal force; friction is suspected, and not named: record a second slide \
              that begins after a hold, or goes both ways"

@@ -49,6 +49,8 @@ pub struct Decision<'a> {
     pub beside: Vec<&'static str>,
     /// Whether recordings differ by more than their noise although nothing is named.
     pub is_more_than_noise: bool,
+    /// Effects that are suspected and not named: they explain more than noise would, and a gate refused them.
+    pub suspected: Vec<&'static str>,
     /// Why, for the notes.
     pub reason: String,
 }
@@ -56,11 +58,15 @@ pub struct Decision<'a> {
 /// Decides from what the rungs found: the gates in their order, the first that is shut speaks.
 pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     if ready.noise.degrees.is_none() {
+        let suspected = suspected(rungs);
         let reason = format!(
             "no protocol was repeated, so that noise and a missing effect look alike; {}",
-            suspected(rungs)
+            suspicion(&suspected)
         );
-        return silent(Verdict::InsufficientData, &reason);
+        return Decision {
+            suspected,
+            ..silent(Verdict::InsufficientData, &reason)
+        };
     }
     let best = rungs.singles.first();
     let is_clear = best.is_some_and(|b| b.qaic_gain > BEYOND_HETEROSCEDASTIC);
@@ -82,6 +88,7 @@ pub(crate) fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
         cannot_tell: Vec::new(),
         beside: Vec::new(),
         is_more_than_noise: false,
+        suspected: Vec::new(),
         reason: reason.to_owned(),
     }
 }
@@ -94,23 +101,34 @@ pub(crate) fn unsettled_misfit<'a>(verdict: Verdict, reason: &str) -> Decision<'
     }
 }
 
-/// What one would look at first, where the noise is not known.
-fn suspected(rungs: &Rungs) -> String {
-    let most = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);
-    if most < SUSPECTED.0 {
-        return "beyond the parameters nothing is suspected".to_owned();
+impl Decision<'_> {
+    /// The same with effects that are suspected only.
+    pub(crate) fn suspecting(self, suspected: &[&'static str]) -> Self {
+        Decision {
+            suspected: suspected.to_vec(),
+            ..self
+        }
     }
+}
+
+/// What one would look at first, where the noise is not known.
+fn suspected(rungs: &Rungs) -> Vec<&'static str> {
+    let most = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);
     let near = rungs
         .singles
         .iter()
-        .filter(|s| s.qaic_gain > SUSPECTED.1 * most);
-    let mut names: Vec<String> = near
-        .map(|s| effect_in_words(s.mechanisms[0].effect.name()))
-        .collect();
+        .filter(|s| most >= SUSPECTED.0 && s.qaic_gain > SUSPECTED.1 * most);
+    near.map(|s| s.mechanisms[0].effect.name()).collect()
+}
+
+/// That in words.
+fn suspicion(suspected: &[&'static str]) -> String {
+    let mut names: Vec<String> = suspected.iter().map(|name| effect_in_words(name)).collect();
     // No order is known of what is not told apart.
     names.sort();
-    match names.len() {
-        1 => format!("{} is suspected", names[0]),
+    match &names[..] {
+        [] => "beyond the parameters nothing is suspected".to_owned(),
+        [one] => format!("{one} is suspected"),
         _ => format!("suspected, and not distinguished, are {}", names.join(", ")),
     }
 }
@@ -302,6 +320,7 @@ pub fn named<'a>(scored: &'a Scored, reason: &str) -> Decision<'a> {
         cannot_tell: Vec::new(),
         beside: Vec::new(),
         is_more_than_noise: false,
+        suspected: Vec::new(),
         reason: reason.to_owned(),
     }
 }
@@ -320,6 +339,7 @@ fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a
         cannot_tell: seen,
         beside: Vec::new(),
         is_more_than_noise: false,
+        suspected: Vec::new(),
         reason: reason.to_owned(),
     }
 }

@@ -186,9 +186,11 @@ impl<'a> Gate<'a, '_> {
             return silent(
                 Verdict::Unlisted,
                 &format!("repeats agree on a misfit that no listed effect takes up; {reason}"),
-            );
+            )
+            .suspecting(feigned);
         }
         unsettled_misfit(decision::nothing(self.ready, self.beyond.rungs), &reason)
+            .suspecting(feigned)
     }
 
     /// A misfit without a name may be one of form; what differs between repeats is none.

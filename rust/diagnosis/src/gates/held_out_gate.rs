@@ -168,6 +168,7 @@ fn unnamed<'a>(
     );
     Decision {
         is_more_than_noise: true,
+        suspected: named.names(),
         reason,
         ..decision::undetected(ready, rungs)
     }

@@ -70,7 +70,7 @@ pub fn decide<'a>(
             profiled,
         },
         None => Sized {
-            decision: unnamed(ready, rungs, measured, &reason),
+            decision: unnamed(ready, rungs, measured, &reason).suspecting(&left(named, &kept)),
             gain: None,
             profiled: Vec::new(),
         },
@@ -102,11 +102,17 @@ fn determined(named: &Scored, known: &[Profiled]) -> Vec<Effect> {
     there.map(|(mechanism, _)| mechanism.effect).collect()
 }
 
-fn open(named: &Scored, kept: &[Effect]) -> String {
+/// Names of an explanation that are not kept.
+fn left(named: &Scored, kept: &[Effect]) -> Vec<&'static str> {
     let effects = named.mechanisms.iter().map(|m| m.effect);
-    let left: Vec<Effect> = effects.filter(|effect| !kept.contains(effect)).collect();
-    let names: Vec<String> = left.iter().map(|e| effect_in_words(e.name())).collect();
-    let advice: Vec<&str> = left.iter().map(|e| bounding(e.name())).collect();
+    let left = effects.filter(|effect| !kept.contains(effect));
+    left.map(Effect::name).collect()
+}
+
+fn open(named: &Scored, kept: &[Effect]) -> String {
+    let left = left(named, kept);
+    let names: Vec<String> = left.iter().map(|name| effect_in_words(name)).collect();
+    let advice: Vec<&str> = left.iter().map(|name| bounding(name)).collect();
     format!(
         "suspected is {}, of which these recordings determine no size, so that it may be absent; to determine it, {}",
         names.join(" and "),

@@ -68,6 +68,8 @@ fn begun(study: &Study, explained: &Explained) -> Diagnosis {
         unlisted: None,
         names_90: Vec::new(),
         cannot_tell: Vec::new(),
+        suspected: Vec::new(),
+        is_more_than_noise: false,
         gain: None,
         smallest_seen: notes::smallest(explained),
         record_next: Vec::new(),

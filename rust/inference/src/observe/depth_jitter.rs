@@ -5,6 +5,7 @@
 //! reliability of the readings (Fuller 1987, Measurement Error Models, section 1.1).
 
 use crate::observe::measured::Phase;
+use crate::observe::motion::motion;
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::median_deviation;
 use crate::observe::smoothing::smoothed;
@@ -30,11 +31,11 @@ pub(crate) struct Depths {
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
 pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Option<Depths> {
     let n = courses.depth_mm.len();
-    let (mut depth, mut force) = (courses.depth_mm.to_vec(), courses.force_n.to_vec());
+    let mut depth = motion(courses.time_s, courses.depth_mm);
+    let mut force = courses.force_n.to_vec();
     for stretch in stretches {
         let own = stretch.start..stretch.end;
         let time = &courses.time_s[own.clone()];
-        depth[own.clone()].copy_from_slice(&smoothed(time, &courses.depth_mm[own.clone()]));
         force[own.clone()].copy_from_slice(&smoothed(time, &courses.force_n[own]));
     }
     let off = |read: &[f64], smooth: &[f64]| -> Vec<f64> {

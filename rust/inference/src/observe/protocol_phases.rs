@@ -96,7 +96,7 @@ fn flicker(phases: &[Phase], shortest: usize) -> Option<(usize, usize, Phase)> {
 }
 
 /// Load, hold or unload by sample, from the depth alone.
-fn moves(time: &[f64], depth: &[f64]) -> Vec<Phase> {
+pub(crate) fn moves(time: &[f64], depth: &[f64]) -> Vec<Phase> {
     let n = depth.len();
     let mut phases = vec![Phase::Hold; n];
     let noise = noise_of(depth);

@@ -13,13 +13,18 @@ const LEAST: usize = 6;
 ///
 /// Fewer than 6 values, or times that do not grow, are returned as they are. A straight line is left as it is.
 pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Vec<f64> {
+    smoothed_with_freedom(time, values).0
+}
+
+/// The same with the degrees of freedom that the course takes.
+pub(crate) fn smoothed_with_freedom(time: &[f64], values: &[f64]) -> (Vec<f64>, f64) {
     let n = values.len();
     let grows = time.windows(2).all(|w| w[1] > w[0]);
     if n < LEAST || !grows {
-        return values.to_vec();
+        return (values.to_vec(), n as f64);
     }
     let penalty = Penalty::new(time);
-    let mut best = (f64::INFINITY, values.to_vec());
+    let mut best = (f64::INFINITY, (values.to_vec(), n as f64));
     for step in POWERS.0 * STEPS..=POWERS.1 * STEPS {
         let strength = libm::pow(10.0, f64::from(step) / f64::from(STEPS));
         let (course, freedom) = penalty.smooth(values, strength);
@@ -28,7 +33,7 @@ pub(crate) fn smoothed(time: &[f64], values: &[f64]) -> Vec<f64> {
         let left = (n as f64 - PRICE * freedom).max(1e-3);
         let score = squares / (left * left);
         if score < best.0 {
-            best = (score, course);
+            best = (score, (course, freedom));
         }
     }
     best.1

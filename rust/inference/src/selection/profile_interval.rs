@@ -3,8 +3,6 @@
 //! A parameter whose interval reaches an end of its admissible range is practically non-identifiable (Raue et al. 2009): recordings bound it from
 //! one side, or not at all.
 
-use thenar_contact::effects::Effect;
-
 use crate::forward::surrogate::candidate_model::Model;
 use crate::forward::surrogate::mechanism::{Law, Mechanism, Scales};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
@@ -53,7 +51,8 @@ impl Interval {
 /// What recordings say of one mechanism of an explanation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profiled {
-    /// By its own parameters, over all variants that are not excluded.
+    /// By its own parameters, over all variants that are not excluded. Of free shares the first is their sum, since shares of neighboring
+    /// branches stand for each other.
     pub numbers: Vec<Interval>,
     /// Variants of its law that are not excluded, in the order of the candidates; the fitted one is among them.
     pub variants: Vec<Mechanism>,
@@ -68,8 +67,6 @@ impl Profiled {
         match mechanism.law {
             Law::Saturation(_) => !size.is_open.1,
             Law::Floor(_) => !size.is_open.0,
-            // Shares of neighboring branches stand for each other: their sum is judged, not the first.
-            Law::Relaxation { .. } if mechanism.effect == Effect::RateIndependentLoss => true,
             _ => is_above || (size.ends.1 < 0.0 && !size.is_open.1),
         }
     }
@@ -86,12 +83,12 @@ pub fn profiled(
     let plain = ready.surrogate();
     let surrogate = check.as_ref().map_or(&plain, FormCheck::surrogate);
     let known = ready.shared.len();
-    let (shared, own) = of.refit.at.split_at(known);
     let free = vec![0.0; surrogate.shared.len() - known];
-    let start = [shared, &free, own].concat();
     let samples = rungs.samples.max(1) as f64;
     let one = |number: usize| {
-        let all = variants(&of.mechanisms, (number, ready.scales));
+        let (mechanisms, own) = by_sum(of, (number, known));
+        let start = [&of.refit.at[..known], &free, &own].concat();
+        let all = variants(&mechanisms, (number, ready.scales));
         let models: Vec<Model<'_>> = all.iter().map(|set| Model::new(surrogate, set)).collect();
         let fits: Vec<Refit> = models
             .iter()
@@ -139,6 +136,20 @@ pub fn profiled(
         })
     };
     (0..of.mechanisms.len()).map(one).collect()
+}
+
+/// The mechanisms of an explanation and their numbers, with free shares of one as their sum and portions.
+fn by_sum(of: &Scored, (number, shared): (usize, usize)) -> (Vec<Mechanism>, Vec<f64>) {
+    let (mut mechanisms, mut own) = (of.mechanisms.clone(), of.refit.at[shared..].to_vec());
+    let before: usize = mechanisms[..number].iter().map(Mechanism::count).sum();
+    let numbers = before..before + mechanisms[number].count();
+    if let Law::Relaxation { spectrum, .. } = &mut mechanisms[number].law
+        && let Some((summed, portions)) = spectrum.by_sum(&own[numbers.clone()])
+    {
+        *spectrum = summed;
+        own[numbers].copy_from_slice(&portions);
+    }
+    (mechanisms, own)
 }
 
 /// The explanation with every variant of one of its laws that differs in a number which is tried and not fitted.
@@ -254,6 +265,8 @@ impl Profile<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use thenar_contact::effects::Effect;
+
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
     use crate::observe::measured::Phase;
 
@@ -296,6 +309,67 @@ mod tests {
                 assert!((at / wanted - 1.0).abs() < 2.0 * NEAR, "{at} {wanted}");
             }
         }
+    }
+
+    /// A flat punch of 10 N/mm pressed to 2 mm and let go, whose load is lost with travel in closed form (x' = d' - x |d'| / length): the
+    /// interval of the whole share, and whether it excludes that nothing is lost.
+    fn lost(share: f64, sigma_n: f64) -> (Interval, bool) {
+        use crate::least_squares::surrogate_fit::refit;
+        let (deepest, length) = (2.0f64, 0.8);
+        let read = |k: u32| -> Reading {
+            let way = f64::from(k) / 40.0;
+            let up = (way - deepest).max(0.0);
+            let depth = way - 2.0 * up;
+            let last = length * (1.0 - libm::exp(-way.min(deepest) / length));
+            let left = (last + length) * libm::exp(-up / length) - length;
+            let (left, phase) = match up > 0.0 {
+                true => (left, Phase::Unload),
+                false => (last, Phase::Load),
+            };
+            let force = 10.0 * (depth - share * (depth - left)).max(0.0);
+            (way, depth, phase, force)
+        };
+        let punch = tool(deepest, |depth| 10.0 * depth, |_| 1.0);
+        let readings = (0..=160).map(read).collect();
+        let (ready, measured) = ready(vec![punch], &[(0, readings)], sigma_n);
+        let surrogate = ready.surrogate();
+        let mut mechanisms = singles(ready.scales);
+        mechanisms.retain(|m| m.effect == Effect::RateIndependentLoss);
+        let scored = |mechanisms: &[Mechanism]| Scored {
+            mechanisms: mechanisms.to_vec(),
+            refit: refit(&surrogate, &Model::new(&surrogate, mechanisms), &[]),
+            qaic_gain: 0.0,
+            lack_of_fit: 0.0,
+        };
+        let rungs = Rungs {
+            base: scored(&[]),
+            singles: Vec::new(),
+            pairs: Vec::new(),
+            heteroscedasticity: None,
+            gain_step: None,
+            samples: ready.values.len(),
+            overdispersion: 1.0,
+        };
+        let known = profiled(&ready, &rungs, &measured, &scored(&mechanisms));
+        (
+            known[0].numbers[0],
+            known[0].excludes_absence(&mechanisms[0]),
+        )
+    }
+
+    /// Of many shares that stand for each other only the sum is asked: it holds what was planted, and none where nothing was.
+    #[test]
+    fn interval_of_shares_is_that_of_their_sum() {
+        let (found, is_there) = lost(0.4, 0.3);
+        assert!(
+            is_there && found.ends.0 < 0.4 && 0.4 < found.ends.1,
+            "{found:?}"
+        );
+        let (found, is_there) = lost(0.0, 0.3);
+        assert!(!is_there && found.is_open.0, "{found:?}");
+        // A loss of a twentieth of the noise.
+        let (found, is_there) = lost(0.001, 0.3);
+        assert!(!is_there, "{found:?}");
     }
 
     /// A creep whose own time is thirty years adds nothing in two seconds: its size is open on both sides.

@@ -285,6 +285,8 @@ fn page_of_a_diagnosis_shows_which_signs_hold() {
         unlisted: None,
         names_90: Vec::new(),
         cannot_tell: Vec::new(),
+        suspected: Vec::new(),
+        is_more_than_noise: false,
         gain: None,
         smallest_seen: Vec::new(),
         record_next: Vec::new(),

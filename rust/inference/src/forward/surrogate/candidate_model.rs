@@ -104,6 +104,13 @@ fn range(surrogate: &Surrogate<'_>, mechanism: &Mechanism, number: usize) -> (f6
             1 => (0.0, libm::log(MEDIANS_S.0), libm::log(MEDIANS_S.1)),
             _ => (1.0, widths.0, widths.1),
         },
+        Law::Relaxation {
+            spectrum: Spectrum::Portions(_),
+            ..
+        } => match number {
+            0 => (0.03, 0.0, 0.99),
+            _ => (0.5, 0.0, 1.0),
+        },
         Law::Relaxation { .. } => (0.03, 0.0, 0.6),
         Law::Softening { .. } => (0.1, 0.0, 0.9),
         Law::Adhesion { .. } if number > 0 => {

@@ -5,6 +5,9 @@
 pub enum Spectrum {
     /// Each share, of branches of these periods.
     Free(Vec<f64>),
+    /// The same branches by the sum of their shares, and of each but the last the portion that it has of what those before it leave: the sum
+    /// can be held while the others are fitted.
+    Portions(Vec<f64>),
     /// The sum of the shares, the logarithm of the median period and the width: a normal law over the logarithm of the period.
     ///
     /// Free shares let one clock imitate another wherever the contact's size does not change much. Tissue loses its load by a
@@ -19,7 +22,7 @@ impl Spectrum {
     /// Number of free numbers.
     pub fn count(&self) -> usize {
         match self {
-            Spectrum::Free(periods) => periods.len(),
+            Spectrum::Free(periods) | Spectrum::Portions(periods) => periods.len(),
             Spectrum::Smooth { .. } => 3,
         }
     }
@@ -34,14 +37,37 @@ impl Spectrum {
                 let each = periods.iter().zip(shares);
                 each.map(|(period, share)| (*period, *share)).collect()
             }
+            (Spectrum::Portions(periods), [sum, portions @ ..]) => {
+                let mut left = *sum;
+                let mut one = |(k, period): (usize, &f64)| {
+                    let share = left * portions.get(k).unwrap_or(&1.0);
+                    left -= share;
+                    (*period, share)
+                };
+                periods.iter().enumerate().map(&mut one).collect()
+            }
             (Spectrum::Smooth { .. }, [sum, middle, width]) => {
                 let all: f64 = NODES.iter().map(|(_, weight)| weight).sum();
                 let branch =
                     |(z, weight): &(f64, f64)| (libm::exp(middle + width * z), sum * weight / all);
                 NODES.iter().map(branch).collect()
             }
-            (Spectrum::Smooth { .. }, _) => Vec::new(),
+            (Spectrum::Smooth { .. } | Spectrum::Portions(_), _) => Vec::new(),
         }
+    }
+
+    /// Free shares as their sum and portions, with the numbers that are these shares; None of another spectrum.
+    pub(crate) fn by_sum(&self, shares: &[f64]) -> Option<(Spectrum, Vec<f64>)> {
+        let Spectrum::Free(periods) = self else {
+            return None;
+        };
+        let mut left: f64 = shares.iter().sum();
+        let mut numbers = vec![left];
+        for share in &shares[..shares.len().saturating_sub(1)] {
+            numbers.push(if left > 0.0 { share / left } else { 0.5 });
+            left -= share;
+        }
+        Some((Spectrum::Portions(periods.clone()), numbers))
     }
 }
 
@@ -82,6 +108,22 @@ mod tests {
         assert!((moment(2) / 1.5f64.powi(2) - 1.0).abs() < 1e-3);
         let free = Spectrum::Free(vec![2.0, 3.0]).branches(&[0.1, 0.2]);
         assert_eq!(free, [(2.0, 0.1), (3.0, 0.2)]);
+    }
+
+    #[test]
+    fn sum_and_portions_are_the_same_branches() {
+        let free = Spectrum::Free(vec![2.0, 3.0, 5.0]);
+        for shares in [[0.1, 0.2, 0.05], [0.0, 0.0, 0.3], [0.4, 0.0, 0.0], [0.0; 3]] {
+            let (by_sum, numbers) = free.by_sum(&shares).expect("free shares");
+            assert!((numbers[0] - shares.iter().sum::<f64>()).abs() < 1e-15);
+            let pairs = by_sum
+                .branches(&numbers)
+                .into_iter()
+                .zip(free.branches(&shares));
+            for ((period, share), (same, wanted)) in pairs {
+                assert!(period == same && (share - wanted).abs() < 1e-15);
+            }
+        }
     }
 
     /// The load left of the widest spectrum is that of the normal law itself, integrated at steps forty times as fine.
