@@ -526,7 +526,7 @@ class Diagnosis:
     """What a study's recordings show that the model leaves out."""
 
     def to_json(self) -> str:
-        """findings.json, schema 1."""
+        """findings.json, schema 1; `suspected` lists effects that are suspected and are no findings."""
     def report_html(self) -> str:
         """A self-contained page: the diagnosis, then the comparison that it started from."""
     @property
@@ -535,6 +535,9 @@ class Diagnosis:
     @property
     def verdict(self) -> str:
         """The verdict's word, as in findings.json."""
+    @property
+    def suspected(self) -> list[str]:
+        """Effects that explain more than noise would and that a gate refused: suspected only, no findings."""
     @property
     def curves(self) -> list[Record]:
         """By recording: time_s, depth_mm, measured_n, before_n (parameters alone), after_n (with what was found)."""

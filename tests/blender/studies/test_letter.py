@@ -34,6 +34,17 @@ def test_the_letter_tells_what_something_without_a_name_goes_with():
     assert letter.write(letters.FINDINGS["missing_physics"]).depends == ()
 
 
+def test_what_is_suspected_only_is_said_to_be_no_finding():
+    """By the findings' own data: their sentence may have any words."""
+    doubted = letters.FINDINGS["parameters"] | {"suspected": ["stiff_skin"], "is_more_than_noise": True}
+    written = letter.write(doubted)
+    assert written.heading == letter.UNNAMED and written.entries == ()
+    (said,) = written.rivals
+    assert "Suspected only" in said and "stiff skin" in said.lower()
+    plain = letter.write(doubted | {"suspected": [], "is_more_than_noise": False})
+    assert plain.heading == letter.HEADINGS["parameters"] and plain.rivals == ()
+
+
 def test_evidence_by_phase_is_that_of_force_over_depth_alone():
     """A mat's ceiling is named as a force's saturation is, and friction stands next to what the curves show."""
     named = {"kind": "tissue", "confidence": 0.9, "parameters": {}}

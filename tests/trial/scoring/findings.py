@@ -59,9 +59,16 @@ def faults(found):
         wrong += [f"findings[{number}]: {text}" for text in _of_finding(finding)]
     for name in ("names_90", "cannot_tell"):
         wrong += [f"{name}: {text}" for one in found[name] for text in _of_names(one)]
+    suspected = found.get("suspected", [])
+    wrong += [f"suspected: {text}" for text in _of_names(suspected)] if suspected else []
+    wrong += [f"{name} is suspected, and found" for name in _both(found, suspected)]
     for number, advice in enumerate(found["record_next"]):
         wrong += [f"record_next[{number}]: {text}" for text in _of_advice(advice)]
     return wrong + _of_fit(found.get("fit")) + _against_itself(found)
+
+
+def _both(found, suspected):
+    return [one["effect"] for one in found["findings"] if isinstance(one, dict) and one.get("effect") in suspected]
 
 
 def _leaves(value, path):

@@ -43,6 +43,8 @@ BROKEN = [
     ("findings.0.when.phase", "dance", "there is no phase 'dance'"),
     ("names_90", ["relaxation"], "'relaxation' is no list of names"),
     ("names_90.0.0", "magic", "names_90: there is no effect 'magic'"),
+    ("suspected", ["magic"], "suspected: there is no effect 'magic'"),
+    ("suspected", ["relaxation"], "relaxation is suspected, and found"),
     ("record_next.0.text", "", "it has no text"),
     ("record_next.0.probability", 90, "probability is 90, not between 0 and 1"),
     ("fit.before.low", 0.25, "fit.before: its value lies outside its interval"),

@@ -68,6 +68,12 @@ impl Diagnosis {
         self.inner.verdict.word()
     }
 
+    /// Effects that explain more than noise would and that a gate refused: suspected only, no findings.
+    #[getter]
+    fn suspected(&self) -> Vec<&'static str> {
+        self.inner.suspected.clone()
+    }
+
     /// Records: recording, and by sample time_s, depth_mm, measured_n, before_n (parameters alone) and after_n (with what was found).
     #[getter]
     fn curves(&self, py: Python<'_>) -> PyResult<Vec<Py<PyAny>>> {
