@@ -31,11 +31,13 @@ pub(crate) struct Depths {
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
 pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Option<Depths> {
     let n = courses.depth_mm.len();
-    let mut depth = motion(courses.time_s, courses.depth_mm);
-    let mut force = courses.force_n.to_vec();
+    let mut course = motion(courses.time_s, courses.depth_mm);
+    // What the force follows is judged with depth and force smoothed alike: lines would leave of the depth what the force has lost.
+    let (mut depth, mut force) = (courses.depth_mm.to_vec(), courses.force_n.to_vec());
     for stretch in stretches {
         let own = stretch.start..stretch.end;
         let time = &courses.time_s[own.clone()];
+        depth[own.clone()].copy_from_slice(&smoothed(time, &courses.depth_mm[own.clone()]));
         force[own.clone()].copy_from_slice(&smoothed(time, &courses.force_n[own]));
     }
     let off = |read: &[f64], smooth: &[f64]| -> Vec<f64> {
@@ -61,14 +63,16 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
+    let read = off(courses.depth_mm, &course);
+    let jitter_mm = deviation(&read);
     for k in 0..n {
-        depth[k] += match is_jitter(k) {
-            true => reliability * moved[k],
-            false => moved[k],
+        course[k] += match read[k].abs() <= MOVES * jitter_mm {
+            true => reliability * read[k],
+            false => read[k],
         };
     }
     (reliability < 1.0).then_some(Depths {
-        depth_mm: depth,
+        depth_mm: course,
         jitter_mm,
         reliability,
     })
