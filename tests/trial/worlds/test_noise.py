@@ -8,10 +8,13 @@ import thenar
 from trial.worlds import closed_forms
 
 # Something was accused in each before depth noise, noise in proportion, shared bins and wandering zeros were modeled;
-# in mixture 103 it would be, if held-out recordings did not have to confirm it.
+# in mixture 103 it would be, if held-out recordings did not have to confirm it. In depth_jitter 831
+# and 851 a ceiling was, before turning points were where straight legs meet.
 NULLS = [
     ("depth_jitter", 101),
     ("depth_jitter", 105),
+    ("depth_jitter", 831),
+    ("depth_jitter", 851),
     ("in_proportion", 104),
     ("mixture", 103),
     ("mixture", 108),
@@ -30,6 +33,12 @@ def test_a_ceiling_that_is_only_noise_of_the_depth_is_not_named(tmp_path):
 
 
 @pytest.mark.parametrize(("noise", "seed"), NULLS)
+def test_a_real_ceiling_is_named_through_jitter(tmp_path):
+    closed_forms.draw(950, "saturation", "depth_jitter").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == ["saturation"]
+
+
 def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     closed_forms.draw(seed, "nothing", noise).write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
