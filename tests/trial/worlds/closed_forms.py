@@ -11,9 +11,9 @@ terms; Lee and Radok 1960, Journal of Applied Mechanics 27:438, valid while the 
 recordings end with their hold), `cycle_softening` (the modulus loses a share of up to 15 to 40 % as work is done on the
 tissue: damage D grows as dD = (1 - D) dW / W1 in loading, and does not heal within the session), `nothing_in_cycles`
 (the sessions of `cycle_softening`, and nothing missing) and `saturation` (the presses of `nothing`, read by a cell that
-clips at 75 to 92 % of the largest force of the tool that needs least). A session of
-cycles begins with four, and states the order of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each repeat begins
-as the first of its protocol did.
+clips at 75 to 92 % of the largest force of the tool that needs least). A session of cycles begins with four, and states
+the order of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each
+repeat begins as the first of its protocol did.
 
 Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
 
