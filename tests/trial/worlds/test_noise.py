@@ -32,13 +32,13 @@ def test_a_ceiling_that_is_only_noise_of_the_depth_is_not_named(tmp_path):
     assert said["findings"] == [] and said["suspected"] in ([], ["saturation"])
 
 
-@pytest.mark.parametrize(("noise", "seed"), NULLS)
 def test_a_real_ceiling_is_named_through_jitter(tmp_path):
     closed_forms.draw(950, "saturation", "depth_jitter").write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["saturation"]
 
 
+@pytest.mark.parametrize(("noise", "seed"), NULLS)
 def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     closed_forms.draw(seed, "nothing", noise).write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
