@@ -24,6 +24,5 @@ pub use quantities::{Kind, Measure, WorstPlace};
 pub use residual_on_skin::on_skin;
 pub use result::{Compared, Comparison, Frame, RecordingComparison, Series};
 pub use scan_heights::Scanned;
-pub use sentence::of_what;
 pub use single_frame::{Still, compare_still};
 pub use trends::{Bin, SIGNIFICANT, Trend, Variable};

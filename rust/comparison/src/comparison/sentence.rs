@@ -5,10 +5,9 @@ use crate::comparison::result::{RecordingComparison, Series};
 use crate::comparison::trends::{Bin, SIGNIFICANT, Trend, Variable};
 use crate::location::locate::MODEL_ERROR;
 use crate::location::mismatch::Location;
+use crate::parameter_words::at_bounds;
 use thenar_inference::fit::result::Fit;
 use thenar_inference::number_format::{chance, number, percent};
-use thenar_inference::parameters::estimate::Estimate;
-use thenar_inference::parameters::target::Target;
 
 /// The recordings of which something is left.
 fn left_of(count: usize) -> String {
@@ -91,15 +90,7 @@ pub(crate) fn of_study(
             }
         }
     };
-    let bound = fit.estimates.iter().filter(|estimate| estimate.is_at_bound);
-    let bound: Vec<String> = bound.map(of_whom).collect();
-    if !bound.is_empty() {
-        let (list, lie) = (
-            bound.join(", "),
-            if bound.len() == 1 { "lies" } else { "lie" },
-        );
-        text += &format!(" {list} {lie} at the end of what is admissible.");
-    }
+    text += &at_bounds(&fit.estimates);
     text + &prints
 }
 
@@ -202,14 +193,10 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
     let unit = trend.kind.unit(recording.is_calibrated);
     let side = if bin.mean > 0.0 { "above" } else { "below" };
     let size = number(bin.mean.abs());
-    let part = match largest(recording, trend.kind) {
-        Some(largest) => format!(" ({} of the largest)", percent(bin.mean.abs() / largest)),
-        None => String::new(),
-    };
     let looks: usize = recording.trends.iter().map(|trend| trend.bins.len()).sum();
     let sure = match recording.is_noise_told {
         true => format!(
-            "{} standard errors apart ({} after {looks} looks)",
+            "{} standard errors of the noise apart ({} after {looks} looks)",
             number(bin.standard_errors()),
             chance(bin.p)
         ),
@@ -218,8 +205,22 @@ fn departs(recording: &RecordingComparison, trend: &Trend, bin: &Bin) -> String 
             number(bin.standard_errors())
         ),
     };
+    let share = largest(recording, trend.kind).map(|largest| bin.mean.abs() / largest);
+    let part = share.map_or_else(String::new, |share| {
+        format!(" ({} of the largest)", percent(share))
+    });
+    // Sure of the noise is not sure of the physics: the study's sentence calls as much no finding.
+    let caution = match share {
+        Some(share) if share < MODEL_ERROR => {
+            format!(
+                "; the simulation itself may be off by {}",
+                percent(MODEL_ERROR)
+            )
+        }
+        _ => String::new(),
+    };
     format!(
-        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {sure}.",
+        "Measured {} lies {size} {unit}{part} {side} the simulation {}, {sure}{caution}.",
         trend.kind.label().to_lowercase(),
         place(trend.variable, bin),
     )
@@ -362,18 +363,4 @@ fn relative_rest(recording: &RecordingComparison) -> f64 {
             0.0
         }
     })
-}
-
-/// What a parameter belongs to, for people: `region "pad"`, a recording by its name, `the instrument`.
-pub fn of_what(target: &Target) -> String {
-    match target {
-        Target::Region(name) => format!("region \u{201c}{name}\u{201d}"),
-        Target::Recording(name) => format!("\u{201c}{name}\u{201d}"),
-        Target::Instrument => "the instrument".to_string(),
-    }
-}
-
-/// A parameter and what it belongs to, for people: `g0_mpa of region "pad"`.
-fn of_whom(one: &Estimate) -> String {
-    format!("{} of {}", one.name, of_what(&one.target))
 }

@@ -19,6 +19,11 @@ fn study() -> Comparison {
 }
 
 fn loaded() -> Fit {
+    relaxing_by(0.22)
+}
+
+/// The second press loses this share of its force in time.
+fn relaxing_by(share: f64) -> Fit {
     let mut normal = Normal(11);
     let moments = ramp_and_hold(240);
     let simulated: Vec<f64> = moments
@@ -37,7 +42,7 @@ fn loaded() -> Fit {
     };
     let recordings = vec![
         press(0.0, "slow press, repeat 1"),
-        press(0.22, "fast press & <hold>"),
+        press(share, "fast press & <hold>"),
         mat_recording(),
     ];
     let mut fit = fit_of(recordings, 0.03, DMatrix::zeros(0, 0));
@@ -179,7 +184,7 @@ fn the_first_sentence_names_what_stands_out() {
     assert!(
         comparison
             .sentence
-            .contains("at the end of what is admissible"),
+            .contains("At the end of what is admissible lie"),
         "{}",
         comparison.sentence
     );
@@ -201,6 +206,48 @@ fn the_first_sentence_names_what_stands_out() {
         comparison.recordings[2].sentence.contains("overlap by"),
         "{}",
         comparison.recordings[2].sentence
+    );
+}
+
+/// Eleven gains on their bound are named once, in words; the same of one mat's three coordinates.
+#[test]
+fn parameters_on_a_bound_are_grouped_in_words() {
+    let mut fit = loaded();
+    let bound = |name: &str, target: Target| {
+        let mut one = modulus(name, 0.9);
+        (one.target, one.is_at_bound) = (target, true);
+        one
+    };
+    fit.estimates = (1..=11)
+        .map(|k| bound("repeat_gain", Target::Recording(format!("repeat {k}"))))
+        .collect();
+    for axis in ["pose_x_mm", "pose_y_mm", "pose_turn_rad"] {
+        let target = Target::Recording("mat, 2 N".into());
+        fit.estimates.push(bound(axis, target));
+    }
+    let said = compared(&fit).sentence;
+    for part in [
+        "gain of \u{201c}repeat 1\u{201d}, \u{201c}repeat 2\u{201d} and 9 more",
+        "mat's place of \u{201c}mat, 2 N\u{201d}",
+    ] {
+        assert_eq!(said.matches(part).count(), 1, "{part}: {said}");
+    }
+    assert!(!said.contains('_'), "a name of the code: {said}");
+}
+
+/// A difference below the simulation's own error is sure of the noise alone; a larger one needs no such caution.
+#[test]
+fn a_small_difference_is_stated_with_the_simulations_error() {
+    let caution = "the simulation itself may be off by 8.0 %";
+    let large = compared(&loaded()).recordings[1].sentence.clone();
+    assert!(
+        large.contains("standard errors of the noise") && !large.contains(caution),
+        "{large}"
+    );
+    let small = compared(&relaxing_by(0.06)).recordings[1].sentence.clone();
+    assert!(
+        small.contains("below the simulation") && small.contains(caution),
+        "{small}"
     );
 }
 
