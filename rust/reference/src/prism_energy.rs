@@ -76,7 +76,10 @@ pub fn evaluate(
     let bulk = bulk_ratio * modulus / volume_before;
     let dilatation = volume / volume_before;
     let pressure = bulk * (dilatation - 1.0);
-    *element = Element::default();
+    element.force = [0.0; UNKNOWNS];
+    if with_stiffness {
+        element.stiffness = [[0.0; UNKNOWNS]; UNKNOWNS];
+    }
     element.dilatation = dilatation;
     element.energy = 0.5 * bulk * (dilatation - 1.0).powi(2) * volume_before;
     let mut volume_force = [0.0; UNKNOWNS];
@@ -100,14 +103,14 @@ pub fn evaluate(
                 volume_force[unknown(k)] += weight * along(&point.cofactor);
             }
             if with_stiffness {
-                add_stiffness(&point.moduli(pressure), shape, weight, &mut stiffness);
+                add_stiffness((&point, pressure), shape, weight, &mut stiffness);
             }
         }
         if with_stiffness {
             for a in 0..OF_PRISM {
                 for b in 0..=a {
                     let (p, q) = (unknown(a), unknown(b));
-                    element.stiffness[p.max(q)][p.min(q)] += stiffness[a][b];
+                    element.stiffness[p.max(q)][p.min(q)] += stiffness[a][by_axis(b)];
                 }
             }
         }
@@ -157,32 +160,40 @@ fn deformation(shape: &[[f64; 3]; NODES], places: &[[f64; 3]; NODES]) -> Matrix3
     })
 }
 
-/// Adds the stiffness of one point: gradients on both sides of the moduli.
+/// Column of an unknown of a prism in its stiffness: all nodes of one axis follow each other, for loops over nodes that fill registers.
+fn by_axis(unknown: usize) -> usize {
+    NODES * (unknown % 3) + unknown / 3
+}
+
+/// Adds the stiffness of one point under the group's pressure; rows by node, columns `by_axis`.
 fn add_stiffness(
-    moduli: &[[f64; 9]; 9],
+    (point, pressure): (&Point, f64),
     shape: &[[f64; 3]; NODES],
     weight: f64,
     stiffness: &mut [[f64; OF_PRISM]; OF_PRISM],
 ) {
-    let mut half = [[0.0; OF_PRISM]; 9];
-    for (row, moduli) in half.iter_mut().zip(moduli) {
-        for b in 0..NODES {
-            for k in 0..3 {
-                let sum = moduli[3 * k] * shape[b][0]
-                    + moduli[3 * k + 1] * shape[b][1]
-                    + moduli[3 * k + 2] * shape[b][2];
-                row[3 * b + k] = weight * sum;
-            }
-        }
-    }
+    let (f, t) = point.gradients();
+    let of = |m: &Matrix3| -> [[f64; NODES]; 3] {
+        std::array::from_fn(|i| {
+            std::array::from_fn(|a| (0..3).map(|j| m[i][j] * shape[a][j]).sum())
+        })
+    };
+    let (f, g) = (of(f), of(t));
+    let [k1, k2, k3, k4, k5] = point.moduli(pressure).map(|k| weight * k);
     for a in 0..NODES {
+        let along: [f64; NODES] =
+            std::array::from_fn(|b| k5 * (0..3).map(|j| shape[a][j] * shape[b][j]).sum::<f64>());
         for i in 0..3 {
             let row = &mut stiffness[3 * a + i];
-            let last = 3 * a + i;
-            for c in 0..=last {
-                row[c] += shape[a][0] * half[3 * i][c]
-                    + shape[a][1] * half[3 * i + 1][c]
-                    + shape[a][2] * half[3 * i + 2][c];
+            let (u, v) = (k1 * f[i][a] + k2 * g[i][a], k2 * f[i][a] + k3 * g[i][a]);
+            for k in 0..3 {
+                let w = k4 * g[k][a];
+                for b in 0..NODES {
+                    row[NODES * k + b] += u * f[k][b] + v * g[k][b] + w * g[i][b];
+                }
+            }
+            for b in 0..NODES {
+                row[NODES * i + b] += along[b];
             }
         }
     }

@@ -25,8 +25,6 @@ pub struct Point {
     slope: f64,
     stiffening: f64,
     pub energy: f64,
-    /// dI1/dF at constant volume.
-    direction: Matrix3,
     /// First Piola-Kirchhoff stress without the group's pressure, MPa.
     pub stress: Matrix3,
     /// Pressure of the point's own volume, and how it grows (times J squared), MPa.
@@ -38,7 +36,7 @@ impl Point {
         let cofactor = cofactors(f);
         let t = cofactor.map(|row| row.map(|value| value / determinant));
         let first = f.iter().flatten().map(|value| value * value).sum::<f64>();
-        let scale = determinant.powf(-2.0 / 3.0);
+        let scale = determinant.cbrt().powi(-2);
         let strain = (scale * first - 3.0).max(0.0);
         let (growth, energy) = if stiffening > 1e-8 {
             let growth = (stiffening * strain).min(MOST_EXPONENT).exp();
@@ -63,7 +61,6 @@ impl Point {
             slope,
             stiffening,
             energy,
-            direction,
             stress: std::array::from_fn(|i| {
                 std::array::from_fn(|j| slope * direction[i][j] + own_pressure * cofactor[i][j])
             }),
@@ -71,33 +68,26 @@ impl Point {
         }
     }
 
-    /// dP/dF with the mean pressure's own part, nine by nine, lower half.
-    pub fn moduli(&self, pressure: f64) -> [[f64; 9]; 9] {
-        let (f, t) = (&self.f, &self.t);
-        let mut moduli = [[0.0; 9]; 9];
+    /// What the stiffness of the point is made from, under the group's pressure.
+    ///
+    /// With `f = F G` and `g = F^-T G` of the gradients G of two shape functions a and b, the derivative of the stress is
+    /// `k1 f f + k2 (f g + g f) + k3 g g + k4 (g g)^T + k5 (G . G) 1`, each product of a vector of a and one of b.
+    pub fn moduli(&self, pressure: f64) -> [f64; 5] {
         let shear = 2.0 * self.scale * self.slope;
-        let hardening = self.slope * self.stiffening;
-        for m in 0..9 {
-            let (i, j) = (m / 3, m % 3);
-            for n in 0..=m {
-                let (k, l) = (n / 3, n % 3);
-                let crossed = t[i][l] * t[k][j];
-                let both = t[i][j] * t[k][l];
-                let mixed = f[i][j] * t[k][l] + t[i][j] * f[k][l];
-                let mut value = hardening * self.direction[i][j] * self.direction[k][l];
-                value += shear
-                    * (f64::from(u8::from(m == n)) - 2.0 / 3.0 * mixed
-                        + self.first * (2.0 / 9.0 * both + crossed / 3.0));
-                value += (pressure + self.own.0) * self.determinant * (both - crossed);
-                value += self.own.1 * both;
-                moduli[m][n] = value;
-            }
-        }
-        for m in 0..9 {
-            for n in m + 1..9 {
-                moduli[m][n] = moduli[n][m];
-            }
-        }
-        moduli
+        let volume = (pressure + self.own.0) * self.determinant;
+        let third = self.first / 3.0;
+        let hardening = 4.0 * self.scale * self.scale * self.slope * self.stiffening;
+        [
+            hardening,
+            -hardening * third - 2.0 / 3.0 * shear,
+            hardening * third * third + 2.0 / 3.0 * shear * third + volume + self.own.1,
+            shear * third - volume,
+            shear,
+        ]
+    }
+
+    /// The deformation gradient, and its inverse's transpose.
+    pub fn gradients(&self) -> (&Matrix3, &Matrix3) {
+        (&self.f, &self.t)
     }
 }
