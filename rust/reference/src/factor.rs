@@ -19,6 +19,8 @@ pub struct Factor {
     symbolic: SymbolicCholesky<usize>,
     values: Vec<f64>,
     size: usize,
+    /// Room for the computation.
+    room: MemBuffer,
 }
 
 impl Factor {
@@ -41,10 +43,16 @@ impl Factor {
         let mut values = Vec::new();
         values.try_reserve_exact(length).ok()?;
         values.resize(length, 0.0);
+        let par = Par::Seq;
+        let need = symbolic
+            .factorize_numeric_llt_scratch::<f64>(par, Default::default())
+            .or(symbolic.solve_in_place_scratch::<f64>(1, par));
+        let room = MemBuffer::try_new(need).ok()?;
         Some(Factor {
             symbolic,
             values,
             size,
+            room,
         })
     }
 
@@ -60,34 +68,24 @@ impl Factor {
         let matrix = SparseColMatRef::new(matrix, values);
         // One thread: the same bits on every machine.
         let par = Par::Seq;
-        let need = self
-            .symbolic
-            .factorize_numeric_llt_scratch::<f64>(par, Default::default());
-        let Ok(mut room) = MemBuffer::try_new(need) else {
-            return false;
-        };
         let factored = self.symbolic.factorize_numeric_llt(
             &mut self.values,
             matrix,
             Side::Lower,
             LltRegularization::default(),
             par,
-            MemStack::new(&mut room),
+            MemStack::new(&mut self.room),
             Default::default(),
         );
         if factored.is_err() {
             return false;
         }
-        let need = self.symbolic.solve_in_place_scratch::<f64>(1, par);
-        let Ok(mut room) = MemBuffer::try_new(need) else {
-            return false;
-        };
         let right = MatMut::from_column_major_slice_mut(right, self.size, 1);
         LltRef::<usize, f64>::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
             right,
             par,
-            MemStack::new(&mut room),
+            MemStack::new(&mut self.room),
         );
         true
     }

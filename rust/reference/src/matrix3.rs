@@ -3,6 +3,7 @@
 pub type Matrix3 = [[f64; 3]; 3];
 
 /// Cofactors: the determinant times the inverse's transpose.
+#[inline(always)]
 pub fn cofactors(m: &Matrix3) -> Matrix3 {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {

@@ -33,7 +33,11 @@ pub struct Equilibrium<'a> {
     /// Newton steps so far.
     pub steps: usize,
     elements: Vec<Element>,
+    /// Places at which the elements hold force and stiffness; empty where they hold none.
+    evaluated: Vec<Vec3>,
     values: Vec<f64>,
+    /// Room for the stiffness of the step before.
+    spare: Vec<f64>,
 }
 
 /// Forces in one state.
@@ -51,6 +55,13 @@ impl Forces {
     pub fn unbalanced(&self) -> f64 {
         let contact: f64 = self.touches.iter().map(|t| t.force * t.force).sum();
         norm(&self.residual) / (contact.sqrt() + 1e-6)
+    }
+
+    /// The deepest skin that bears a load, mm.
+    pub fn deepest_mm(&self) -> f64 {
+        self.touches
+            .iter()
+            .fold(0.0, |most, t| f64::max(most, -t.distance))
     }
 }
 
@@ -95,7 +106,9 @@ impl<'a> Equilibrium<'a> {
             places: mesh.nodes.clone(),
             steps: 0,
             elements: vec![Element::default(); mesh.groups.len()],
+            evaluated: Vec::new(),
             values: vec![0.0; pattern.rows.len()],
+            spare: vec![0.0; pattern.rows.len()],
         })
     }
 
@@ -164,17 +177,31 @@ impl<'a> Equilibrium<'a> {
         penalty: Penalty,
         regularization: &mut f64,
     ) -> Option<Next> {
+        // The attempts below overwrite the stiffness that is kept.
+        std::mem::swap(&mut self.values, &mut self.spare);
+        let mut stiffness = std::mem::take(&mut self.spare);
+        let next = self.attempt((places, forces), penalty, &mut stiffness, regularization);
+        self.spare = stiffness;
+        next
+    }
+
+    fn attempt(
+        &mut self,
+        (places, forces): (&[Vec3], &Forces),
+        penalty: Penalty,
+        stiffness: &mut [f64],
+        regularization: &mut f64,
+    ) -> Option<Next> {
         let mut is_first = true;
         let unbalanced = norm(&forces.residual);
-        // The attempts below overwrite the stiffness that is kept.
-        let stiffness = self.values.clone();
+        let diagonal = self.pattern.diagonal();
+        let plain: Vec<f64> = diagonal.iter().map(|entry| stiffness[*entry]).collect();
         while *regularization <= REGULARIZATION.2 {
-            let mut values = stiffness.clone();
-            for entry in self.pattern.diagonal() {
-                values[*entry] += *regularization * values[*entry].abs();
+            for (entry, plain) in diagonal.iter().zip(&plain) {
+                stiffness[*entry] = plain + *regularization * plain.abs();
             }
             let mut step: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
-            let is_definite = self.factor.solve(self.pattern, &values, &mut step);
+            let is_definite = self.factor.solve(self.pattern, stiffness, &mut step);
             let longest = step.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
             if is_definite && longest.is_finite() {
                 let slope: f64 = step.iter().zip(&forces.residual).map(|(s, r)| s * r).sum();
@@ -203,10 +230,10 @@ impl<'a> Equilibrium<'a> {
         None
     }
 
-    /// Moves the product's side to where its penalty holds the skin at it; the deepest skin before that, mm.
-    pub fn shift_obstacle(&mut self) -> f64 {
+    /// Moves the product's side to where its penalty holds the skin at it.
+    pub fn shift_obstacle(&mut self) {
         let (mesh, places) = (self.mesh, &self.places);
-        self.obstacle.shift(|v| places[mesh.skin_node(v)])
+        self.obstacle.shift(|v| places[mesh.skin_node(v)]);
     }
 
     /// Smallest and largest volume of a prism over its volume before, where the nodes were evaluated last.
@@ -228,14 +255,10 @@ impl<'a> Equilibrium<'a> {
         moved.collect()
     }
 
-    /// Energy and forces at `places`, and the stiffness where asked for; `None` where a prism is folded.
-    fn forces(
-        &mut self,
-        places: &[Vec3],
-        penalty: Penalty,
-        with_stiffness: bool,
-    ) -> Option<Forces> {
+    /// Evaluates the elements at `places`; false where a prism is folded.
+    fn strain(&mut self, places: &[Vec3], with_stiffness: bool) -> bool {
         let (mesh, bulk_ratio) = (self.mesh, self.bulk_ratio);
+        self.evaluated.clear();
         let work = self
             .elements
             .par_iter_mut()
@@ -251,7 +274,23 @@ impl<'a> Equilibrium<'a> {
             };
             evaluate(placed, bulk_ratio, with_stiffness, element)
         });
-        if !is_sound.reduce(|| true, |a, b| a && b) {
+        let is_sound = is_sound.reduce(|| true, |a, b| a && b);
+        if is_sound && with_stiffness {
+            self.evaluated.extend_from_slice(places);
+        }
+        is_sound
+    }
+
+    /// Energy and forces at `places`, and the stiffness where asked for; `None` where a prism is folded.
+    fn forces(
+        &mut self,
+        places: &[Vec3],
+        penalty: Penalty,
+        with_stiffness: bool,
+    ) -> Option<Forces> {
+        let mesh = self.mesh;
+        // A product that changed leaves the tissue as it was.
+        if !(with_stiffness && self.evaluated == places) && !self.strain(places, with_stiffness) {
             return None;
         }
         let mut residual = vec![0.0; 3 * mesh.free_count];

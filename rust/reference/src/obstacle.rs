@@ -213,21 +213,13 @@ impl<'a> Obstacle<'a> {
 }
 
 impl Obstacle<'_> {
-    /// Moves the product's side by what the skin lies below it (augmented Lagrangian: pressure stays, depth goes). Returns the deepest skin
-    /// that carries a load, mm.
-    pub fn shift(&mut self, place: impl Fn(usize) -> Vec3) -> f64 {
+    /// Moves the product's side by what the skin lies below it (augmented Lagrangian: pressure stays, depth goes).
+    pub fn shift(&mut self, place: impl Fn(usize) -> Vec3) {
         let gaps = self.gaps(place);
-        let mut deepest = 0.0_f64;
         for (shift, gap) in self.shifts.iter_mut().zip(&gaps) {
             let distance = gap.as_ref().map_or(f64::INFINITY, |gap| gap.distance);
-            *shift = if *shift - distance > 0.0 {
-                deepest = deepest.max(-distance);
-                *shift - distance
-            } else {
-                0.0
-            };
+            *shift = (*shift - distance).max(0.0);
         }
-        deepest
     }
 }
 

@@ -48,6 +48,7 @@ pub struct Placed<'a> {
 }
 
 /// Fills `element`. False where one of the group's prisms is folded.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2"))]
 pub fn evaluate(
     placed: Placed<'_>,
     bulk_ratio: f64,
@@ -138,6 +139,7 @@ struct Strain {
 
 impl Strain {
     /// `None` where the prism is folded.
+    #[inline(always)]
     fn new(prism: &Prism, corners: &[[f64; 3]; NODES]) -> Option<Strain> {
         let mut strain = Strain::default();
         for g in 0..POINTS {
@@ -154,6 +156,7 @@ impl Strain {
     }
 }
 
+#[inline(always)]
 fn deformation(shape: &[[f64; 3]; NODES], places: &[[f64; 3]; NODES]) -> Matrix3 {
     std::array::from_fn(|i| {
         std::array::from_fn(|j| (0..NODES).map(|a| places[a][i] * shape[a][j]).sum())
@@ -161,11 +164,13 @@ fn deformation(shape: &[[f64; 3]; NODES], places: &[[f64; 3]; NODES]) -> Matrix3
 }
 
 /// Column of an unknown of a prism in its stiffness: all nodes of one axis follow each other, for loops over nodes that fill registers.
+#[inline(always)]
 fn by_axis(unknown: usize) -> usize {
     NODES * (unknown % 3) + unknown / 3
 }
 
 /// Adds the stiffness of one point under the group's pressure; rows by node, columns `by_axis`.
+#[inline(always)]
 fn add_stiffness(
     (point, pressure): (&Point, f64),
     shape: &[[f64; 3]; NODES],

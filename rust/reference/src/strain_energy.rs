@@ -32,6 +32,7 @@ pub struct Point {
 }
 
 impl Point {
+    #[inline(always)]
     pub fn new(f: &Matrix3, determinant: f64, shear_modulus: f64, stiffening: f64) -> Point {
         let cofactor = cofactors(f);
         let t = cofactor.map(|row| row.map(|value| value / determinant));
@@ -72,6 +73,7 @@ impl Point {
     ///
     /// With `f = F G` and `g = F^-T G` of the gradients G of two shape functions a and b, the derivative of the stress is
     /// `k1 f f + k2 (f g + g f) + k3 g g + k4 (g g)^T + k5 (G . G) 1`, each product of a vector of a and one of b.
+    #[inline(always)]
     pub fn moduli(&self, pressure: f64) -> [f64; 5] {
         let shear = 2.0 * self.scale * self.slope;
         let volume = (pressure + self.own.0) * self.determinant;
@@ -87,6 +89,7 @@ impl Point {
     }
 
     /// The deformation gradient, and its inverse's transpose.
+    #[inline(always)]
     pub fn gradients(&self) -> (&Matrix3, &Matrix3) {
         (&self.f, &self.t)
     }
