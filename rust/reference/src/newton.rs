@@ -180,45 +180,35 @@ impl<'a> Equilibrium<'a> {
         // The attempts below overwrite the stiffness that is kept.
         std::mem::swap(&mut self.values, &mut self.spare);
         let mut stiffness = std::mem::take(&mut self.spare);
-        let next = self.attempt((places, forces), penalty, &mut stiffness, regularization);
-        self.spare = stiffness;
-        next
-    }
-
-    fn attempt(
-        &mut self,
-        (places, forces): (&[Vec3], &Forces),
-        penalty: Penalty,
-        stiffness: &mut [f64],
-        regularization: &mut f64,
-    ) -> Option<Next> {
         let mut is_first = true;
         let unbalanced = norm(&forces.residual);
         let diagonal = self.pattern.diagonal();
         let plain: Vec<f64> = diagonal.iter().map(|entry| stiffness[*entry]).collect();
-        while *regularization <= REGULARIZATION.2 {
+        let mut next = None;
+        'search: while *regularization <= REGULARIZATION.2 {
             for (entry, plain) in diagonal.iter().zip(&plain) {
                 stiffness[*entry] = plain + *regularization * plain.abs();
             }
             let mut step: Vec<f64> = forces.residual.iter().map(|r| -r).collect();
-            let is_definite = self.factor.solve(self.pattern, stiffness, &mut step);
+            let is_definite = self.factor.solve(self.pattern, &stiffness, &mut step);
             let longest = step.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
             if is_definite && longest.is_finite() {
                 let slope: f64 = step.iter().zip(&forces.residual).map(|(s, r)| s * r).sum();
                 let mut share = (MOST_STEP_MM / longest).min(1.0);
                 for attempt in 0..SHORTER.0 {
-                    let next = self.moved(places, &step, share);
+                    let there = self.moved(places, &step, share);
                     // The first step mostly serves: its stiffness is then not computed apart.
                     let is_plain = is_first && attempt == 0;
-                    if let Some(found) = self.forces(&next, penalty, is_plain) {
+                    if let Some(found) = self.forces(&there, penalty, is_plain) {
                         let enough =
                             forces.energy + DECREASE * share * slope + 1e-10 * forces.energy.abs();
                         if found.energy <= enough || norm(&found.residual) < 0.5 * unbalanced {
-                            return Some(Next {
-                                places: next,
+                            next = Some(Next {
+                                places: there,
                                 is_plain,
                                 forces: is_plain.then_some(found),
                             });
+                            break 'search;
                         }
                     }
                     share *= SHORTER.1;
@@ -227,7 +217,8 @@ impl<'a> Equilibrium<'a> {
             is_first = false;
             *regularization = (REGULARIZATION.1 * *regularization).max(REGULARIZATION.0);
         }
-        None
+        self.spare = stiffness;
+        next
     }
 
     /// Moves the product's side to where its penalty holds the skin at it.

@@ -14,8 +14,7 @@ use crate::{ReferenceError, Tissue};
 /// Product's hardness while it grows, and at the end, over the mean shear modulus, 1/mm.
 const GROWING: f64 = 5.0;
 const RIGID: f64 = 4000.0;
-/// Factor by which it hardens in a step, and the least before the solve gives up. On the samples a step by 16 takes as many Newton steps as
-/// one by 4, and steps by 40 take more in all.
+/// Factor by which it hardens in a step, and the least before the solve gives up. On the 48 mm sample 4 takes 15 Newton steps and 16 takes 14.
 const HARDER: f64 = 16.0;
 const LEAST_HARDER: f64 = 1.03;
 /// Where skin stays deeper in the product than this, mm, the product's side is moved once more; at most so many times more.
@@ -29,8 +28,8 @@ const MOST_CUT: [(f64, f64); 2] = [(0.5, 0.1), (0.1, 0.5)];
 const MOST_CROSSED: f64 = 0.5;
 /// How far outside the product skin is still refined, mm.
 const NEAR_MM: f64 = 1.0;
-/// The shortest step of growth before the solve gives up, mm. The first step is the whole depth: on the samples and pads it takes fewer Newton
-/// steps than several, and a step that fails is halved.
+/// The shortest step of growth before the solve gives up, mm. The first step is the whole depth, halved where it fails: on the 48 mm sample 10
+/// Newton steps in place of 20 by steps of 2 mm.
 const LEAST_GROWTH_MM: f64 = 0.02;
 /// Most nodes that move: with more, building the matrix alone would take too long.
 const MOST_NODES: usize = 400_000;
@@ -93,8 +92,8 @@ pub type Progress<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
 /// Presses the tissue against a rigid, smooth product, where both lie.
 ///
-/// The product is first made smaller all around by its overlap with the skin, and grows while its surface is soft, then hardens. This is
-/// the static solution of a press along the shortest way out, at any depth.
+/// The product's surface is soft first, then hardens. Where a step to the whole depth fails, the product is made smaller all around and grows
+/// step by step. This is the static solution of a press along the shortest way out, at any depth.
 ///
 /// # Errors
 /// [`ReferenceError::Tissue`] for input that cannot be meshed, [`ReferenceError::Unsolved`], [`ReferenceError::Cancelled`].
