@@ -281,7 +281,8 @@ impl<'a> Equilibrium<'a> {
     ) -> Option<Forces> {
         let mesh = self.mesh;
         // A product that changed leaves the tissue as it was.
-        if !(with_stiffness && self.evaluated == places) && !self.strain(places, with_stiffness) {
+        let is_known = with_stiffness && self.evaluated == places;
+        if !is_known && !self.strain(places, with_stiffness) {
             return None;
         }
         let mut residual = vec![0.0; 3 * mesh.free_count];
