@@ -49,6 +49,11 @@ turns farther than this there is an edge between, or the other wall."""
 
 PLACE = np.array([WEIGHT_SHIFT] * 3 + [WEIGHT_TURN] * 3)
 
+ALONG_MM = 20.0
+WEIGHT_ALONG = 0.5
+"""A hand around a bar stays so near to where it was laid, along the bar; mm for each mm beyond. A fit that balances a
+moment else slides to the bar's end: there pads that press run out, and others hook over the edge."""
+
 BODY_MM = 1.0
 """Skin outside the pads (sides, webs, back of the fingers) may lie this deep in the product."""
 
@@ -146,7 +151,8 @@ class Task:
         crossed = CROSSED * self.gauge.is_crossed(bones + self.pivot + shift)
         loads = self.goal.load.residuals(Touched(self.rows, points, gap, slopes)) if self.goal.load is not None else []
         lies = self.thumb.residuals(posed, points, (self.pivot, turn, shift))
-        return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x), [crossed], lies, loads])
+        off = [crossed, self._along(shift)[0]]
+        return np.concatenate([values, WEIGHT_APART * np.maximum(overlap, 0.0), self._soft(x), off, lies, loads])
 
     def _chosen(self, gap):
         """Rows, factors and values of the depth residuals: pads first, then what of pads and body is too deep.
@@ -180,6 +186,15 @@ class Task:
         coupled = [weight * np.degrees(x[d] - share * x[p] + rest) for d, p, share, rest, weight in self.coupled]
         return np.concatenate([coupled, self.held * degrees, PLACE * x[-6:]])
 
+    def _along(self, shift):
+        """How far the hand slid along the bar beyond what is free, mm by weight, and its slope (3) by the shift."""
+        if self.goal.bar is None:
+            return 0.0, np.zeros(3)
+        center, axis = self.goal.bar
+        off = float((self.pivot + shift - center) @ axis)
+        beyond = max(abs(off) - ALONG_MM, 0.0)
+        return WEIGHT_ALONG * beyond, WEIGHT_ALONG * np.sign(off) * (beyond > 0.0) * axis
+
     def jacobian(self, x):
         """Derivative (m, d) of the last residuals."""
         angles, posed, (points, gap, slopes), chosen, apart = self.state
@@ -204,6 +219,7 @@ class Task:
             depth,
             self._apart(turning, apart),
             self._soft_slope(),
+            np.pad(self._along(x[-6:-3])[1], (len(self.dofs), 3))[None],
             self.thumb.slopes((posed, turning, points), (self.pivot, turn, x[-6:-3], spin), self.part, self.dofs),
         ]
         if load is not None:
