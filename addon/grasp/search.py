@@ -33,6 +33,7 @@ LAST, LAST_ROUNDS = 3, 5
 UNSETTLED, OFF_BALANCE = 2.0, 0.1
 SLIPS = 2.0
 POOR = 8.0
+HOPELESS = 14.0
 OPPOSED = 1.5
 LOST = 0.4
 TOO_HARD_MPA = 0.6
@@ -40,7 +41,8 @@ TOO_HARD_MPA = 0.6
 the next where that one does not. What is not settled counts `UNSETTLED` more, and
 `OFF_BALANCE` for each tolerance that it misses, or a way that was balanced a little would go before one that was
 balanced nearly; what slips counts `SLIPS`; a power grip that
-counts more than `POOR` is compared with pinches. A thumb whose pad faces away from the index finger's counts `OPPOSED`
+counts more than `POOR` is compared with pinches; where the best one that is balanced a little counts more than
+`HOPELESS`, pinches are tried first. A thumb whose pad faces away from the index finger's counts `OPPOSED`
 for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
 one is not counted. What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is
 no grasp."""
@@ -81,17 +83,19 @@ def search(fit, watch=fitter.ALONE, asked=None):
     kind. Raises `GraspError` if none holds.
     """
     began, asked = time.perf_counter(), asked or Asked()
-    stage = stage_of(fit)
-    found, refusals = [], []
-    for kind in (ways.POWER, ways.PINCH):
-        is_held = bool(found) and found[0].friction <= FRICTION and found[0].score <= POOR
-        if asked.kind not in ("AUTO", kind) or is_held:
+    stage, begun, found, refusals = stage_of(fit), {}, [], []
+    plan = [(ways.POWER, HOPELESS), (ways.PINCH, np.inf), (ways.POWER, np.inf)]
+    for kind, most in plan if asked.kind == "AUTO" else [(asked.kind, np.inf)]:
+        if _is_enough(found, kind):
             continue
-        ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
-        total_n = asked.total_n if kind == ways.POWER else asked.pinch_n
-        aim = settling.Aim(np.zeros(3), np.zeros(3), total_n)
+        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n if kind == ways.POWER else asked.pinch_n)
         try:
-            found += _best(ready, aim, watch)
+            if kind not in begun:
+                begun[kind] = []
+                ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
+                begun[kind] = _begun(ready, aim, watch)
+            if begun[kind] and begun[kind][0].score <= most:
+                found += _ended(begun[kind], aim, watch, most)
         except (Refusal, native.module.SolveError) as refusal:
             fitter.leave_if_cancelled(watch)
             refusals.append(refusal)
@@ -101,8 +105,21 @@ def search(fit, watch=fitter.ALONE, asked=None):
     return [_finished(one, time.perf_counter() - began) for one in found]
 
 
+def _is_enough(found, kind):
+    """Whether a kind need not be sought after the grasps `found`: it is among them, or the best one is held and, where
+    it is no pinch, not poor."""
+    if not found or found[0].friction > FRICTION:
+        return any(one.way.kind == kind for one in found)
+    return found[0].way.kind in (kind, ways.PINCH) or found[0].score <= POOR
+
+
 def _best(ready, aim, watch):
     """The grasps that ways lead to, best first. Raises `Refusal` or `SolveError` where even the best one is none."""
+    return _ended(_begun(ready, aim, watch), aim, watch)
+
+
+def _begun(ready, aim, watch):
+    """The grasps that ways lead to, balanced a little, best first. Raises `Refusal` or `SolveError` where none does."""
     if not ready:
         raise fitter.GraspError(
             "no two sides of the product can be pinched; choose another kind of grasp, or make the product thinner"
@@ -120,9 +137,16 @@ def _best(ready, aim, watch):
         out.append(_found(state, aim, way))
     if not out:
         raise refusals[0] if refusals else fitter.GraspError("no way to hold the product was found")
-    out.sort(key=lambda found: in_steps(found.score))
+    return sorted(out, key=lambda found: in_steps(found.score))
+
+
+def _ended(begun, aim, watch, most=np.inf):
+    """The grasps `begun` with the best ones balanced to the end, best first; after the first one those that count more
+    than `most` stay as they are. Raises `Refusal` where even the best one is none."""
+    out = list(begun)
     for place in range(min(LAST, len(out))):
-        if any(settling.is_settled(one.state, aim) for one in out[: place + 1]):
+        is_over = place > 0 and out[place].score > most
+        if is_over or any(settling.is_settled(one.state, aim) for one in out[: place + 1]):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]

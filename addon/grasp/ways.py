@@ -22,6 +22,10 @@ OBLIQUE_DEG = 12.0
 ALONG = -0.25
 """The bar's axis against the line of the knuckles, and its place along the fingers in parts of the hand's breadth."""
 
+THIN = 0.2
+"""A pad begins no deeper in a pinch than this share of what is pinched is thick: around a rod of 8 mm two pads that
+begin 4 mm deep would pass each other, and each would press its side."""
+
 POWER, PINCH = "POWER", "PINCH"
 
 
@@ -87,6 +91,7 @@ def pinched(stage):
         digits = [digit for digit in spot.digits if wish.digits is None or digit in wish.digits]
         if "thumb" not in digits or len(digits) < 2:
             continue
-        own = replace(wish, targets_mm={"distal": wish.targets_mm["distal"]}, digits=tuple(digits))
+        depth = min(wish.targets_mm["distal"], THIN * spot.width_mm)
+        own = replace(wish, targets_mm={"distal": depth}, digits=tuple(digits))
         out.append(Way(PINCH, replace(stage, fit=replace(stage.fit, wish=own)), spot))
     return out

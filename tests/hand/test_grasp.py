@@ -145,6 +145,29 @@ def test_slopes_of_the_thumb_around_a_bar(arrays):
     assert (np.max(seen, axis=0) > 0.0).all(), "each of the three is missed at one end, or its slope was not looked at"
 
 
+@pytest.mark.parametrize("slid_mm", [-60.0, 0.0, 60.0])
+def test_a_hand_that_slides_along_a_bar_is_drawn_back(arrays, slid_mm):
+    """The slope of all residuals is that of their differences, and pulls against the slide."""
+    product, vertices = product_of(products.cylinder(60))
+    wish = fitter.Wish(pads.FIRM_MM, **UPRIGHT)
+    wanted = fitter.wanted_depths(arrays.pads, wish)
+    gauge = walls.Gauge(product, is_thin=False)
+    start = fitter.start_of(arrays, gauge, wanted, (fitter._placings(arrays, vertices, wish)[0], None))
+    around, free = (task.Task(arrays, gauge, task.Goal(wanted, **goal), start, wish) for goal in (AROUND, {}))
+    x, up = around.start.copy(), np.r_[np.zeros(len(around.start) - 4), 1.0, 0.0, 0.0, 0.0]
+    x += slid_mm * up
+
+    def drawn(at):
+        return 0.5 * (around._along(at[-6:-3])[0] ** 2 - free._along(at[-6:-3])[0] ** 2)
+
+    pull = (drawn(x + 1e-4 * up) - drawn(x - 1e-4 * up)) / 2e-4
+    assert np.sign(pull) == np.sign(slid_mm), "none while it is near to where it was laid"
+    around.residuals(x)
+    slope = around.jacobian(x) @ up
+    quotient = (around.residuals(x + 1e-5 * up) - around.residuals(x - 1e-5 * up)) / 2e-5
+    assert (np.abs(slope - quotient) > 0.02 * np.abs(quotient).max()).sum() <= 2
+
+
 def test_the_thumbs_pad_turns_as_far_as_peoples(arrays):
     """From abducted and extended to circumduction, seen along the hand: 70 to 110 degrees in 27 people
     (repub.eur.nl/pub/59657). A negative twist turns the pad toward the fingers."""
