@@ -34,6 +34,7 @@ UNSETTLED, OFF_BALANCE = 2.0, 0.1
 SLIPS = 2.0
 POOR = 8.0
 HOPELESS = 14.0
+BEHIND = 1.05
 OPPOSED = 1.5
 LOST = 0.4
 TOO_HARD_MPA = 0.6
@@ -42,7 +43,8 @@ the next where that one does not. What is not settled counts `UNSETTLED` more, a
 `OFF_BALANCE` for each tolerance that it misses, or a way that was balanced a little would go before one that was
 balanced nearly; what slips counts `SLIPS`; a power grip that
 counts more than `POOR` is compared with pinches; where the best one that is balanced a little counts more than
-`HOPELESS`, pinches are tried first. A thumb whose pad faces away from the index finger's counts `OPPOSED`
+`HOPELESS`, pinches are tried first. What was only balanced a little counts at least `BEHIND` times what the best held
+one counts that was balanced to the end. A thumb whose pad faces away from the index finger's counts `OPPOSED`
 for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
 one is not counted. What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is
 no grasp."""
@@ -143,9 +145,10 @@ def _begun(ready, aim, watch):
 def _ended(begun, aim, watch, most=np.inf):
     """The grasps `begun` with the best ones balanced to the end, best first; after the first one those that count more
     than `most` stay as they are. Raises `Refusal` where even the best one is none."""
-    out = list(begun)
+    out, worked = list(begun), 1
     for place in range(min(LAST, len(out))):
         is_over = place > 0 and out[place].score > most
+        worked = place + (not is_over)
         if is_over or any(settling.is_settled(one.state, aim) for one in out[: place + 1]):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
@@ -160,11 +163,26 @@ def _ended(begun, aim, watch, most=np.inf):
                 fitter.leave_if_cancelled(watch)
             passed.append(one)
         out[place] = _best_balanced(passed, own)
-    out.sort(key=lambda found: in_steps(found.score))
+    out = _behind(out[:worked], out[worked:])
     out[0] = _faced(out[0], aim, watch)
     _refuse_what_does_not_hold(out[0].state)
     averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
     return [replace(one, score=one.score - averted) for one in out]
+
+
+def _behind(ended, begun):
+    """All of them, best first: ways that were only balanced a little count no better than the best one that was
+    balanced to the end, if that one is held."""
+    ended = sorted(ended, key=lambda found: in_steps(found.score))
+    if ended[0].friction <= FRICTION and _why_none(ended[0].state) is None:
+        least = BEHIND * ended[0].score
+        begun = [
+            replace(one, score=least, causes=one.causes | {"settled": one.causes["settled"] + least - one.score})
+            if one.score < least
+            else one
+            for one in begun
+        ]
+    return sorted([*ended, *begun], key=lambda found: in_steps(found.score))
 
 
 def _best_balanced(passed, aim):
@@ -207,21 +225,25 @@ def _with_thumb_freed(stage, state, aim, watch):
 
 def _refuse_what_does_not_hold(state):
     """Raises `GraspError` where even the best way is none."""
-    peak = float(state.peaks_mpa.max())
-    if fitter.CROSSED_TEXT in state.grasp.warnings:
-        reason = "has a finger in a thin wall of the product"
-    elif state.sunk_mm > 0.0:
-        reason = f"presses skin {state.sunk_mm:.1f} mm farther than it is thick"
-    elif state.imbalance > LOST:
-        reason = f"leaves {state.imbalance:.0%} of the forces over"
-    elif peak > TOO_HARD_MPA:
-        reason = f"presses an edge with {1e3 * peak:.0f} kPa"
-    else:
+    reason = _why_none(state)
+    if reason is None:
         return
     raise fitter.GraspError(
         f"no way to hold the product was found: the best one {reason}. Put the product's origin where the hand shall "
         "close, or pose the hand there and press Light (current pose)"
     )
+
+
+def _why_none(state):
+    """Why a state is no grasp, or None."""
+    peak = float(state.peaks_mpa.max())
+    if fitter.CROSSED_TEXT in state.grasp.warnings:
+        return "has a finger in a thin wall of the product"
+    if state.sunk_mm > 0.0:
+        return f"presses skin {state.sunk_mm:.1f} mm farther than it is thick"
+    if state.imbalance > LOST:
+        return f"leaves {state.imbalance:.0%} of the forces over"
+    return f"presses an edge with {1e3 * peak:.0f} kPa" if peak > TOO_HARD_MPA else None
 
 
 def _found(state, aim, way):
