@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from thenar_blender.grasp import polishing, search, settling
+from thenar_blender.grasp import polishing, search, settling, ways
 from thenar_blender.grasp_fit import fitter
 from thenar_blender.grasp_fit.least_squares import Problem, minimize
 from thenar_blender.hand import skinning
@@ -129,3 +129,43 @@ def test_a_way_ends_where_it_is_balanced_best(monkeypatch, left_n, kept):
     monkeypatch.setattr(polishing, "polish", lambda *_: next(after))
     best = search._best([way], aim_of(), fitter.ALONE)
     assert best[0].state is states[kept]
+
+
+def found_of(score, friction, kind=ways.POWER, net_n=8.0):
+    way = SimpleNamespace(kind=kind, bar=None)
+    causes = {"settled": 3.0, "touch": score - 3.0}
+    return search.Found(state_of(net_n).grasp, state_of(net_n), score, way, friction, (), None, causes)
+
+
+@pytest.mark.parametrize(("friction", "first"), [(0.02, 9.0), (0.9, 7.0)])
+def test_a_way_balanced_a_little_goes_behind_one_that_is_held(friction, first):
+    """Pads that touch better do not outweigh a fifth of the forces left over; where the product slips they may."""
+    ended, begun = found_of(9.0, friction), found_of(7.0, 0.2, net_n=40.0)
+    ranked = search._behind([ended], [begun])
+    assert ranked[0].score == first
+    assert all(one.score == pytest.approx(sum(one.causes.values())) for one in ranked), "causes explain the score"
+
+
+@pytest.mark.parametrize(
+    ("pinched", "ended", "best"),
+    [(0.1, [ways.PINCH], ways.PINCH), (None, [ways.PINCH, ways.POWER], ways.POWER)],
+    ids=["held", "refused"],
+)
+def test_a_hopeless_power_grip_is_balanced_only_where_no_pinch_holds(monkeypatch, pinched, ended, best):
+    seen = []
+
+    def end(begun, aim, watch, most=np.inf):
+        seen.append(begun[0].way.kind)
+        if seen[-1] == ways.PINCH and pinched is None:
+            raise fitter.GraspError("none")
+        return begun
+
+    begun = {30.0: [found_of(5.0, pinched, ways.PINCH)], 200.0: [found_of(2.0 * search.HOPELESS, 0.3)]}
+    monkeypatch.setattr(search, "stage_of", lambda fit: None)
+    monkeypatch.setattr(ways, "powers", lambda *_: [])
+    monkeypatch.setattr(ways, "pinched", lambda *_: [])
+    monkeypatch.setattr(search, "_begun", lambda ready, aim, watch: begun[aim.total_n])
+    monkeypatch.setattr(search, "_ended", end)
+    monkeypatch.setattr(search, "_finished", lambda one, seconds: one)
+    found = search.search(None, asked=search.Asked(200.0, 30.0))
+    assert seen == ended and found[0].way.kind == best

@@ -1,6 +1,6 @@
 """Shares of the grip force by finger, phalanx and palm on cylinders of 30 to 100 mm, next to published ones.
 
-    target/venv/bin/python tests/bench/hand/cylinder_shares.py [--diameters 30 40 50 60 70 80 90 100]
+    target/venv/bin/python tests/bench/hand/cylinder_shares.py [--diameters 30 40 48 50 60 70 80 90 100]
 
 A median hand grasps each cylinder firmly by the add-on's buttons and is solved. Prints a row a cylinder; with
 THENAR_RESULTS=1 writes those of tests/bench/RESULTS.md. Nothing is fitted to what was published.
@@ -17,7 +17,7 @@ import numpy as np
 
 TESTS = Path(__file__).resolve().parents[2]
 COMMAND = "target/venv/bin/python tests/bench/hand/cylinder_shares.py"
-DIAMETERS_MM = (30, 40, 50, 60, 70, 80, 90, 100)
+DIAMETERS_MM = (30, 40, 48, 50, 60, 70, 80, 90, 100)
 LENGTH_MM = 200.0
 FINGERS = ("thumb", "index", "middle", "ring", "little")
 PHALANGES = ("distal", "middle", "proximal")
@@ -49,7 +49,8 @@ def main():
 
 
 def measured(diameter):
-    """One cylinder: sum of forces, what is left over, shares by finger, phalanx of the fingers and palm, as parts."""
+    """One cylinder: sum of forces, what is left over, the friction that holds it; shares by finger, phalanx of the
+    fingers and palm, as parts."""
     import bpy
     from handles import grasping
 
@@ -73,7 +74,15 @@ def measured(diameter):
         )
     parts["palm"] = sum(value for name, value in force.items() if re.search("palm|thenar", name)) / total
     left = float(np.linalg.norm(result.force_vector_n)) / total
-    return {"total_n": total, "left": left, "parts": parts, "cpu_s": cpu, "held": result.held_share}
+    friction = bpy.context.scene.thenar_grasps.found[0].friction
+    return {
+        "total_n": total,
+        "left": left,
+        "parts": parts,
+        "cpu_s": cpu,
+        "held": result.held_share,
+        "friction": friction,
+    }
 
 
 def cylinder(diameter):
@@ -89,7 +98,8 @@ def sentence(diameter, row):
     """A cylinder's row as text."""
     parts = ", ".join(f"{name} {100 * share:.0f}" for name, share in row["parts"].items())
     return (
-        f"{diameter} mm: {row['total_n']:.0f} N, {100 * row['left']:.1f} % left over, smallest wrench "
+        f"{diameter} mm: {row['total_n']:.0f} N, {100 * row['left']:.1f} % left over without friction, which a "
+        f"coefficient of {row['friction']:.2f} holds; smallest wrench "
         f"{100 * row['held']:.0f} %; shares, %: {parts}; {row['cpu_s']:.1f} s of CPU"
     )
 
@@ -128,7 +138,10 @@ def report(rows):
         results.Figure(
             "cylinders of 30 to 100 mm, the same grips: net force over the sum of forces",
             f"{100 * BALANCED:.0f} % at most",
-            ", ".join(f"{diameter} mm {100 * row['left']:.1f} %" for diameter, row in rows.items()),
+            ", ".join(
+                f"{diameter} mm {100 * row['left']:.1f} % (a friction of {row['friction']:.2f} holds it)"
+                for diameter, row in rows.items()
+            ),
             left <= BALANCED,
         ),
     ]
