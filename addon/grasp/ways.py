@@ -22,9 +22,9 @@ OBLIQUE_DEG = 12.0
 ALONG = -0.25
 """The bar's axis against the line of the knuckles, and its place along the fingers in parts of the hand's breadth."""
 
-THIN = 0.2
+THIN = 0.35
 """A pad begins no deeper in a pinch than this share of what is pinched is thick: around a rod of 8 mm two pads that
-begin 4 mm deep would pass each other, and each would press its side."""
+begin 4 mm deep would pass each other, and each would press its side. At 0.2 trays and a toothbrush were held worse."""
 
 POWER, PINCH = "POWER", "PINCH"
 
