@@ -85,7 +85,7 @@ def search(fit, watch=fitter.ALONE, asked=None):
     kind. Raises `GraspError` if none holds.
     """
     began, asked = time.perf_counter(), asked or Asked()
-    stage, begun, found, refusals = stage_of(fit), {}, [], []
+    stage, begun, found, refusals = stage_of(fit), {}, [], {}
     plan = [(ways.POWER, HOPELESS), (ways.PINCH, np.inf), (ways.POWER, np.inf)]
     for kind, most in plan if asked.kind == "AUTO" else [(asked.kind, np.inf)]:
         if _is_enough(found, kind):
@@ -100,9 +100,9 @@ def search(fit, watch=fitter.ALONE, asked=None):
                 found += _ended(begun[kind], aim, watch, most)
         except (Refusal, native.module.SolveError) as refusal:
             fitter.leave_if_cancelled(watch)
-            refusals.append(refusal)
+            refusals[kind] = refusal
     if not found:
-        raise refusals[0]
+        raise refusals.get(ways.POWER) or refusals[ways.PINCH]
     found.sort(key=lambda one: in_steps(one.score))
     return [_finished(one, time.perf_counter() - began) for one in found]
 
