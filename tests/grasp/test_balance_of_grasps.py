@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import thenar
+from bench.hand.cylinder_shares import BALANCED, LENGTH_MM, cylinder
 from handles import shapes
 from thenar_blender import names, workflow
 from thenar_blender.grasp import fitting, search, settling
@@ -26,6 +27,8 @@ PALM_MM = 15.0
 SURFACE = 0.12
 """Share of all forces that the shown surface may seem to leave over."""
 MPA_PER_KPA = 1e-3
+ALONG = 1e-3
+"""Share of all forces that may seem to act along the bar: its ring of 96 facets is round to less."""
 
 
 def test_firm_grasps_balance_and_carry_what_was_asked(blender, scene, bar):
@@ -243,3 +246,28 @@ def summed(blender, hand):
     mean = MPA_PER_KPA * pressure.astype(float)[triangles].mean(axis=1)
     push = 0.5 * mean[:, None] * cross
     return float(np.linalg.norm(push, axis=1).sum()), push.sum(axis=0)
+
+
+@pytest.mark.parametrize("diameter", [60, 80])
+def test_a_round_bar_is_held_in_balance_by_its_side(blender, scene, diameter):
+    """Fits that slid to the bar's end hooked the index finger over its edge, and 7 and 11 % stayed over."""
+    scene(cylinder(diameter))
+    assert blender.ops.thenar.fit_grasp(kind="POWER") == {"FINISHED"}
+    blender.ops.thenar.solve()
+    result = blender.context.scene.thenar.result
+    push, total = np.array(result.force_vector_n), sum(row.force_n for row in result.regions)
+    assert np.linalg.norm(push) <= BALANCED * total
+    assert abs(push[2]) <= ALONG * total
+    assert np.abs(pressed_places(blender)[:, 2]).max() < 0.5 * LENGTH_MM - 1.0, "no skin reaches the bar's end"
+
+
+def pressed_places(blender):
+    """Places (n, 3), mm, of the pressed vertices of the shown hand."""
+    hand = blender.context.scene.thenar.hand
+    evaluated = hand.evaluated_get(blender.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    pressure, points = np.zeros(len(mesh.vertices), np.float32), np.zeros(3 * len(mesh.vertices), np.float32)
+    mesh.attributes[names.PRESSURE_KPA].data.foreach_get("value", pressure)
+    mesh.vertices.foreach_get("co", points)
+    world = np.array(evaluated.matrix_world)
+    return 1000.0 * (points.reshape(-1, 3)[pressure > 0.0] @ world[:3, :3].T + world[:3, 3])
