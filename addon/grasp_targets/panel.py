@@ -1,6 +1,6 @@
 """Layout of the target of a grasp. Knows nothing of the search."""
 
-from ..grasp_targets import settings
+from ..grasp_targets import reasons, settings
 from ..languages import iface
 from ..panels import text
 
@@ -11,12 +11,12 @@ def draw(layout, context):
     """The fields of the target that is chosen, its button, and what was reached; those of a total force are others'."""
     stored = context.scene.thenar_targets
     if stored.kind == settings.FINGERS:
-        _draw_fingers(layout, stored)
+        _draw_fingers(layout, context, stored)
     elif stored.kind == settings.RECORDING:
         _draw_recording(layout, context, stored)
 
 
-def _draw_fingers(layout, stored):
+def _draw_fingers(layout, context, stored):
     column = layout.column(align=True)
     for part in NAMES:
         column.prop(stored, f"{part}_n")
@@ -28,7 +28,10 @@ def _draw_fingers(layout, stored):
             have=row.reached_n,
             wanted=row.wanted_n,
         )
-        layout.label(text=words, icon="CHECKMARK" if row.reason == "REACHED" else "ERROR")
+        is_reached = row.reason == reasons.REACHED
+        layout.label(text=words, icon="CHECKMARK" if is_reached else "ERROR")
+        if not is_reached:
+            text.faint(layout, context, reasons.why(row.reason))
 
 
 def _draw_recording(layout, context, stored):

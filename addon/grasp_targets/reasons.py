@@ -127,14 +127,15 @@ def line(row):
     """What is said of one part."""
     words = "{part} {wanted:.0f} N wanted, {have:.1f} N reached"
     text = report(words, part=_name(row), wanted=row.wanted_n, have=row.reached_n)
-    return text if row.reason == REACHED else report("{text}: {why}", text=text, why=_why(row.reason))
+    return text if row.reason == REACHED else report("{text}: {why}", text=text, why=why(row.reason))
 
 
 def _name(row):
     return iface(row.part.capitalize())
 
 
-def _why(reason):
+def why(reason):
+    """What keeps a part from the force that is wanted of it, in words."""
     most_kpa = 1e3 * reaching.MOST_MPA
     return {
         CLEAR: report("it does not touch the product from here"),

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from handles import shapes
+from handles import grasping, shapes
 from thenar_blender import workflow
 from thenar_blender.grasp_fit import fitter
 from thenar_blender.grasp_fit.load import Touched
@@ -156,6 +156,24 @@ def test_bad_wishes_are_refused_and_the_hand_stays(held, monkeypatch):
     with pytest.raises(RuntimeError, match="press Settle"):
         held.ops.thenar.reach_target()
     assert all(bone.matrix_basis == pose for bone, pose in zip(armature.pose.bones, poses, strict=True))
+
+
+def test_one_undo_brings_pose_and_forces_by_part_back(held):
+    """The skin stands where it stood, and nothing is said to have been reached; redo brings both again."""
+    scene = held.context.scene
+    want(held, index=15.0)
+    held.context.preferences.edit.use_global_undo = True
+    held.ops.ed.undo_push(message="before")
+    before, _ = grasping.seen(scene.thenar.hand)
+    assert held.ops.thenar.reach_target() == {"FINISHED"}
+    held.ops.ed.undo_push(message="Reach Target")  # as the window does after an operator with UNDO
+    after, _ = grasping.seen(held.context.scene.thenar.hand)
+    assert np.abs(after - before).max() > 0.5
+    for step, skin, count in ((held.ops.ed.undo, before, 0), (held.ops.ed.redo, after, 1)):
+        step()
+        scene = held.context.scene
+        assert np.allclose(grasping.seen(scene.thenar.hand)[0], skin, atol=1e-3)
+        assert len(scene.thenar_targets.rows) == count
 
 
 def test_a_target_lasts_in_the_file(held, tmp_path):
