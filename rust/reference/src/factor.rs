@@ -66,7 +66,7 @@ impl Factor {
             &pattern.rows,
         );
         let matrix = SparseColMatRef::new(matrix, values);
-        // One thread: the same bits on every machine.
+        // One thread: the same bits for any number of threads of the caller.
         let par = Par::Seq;
         let factored = self.symbolic.factorize_numeric_llt(
             &mut self.values,
