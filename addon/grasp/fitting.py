@@ -15,6 +15,7 @@ from ..hand import capsules, pads
 from ..hand_bones import bodies, channels, constrained, reading, roles
 from ..hand_look import normals
 from ..hand_shape import framing
+from ..ownership import own
 from ..product_objects import bringing, copies
 from ..scene import checks, mesh, read, regions, sizes, units
 from . import force, polishing, search, settings, settling
@@ -71,14 +72,15 @@ def prepare(context, hand_object, parts, wish, force_n=None):
     sizes.check_product_size(context, hand_object, parts)
     hand = read_hand(context, hand_object)
     scale = units.mm_per_unit(context.scene)
-    product = read.read_product(context, parts, scale, np.zeros(3))
+    with own.without_own_output(context, hand_object, parts):
+        product = read.read_product(context, parts, scale, np.zeros(3))
+        frame = np.array(parts[0].matrix_world, dtype=np.float64)
     gap = native.module.Product(product.vertices_mm, product.triangles)
     press = workflow.read_job(context, hand_object, parts) if force_n or is_searched(wish) else None
     armature = reading.armature_of(hand_object)
     if wish.is_placed:
         wish = replace(wish, angles=reading.read_angles(armature, hand.rig, hand.joints))
     found = (hand_object.name, armature.name, tuple(part.name for part in parts))
-    frame = np.array(parts[0].matrix_world, dtype=np.float64)
     frame[:3] *= scale
     return Fit(hand, gap, (product.vertices_mm, product.triangles), wish, force_n, press, found, frame)
 
@@ -235,24 +237,37 @@ def finish(context, fit, found, moves):
     moves = moves_of(context, hand, parts, moves)
     scale = units.mm_per_unit(context.scene)
     back = Matrix(reading.in_units(np.linalg.inv(found.place), scale).tolist())
-    goals = [(part, back @ part.matrix_world) for part in parts]
     with ExitStack() as undo:
         undo.callback(constrained.reset, armature, constrained.state_of(armature))
         for bone in [armature.pose.bones[fit.hand.rig.names[number]] for number in fit.hand.joints.bones.values()]:
             undo.callback(channels.restore, bone, channels.kept(bone))
         reading.write_angles(armature, fit.hand.rig, fit.hand.joints, found.angles)
         if moves == "PRODUCT":
-            context.view_layer.update()
-            bringing.bring(context, bringing.carriers(parts, (hand, armature)), goals, undo)
-            for copy in filter(None, [copies.find_copy(part.name) for part in parts]):
-                undo.callback(setattr, copy, "matrix_world", copy.matrix_world.copy())
-                copy.matrix_world = back @ copy.matrix_world
+            _bring(context, parts, (hand, armature), back, undo)
         undo.pop_all()
     if moves == "HAND":
         reading.move_object(armature, found.place, scale)
         if hand.parent != armature and reading.top_of(hand) != reading.top_of(armature):
             reading.move_object(hand, found.place, scale)
     context.view_layer.update()
+
+
+def _bring(context, parts, stays, back, undo):
+    """Carry the product by `back` from where it was put; what an earlier Solve moved it by is taken off."""
+    context.view_layer.update()
+    shown = [part.matrix_world.copy() for part in parts]
+    for part in [part for part in parts if part.thenar.is_moved]:
+        undo.callback(setattr, part.thenar, "is_moved", True)
+        undo.callback(setattr, part, "delta_location", part.delta_location.copy())
+        part.delta_location, part.thenar.is_moved = part.thenar.home, False
+    context.view_layer.update()
+    goals = [(part, back @ part.matrix_world) for part in parts]
+    bringing.bring(context, bringing.carriers(parts, stays), goals, undo)
+    for (part, goal), place in zip(goals, shown, strict=True):
+        copy = copies.find_copy(part.name)
+        if copy is not None:
+            undo.callback(setattr, copy, "matrix_world", copy.matrix_world.copy())
+            copy.matrix_world = goal @ place.inverted() @ copy.matrix_world
 
 
 def bring_into_view(context):

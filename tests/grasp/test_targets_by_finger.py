@@ -105,6 +105,22 @@ def test_fingers_alone_carry_other_forces_and_hand_and_product_stay(held):
         assert after[part] == pytest.approx(force, rel=NEAR, abs=NEAR_N), part
 
 
+@pytest.mark.parametrize("moves", ["HAND", "PRODUCT"])
+def test_forces_hold_for_the_product_without_the_move_of_an_earlier_solve(held, moves):
+    """A force of Solve moved the product; the next Solve, without one, presses it where it was put."""
+    scene = held.context.scene
+    scene.thenar_grasps.moves = moves
+    scene.thenar.use_force, scene.thenar.force_n = True, 30.0
+    held.ops.thenar.solve()
+    assert scene.thenar.product.thenar.is_moved and scene.thenar.product.delta_location.length > 1e-4
+    scene.thenar.use_force = False
+    want(held, thumb=40.0, index=15.0)
+    assert held.ops.thenar.reach_target() == {"FINISHED"}
+    reached = {row.name: row.reached_n for row in scene.thenar_targets.rows}
+    after = summed(held)
+    assert reached == pytest.approx({part: after[part] for part in reached}, rel=1e-3, abs=0.01)
+
+
 def test_a_force_that_no_finger_carries_is_said_with_what_is_reached(held):
     want(held, little=480.0)
     assert held.ops.thenar.reach_target() == {"FINISHED"}
