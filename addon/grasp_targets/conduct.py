@@ -13,10 +13,13 @@ from . import fingers, reaching, reasons, recording
 
 @dataclass(frozen=True)
 class ByFinger:
-    """What a target by finger came to: the `grasp` of the scene's frame, and a `reasons.Row` for each part."""
+    """What a target by finger came to: the `grasp` of the scene's frame, None where the hand stays; a `reasons.Row` for
+    each part; the pressed `state`, and the `friction` that holds what its forces leave over."""
 
-    grasp: fitter.Grasp
+    grasp: fitter.Grasp | None
     rows: list
+    state: settling.State
+    friction: float
 
 
 def by_finger(fit, wanted_n, cancel=None, progress=None):
@@ -30,7 +33,15 @@ def by_finger(fit, wanted_n, cancel=None, progress=None):
     start = reaching.start_of(stage, first, fit.wish, closed)
     reached = reaching.reach(stage, start, target, watch)
     rows = reasons.rows_of(reasons.Search(stage, start, target, watch), reached, wanted_n)
-    return ByFinger(stage.carried(replace(reached.state.grasp, force_n=reached.state.total_n)), rows)
+    state = reached.state
+    friction = settling.friction_of(stage, state, settling.Aim(np.zeros(3), np.zeros(3)))
+    is_first = all(np.allclose(a, b, atol=1e-9) for a, b in zip(_posture(state.grasp), _posture(first), strict=True))
+    grasp = None if is_first else stage.carried(replace(state.grasp, force_n=state.total_n))
+    return ByFinger(grasp, rows, state, friction)
+
+
+def _posture(grasp):
+    return grasp.angles, grasp.place
 
 
 def grasp_here(stage):
@@ -46,26 +57,23 @@ def grasp_here(stage):
 
 
 def by_recording(fit, seat, asked, cancel=None, progress=None):
-    """`recording.Explained` of a `fitting.Fit`. `seat`: a `laying.Seat`; `asked`: the `laying.Lie` of the mat, and the
-    rule of the frame with its number. Raises `Refusal`, `RecordingError`."""
+    """`recording.Explained` of a `fitting.Fit`; where nothing near explains the recording, the hand stays. `seat`: a
+    `laying.Seat`; `asked`: the `laying.Lie` of the mat, and the rule of the frame with its number. Raises `Refusal`,
+    `RecordingError`."""
     watch = fitter.Watch(progress or fitter.ALONE.report, cancel)
     lie, frame = asked
     stage = stage_of(fit)
     recorded = recording.read(seat, lie, frame, stage.world)
     recording.check_lies(stage, recorded)
     first = grasp_here(stage)
+    recording.check_near(stage, first, recorded)
     before = recording.match_of(stage, first, recorded, cancel)
-    recorded_n = float(recorded.force_n.sum())
-    stays = recording.Explained(stage.carried(first), before, before, recorded_n, 0.0, 0.0)
-    if before.is_noise(recorded_n):
+    stays = recording.Explained(None, before, before, recorded)
+    if before.is_noise(stays.recorded_n):
         return stays
     found = recording.explain(stage, first, fit.wish.free_mm, recorded, watch)
     after = recording.match(stage, found.state, recorded)
-    if after.cells_kpa >= before.cells_kpa:
-        return stays
-    turned = np.degrees(np.abs(found.state.grasp.angles - first.angles).max())
-    middle = stage.hand.rig.moved(first.place).world_from_rig[:3, 3]
-    motion = found.state.grasp.place @ np.linalg.inv(first.place)
-    moved = np.linalg.norm(motion[:3, :3] @ middle + motion[:3, 3] - middle)
+    motion = recording.motion_of(found, first, fit.wish.free_mm)
     grasp = stage.carried(replace(found.state.grasp, force_n=found.state.total_n))
-    return recording.Explained(grasp, before, after, recorded_n, float(turned), float(moved))
+    moved = recording.Explained(grasp, before, after, recorded, motion)
+    return stays if moved.removed < recording.LITTLE else moved

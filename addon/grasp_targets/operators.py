@@ -5,15 +5,16 @@ from functools import partial
 import bpy
 
 from .. import workflow
-from ..grasp import fitting
+from ..grasp import fitting, words
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_pose
+from ..languages import report
 from ..operators import computing, polling
 from ..recordings import comparing, laying
 from ..recordings import settings as recordings
 from ..scene.checks import Refusal
-from . import conduct, explained, parts, reasons, settings
+from . import conduct, explained, parts, reasons, settings, stamp
 
 FREE_MM = 15.0
 """The hand moves no farther, nor turns farther at `task.ARM_MM`: the posture shall be one near the present one."""
@@ -43,28 +44,46 @@ recording read"""
             found = yield partial(conduct.by_finger, fit, wanted)
         else:
             item = of_mat(context)
-            seat, frame = comparing.seat_of(context), (item.frame_rule, item.frame)
+            name, seat, frame = item.name, comparing.seat_of(context), (item.frame_rule, item.frame)
             fit = prepared(context, free_mm)
             found = yield partial(conduct.by_recording, fit, seat, (laying.lie_of(item), frame))
-        fitting.finish(context, fit, found.grasp, asked.moves)
-        asked.shown = -1
-        if stored.kind == settings.FINGERS:
-            settings.keep(context.scene, found.rows)
+        if found.grasp is not None:
+            fitting.finish(context, fit, found.grasp, asked.moves)
+            asked.shown = -1
+        if isinstance(found, conduct.ByFinger):
+            settings.keep(context.scene, found.rows, held_of(context, found)[1])
         else:
-            stored.explained = "\n".join(explained.lines(found))
+            named = report("Recording '{name}', frame {frame}.", name=name, frame=found.recorded.frame + 1)
+            settings.keep_explained(context.scene, [*explained.lines(found), named])
+        stored.stamp = stamp.of(context)
         return found
 
     def _report(self, context, found):
         fitting.bring_into_view(context)
-        by_finger = isinstance(found, conduct.ByFinger)
-        level, text = reasons.sentence(found.rows) if by_finger else explained.sentence(found)
-        self.report({level}, text)
+        if not isinstance(found, conduct.ByFinger):
+            level, text = explained.sentence(found)
+            self.report({level}, text)
+            return {"FINISHED"}
+        level, text = reasons.sentence(found.rows)
+        held_level, held = held_of(context, found)
+        is_good = level == held_level == "INFO"
+        self.report({"INFO" if is_good else "WARNING"}, f"{text}. {held}")
         return {"FINISHED"}
+
+
+def held_of(context, found):
+    """Report level and sentence: what the forces of a `conduct.ByFinger` leave over, and whether it would slip out."""
+    return words.held(found.state, (found.friction, context.scene.thenar_grasps.friction))
 
 
 def prepared(context, free_mm):
     """The `fitting.Fit` of the scene's hand from where it is, its place free by `free_mm`. Raises `Refusal`."""
     chosen = context.scene.thenar
+    if chosen.use_force:
+        raise Refusal(
+            "Force Target is on, so Solve would move the product and press with other forces than the ones reached; "
+            "switch Force Target off"
+        )
     wish = fitter.Wish(pads.FIRM_MM, is_placed=True, free_mm=free_mm)
     fit = fitting.prepare(context, chosen.hand, workflow.product_parts(chosen), wish, 1.0)
     if not fitting.can_search(fit):

@@ -1,7 +1,7 @@
 """Layout of the target of a grasp. Knows nothing of the search."""
 
-from ..grasp_targets import reasons, settings
-from ..languages import iface
+from ..grasp_targets import reasons, settings, stamp
+from ..languages import iface, report
 from ..panels import text
 
 NAMES = ("thumb", "index", "middle", "ring", "little", "palm")
@@ -21,6 +21,7 @@ def _draw_fingers(layout, context, stored):
     for part in NAMES:
         column.prop(stored, f"{part}_n")
     layout.operator("thenar.reach_target", text="Reach Forces", icon="CON_FLOOR")
+    _draw_age(layout, context, stored.rows)
     for row in stored.rows:
         words = iface(
             "{part}: {have:.1f} of {wanted:.1f} N",
@@ -32,9 +33,18 @@ def _draw_fingers(layout, context, stored):
         layout.label(text=words, icon="CHECKMARK" if is_reached else "ERROR")
         if not is_reached:
             text.faint(layout, context, reasons.why(row.reason))
+    if stored.held:
+        text.faint(layout, context, stored.held)
+
+
+def _draw_age(layout, context, found):
+    """Say where the scene is no more what the result holds for."""
+    if found and not stamp.holds(context, context.scene.thenar_targets.stamp):
+        text.faint(layout, context, report("Of an earlier pose or target:"))
 
 
 def _draw_recording(layout, context, stored):
     layout.operator("thenar.reach_target", text="Explain by Posture", icon="CON_FLOOR")
+    _draw_age(layout, context, stored.explained)
     for line in stored.explained.splitlines():
         text.faint(layout, context, line)

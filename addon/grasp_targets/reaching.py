@@ -159,6 +159,14 @@ def slopes_of(stage, start, target, reached):
     return task.jacobian(reached.x)[-rows:][: len(target.wanted[0])] / target.weights[0][:, None]
 
 
+def within(task, x, free_mm):
+    """Unknowns within the limits of the joints, with a shift of the hand and a turn of it no longer than `free_mm`."""
+    out = np.clip(x, task.bounds[:, 0], task.bounds[:, 1])
+    for part in (out[-6:-3], out[-3:]):
+        part *= min(1.0, free_mm / max(float(np.linalg.norm(part)), TINY))
+    return out
+
+
 class _Search:
     def __init__(self, stage, start, asked, watch):
         self.stage, self.start, self.watch = stage, start, watch
@@ -179,7 +187,7 @@ class _Search:
             return self._pressed(task, self.start.x)
         x = task.start.copy()
         x[:-6] = [self.start.angles[bone, column] for bone, column, _ in task.dofs]
-        return self._pressed(task, np.clip(x, task.bounds[:, 0], task.bounds[:, 1]))
+        return self._pressed(task, within(task, x, self.start.wish.free_mm))
 
     def again(self, best):
         """The same posture with its cost here."""
@@ -231,7 +239,7 @@ class _Search:
     def pressed_at(self, best, x):
         """The `Reached` at the unknowns `x` of the fit of `best`, or None where it cannot be pressed."""
         try:
-            return self._pressed(best.task, np.clip(x, best.task.bounds[:, 0], best.task.bounds[:, 1]))
+            return self._pressed(best.task, within(best.task, x, self.start.wish.free_mm))
         except (Refusal, native.module.SolveError):
             fitter.leave_if_cancelled(self.watch)
             return None

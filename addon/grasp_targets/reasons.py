@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..grasp import settling
 from ..languages import iface, report
 from . import parts, reaching
 
@@ -61,11 +62,16 @@ def rows_of(search, reached, wanted_n):
         if is_missed(wanted, have):
             slopes = reaching.slopes_of(stage, start, target, reached) if slopes is None else slopes
             reason = _cause(stage, number, (wanted, have), (slopes[row], reached))
-        if reason == OTHER:
+        if reason == OTHER and is_balanced(reached.state):
             freed = _without_balance(search, reached) if freed is None else freed
             reason = OTHER if is_missed(wanted, float(freed[row])) else BALANCE
         out.append(Row(parts.PARTS[number], wanted, have, reason))
     return out
+
+
+def is_balanced(state):
+    """Whether a `settling.State` leaves no more over than a grasp that counts as settled."""
+    return state.imbalance <= settling.BALANCED and state.lever <= settling.MOMENT
 
 
 def is_missed(wanted_n, reached_n):
@@ -125,7 +131,7 @@ def sentence(rows):
 
 def line(row):
     """What is said of one part."""
-    words = "{part} {wanted:.0f} N wanted, {have:.1f} N reached"
+    words = "{part} {wanted:.3g} N wanted, {have:.1f} N reached"
     text = report(words, part=_name(row), wanted=row.wanted_n, have=row.reached_n)
     return text if row.reason == REACHED else report("{text}: {why}", text=text, why=why(row.reason))
 

@@ -11,6 +11,7 @@ import numpy as np
 from .. import native
 from ..grasp import settling
 from ..grasp_fit import fitter
+from ..grasp_fit.task import ARM_MM
 from ..hand.skinning import pose_matrices, skin
 from ..recordings import frames, laying
 from ..scene.checks import Refusal
@@ -18,8 +19,14 @@ from . import fingers, parts, reaching, views
 
 MOST_RAD = np.radians(20.0)
 MOST_MM = 10.0
-"""No joint turns farther, and the hand neither moves nor turns (at `task.ARM_MM`) farther: what asks for more is no
-matter of a posture near this one."""
+"""No joint turns farther, and the hand neither moves (at the middle of its pads) nor turns (at `task.ARM_MM`) farther:
+what asks for more is no matter of a posture near this one."""
+
+STOP_RAD, STOP_MM = np.radians(0.5), 0.1
+"""A motion this near to one of these bounds stopped there."""
+
+LITTLE = 0.1
+"""What removes a smaller share of what was left over explains nothing."""
 
 WEIGHT_MM = 60.0
 """All that was recorded counts as much, mm, in either step."""
@@ -57,11 +64,12 @@ SAME = 0.9
 @dataclass(frozen=True)
 class Recorded:
     """What a mat read, in the product's own frame: `mat` a record as `laying.lay` gives it, `values` (n,), kPa, and
-    the `limits` that the library's comparison knows of the instrument."""
+    the `limits` that the library's comparison knows of the instrument; `frame`: its number, from 0."""
 
     mat: dict
     values: np.ndarray
     limits: dict
+    frame: int = 0
 
     @property
     def is_placed(self):
@@ -98,21 +106,58 @@ class Match:
 
 
 @dataclass(frozen=True)
-class Explained:
-    """The `grasp` of the scene's frame, its match `before` and `after`, the `recorded_n` of the mat, how far joints
-    turned at most, degrees, and the hand moved, mm."""
+class Motion:
+    """How far joints turned at most, and the hand, degrees; how far the middle of its pads moved, mm; `is_stopped`:
+    whether one of these stands at the farthest that is searched."""
 
-    grasp: fitter.Grasp
+    turned_deg: float = 0.0
+    swung_deg: float = 0.0
+    moved_mm: float = 0.0
+    is_stopped: bool = False
+
+
+@dataclass(frozen=True)
+class Explained:
+    """The `grasp` of the scene's frame, None where the hand stays; its match `before` and `after`, the `recorded`, and
+    the `motion` from the one to the other."""
+
+    grasp: fitter.Grasp | None
     before: Match
     after: Match
-    recorded_n: float
-    turned_deg: float
-    moved_mm: float
+    recorded: Recorded
+    motion: Motion = Motion()
+
+    @property
+    def recorded_n(self):
+        """Force on the mat, N."""
+        return float(self.recorded.force_n.sum())
+
+    @property
+    def removed(self):
+        """Share of the difference by cell that the posture removed."""
+        return _removed(self.before, self.after.cells_kpa)
 
     @property
     def is_gain_as_good(self):
-        """Whether a gain of the mat explains the recording about as well, with the hand as it was."""
-        return self.before.gained_kpa * SAME <= self.after.cells_kpa
+        """Whether a gain of the mat explains the recording, and about as well, with the hand as it was."""
+        is_known = np.isfinite(self.before.gain) and _removed(self.before, self.before.gained_kpa) >= LITTLE
+        return bool(is_known and self.before.gained_kpa * SAME <= self.after.cells_kpa)
+
+
+def _removed(before, left_kpa):
+    return 1.0 - left_kpa / max(before.cells_kpa, 1e-9)
+
+
+def motion_of(reached, first, free_mm):
+    """The `Motion` from the grasp `first` to a `reaching.Reached`, its hand free by `free_mm`."""
+    task, x = reached.task, reached.x
+    turned = float(np.abs(reached.state.grasp.angles - first.angles).max())
+    way = reached.state.grasp.place @ np.linalg.inv(first.place)
+    moved = float(np.linalg.norm(way[:3, :3] @ task.pivot + way[:3, 3] - task.pivot))
+    swung = float(np.linalg.norm(x[-3:]))
+    free = min(free_mm, MOST_MM)
+    is_stopped = turned > MOST_RAD - STOP_RAD or (free > 0.0 and max(moved, swung) > free - STOP_MM)
+    return Motion(float(np.degrees(turned)), float(np.degrees(swung / ARM_MM)), moved, is_stopped)
 
 
 def read(seat, lie, request, world):
@@ -122,13 +167,14 @@ def read(seat, lie, request, world):
     found = frames.map_of(lie.path, lie.mat)
     if found.pressure_kpa is None:
         raise Refusal("the recording holds raw counts, so no posture can be found for it; calibrate it to kPa first")
-    values = np.asarray(frames.values_of(found)[frames.number_of(found, *request)], float)
+    frame = frames.number_of(found, *request)
+    values = np.asarray(frames.values_of(found)[frame], float)
     turn = world[:3, :3]
     mat["center_mm"] = (np.asarray(mat["center_mm"]) - world[:3, 3]) @ turn
     mat["normal"] = np.asarray(mat["normal"]) @ turn
     limit, unit = found.threshold or (None, found.unit)
     limits = {"threshold": limit if unit == found.unit else None, "clipped_from": found.clipped_from}
-    out = Recorded(mat, values, limits)
+    out = Recorded(mat, values, limits, int(frame))
     if out.force_n.sum() <= 0.0:
         raise Refusal("the chosen frame of the recording reads nothing on this product; choose another frame")
     return out
@@ -143,6 +189,15 @@ def check_lies(stage, recorded):
         raise Refusal(
             f"{share:.0%} of the recorded force lies more than {OFF_MM:.0f} mm off the product; lay the mat on it "
             "under Record first"
+        )
+
+
+def check_near(stage, first, recorded):
+    """Refuse a recording that no pad of the grasp `first` is near to. Raises `Refusal`."""
+    if by_pad(stage, first, recorded).sum() <= 0.0:
+        raise Refusal(
+            f"the recorded force lies more than {NEAREST_MM:.0f} mm from the hand; pose it nearer, or lay the mat "
+            "elsewhere"
         )
 
 

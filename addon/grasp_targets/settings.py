@@ -43,15 +43,32 @@ class ThenarTargets(bpy.types.PropertyGroup):
     rows: CollectionProperty(type=ThenarTargetRow)
     explained: StringProperty()
     """What was found of a recording, as lines."""
+    held: StringProperty()
+    """What is said of the balance of forces by finger."""
+    stamp: StringProperty()
+    """What the result holds for, see `stamp`."""
 
 
-def keep(scene, rows):
-    """Write what was reached by part, `reasons.Row`s."""
+def keep(scene, rows, held):
+    """Write what was reached by part, `reasons.Row`s, and what is said of its balance."""
     stored = scene.thenar_targets
-    stored.rows.clear()
+    forget(stored)
+    stored.held = held
     for row in rows:
         kept = stored.rows.add()
         kept.name, kept.wanted_n, kept.reached_n, kept.reason = row.part, row.wanted_n, row.reached_n, row.reason
+
+
+def keep_explained(scene, lines):
+    """Write what was found of a recording."""
+    forget(scene.thenar_targets)
+    scene.thenar_targets.explained = "\n".join(lines)
+
+
+def forget(stored):
+    """Leave nothing of what was reached before."""
+    stored.rows.clear()
+    stored.explained, stored.held, stored.stamp = "", "", ""
 
 
 CLASSES = (ThenarTargetRow, ThenarTargets)

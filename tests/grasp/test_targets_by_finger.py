@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from handles import grasping, shapes
+from mathutils import Matrix
 from thenar_blender import workflow
+from thenar_blender.grasp import settling
 from thenar_blender.grasp_fit import fitter
 from thenar_blender.grasp_fit.load import Touched
-from thenar_blender.grasp_targets import operators, parts, reasons, views
+from thenar_blender.grasp_targets import operators, parts, reasons, stamp, views
 from thenar_blender.hand_bones import reading
 from thenar_blender.hand_bones.roles import COLUMNS
 
@@ -53,6 +55,12 @@ def summed(blender):
         part = "palm" if any(word in name for word in PALM) else name.partition("_")[0]
         out[part] += force[vertex]
     return out
+
+
+def net_of(blender):
+    """Sum of the pushes of the skin on the product (3), N, as Solve left them."""
+    blender.ops.thenar.solve()
+    return np.array(blender.context.scene.thenar.result.force_vector_n)
 
 
 def opened(blender, degrees):
@@ -150,6 +158,60 @@ def test_a_finger_whose_joints_stop_is_said_to_be_at_its_limits(held):
     assert held.ops.thenar.reach_target() == {"FINISHED"}
     row = held.context.scene.thenar_targets.rows["index"]
     assert row.reached_n < 57.0 and row.reason in ("LIMIT", "CLEAR_AT_LIMIT")
+
+
+def test_small_newtons_are_said_as_they_were_wanted():
+    assert reasons.line(reasons.Row("index", 0.4, 3.0, reasons.TISSUE)).startswith("Index 0.4 N wanted, 3.0 N reached")
+    assert reasons.line(reasons.Row("index", 480.0, 3.0, reasons.TISSUE)).startswith("Index 480 N wanted")
+
+
+@pytest.mark.parametrize(("net_n", "reason"), [(30.0, reasons.OTHER), (1.0, reasons.BALANCE)])
+def test_balance_is_the_reason_only_where_the_posture_found_is_balanced(monkeypatch, net_n, reason):
+    """Where 30 of 100 N are left over already, balance keeps no finger from its force."""
+    state = settling.State(None, None, 100.0, np.array([net_n, 0.0, 0.0]), np.zeros(3), np.zeros(1))
+    monkeypatch.setattr(reasons, "_cause", lambda *_: reasons.OTHER)
+    monkeypatch.setattr(reasons, "_without_balance", lambda *_: np.array([20.0]))
+    monkeypatch.setattr(reasons.reaching, "slopes_of", lambda *_: np.zeros((1, 1)))
+    reached = reasons.reaching.Reached(state, (np.array([10.0]),), 0.0, None, None, None)
+    wanted = np.where(np.arange(6) == 1, 20.0, np.nan)
+    rows = reasons.rows_of(reasons.Search(None, None, None, None), reached, wanted)
+    assert [row.reason for row in rows] == [reason]
+
+
+def test_what_is_left_over_is_said_and_results_of_an_earlier_pose_are_known(held):
+    """One finger alone pushes the product away: by Newton's law its whole force is left over."""
+    scene = held.context.scene
+    scene.thenar_grasps.moves = "FINGERS"
+    want(held, index=40.0)
+    assert held.ops.thenar.reach_target() == {"FINISHED"}
+    push = np.linalg.norm(net_of(held))
+    held.ops.thenar.clear()
+    said = scene.thenar_targets.held
+    assert float(said.partition(" N left over")[0].split()[-1]) == pytest.approx(push, abs=0.1)
+    assert stamp.holds(held.context, scene.thenar_targets.stamp)
+    hand = operators.prepared(held.context, 40.0).hand
+    bone = reading.armature_of(scene.thenar.hand).pose.bones[hand.rig.names[hand.joints.bones["index_proximal"]]]
+    bone.matrix_basis = bone.matrix_basis @ Matrix.Rotation(0.05, 4, "X")
+    held.context.view_layer.update()
+    assert not stamp.holds(held.context, scene.thenar_targets.stamp)
+
+
+def test_a_result_is_of_an_earlier_target_where_wishes_or_product_changed(held):
+    """A Solve that moves the product does not count: what was reached holds for the product as it was put."""
+    scene = held.context.scene
+    want(held, index=15.0)
+    kept = stamp.of(held.context)
+    want(held, index=16.0)
+    assert not stamp.holds(held.context, kept)
+    want(held, index=15.0)
+    scene.thenar.use_force, scene.thenar.force_n = True, 30.0
+    held.ops.thenar.solve()
+    assert scene.thenar.product.thenar.is_moved and stamp.holds(held.context, kept)
+    with pytest.raises(RuntimeError, match="switch Force Target off"):
+        held.ops.thenar.reach_target()
+    scene.thenar.product.location.x += 0.002
+    held.context.view_layer.update()
+    assert not stamp.holds(held.context, kept)
 
 
 def test_bad_wishes_are_refused_and_the_hand_stays(held, monkeypatch):

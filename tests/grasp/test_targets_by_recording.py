@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 from grasp import mat_readings
 from handles import shapes
-from thenar_blender.grasp_targets import operators
+from mathutils import Vector
+from thenar_blender.grasp_targets import explained, operators
+from thenar_blender.grasp_targets.recording import Explained, Match, Recorded
+from thenar_blender.hand import skinning
 from thenar_blender.hand_bones import reading
 from thenar_blender.hand_bones.roles import COLUMNS
 
@@ -40,6 +43,22 @@ def forces(blender):
     out = {row.name: row.force_n for row in blender.context.scene.thenar.result.fingers}
     blender.ops.thenar.clear()
     return out
+
+
+def basis(blender, shifted=False):
+    """Poses of all bones; the first joint of the index finger is first shifted by 0.1 mm if asked for."""
+    armature = reading.armature_of(blender.context.scene.thenar.hand)
+    if shifted:
+        fit = operators.prepared(blender.context, 40.0)
+        armature.pose.bones[fit.hand.rig.names[fit.hand.joints.bones["index_proximal"]]].location.x += 1e-4
+        blender.context.view_layer.update()
+    return [bone.matrix_basis.copy() for bone in armature.pose.bones]
+
+
+def placed(blender):
+    """Places of armature, hand and product."""
+    chosen = blender.context.scene.thenar
+    return [obj.matrix_world.copy() for obj in (reading.armature_of(chosen.hand), chosen.hand, chosen.product)]
 
 
 def recorded(blender, path, rng, gain=1.0):
@@ -100,11 +119,65 @@ def test_a_gain_of_the_mat_bends_no_finger_far_and_is_said(held, tmp_path):
 
 
 def test_a_posture_that_explains_its_recording_is_left_alone(held, tmp_path):
+    """Bones are not even written: a bone's own shift, which a written pose has not, stays."""
     recorded(held, tmp_path / "mat.asf", np.random.default_rng(2))
-    begun = operators.prepared(held.context, 40.0).wish.angles
+    poses = basis(held, shifted=True)
     assert held.ops.thenar.reach_target() == {"FINISHED"}
-    assert np.allclose(operators.prepared(held.context, 40.0).wish.angles, begun, atol=1e-6)
+    assert basis(held) == poses
     assert "as it is, within the noise assumed" in held.context.scene.thenar_targets.explained
+
+
+def test_where_no_posture_explains_the_recording_the_hand_stays(held, tmp_path):
+    """Every second row of 5 mm reads nothing and the others twice as much: skin cannot press so."""
+    rows = np.tile([0.0, 2.0], mat_readings.ROWS)[: mat_readings.ROWS]
+    recorded(held, tmp_path / "mat.asf", np.random.default_rng(4), gain=rows[:, None])
+    poses, places = basis(held), placed(held)
+    assert held.ops.thenar.reach_target() == {"FINISHED"}
+    said = held.context.scene.thenar_targets.explained
+    assert said.startswith("No posture near this one") and "moved" not in said
+    assert basis(held) == poses and placed(held) == places
+
+
+def test_a_hand_moves_no_farther_than_the_guide_says(held, tmp_path):
+    """Put 12 mm along the bar and 12 mm off its axis: the way back is longer than the 10 mm that are searched."""
+    recorded(held, tmp_path / "mat.asf", np.random.default_rng(5))
+    armature = reading.armature_of(held.context.scene.thenar.hand)
+    armature.location += Vector((0.0, 0.009, 0.012))
+    held.context.view_layer.update()
+    fit = operators.prepared(held.context, 40.0)
+    before = placed(held)[0]
+    rows = np.concatenate([pad.rows for pad in fit.hand.pads])
+    middle = skinning.skin(fit.hand.rig, skinning.pose_matrices(fit.hand.rig, fit.wish.angles))[rows].mean(axis=0) / 1e3
+    assert held.ops.thenar.reach_target() == {"FINISHED"}
+    moved = 1e3 * (placed(held)[0] @ before.inverted() @ Vector(middle) - Vector(middle)).length
+    said = held.context.scene.thenar_targets.explained
+    assert 9.0 < moved < 10.05
+    assert f"moved {moved:.1f} mm" in said and "stopped at its bounds of 20 degrees and 10 mm" in said
+    assert not said.startswith("Explained by posture")
+
+
+NOTHING = Match(10.0, 0.0, np.nan, 10.0)
+
+
+@pytest.mark.parametrize(
+    ("before", "is_gain_told"),
+    [(NOTHING, False), (Match(10.0, 50.0, 2.0, 9.5), False), (Match(10.0, 50.0, 2.0, 5.0), True)],
+)
+def test_a_gain_is_named_only_where_it_explains_something(blender, before, is_gain_told):
+    """A gain that leaves 95 % of the difference explains nothing, nor does one of a hand that cannot be pressed."""
+    one = {"area_mm2": np.array([25.0]), "center_mm": np.zeros((1, 3))}
+    found = Explained(None, before, before, Recorded(one, np.array([100.0]), {}))
+    said = " ".join(explained.lines(found))
+    assert ("A gain of 2.00" in said) == is_gain_told and "nan" not in said
+
+
+def test_a_recording_far_from_the_hand_is_refused(held, tmp_path):
+    recorded(held, tmp_path / "mat.asf", np.random.default_rng(3))
+    armature = reading.armature_of(held.context.scene.thenar.hand)
+    armature.location.y += 0.3
+    held.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="more than 30 mm from the hand"):
+        held.ops.thenar.reach_target()
 
 
 def test_without_a_recording_of_a_mat_nothing_is_searched(held, tmp_path):
