@@ -160,15 +160,15 @@ NOTHING = Match(10.0, 0.0, np.nan, 10.0)
 
 
 @pytest.mark.parametrize(
-    ("before", "is_gain_told"),
+    ("before", "is_gain_named"),
     [(NOTHING, False), (Match(10.0, 50.0, 2.0, 9.5), False), (Match(10.0, 50.0, 2.0, 5.0), True)],
 )
-def test_a_gain_is_named_only_where_it_explains_something(blender, before, is_gain_told):
+def test_a_gain_is_named_only_where_it_explains_something(blender, before, is_gain_named):
     """A gain that leaves 95 % of the difference explains nothing, nor does one of a hand that cannot be pressed."""
     one = {"area_mm2": np.array([25.0]), "center_mm": np.zeros((1, 3))}
     found = Explained(None, before, before, Recorded(one, np.array([100.0]), {}))
     said = " ".join(explained.lines(found))
-    assert ("A gain of 2.00" in said) == is_gain_told and "nan" not in said
+    assert ("A gain of 2.00" in said) == is_gain_named and "nan" not in said
 
 
 def test_a_recording_far_from_the_hand_is_refused(held, tmp_path):
