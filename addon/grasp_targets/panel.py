@@ -1,7 +1,7 @@
 """Layout of the target of a grasp. Knows nothing of the search."""
 
 from ..grasp_targets import reasons, settings, stamp
-from ..languages import iface, report
+from ..languages import iface
 from ..panels import text
 
 NAMES = ("thumb", "index", "middle", "ring", "little", "palm")
@@ -40,7 +40,7 @@ def _draw_fingers(layout, context, stored):
 def _draw_age(layout, context, found):
     """Say where the scene is no more what the result holds for."""
     if found and not stamp.holds(context, context.scene.thenar_targets.stamp):
-        text.faint(layout, context, report("Of an earlier pose or target:"))
+        text.faint(layout, context, iface("Of an earlier pose or target:"))
 
 
 def _draw_recording(layout, context, stored):

@@ -4,6 +4,8 @@ Forces are summed from the solved skin by vertex groups as Blender stores them: 
 """
 
 from dataclasses import replace
+from types import SimpleNamespace
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from thenar_blender import workflow
 from thenar_blender.grasp import settling
 from thenar_blender.grasp_fit import fitter
 from thenar_blender.grasp_fit.load import Touched
-from thenar_blender.grasp_targets import operators, parts, reasons, stamp, views
+from thenar_blender.grasp_targets import operators, panel, parts, reasons, stamp, views
 from thenar_blender.hand_bones import reading
 from thenar_blender.hand_bones.roles import COLUMNS
 
@@ -61,6 +63,14 @@ def net_of(blender):
     """Sum of the pushes of the skin on the product (3), N, as Solve left them."""
     blender.ops.thenar.solve()
     return np.array(blender.context.scene.thenar.result.force_vector_n)
+
+
+def drawn(blender):
+    """All that the panel of a target draws, as calls of its layout."""
+    layout, system = MagicMock(), SimpleNamespace(ui_scale=1.0)
+    around = {"region": SimpleNamespace(width=900), "preferences": SimpleNamespace(system=system)}
+    panel.draw(layout, SimpleNamespace(scene=blender.context.scene, **around))
+    return str(layout.mock_calls)
 
 
 def opened(blender, degrees):
@@ -178,8 +188,8 @@ def test_balance_is_the_reason_only_where_the_posture_found_is_balanced(monkeypa
     assert [row.reason for row in rows] == [reason]
 
 
-def test_what_is_left_over_is_said_and_results_of_an_earlier_pose_are_known(held):
-    """One finger alone pushes the product away: by Newton's law its whole force is left over."""
+def test_net_force_is_said_and_results_of_an_earlier_pose_are_known(held):
+    """What is said is the sum of the pushes that Solve finds on the product."""
     scene = held.context.scene
     scene.thenar_grasps.moves = "FINGERS"
     want(held, index=40.0)
@@ -188,12 +198,13 @@ def test_what_is_left_over_is_said_and_results_of_an_earlier_pose_are_known(held
     held.ops.thenar.clear()
     said = scene.thenar_targets.held
     assert float(said.partition(" N left over")[0].split()[-1]) == pytest.approx(push, abs=0.1)
-    assert stamp.holds(held.context, scene.thenar_targets.stamp)
+    assert stamp.holds(held.context, scene.thenar_targets.stamp) and "earlier" not in drawn(held)
     hand = operators.prepared(held.context, 40.0).hand
     bone = reading.armature_of(scene.thenar.hand).pose.bones[hand.rig.names[hand.joints.bones["index_proximal"]]]
     bone.matrix_basis = bone.matrix_basis @ Matrix.Rotation(0.05, 4, "X")
     held.context.view_layer.update()
     assert not stamp.holds(held.context, scene.thenar_targets.stamp)
+    assert "Of an earlier pose" in drawn(held) and f"Index: {scene.thenar_targets.rows[0].reached_n:.1f}" in drawn(held)
 
 
 def test_a_result_is_of_an_earlier_target_where_wishes_or_product_changed(held):
