@@ -145,11 +145,12 @@ def _begun(ready, aim, watch):
 def _ended(begun, aim, watch, most=np.inf):
     """The grasps `begun` with the best ones balanced to the end, best first; after the first one those that count more
     than `most` stay as they are. Raises `Refusal` where even the best one is none."""
-    out, worked = list(begun), 1
+    out, worked = list(begun), 0
     for place in range(min(LAST, len(out))):
-        is_over = place > 0 and out[place].score > most
-        worked = place + (not is_over)
-        if is_over or any(settling.is_settled(one.state, aim) for one in out[: place + 1]):
+        if place > 0 and (out[place].score > most or settling.is_settled(out[place - 1].state, aim)):
+            break
+        worked = place + 1
+        if settling.is_settled(out[place].state, aim):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
         one = out[place]

@@ -132,7 +132,7 @@ def test_a_way_ends_where_it_is_balanced_best(monkeypatch, left_n, kept):
 
 
 def found_of(score, friction, kind=ways.POWER, net_n=8.0):
-    way = SimpleNamespace(kind=kind, bar=None)
+    way = SimpleNamespace(kind=kind, stage=None, bar=None)
     causes = {"settled": 3.0, "touch": score - 3.0}
     return search.Found(state_of(net_n).grasp, state_of(net_n), score, way, friction, (), None, causes)
 
@@ -144,6 +144,20 @@ def test_a_way_balanced_a_little_goes_behind_one_that_is_held(friction, first):
     ranked = search._behind([ended], [begun])
     assert ranked[0].score == first
     assert all(one.score == pytest.approx(sum(one.causes.values())) for one in ranked), "causes explain the score"
+
+
+def test_a_way_balanced_a_little_goes_behind_one_that_balancing_settled(monkeypatch):
+    """The first way settles while it is balanced to the end; the second stays as it is, 20 % left over."""
+    begun = [found_of(5.0, 0.1, net_n=40.0), found_of(6.0, 0.3, net_n=40.0)]
+    ended = found_of(7.0, 0.1, net_n=0.0)
+    monkeypatch.setattr(search, "_settled", lambda *_: ended.state)
+    monkeypatch.setattr(search, "_found", lambda state, aim, way: ended)
+    for further in (polishing, "polish"), (search, "_with_thumb_freed"):
+        monkeypatch.setattr(*further, lambda stage, state, *_: state)
+    monkeypatch.setattr(search, "_faced", lambda one, aim, watch: one)
+    monkeypatch.setattr(search, "_averted", lambda way, grasp: 0.0)
+    ranked = search._ended(begun, aim_of(), fitter.ALONE)
+    assert ranked[0].state is ended.state and ranked[1].state is begun[1].state
 
 
 @pytest.mark.parametrize(
