@@ -82,12 +82,11 @@ def sample_steps(context, kind):
 def scene_steps(context, kind):
     """The steps of a sample in the current scene if it is empty, else in a new one that the window shows; its 3D views
     look through the sample's camera. Returns True. Ended before, they leave the file as it was."""
-    with added.taken_back_unless_whole(context):
+    with added.taken_back_unless_whole(context) as own:
         if context.scene.objects:
-            context.window.scene = bpy.data.scenes.new(f"Thenar {SAMPLES[kind].label}")
-            context = bpy.context
-        yield from sample_steps(context, kind)
-        _look_through_camera([context.window.screen] if context.window else [])
+            own.move_to_new_scene(f"Thenar {SAMPLES[kind].label}")
+        yield from own.in_turns(sample_steps(context, kind))
+        _look_through_camera([context.window.screen] if context.window and own.is_shown() else [])
     return True
 
 

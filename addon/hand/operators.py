@@ -62,12 +62,19 @@ class THENAR_OT_make_hand(computing.Computing, bpy.types.Operator):
 
 
 def hand_steps(context, shape):
-    """The steps of a hand of this `shape`, chosen as the scene's hand and looked at. Returns the hand."""
-    with added.taken_back_unless_whole(context):
-        made = yield build.making(**shape)
-        hand, _ = yield from build.adding(context, made)
-    context.scene.thenar.hand = hand
-    framing.frame(context, hand)
+    """The steps of a hand of this `shape` in the scene shown at their start, chosen as its hand and looked at. Returns
+    the hand."""
+    with added.taken_back_unless_whole(context) as own:
+        hand = yield from own.in_turns(_adding(context, shape))
+    own.scene.thenar.hand = hand
+    if own.is_shown():
+        framing.frame(context, hand)
+    return hand
+
+
+def _adding(context, shape):
+    made = yield build.making(**shape)
+    hand, _ = yield from build.adding(context, made)
     return hand
 
 

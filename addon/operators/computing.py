@@ -2,6 +2,7 @@
 
 import atexit
 import time
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import bpy
@@ -124,8 +125,9 @@ class Computing:
 
 def stop_all(context):
     """End every computation and put the scene back: before a file is loaded, and before the operators go."""
-    for under_way in list(_under_way):
-        _stop(context, under_way)
+    with ExitStack() as stops:
+        for under_way in _under_way:
+            stops.callback(_stop, context, under_way)
 
 
 def register():
@@ -151,6 +153,8 @@ def _stop(context, under_way):
     run = _under_way.pop(under_way, None)
     if run is None:
         return
-    run.worker.stop()
-    under_way.close()
-    running.end(context, run.timer)
+    try:
+        run.worker.stop()
+        under_way.close()
+    finally:  # else the window would say for good that a computation is under way
+        running.end(context, run.timer)

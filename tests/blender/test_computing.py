@@ -121,3 +121,25 @@ def test_a_bug_leaves_the_window_usable(context):
     with pytest.raises(ZeroDivisionError):
         finish(operator, context)
     assert operator.undone == 1 and not status.run.stage
+
+
+def test_steps_that_fail_at_their_end_leave_the_window_usable(context):
+    """Each on its own, too, where all are ended at once."""
+
+    class Broken(Operator):
+        def steps(self, context):
+            try:
+                yield lambda cancel, progress: None
+            finally:
+                self.undone += 1
+                raise ZeroDivisionError("a bug")
+
+    operator = started(Broken([]), context)
+    status.run.stage = "counting"
+    with pytest.raises(ZeroDivisionError):
+        turn(operator, context, "ESC")
+    assert operator.undone == 1 and not status.run.stage
+    both = [started(Broken([]), context), started(Operator([lambda cancel, progress: None]), context)]
+    with pytest.raises(ZeroDivisionError):
+        computing.stop_all(context)
+    assert [each.undone for each in both] == [1, 1]

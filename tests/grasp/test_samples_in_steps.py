@@ -49,6 +49,42 @@ def test_a_sample_that_fails_on_the_way_leaves_the_file_as_it_was(blender):
     assert content() == before
 
 
+@pytest.mark.parametrize(("kind", "is_first_empty"), [("held_bottle", True), ("fingertip_on_plate", False)])
+def test_a_sample_is_in_one_scene_whatever_the_window_shows(blender, kind, is_first_empty):
+    """The window goes back and forth between two scenes; what a user adds to the other one stays there alone."""
+    if not is_first_empty:
+        blender.ops.object.empty_add()
+    first, other = blender.context.scene, bpy.data.scenes.new("Other")
+    run, is_whole = samples.scene_steps(blender.context, kind), False
+    work = next(run)
+    while not is_whole:
+        blender.context.window.scene = other if blender.context.scene != other else first
+        try:
+            work = steps.hand_back(run, work)
+        except StopIteration:
+            is_whole = True
+    (scene,) = [each for each in bpy.data.scenes if each.thenar.hand is not None]
+    assert (scene == first) == is_first_empty and scene != other and not other.objects
+    assert len(first.objects) == (len(scene.objects) if is_first_empty else 1)
+    made = set(bpy.data.objects) - (set() if is_first_empty else set(first.objects))
+    rings = {each for each in made if not each.users_scene}
+    assert set(scene.objects) == made - rings
+    assert {scene.thenar.hand, scene.thenar.hand.parent, scene.thenar.product, scene.camera} <= set(scene.objects)
+
+
+def test_a_sample_that_is_ended_gives_the_window_its_view_layer_again(blender):
+    blender.ops.object.empty_add()
+    window = blender.context.window
+    layer = window.scene.view_layers.new("Second")
+    window.view_layer = layer
+    scene = window.scene
+    run = samples.scene_steps(blender.context, "held_bottle")
+    steps.hand_back(run, next(run))
+    assert window.scene != scene
+    run.close()
+    assert (window.scene, window.view_layer) == (scene, layer)
+
+
 def test_in_steps_and_at_once_are_the_same_sample(blender):
     seen = []
     for add in (

@@ -1,11 +1,15 @@
 """A hand is made in turns with the window: ended at any of them, the file is as it was before."""
 
+import time
+
 import bpy
 import numpy as np
 import pytest
+import test_computing
 import thenar
-from thenar_blender import steps
+from thenar_blender import status, steps
 from thenar_blender.hand import operators
+from thenar_blender.operators import computing
 from thenar_blender.scene.checks import Refusal
 
 KINDS = ("objects", "meshes", "armatures", "materials", "node_groups", "scenes", "collections", "texts", "images")
@@ -41,6 +45,89 @@ def test_a_hand_that_is_ended_leaves_the_file_as_it_was():
         turns += 1
         run, is_whole = after(turns)
     assert turns >= 4 and content()["hand"] is not None
+
+
+class Making(test_computing.Operator):
+    """Make Hand as a button starts it; an operator of Blender has no window in these tests."""
+
+    def steps(self, context):
+        return operators.hand_steps(bpy.context, SHAPE)
+
+
+@pytest.fixture
+def second_layer():
+    """The window shows a second view layer, whose active object the first one leaves out."""
+    window, collection = bpy.context.window, bpy.data.collections.new("Left out")
+    first, window.view_layer = window.view_layer, window.scene.view_layers.new("Second")
+    window.scene.collection.children.link(collection)
+    first.layer_collection.children["Left out"].exclude = True
+    bpy.ops.object.empty_add()
+    active = bpy.context.object
+    collection.objects.link(active)
+    window.scene.collection.objects.unlink(active)
+    bpy.context.view_layer.objects.active = active
+    return window.view_layer
+
+
+context = test_computing.context
+
+
+@pytest.mark.parametrize("more", [0, 2])
+def test_esc_leaves_the_file_as_it_was_in_every_view_layer(second_layer, context, monkeypatch, more):
+    """Some turns after the first thing was added; nothing is under way any more."""
+    monkeypatch.setattr(computing, "TURN_S", 0.0)
+    layers = bpy.context.scene.view_layers
+    before, active = content(), [layer.objects.active for layer in layers]
+    operator = test_computing.started(Making([]), context)
+    while content() == before:
+        assert test_computing.turn(operator, context) == {"RUNNING_MODAL"}
+        time.sleep(0.01)
+    for _ in range(more):
+        assert test_computing.turn(operator, context) == {"RUNNING_MODAL"}
+    assert test_computing.turn(operator, context, "ESC") == {"CANCELLED"}
+    assert content() == before and [layer.objects.active for layer in layers] == active
+    assert bpy.context.view_layer == second_layer and not status.run.stage
+
+
+@pytest.mark.parametrize("turns", [1, 2, 4])
+def test_esc_takes_back_nothing_that_others_added(turns):
+    """In a second window: an object and its mesh, a scene, another active object."""
+    run, _ = after(turns)
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.data.scenes.new("Own scene")
+    mine = content()
+    run.close()
+    for kind in KINDS:
+        assert all(name in mine[kind] for name in content()[kind]), kind
+    assert content()["active"] == mine["active"] and "Own scene" in bpy.data.scenes
+    assert [each.name for each in bpy.data.objects] == ["Cube"] and [each.name for each in bpy.data.meshes] == ["Cube"]
+
+
+def test_a_scene_that_goes_takes_the_steps_with_it_and_leaves_nothing_of_them():
+    other = bpy.data.scenes.new("Other")
+    run, _ = after(2)
+    scene, bpy.context.window.scene = bpy.context.scene, other
+    bpy.data.scenes.remove(scene)
+    with pytest.raises(Refusal, match="scene was removed"):
+        next(run)
+    assert not bpy.data.objects and bpy.context.scene == other
+
+
+@pytest.mark.parametrize("turns", [0, 1, 2, 3])
+def test_all_of_a_hand_is_in_the_scene_where_it_was_begun(turns):
+    """The window shows another scene from a turn on."""
+    scene, other = bpy.context.scene, bpy.data.scenes.new("Other")
+    run = operators.hand_steps(bpy.context, SHAPE)
+    work, hand, turn = next(run), None, 0
+    while hand is None:
+        bpy.context.window.scene = other if turn >= turns else scene
+        try:
+            work, turn = steps.hand_back(run, work), turn + 1
+        except StopIteration as end:
+            hand = end.value
+    assert set(scene.collection.objects) == {hand, hand.parent} and not other.objects
+    assert scene.thenar.hand == hand and other.thenar.hand is None
+    assert bpy.context.scene == other and bpy.context.view_layer.objects.active is None
 
 
 def test_a_hand_that_nobody_has_is_refused_and_leaves_nothing():
