@@ -13,6 +13,12 @@ _FIELD = re.compile(r"\{(\w+)\}")
 _BETWEEN = re.compile(r"(, | and )")
 _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 """A name with a number and its unit behind it."""
+_QUOTED = re.compile(r"('[^']*')")
+_OWN_NAME = re.compile(r"(?<!region )'\{(\w+)\}'")
+"""A field in quotes is what an object, a modifier or a file is called in the scene, and stays; of regions Thenar shows
+translated titles everywhere."""
+_ONE_WORD = {"lower"}
+"""Fields that hold one word: a template of little more than these would fit any sentence."""
 
 
 def shown(text):
@@ -29,16 +35,20 @@ def _translated(text):
     for pattern, template in _patterns():
         found = pattern.fullmatch(text)
         if found is not None:
-            words = kept(template)
-            fields = {name: _part(value) for name, value in found.groupdict().items()}
+            words, own = kept(template), set(_OWN_NAME.findall(template))
+            fields = {name: value if name in own else _part(value) for name, value in found.groupdict().items()}
             return text if words == template else words.format(**fields)
     return text
 
 
 def _part(value):
-    """What a field holds: a sentence of its own, names from a list, or what stays as it is."""
+    """What a field holds: a sentence of its own, names from a list, or what stays as it is, as names in quotes do."""
     words = shown(value)
-    return words if words != value else "".join(map(_name, _BETWEEN.split(value)))
+    return words if words != value else "".join(map(_names, _QUOTED.split(value)))
+
+
+def _names(words):
+    return words if not words or words[0] == "'" else "".join(map(_name, filter(None, _BETWEEN.split(words))))
 
 
 def _name(word):
@@ -64,5 +74,9 @@ def _fixed(template):
 
 def _pattern(template):
     parts = _FIELD.split(template)
-    fields = [f"(?P<{part}>.+?)" if place % 2 else re.escape(part) for place, part in enumerate(parts)]
+    fields = [_field(part) if place % 2 else re.escape(part) for place, part in enumerate(parts)]
     return re.compile("".join(fields))
+
+
+def _field(name):
+    return rf"(?P<{name}>[^\s,;:]+)" if name in _ONE_WORD else f"(?P<{name}>.+?)"

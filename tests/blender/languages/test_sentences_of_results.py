@@ -82,8 +82,37 @@ def test_the_name_of_a_region_inside_a_sentence_is_translated(language):
     assert "Own" in words and "4.70" in words and "4.00" in words
 
 
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "a Mirror modifier on '{0}': only the modelled half was pressed; its mirror image repeats it",
+        "'{0}' is not in this bake and shows no pressure of it",
+        "renders show '{0}' of '{1}' at level 2, the view at 1: the skin was checked at the view's; set both alike for "
+        "a certified picture",
+        "a copy of '{0}', '{1}' in 'Thenar Results' carries the pressure: it is a curve",
+        "a copy of '{0} and {1}', 'no, {0}, {1}' in 'Thenar Results' carries the pressure: it is a curve",
+    ],
+)
+def test_names_of_objects_stay_as_the_user_finds_them_in_the_scene(language, sentence):
+    """Also those that are words of the interface, which has a translation for them."""
+    known = ["Product", "Light", "Hand"]
+    assert any(languages.iface(name) != name for name in known)
+    for first, second in zip(known, known[1:] + known[:1], strict=True):
+        words = sentences.shown(sentence.format(first, second))
+        assert words != sentence.format(first, second)
+        for name in re.findall(r"'([^']+)'", sentence.replace("view's", "view")):
+            assert name.format(first, second) in words
+
+
 def test_a_sentence_of_no_template_stays_as_it_is(language):
-    for sentence in ("", "something else", "a hand of 3 mm", "region", "the hand is in the product"):
+    for sentence in (
+        "",
+        "something else",
+        "a hand of 3 mm",
+        "region",
+        "the hand is in the product",
+        "it is a long story",
+    ):
         assert sentences.shown(sentence) == sentence
 
 
