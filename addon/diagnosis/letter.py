@@ -121,7 +121,10 @@ def write(found):
 
 
 def _heading(found):
-    is_unnamed = found.get("is_more_than_noise") and found["verdict"] in ("nothing_missing", "parameters")
+    is_more = found.get("is_more_than_noise")
+    if is_more is None:  # findings of an earlier version, whose sentence says it alone
+        is_more = (found.get("sentence") or "").startswith(UNNAMED)
+    is_unnamed = is_more and found["verdict"] in ("nothing_missing", "parameters")
     return UNNAMED if is_unnamed else HEADINGS[found["verdict"]]
 
 

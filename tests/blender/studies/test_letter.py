@@ -1,6 +1,7 @@
 """Rows of a finding in the letter, from findings alone."""
 
 import letters
+import pytest
 from thenar_blender.diagnosis import letter
 
 
@@ -43,6 +44,17 @@ def test_what_is_suspected_only_is_said_to_be_no_finding():
     assert "Suspected only" in said and "stiff skin" in said.lower()
     plain = letter.write(doubted | {"suspected": [], "is_more_than_noise": False})
     assert plain.heading == letter.HEADINGS["parameters"] and plain.rivals == ()
+
+
+@pytest.mark.parametrize("verdict", ["nothing_missing", "parameters"])
+def test_findings_of_earlier_versions_have_the_heading_of_their_sentence(verdict):
+    """They have no key for what is left: their sentence says it, as `verdict_sentence.rs` wrote it then as now."""
+    of_then = {key: kept for key, kept in letters.FINDINGS["parameters"].items() if key != "is_more_than_noise"}
+    of_then["verdict"] = verdict
+    unsettled = letter.write(of_then | {"sentence": "No effect is named, though the recordings differ."})
+    assert unsettled.heading == letter.UNNAMED
+    for sentence in ("Nothing is missing: they agree.", "", None):
+        assert letter.write(of_then | {"sentence": sentence}).heading == letter.HEADINGS[verdict]
 
 
 def test_evidence_by_phase_is_that_of_force_over_depth_alone():
