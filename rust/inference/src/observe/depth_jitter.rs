@@ -5,7 +5,7 @@
 //! reliability of the readings (Fuller 1987, Measurement Error Models, section 1.1).
 
 use crate::observe::measured::Phase;
-use crate::observe::motion::motion;
+use crate::observe::motion::by_lines;
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::median_deviation;
 use crate::observe::smoothing::smoothed;
@@ -14,6 +14,9 @@ use crate::observe::smoothing::smoothed;
 const LEAST: f64 = 0.25;
 /// Readings farther than this many standard deviations from the smooth course are movement, and stay; forces count for no more.
 const MOVES: f64 = 5.0;
+/// What straight lines may leave of the readings, in standard deviations of what smooth courses leave: straight legs of 6 and more readings
+/// reach 1.3, fast cycles that are no lines 4 and more.
+const LINES_LEAVE: f64 = 1.5;
 /// Readings that follow the force by assumption, in samples whose jitter does as much as the noise of the force: where nothing can be said
 /// the depth is believed.
 const BELIEVED: f64 = 2.0;
@@ -31,7 +34,6 @@ pub(crate) struct Depths {
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
 pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Option<Depths> {
     let n = courses.depth_mm.len();
-    let mut course = motion(courses.time_s, courses.depth_mm);
     // What the force follows is judged with depth and force smoothed alike: lines would leave of the depth what the force has lost.
     let (mut depth, mut force) = (courses.depth_mm.to_vec(), courses.force_n.to_vec());
     for stretch in stretches {
@@ -63,6 +65,10 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
+    let lines = by_lines(courses.time_s, courses.depth_mm);
+    let is_motion =
+        |lines: &Vec<f64>| deviation(&off(courses.depth_mm, lines)) <= LINES_LEAVE * jitter_mm;
+    let mut course = lines.filter(is_motion).unwrap_or(depth);
     let read = off(courses.depth_mm, &course);
     let jitter_mm = deviation(&read);
     for k in 0..n {
@@ -153,6 +159,78 @@ mod tests {
             let (both, _) = found(0.01, 0.01, seed);
             let both = both.expect("half of it is noise").reliability;
             assert!((both - 0.5).abs() < 0.25, "{both}");
+        }
+    }
+
+    const JITTER_MM: f64 = 0.016;
+
+    /// Depths less the truth, mm, of 12 recordings at these moments: readings jitter about a motion that the force follows. Only where asked.
+    fn errors(
+        (path, time): (&dyn Fn(f64) -> f64, &[f64]),
+        is_asked: &dyn Fn(f64) -> bool,
+    ) -> Vec<f64> {
+        let of = |seed: u64| {
+            let mut random = Random::new(seed);
+            let read: Vec<f64> = time
+                .iter()
+                .map(|t| path(*t) + JITTER_MM * random.normal())
+                .collect();
+            let force: Vec<f64> = time
+                .iter()
+                .map(|t| 0.5 * path(*t).max(0.0).powf(1.5) + 0.002 * random.normal())
+                .collect();
+            let courses = Courses {
+                time_s: time,
+                depth_mm: &read,
+                force_n: &force,
+                slide_mm: &[],
+            };
+            let found = without_jitter(courses, &stretches(courses));
+            let depth = found.map_or(read.clone(), |found| found.depth_mm);
+            let errors = time.iter().zip(depth).map(|(t, d)| (*t, d - path(*t)));
+            let asked = errors.filter(|(t, _)| is_asked(*t)).map(|(_, error)| error);
+            asked.collect::<Vec<f64>>()
+        };
+        (1..13).flat_map(of).collect()
+    }
+
+    fn mean(of: &[f64]) -> f64 {
+        of.iter().sum::<f64>() / of.len() as f64
+    }
+
+    fn rms(of: &[f64]) -> f64 {
+        mean(&of.iter().map(|x| x * x).collect::<Vec<f64>>()).sqrt()
+    }
+
+    fn moments(count: u32, step: f64) -> Vec<f64> {
+        (0..count).map(|k| step * f64::from(k)).collect()
+    }
+
+    /// Lines along the flanks of a sine meet in a corner above its crest.
+    #[test]
+    fn crest_of_a_sine_is_read_no_deeper_than_it_is() {
+        let sine = |t: f64| 0.55 - 0.65 * libm::cos(2.0 * std::f64::consts::PI * t / 3.0);
+        let top = errors((&sine, &moments(200, 0.06)), &|t| sine(t) > 0.99 * 1.2);
+        assert!(mean(&top).abs() < 0.3 * JITTER_MM, "{}", mean(&top));
+    }
+
+    /// A ramp of two or three readings belongs to no hold: of its 98 readings the level is known to a tenth of the jitter, of its ends less.
+    #[test]
+    fn hold_after_a_step_stays_level() {
+        let step = |t: f64| ((t - 2.0) / 0.25).min((14.0 - t) / 2.0).clamp(0.0, 1.0) * 1.3 - 0.1;
+        let held = errors((&step, &moments(200, 0.1)), &|t| (2.25..=12.0).contains(&t));
+        assert!(rms(&held) < 0.3 * JITTER_MM, "{}", rms(&held));
+    }
+
+    #[test]
+    fn cycles_of_a_few_readings_keep_their_turns() {
+        for readings in [3.0, 4.0] {
+            let cycles = |t: f64| {
+                let phase = (t / (0.05 * readings)) % 2.0;
+                1.3 * phase.min(2.0 - phase) - 0.1
+            };
+            let all = errors((&cycles, &moments(61, 0.05)), &|_| true);
+            assert!(rms(&all) < 1.2 * JITTER_MM, "{readings}: {}", rms(&all));
         }
     }
 

@@ -101,7 +101,7 @@ pub(crate) fn moves(time: &[f64], depth: &[f64]) -> Vec<Phase> {
     let mut phases = vec![Phase::Hold; n];
     let noise = noise_of(depth);
     let (low, high) = range(depth);
-    let least = f64::max(LEAST_MOVE * (high - low), LEAST_MOVE_IN_NOISE * noise);
+    let least = least_move(depth);
     if n < 2 || high - low <= 0.0 {
         return phases;
     }
@@ -136,6 +136,15 @@ pub(crate) fn moves(time: &[f64], depth: &[f64]) -> Vec<Phase> {
         mark_pauses((time, depth), (start, end), near, &mut phases);
     }
     phases
+}
+
+/// Way from which a movement counts as one, mm.
+pub(crate) fn least_move(depth: &[f64]) -> f64 {
+    let (low, high) = range(depth);
+    f64::max(
+        LEAST_MOVE * (high - low),
+        LEAST_MOVE_IN_NOISE * noise_of(depth),
+    )
 }
 
 /// Marks where a leg pauses on its way.
