@@ -537,7 +537,10 @@ class Diagnosis:
         """The verdict's word, as in findings.json."""
     @property
     def suspected(self) -> list[str]:
-        """Effects that explain more than noise would and that a gate refused: suspected only, no findings."""
+        """Effects that explain more than noise would and that a gate refused: suspected only, no findings.
+
+        With insufficient_data no gate was asked and the noise is not known; friction of a single slide passes no gate.
+        """
     @property
     def curves(self) -> list[Record]:
         """By recording: time_s, depth_mm, measured_n, before_n (parameters alone), after_n (with what was found)."""

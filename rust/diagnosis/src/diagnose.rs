@@ -227,8 +227,10 @@ fn told(
         .into_iter()
         .for_each(|seen| add_ceiling(&mut found, seen));
     add_friction(study, &mut found);
+    let is_named = matches!(found.verdict, Verdict::MissingPhysics | Verdict::Instrument);
+    found.is_more_than_noise &= !is_named;
     found.sentence = crate::verdict_sentence::sentence(
-        (found.verdict, decision.is_more_than_noise),
+        (found.verdict, found.is_more_than_noise),
         (&found.findings, found.gain.as_ref()),
         (&found.cannot_tell, &decision.beside, &found.record_next),
         &reason,

@@ -44,6 +44,9 @@ def test_what_is_suspected_only_is_said_to_be_no_finding():
     assert "Suspected only" in said and "stiff skin" in said.lower()
     plain = letter.write(doubted | {"suspected": [], "is_more_than_noise": False})
     assert plain.heading == letter.HEADINGS["parameters"] and plain.rivals == ()
+    for verdict in ("unlisted", "cannot_tell"):
+        open_still = letter.write(letters.FINDINGS[verdict] | {"is_more_than_noise": True})
+        assert open_still.heading == letter.HEADINGS[verdict]
 
 
 @pytest.mark.parametrize("verdict", ["nothing_missing", "parameters"])

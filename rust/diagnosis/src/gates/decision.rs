@@ -49,7 +49,8 @@ pub struct Decision<'a> {
     pub beside: Vec<&'static str>,
     /// Whether recordings differ by more than their noise although nothing is named.
     pub is_more_than_noise: bool,
-    /// Effects that are suspected and not named: they explain more than noise would, and a gate refused them.
+    /// Effects that are suspected and not named: they explain more than noise would, and a gate refused them; where the noise is not known,
+    /// what one would look at first.
     pub suspected: Vec<&'static str>,
     /// Why, for the notes.
     pub reason: String,
@@ -87,7 +88,7 @@ pub(crate) fn silent<'a>(verdict: Verdict, reason: &str) -> Decision<'a> {
         named: None,
         cannot_tell: Vec::new(),
         beside: Vec::new(),
-        is_more_than_noise: false,
+        is_more_than_noise: verdict == Verdict::Unlisted,
         suspected: Vec::new(),
         reason: reason.to_owned(),
     }
@@ -104,8 +105,14 @@ pub(crate) fn unsettled_misfit<'a>(verdict: Verdict, reason: &str) -> Decision<'
 impl Decision<'_> {
     /// The same with effects that are suspected only.
     pub(crate) fn suspecting(self, suspected: &[&'static str]) -> Self {
+        let mut all: Vec<&'static str> = Vec::new();
+        for name in suspected {
+            if !all.contains(name) {
+                all.push(name);
+            }
+        }
         Decision {
-            suspected: suspected.to_vec(),
+            suspected: all,
             ..self
         }
     }
@@ -338,8 +345,29 @@ fn unsettled<'a>(mut pairs: Vec<[&'static str; 2]>, reason: &str) -> Decision<'a
         named: None,
         cannot_tell: seen,
         beside: Vec::new(),
-        is_more_than_noise: false,
+        is_more_than_noise: true,
         suspected: Vec::new(),
         reason: reason.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both verdicts say that something is missing, and give it no name.
+    #[test]
+    fn what_is_missing_without_a_name_is_more_than_noise() {
+        assert!(silent(Verdict::Unlisted, "").is_more_than_noise);
+        assert!(unsettled(vec![["offset", "drift"]], "").is_more_than_noise);
+        for verdict in [Verdict::NothingMissing, Verdict::InsufficientData] {
+            assert!(!silent(verdict, "").is_more_than_noise);
+        }
+    }
+
+    #[test]
+    fn each_suspicion_is_listed_once() {
+        let decision = silent(Verdict::Parameters, "").suspecting(&["bone", "drift", "bone"]);
+        assert_eq!(decision.suspected, ["bone", "drift"]);
     }
 }

@@ -173,7 +173,7 @@ impl<'a> Gate<'a, '_> {
             in_words(feigned),
             self.form()
         );
-        decision::named(single, &reason)
+        decision::named(single, &reason).suspecting(feigned)
     }
 
     fn nothing(&self, feigned: &[&'static str]) -> Decision<'a> {

@@ -135,17 +135,19 @@ fn least(of: &Mechanism) -> f64 {
 
 /// One of two is named, since the other does not predict what it leaves.
 fn without_the_other<'a>(single: &'a Scored, pair: &Scored) -> Decision<'a> {
-    let other = pair
-        .mechanisms
-        .iter()
-        .find(|m| m.effect != single.mechanisms[0].effect);
-    let other = other.map_or_else(String::new, |m| effect_in_words(m.effect.name()));
+    let names = pair.names();
+    let is_other = |name: &&str| *name != single.mechanisms[0].effect.name();
+    let others: Vec<&'static str> = names.into_iter().filter(is_other).collect();
+    let other = others
+        .first()
+        .map_or_else(String::new, |name| effect_in_words(name));
     decision::named(
         single,
         &format!(
             "with {other} it would fit better, but not predict recordings that were held out better"
         ),
     )
+    .suspecting(&others)
 }
 
 /// Nothing listed is there, since what would be named does not predict.
@@ -203,6 +205,7 @@ fn predicts(gain: &Gain, least: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::synthetic_rungs::rungs_beside;
     use thenar_inference::selection::cross_validation::{HeldOutBy, Spread};
 
     fn gain(log_score: f64, placebo: f64, evidence: f64) -> Gain {
@@ -231,6 +234,15 @@ mod tests {
         assert!(share_of_rest(0.95, 0.9) > REMOVED_BY_INSTRUMENT.1);
         assert!(share_of_rest(0.51, 0.5) < REMOVED_BY_INSTRUMENT.1);
         assert!(share_of_rest(0.7, 0.8) < 0.0);
+    }
+
+    /// The notes say that it would fit better: so do the data.
+    #[test]
+    fn other_of_two_that_does_not_predict_stays_suspected() {
+        let rungs = rungs_beside((Effect::Relaxation, 90.0), Effect::Offset, 20.0);
+        let decision = without_the_other(&rungs.singles[0], &rungs.pairs[0]);
+        assert_eq!(decision.suspected, ["offset"]);
+        assert!(!decision.is_more_than_noise);
     }
 
     /// A small effect that held-out recordings confirm is named, a large one that they do not is not.

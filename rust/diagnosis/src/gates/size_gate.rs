@@ -65,7 +65,7 @@ pub fn decide<'a>(
     let reason = open(named, &kept);
     match found {
         Some((single, gain, profiled)) => Sized {
-            decision: decision::named(single, &reason),
+            decision: decision::named(single, &reason).suspecting(&left(named, &kept)),
             gain: Some(gain),
             profiled,
         },

@@ -51,6 +51,7 @@ pub(crate) fn diagnose_grasps(
         }
     }
     found.verdict = verdict(&explained, &found);
+    found.is_more_than_noise = matches!(found.verdict, Verdict::CannotTell | Verdict::Unlisted);
     found.names_90 = names_90(&found);
     found.record_next = notes::next(&explained, &found);
     found.sentence = notes::sentence(&explained, &found);

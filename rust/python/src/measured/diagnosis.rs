@@ -69,6 +69,7 @@ impl Diagnosis {
     }
 
     /// Effects that explain more than noise would and that a gate refused: suspected only, no findings.
+    /// With insufficient_data no gate was asked and the noise is not known; friction of a single slide passes no gate.
     #[getter]
     fn suspected(&self) -> Vec<&'static str> {
         self.inner.suspected.clone()
