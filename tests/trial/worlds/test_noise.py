@@ -45,6 +45,20 @@ def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
 
 
+@pytest.mark.parametrize("seed", [1, 7])
+def test_a_sine_under_jitter_is_accused_of_nothing(seed, tmp_path):
+    """Lines along its flanks meet above its crest, which a ceiling explained (7) or could not be told from (1)."""
+    reader = closed_forms._Reader("depth_jitter", np.random.default_rng([seed, 7]))
+    reader.jitter = 0.016
+    time = np.arange(0.0, 12.0, 0.06)
+    depth = 0.55 - 0.65 * np.cos(2.0 * np.pi * time / 3.0)
+    force = 0.012 * closed_forms.pressed(depth, 6.0)
+    recordings = [closed_forms.Recording("sine", "ball", reader.read(time, depth, force)) for _ in range(4)]
+    closed_forms.Case({"ball": 6.0}, recordings, 1.2).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == said["suspected"] == []
+
+
 def test_relaxation_is_named_through_jitter(tmp_path):
     closed_forms.draw(1, "relaxation", "depth_jitter").write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
