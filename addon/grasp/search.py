@@ -97,7 +97,8 @@ def search(fit, watch=fitter.ALONE, asked=None):
                 ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
                 begun[kind] = _begun(ready, aim, watch)
             if begun[kind] and begun[kind][0].score <= most:
-                found += _ended(begun[kind], aim, watch, most)
+                slid = [ways.slid(way) for way in ways.powers(stage, asked.end)] if kind == ways.POWER else []
+                found += _ended_or_slid(begun[kind], slid, (aim, most), watch)
         except (Refusal, native.module.SolveError) as refusal:
             fitter.leave_if_cancelled(watch)
             refusals[kind] = refusal
@@ -169,6 +170,29 @@ def _ended(begun, aim, watch, most=np.inf):
     _refuse_what_does_not_hold(out[0].state)
     averted = OPPOSED * _averted(out[0].way, out[0].state.grasp)
     return [replace(one, score=one.score - averted) for one in out]
+
+
+def _ended_or_slid(begun, slid, asked, watch):
+    """`_ended`, `asked` for an aim and a most; where that settles none, the best of the ways `slid` if it is better.
+
+    On a short bar a hand may have to slide along it; on a long one a hand that may ends at the bar's end.
+    """
+    aim, most = asked
+    ended, refusal = [], None
+    try:
+        ended = _ended(begun, aim, watch, most)
+    except (Refusal, native.module.SolveError) as error:
+        fitter.leave_if_cancelled(watch)
+        refusal = error
+    if slid and not (ended and settling.is_settled(ended[0].state, aim)):
+        try:
+            again = _best(slid, aim, watch)
+            ended = min(ended or again, again, key=lambda found: in_steps(found[0].score))
+        except (Refusal, native.module.SolveError):
+            fitter.leave_if_cancelled(watch)
+    if not ended:
+        raise refusal
+    return ended
 
 
 def _behind(ended, begun):

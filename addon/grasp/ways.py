@@ -59,6 +59,12 @@ class Way:
         return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
 
 
+def slid(way):
+    """The way with a hand that may slide along the bar as far as it likes."""
+    fit = way.stage.fit
+    return replace(way, stage=replace(way.stage, fit=replace(fit, wish=replace(fit.wish, along_mm=np.inf))))
+
+
 def _opposed(hand):
     """Angles (b, 3) of the open hand with its thumb pronated."""
     angles = pose_angles(hand.rig, hand.joints, OPEN)

@@ -67,7 +67,8 @@ class Grasp:
 class Wish:
     """What to fit: `targets_mm` by kind of pad; `digits` that take part (None: all, with the palm); `is_placed` keeps
     the hand's place within `free_mm` of where it stands and closes it from `angles`, otherwise the product is laid into
-    the open palm; `axis` and `center` of the product (world mm) if its own long axis is not the one to grasp."""
+    the open palm; `axis` and `center` of the product (world mm) if its own long axis is not the one to grasp.
+    `along_mm`: how far a hand around a bar may slide along it from where it was laid; farther costs."""
 
     targets_mm: dict
     digits: tuple = None
@@ -77,6 +78,7 @@ class Wish:
     axis: tuple = None
     center: tuple = None
     evaluations: int = 70
+    along_mm: float = 20.0
 
 
 @dataclass(frozen=True)

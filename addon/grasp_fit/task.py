@@ -49,10 +49,9 @@ turns farther than this there is an edge between, or the other wall."""
 
 PLACE = np.array([WEIGHT_SHIFT] * 3 + [WEIGHT_TURN] * 3)
 
-ALONG_MM = 20.0
 WEIGHT_ALONG = 0.5
-"""A hand around a bar stays so near to where it was laid, along the bar; mm for each mm beyond. A fit that balances a
-moment else slides to the bar's end: there pads that press run out, and others hook over the edge."""
+"""mm for each mm that a hand around a bar slid beyond `Wish.along_mm`. A fit that balances a moment else slides to the
+bar's end: there pads that press run out, and others hook over the edge."""
 
 BODY_MM = 1.0
 """Skin outside the pads (sides, webs, back of the fingers) may lie this deep in the product."""
@@ -95,6 +94,7 @@ class Task:
         self.rig = hand.rig.moved(place)
         self.place, self.first = place, angles
         self.dofs = [dof for dof in free_angles(hand.joints) if _moves(dof[2], wish)]
+        self.along_mm = wish.along_mm
         self.rows, self.groups, self.limits = _groups(hand, goal)
         sizes = [len(rows) for rows in self.groups]
         self.floors, self.ends = np.repeat(-np.array(self.limits), sizes), np.cumsum(sizes)[:-1]
@@ -192,7 +192,7 @@ class Task:
             return 0.0, np.zeros(3)
         center, axis = self.goal.bar
         off = float((self.pivot + shift - center) @ axis)
-        beyond = max(abs(off) - ALONG_MM, 0.0)
+        beyond = max(abs(off) - self.along_mm, 0.0)
         return WEIGHT_ALONG * beyond, WEIGHT_ALONG * np.sign(off) * (beyond > 0.0) * axis
 
     def jacobian(self, x):
