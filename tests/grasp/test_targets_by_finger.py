@@ -32,9 +32,9 @@ def kept(tmp_path_factory):
 
 @pytest.fixture
 def held(blender, scene, kept):
-    """A hand that holds a cylinder of 48 mm firmly; searched once."""
+    """A hand that holds a cylinder of 48 mm, 250 mm long, firmly; searched once."""
     if not kept.exists():
-        across, along = np.array([0.0, 24.0, 24.0, 0.0]), np.array([-90.0, -90.0, 90.0, 90.0])
+        across, along = np.array([0.0, 24.0, 24.0, 0.0]), np.array([-125.0, -125.0, 125.0, 125.0])
         scene(shapes.revolved(across, along, 48))
         assert blender.ops.thenar.fit_grasp() == {"FINISHED"}
         blender.ops.wm.save_as_mainfile(filepath=str(kept))
@@ -98,7 +98,7 @@ def test_forces_of_a_known_posture_come_back_from_an_opened_hand(held, seed):
     rng = np.random.default_rng(seed)
     opened(held, iter(rng.uniform(2.0, 12.0, 40)))
     before = summed(held)
-    assert sum(before.values()) < 0.6 * sum(known.values())
+    assert sum(abs(before[part] - known[part]) for part in known) > 0.25 * sum(known.values()), "no opened hand"
     held.ops.thenar.clear()
     want(held, **known)
     assert held.ops.thenar.reach_target() == {"FINISHED"}
@@ -150,13 +150,13 @@ def test_a_force_that_no_finger_carries_is_said_with_what_is_reached(held):
 
 
 def test_a_finger_whose_joints_stop_is_said_to_be_at_its_limits(held):
-    """Every joint of the index finger may bend no further than it stands, by its own Limit Rotation constraints."""
+    """Every joint of the ring finger may bend no further than it stands, by its own Limit Rotation constraints."""
     scene = held.context.scene
     armature = reading.armature_of(scene.thenar.hand)
     fit = operators.prepared(held.context, 40.0)
     scene.thenar_grasps.moves = "FINGERS"
     for role, bone in fit.hand.joints.bones.items():
-        if role.startswith("index_"):
+        if role.startswith("ring_"):
             limit = armature.pose.bones[fit.hand.rig.names[bone]].constraints.new("LIMIT_ROTATION")
             limit.owner_space = "LOCAL"
             for column, axis in enumerate("xyz"):
@@ -164,10 +164,12 @@ def test_a_finger_whose_joints_stop_is_said_to_be_at_its_limits(held):
                 setattr(limit, f"min_{axis}", min(fit.wish.angles[bone, column], 0.0))
                 setattr(limit, f"max_{axis}", max(fit.wish.angles[bone, column], 0.0))
     armature.thenar_bones.axis = "X"
-    want(held, index=60.0)
+    wanted = 30.0 + summed(held)["ring"]
+    held.ops.thenar.clear()
+    want(held, ring=wanted)
     assert held.ops.thenar.reach_target() == {"FINISHED"}
-    row = held.context.scene.thenar_targets.rows["index"]
-    assert row.reached_n < 57.0 and row.reason in ("LIMIT", "CLEAR_AT_LIMIT")
+    row = held.context.scene.thenar_targets.rows["ring"]
+    assert row.reached_n < 0.95 * wanted and row.reason in ("LIMIT", "CLEAR_AT_LIMIT")
 
 
 def test_small_newtons_are_said_as_they_were_wanted():
