@@ -208,7 +208,7 @@ def _phases(found):
 
 
 def _rivals(found):
-    """What cannot be told apart, what is suspected only, and what else the name may be at 90 %."""
+    """What cannot be distinguished, what is suspected only, and what else the name may be at 90 %."""
     for effects in found.get("cannot_tell", ()):
         yield f"These recordings cannot distinguish {wording.apart(effects)}."
     suspected = found.get("suspected")

@@ -246,7 +246,7 @@ pub struct Diagnosis {
     /// Effects that are suspected and not named: they explain more than noise would, and a gate refused them. With insufficient data the noise
     /// is not known and no gate was asked: what one would look at first. Friction of a single slide passes no gate either.
     pub suspected: Vec<&'static str>,
-    /// Whether recordings differ by more than their noise although nothing is named; always so of what is unlisted or cannot be told apart.
+    /// Whether recordings differ by more than their noise although nothing is named; always so of what is unlisted or cannot be distinguished.
     pub is_more_than_noise: bool,
     /// Pairs that cannot be told apart.
     pub cannot_tell: Vec<[&'static str; 2]>,

@@ -47,7 +47,7 @@ def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
 
 @pytest.mark.parametrize("seed", [1, 7])
 def test_a_sine_under_jitter_is_accused_of_nothing(seed, tmp_path):
-    """Lines along its flanks meet above its crest, which a ceiling explained (7) or could not be told from (1)."""
+    """Lines along its flanks meet above its crest, which a ceiling explained (7) or might explain (1)."""
     reader = closed_forms._Reader("depth_jitter", np.random.default_rng([seed, 7]))
     reader.jitter = 0.016
     time = np.arange(0.0, 12.0, 0.06)
