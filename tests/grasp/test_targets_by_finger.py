@@ -253,6 +253,7 @@ def test_one_undo_brings_pose_and_forces_by_part_back(held):
     """The skin stands where it stood, and nothing is said to have been reached; redo brings both again."""
     scene = held.context.scene
     want(held, index=15.0)
+    assert "UNDO" in held.types.THENAR_OT_reach_target.bl_options
     held.context.preferences.edit.use_global_undo = True
     held.ops.ed.undo_push(message="before")
     before, _ = grasping.seen(scene.thenar.hand)
