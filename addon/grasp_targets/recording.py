@@ -34,8 +34,9 @@ WEIGHT_MM = 60.0
 SHARE, FLOOR = 0.1, 0.03
 """Noise of a cell, assumed: this share of its pressure and this share of the largest."""
 
-ALIKE = 0.05
-"""Forces over a mat differ by noise within this share: noise of single cells is averaged out in their sum."""
+ALIKE = 0.1
+"""Forces over a mat differ by no more than its calibration within this share. Noise of single cells is averaged out in
+their sum, but the gain that they share is not: calibrations of one mat differ by 5 to 32 % (Morin and others 2000)."""
 
 SPREADS_MM = (8.0, 5.0)
 """Pressure is compared after it was spread by normal distributions of these, the wider first: it leads fingers that
