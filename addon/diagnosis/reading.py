@@ -42,7 +42,7 @@ def finding(found, index):
     listed = found.get("findings", [])
     if not 0 <= index < len(listed):
         count = len(listed)
-        told = "lists no finding" if count == 0 else f"lists {count} finding{'' if count == 1 else 's'}, from 0"
+        told = "lists no finding" if count == 0 else f"lists {count}, numbered from 0"
         raise Refusal(f"there is no finding {index}; the diagnosis {told}")
     return listed[index]
 

@@ -1,19 +1,27 @@
-"""Sentences that are kept in English, of the library and of notes, as the user's language has them.
+"""Sentences that are kept or raised in English, of the library and of Thenar, as the user's language has them.
 
-A result, a file and an export hold one English sentence. A panel shows it by the template it was written with: the
-tables hold these templates with the context `SENTENCE`, in which each `{field}` stands for any words.
+A result, a file and an error hold one English sentence. A panel and a report show it by the template it was written
+with: the tables hold these templates with the context `SENTENCE`, in which each `{field}` stands for any words. A
+sentence may be put together of several: `file: problem; remedy`.
 """
 
 import functools
 import re
+from dataclasses import dataclass
 
 from . import LANGUAGES, SENTENCE, iface, kept, table
 
+JOINTS = {"; ": "{first}; {second}", ". ": "{first} {second}"}
+"""How two sentences follow one another, as templates of their own; `: ` is the same everywhere."""
+_PROBE = "no hand is chosen; pick the hand's mesh under Hand"
+"""A template whose translations are different in all languages."""
 _FIELD = re.compile(r"\{(\w+)\}")
 _BETWEEN = re.compile(r"(, | and )")
 _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 """A name with a number and its unit behind it."""
 _QUOTED = re.compile(r"('[^']*')")
+_IN_QUOTES = re.compile(r"(?<!\w)'[^']*'(?!\w)|“[^”]*”")
+_JOINT = re.compile(r"(?<=[^\s:;]); |: |(?<=[\w)%”'])\. (?=[A-Z])")
 _OWN_NAME = re.compile(r"(?<!region )'\{(\w+)\}'")
 """A field in quotes is what an object, a modifier or a file is called in the scene, and stays; of regions Thenar shows
 translated titles everywhere."""
@@ -21,30 +29,135 @@ _ONE_WORD = {"lower"}
 """Fields that hold one word: a template of little more than these would fit any sentence."""
 
 
+_FEW_LETTERS, _FEW_WORDS = 20, 4
+"""A template of so few letters, as `region {name}`, is taken for a sentence only if its fields hold so few words."""
+
+
+@dataclass(frozen=True)
+class _Template:
+    """A template, the fixed `pieces` of it in order, and the pattern of its sentences."""
+
+    text: str
+    pieces: tuple
+    pattern: re.Pattern
+
+    @property
+    def letters(self):
+        """How many letters are fixed."""
+        return sum(map(len, self.pieces))
+
+    def found(self, sentence):
+        """The values of the fields if the sentence was written by it, or None."""
+        at = 0
+        for piece in self.pieces:
+            at = sentence.find(piece, at)
+            if at < 0:
+                return None
+            at += len(piece)
+        match = self.pattern.fullmatch(sentence)
+        return None if match is None else match.groupdict()
+
+
 def shown(text):
     """The sentence in the user's language; as it is where no template fits or the language is English."""
-    small = text[:1].lower() + text[1:]  # a capital may have been put there since
-    for each in dict.fromkeys((text, small)):
-        words = _translated(each)
-        if words != each:
+    language = kept(_PROBE)
+    return text if language == _PROBE or not text else _shown(text, language)
+
+
+@functools.lru_cache(maxsize=512)
+def _shown(text, _language):
+    for look in (_alone, _joined, _around, _partly):
+        words = look(text)
+        if words is not None:
             return words
     return text
 
 
-def _translated(text):
-    for pattern, template in _patterns():
-        found = pattern.fullmatch(text)
-        if found is not None:
-            words, own = kept(template), set(_OWN_NAME.findall(template))
-            fields = {name: value if name in own else _part(value) for name, value in found.groupdict().items()}
-            return text if words == template else words.format(**fields)
-    return text
+def _alone(text):
+    """By one template, no field of which holds more than belongs there; None where there is none."""
+    return _translated(text, _is_short)
+
+
+def _around(text):
+    """By one template, whatever its fields hold."""
+    return _translated(text, lambda template, value: True)
+
+
+def _joined(text):
+    """Put together of sentences that all have a template or hold no words; None where one has none."""
+    return _parts_of(text, is_partial=False)
+
+
+def _partly(text):
+    """The same, with what has no template as it stands."""
+    return _parts_of(text, is_partial=True)
+
+
+def _translated(text, fits):
+    small = text[:1].lower() + text[1:]  # a capital may have been put there since
+    for template in _templates():
+        for each in dict.fromkeys((text, small)):
+            fields = template.found(each)
+            if fields is not None and all(fits(template, value) for value in fields.values()):
+                own = set(_OWN_NAME.findall(template.text))
+                filled = {name: value if name in own else _part(value) for name, value in fields.items()}
+                return kept(template.text).format(**filled)
+    return None
+
+
+def _is_short(template, value):
+    """Whether a field holds no seam between sentences, and of a template of few letters no sentence at all."""
+    plain = _IN_QUOTES.sub("x", value)
+    return _JOINT.search(plain) is None and (len(plain.split()) <= _FEW_WORDS or template.letters > _FEW_LETTERS)
+
+
+def _parts_of(text, is_partial):
+    seams = _seams(text)
+    starts, ends = [0, *(end for _, end in seams)], [*(start for start, _ in seams), len(text)]
+    out, at, known = "", 0, 0
+    while at < len(starts) and seams:
+        for last in range(len(ends) - 1, at - 1, -1):
+            part = text[starts[at] : ends[last]]
+            words = None if len(part) == len(text) else _alone(part)
+            if words is not None:
+                known += 1
+                break
+            if last == at:
+                words = _part_of_names(part)
+                if not is_partial and not _is_of_names(part):
+                    return None
+        out = _seamed(out, text[ends[at - 1] : starts[at]], words) if at else words
+        at = last + 1
+    return out if known else None
+
+
+def _seams(text):
+    """(start, end) of each seam between sentences outside quotes; a full stop stays with its sentence."""
+    spans = [found.span() for found in _IN_QUOTES.finditer(text)]
+    found = [seam.span() for seam in _JOINT.finditer(text)]
+    outside = [(a, b) for a, b in found if not any(start < a < end for start, end in spans)]
+    return [(a + (text[a] == "."), b) for a, b in outside]
+
+
+def _seamed(first, seam, second):
+    joint = JOINTS["; "] if seam == "; " else JOINTS[". "] if seam == " " else None
+    return first + seam + second if joint is None else kept(joint).format(first=first, second=second)
 
 
 def _part(value):
     """What a field holds: a sentence of its own, names from a list, or what stays as it is, as names in quotes do."""
     words = shown(value)
-    return words if words != value else "".join(map(_names, _QUOTED.split(value)))
+    return words if words != value else _part_of_names(value)
+
+
+def _part_of_names(value):
+    return "".join(map(_names, _QUOTED.split(value)))
+
+
+def _is_of_names(value):
+    """Whether all of it that is not in quotes is names with a translation, or no words."""
+    words = _BETWEEN.split(_IN_QUOTES.sub("", value))[::2]
+    return all(not re.search(r"[a-z]{2}", word) or _name(word) != word for word in words)
 
 
 def _names(words):
@@ -62,21 +175,24 @@ def _name(word):
 
 
 @functools.cache
-def _patterns():
-    """(pattern, template), those with the most fixed letters first."""
-    templates = {english for name in LANGUAGES for context, english in table(name) if context == SENTENCE}
-    return [(_pattern(template), template) for template in sorted(templates, key=_fixed)]
+def _templates():
+    """All of them, those with the most fixed letters first."""
+    held = {english for name in LANGUAGES for context, english in table(name) if context == SENTENCE}
+    return [_template(text) for text in sorted(held - set(JOINTS.values()), key=_fixed)]
 
 
 def _fixed(template):
     return -len(_FIELD.sub("", template)), template
 
 
-def _pattern(template):
-    parts = _FIELD.split(template)
-    fields = [_field(part) if place % 2 else re.escape(part) for place, part in enumerate(parts)]
-    return re.compile("".join(fields))
+def _template(text):
+    parts = _FIELD.split(text)
+    fields = [_field(parts, place) if place % 2 else re.escape(parts[place]) for place in range(len(parts))]
+    return _Template(text, tuple(filter(None, parts[::2])), re.compile("".join(fields)))
 
 
-def _field(name):
+def _field(parts, place):
+    name = parts[place]
+    if name in parts[1:place:2]:
+        return f"(?P={name})"
     return rf"(?P<{name}>[^\s,;:]+)" if name in _ONE_WORD else f"(?P<{name}>.+?)"

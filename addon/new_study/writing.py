@@ -51,8 +51,13 @@ def write(folder, texts, replaces):
     folder = Path(folder)
     there = [name for name in texts if (folder / name).exists()]
     if there and not replaces:
+        if len(there) == 1:
+            raise Refusal(
+                f"{_listed(there)} is in '{folder}' already; "
+                "tick Replace them, or copy the recordings into a folder of their own"
+            )
         raise Refusal(
-            f"{_listed(there)} {'is' if len(there) == 1 else 'are'} in '{folder}' already; "
+            f"{_listed(there)} are in '{folder}' already; "
             "tick Replace them, or copy the recordings into a folder of their own"
         )
     before = _read(folder, there)

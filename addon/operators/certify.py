@@ -3,6 +3,7 @@
 import bpy
 
 from .. import languages
+from ..languages import sentences
 from ..reference import certify
 from . import computing, display, polling
 
@@ -34,7 +35,7 @@ class THENAR_OT_certify(computing.Computing, bpy.types.Operator):
             fast_cm2=result.area_mm2 / 100,
         )
         if reference.note:
-            self.report({"WARNING"}, f"{reference.note} ({numbers})")
+            self.report({"WARNING"}, f"{sentences.shown(reference.note)} ({numbers})")
         else:
             self.report({"INFO"}, numbers)
         return {"FINISHED"}

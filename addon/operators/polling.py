@@ -1,6 +1,7 @@
 """Why a button cannot be pressed now: one sentence each, for its tooltip and for scripts."""
 
 from .. import languages, names, status, workflow
+from ..languages import sentences
 from . import running
 
 
@@ -8,7 +9,8 @@ def allows(cls, *problems):
     """Whether none of `problems` stands: sentences, empty where all is well. The first becomes the button's tooltip."""
     problem = next((text for text in problems if text), "")
     if problem:
-        cls.poll_message_set(running.sentence(languages.tip(problem)))
+        words = languages.tip(problem)
+        cls.poll_message_set(running.sentence(words if words != problem else sentences.shown(problem)))
     return not problem
 
 

@@ -5,6 +5,7 @@ import time
 import weakref
 
 from .. import languages, native, status
+from ..languages import sentences
 from ..scene.checks import Refusal
 from ..steps import PAUSE
 
@@ -157,17 +158,23 @@ def _areas(context):
 def attempt(operator, action, *arguments):
     """Run `action`; what the user can mend is reported as one sentence. Returns its value, or None after a report.
 
-    The operator's `refused(error)`, if it has one, is called.
+    It is in the user's language; `status.last_error` keeps the English. The operator's `refused(error)`, if it has
+    one, is called.
     """
     try:
         return action(*arguments)
     except (Refusal, *native.error_types()) as error:
         status.set_last_error(f"{operator.bl_idname}: {sentence(error)}")
-        operator.report({"ERROR"}, sentence(error))
+        operator.report({"ERROR"}, in_words(error))
         refused = getattr(operator, "refused", None)
         if refused is not None:
             refused(error)
         return None
+
+
+def in_words(error):
+    """The error as a sentence in the user's language; *Copy Debug Info* has the English, which the manual lists."""
+    return sentence(sentences.shown(sentence(error)))
 
 
 def sentence(error):

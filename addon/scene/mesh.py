@@ -76,10 +76,14 @@ def require_vertices(context: Context, obj: Object) -> None:
         return
     guilty = _changers(context, obj)
     listed = ", ".join(f"'{name}'" for name in guilty) or "a modifier"
-    change, them = ("change", "them") if len(guilty) > 1 else ("changes", "it")
+    if len(guilty) > 1:
+        raise Refusal(
+            f"{listed} on '{obj.name}' change which vertices there are, so results cannot be written back; "
+            "apply them or switch them off in the viewport"
+        )
     raise Refusal(
-        f"{listed} on '{obj.name}' {change} which vertices there are, so results cannot be written back; "
-        f"apply {them} or switch {them} off in the viewport"
+        f"{listed} on '{obj.name}' changes which vertices there are, so results cannot be written back; "
+        "apply it or switch it off in the viewport"
     )
 
 

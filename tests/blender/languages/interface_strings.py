@@ -11,6 +11,7 @@ import re
 import sys
 from pathlib import Path
 
+import error_templates
 import sentence_templates
 import source_strings
 
@@ -147,7 +148,9 @@ def everything():
     Thenar must be registered."""
     from thenar_blender import languages
 
-    kept = {(languages.SENTENCE, text): where for text, where in sentence_templates.everything().items()}
+    joints = dict.fromkeys(languages.sentences.JOINTS.values(), "addon/languages/sentences.py")
+    templates = {**joints, **error_templates.everything(), **sentence_templates.everything()}
+    kept = {(languages.SENTENCE, text): where for text, where in templates.items()}
     return {**kept, **of_data(), **of_sources()[0], **of_classes()}
 
 

@@ -89,7 +89,8 @@ def _strings(node):
     if isinstance(node, ast.JoinedStr):
         used, parts = {}, []
         for part in node.values:
-            parts.append(part.value if isinstance(part, ast.Constant) else _field(part.value, used))
+            field = part.value if isinstance(part, ast.Constant) else _field(part.value, used)
+            parts.append(f"'{field}'" if getattr(part, "conversion", -1) == ord("r") else field)
         return ["".join(parts)]
     if isinstance(node, ast.Constant) and isinstance(node.value, str):
         return [node.value]

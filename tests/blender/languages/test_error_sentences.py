@@ -1,0 +1,171 @@
+"""What a failed button reports is shown in the user's language, with its names and numbers, and found in English."""
+
+import ast
+import random
+import re
+from types import SimpleNamespace
+
+import bpy
+import error_templates
+import pytest
+import stage
+from thenar_blender import languages, status
+from thenar_blender.languages import sentences
+from thenar_blender.operators import running
+
+NAMES = sorted(languages.LANGUAGES)
+ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product|has|give|choose|press|no|cannot|which|with)\b")
+"""Words that no translation holds."""
+
+
+@pytest.fixture(params=NAMES)
+def language(request, monkeypatch):
+    """Thenar as in a Blender of this language; bpy as a module has no translations."""
+
+    def look_up(template, context="*"):
+        return languages.table(request.param).get((context, template), template)
+
+    said = SimpleNamespace(pgettext_iface=look_up, pgettext_rpt=look_up, pgettext_tip=look_up)
+    monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=said)))
+    return request.param
+
+
+def drawn(template, number):
+    """The sentence with a word of its own in each field, and the words by field."""
+    draw = random.Random(f"{number} {template}")
+    fields = dict.fromkeys(re.findall(r"\{(\w+)\}", template))
+    values = {name: "".join(draw.choices("QXZ", k=3)) + f"{draw.uniform(0, 99):.2f}" for name in fields}
+    return template.format(**values), values
+
+
+def test_there_are_hundreds_of_errors_from_both_languages():
+    """An extractor that loses a kind would make the tables complete by mistake."""
+    found = error_templates.everything()
+    assert sum(where.startswith("addon") for where in found.values()) > 300
+    assert sum(where.startswith("rust") for where in found.values()) > 150
+    kinds = {
+        "literal": "no hand is chosen; pick the hand's mesh under Hand",
+        "f-string": "the hand '{name}' has no faces; pick a mesh with a surface",
+        "name in quotes by !r": "'{name}' has no armature; add an Armature modifier that names one",
+        "what a function returns": "Live keeps the contact up to date; switch it off first",
+        "what a name was assigned": "the hand '{name}' hangs on the product and would be scaled too; "
+        "clear its parent first",
+        "part of a sentence": "has a finger in a thin wall of the product",
+        "what callers give": "Certify solves",
+        "error of thiserror": "there is no effect {name}; there are {known}",
+        "place before a problem": "protocol, row {row}",
+        "problem alone": "it cannot be painted; give its numbers",
+    }
+    assert not {kind: text for kind, text in kinds.items() if text not in found}
+
+
+def test_every_error_is_found_again_and_no_other_is_taken_for_it(language):
+    held = languages.table(language)
+    for template in error_templates.everything():
+        for number in range(3):
+            sentence, values = drawn(template, number)
+            words = sentences.shown(sentence)
+            assert words == held[languages.SENTENCE, template].format(**values), template
+            assert not ENGLISH.search(words), words
+            assert sentences.shown(running.sentence(sentence)) == words
+
+
+def test_in_english_every_error_stays_as_it_is():
+    for template in error_templates.everything():
+        sentence, _ = drawn(template, 0)
+        assert sentences.shown(sentence) == sentence
+
+
+def test_sentences_put_together_are_translated_part_by_part(language):
+    held = languages.table(language)
+
+    def words(template):
+        return held[languages.SENTENCE, template]
+
+    place, problem = "protocol, row {row}", "{name} is {value}, but must be finite"
+    said = sentences.shown("'Hand: 2' on 'The product': protocol, row 4: slide_mm is inf, but must be finite")
+    assert said.startswith("'Hand: 2' on 'The product': " + words(place).format(row=4))
+    assert said.endswith(words(problem).format(name="slide_mm", value="inf"))
+    said = sentences.shown("at frame 7, 'Hand': no skin of 'Hand' lies over bone; give its materials a thickness first")
+    assert "'Hand'" in said and "7" in said and not ENGLISH.search(said)
+    effect = "the effects: effect friction: it needs model layer; the paper's model stays as published"
+    named = languages.iface("Friction")
+    assert named != "Friction" and named in sentences.shown(effect) and not ENGLISH.search(sentences.shown(effect))
+
+
+@pytest.mark.parametrize("name", ["no end", "A: B; C", "hand and product", "it is empty", "Product", "x (y)"])
+def test_names_in_quotes_stay_whatever_they_are(language, name):
+    template = "'{name}' has no shape key '{SHAPE_KEY}'; press Solve first"
+    said = sentences.shown(template.format(name=name, SHAPE_KEY="Thenar"))
+    assert said == languages.table(language)[languages.SENTENCE, template].format(name=name, SHAPE_KEY="Thenar")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["something else: quite new; try it", "[Errno 13] Permission denied", "a hand of 3 mm. It was long", "; ", ": "],
+)
+def test_what_has_no_template_stays_in_english(language, text):
+    assert sentences.shown(text) == text
+
+
+def refused():
+    """What Solve reports."""
+    with pytest.raises(RuntimeError) as error:
+        bpy.ops.thenar.solve()
+    return str(error.value).removeprefix("Error: ").strip()
+
+
+def test_a_refused_solve_is_reported_in_the_language_and_kept_in_english(scene, language):
+    """No faces, a pinned key, a scale of zero, no region, no force in reach: Python's refusals and the library's."""
+    hand, product = stage.scene(cuts=2)
+    hand.name, said = "Ding Eins", []
+
+    def take():
+        words = refused()
+        english = status.last_error.partition(": ")[2]
+        assert words != english and not ENGLISH.search(words), words
+        assert ENGLISH.search(english), english
+        assert all(name in words for name in re.findall(r"'([^']+)'", english) if "Ding" in name)
+        said.append(english)
+
+    hand.shape_key_add(name="Basis")
+    hand.show_only_shape_key = True
+    take()
+    hand.show_only_shape_key = False
+    product.scale.x = 0.0
+    take()
+    product.scale.x = 1.0
+    product.location.z += 5000.0 * stage.MM
+    scene.thenar.use_force = True
+    take()
+    assert len(set(said)) == 3
+
+
+def test_planted_errors_are_extracted():
+    python = (
+        "def helper(side):\n    return f'no {side} there'\n"
+        "def f(a, b):\n    why = 'it is wet' if a else f'it is {b.c:.2f} mm dry'\n"
+        "    raise Refusal(f'the {a!r} failed: {why}; wait a bit')\n"
+        "def g():\n    raise checks.Refusal(helper('left'))\n"
+        "def h():\n    raise type(error)(f'in row {n}, {error}')\n"
+        "def k():\n    raise AssertionError('never seen at all')\n"
+    )
+    tree = ast.parse(python)
+    found = list(error_templates.raised(tree, error_templates.Sources([tree])))
+    wanted = [
+        "the '{a}' failed",
+        "wait a bit",
+        "it is wet",
+        "it is {c} mm dry",
+        "no {side} there",
+        "in row {n}, {error}",
+    ]
+    assert sorted(set(found)) == sorted(wanted)
+    rust = (
+        '#[error("{}, line {line}: {problem}; look \\\n   at it")]\nlet x = format!("{:.2} of {n} is wet; dry it", y);'
+    )
+    assert list(error_templates.of_text(rust)) == [
+        "{value1}, line {line}",
+        "look at it",
+        "{value1} of {n} is wet; dry it",
+    ]
