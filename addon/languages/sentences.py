@@ -146,8 +146,9 @@ def _seamed(first, seam, second):
 
 def _part(value):
     """What a field holds: a sentence of its own, names from a list, or what stays as it is, as names in quotes do."""
-    words = shown(value)
-    return words if words != value else _part_of_names(value)
+    inner = value.strip()
+    words = shown(inner)
+    return value.replace(inner, words) if words != inner else _part_of_names(value)
 
 
 def _part_of_names(value):

@@ -21,10 +21,10 @@ RUST = {
     ),
     "reference": ("",),
     "inference": ("errors.rs", "forward/", "grasp/"),
+    "recordings": ("",),
+    "python": ("conversion/errors.rs", "conversion/running.rs"),
 }
 """Crate -> files, or folders, whose strings with words are parts of errors; "" is all of them."""
-RAISED = {"python": ("conversion/errors.rs", "conversion/running.rs")}
-"""The same, but only what stands in a call that makes the error."""
 JOINTS = re.compile(r"(?:(?<=[^:;]):|;) ")
 """Where a sentence is put together of parts that have templates of their own."""
 _BARE = re.compile(r"\{\w+\}")
@@ -175,13 +175,15 @@ def sources(crate, files):
         name = path.relative_to(folder).as_posix()
         if name.startswith(tuple(files)) and "tests" not in path.parts and path.stem != "tests":
             text = path.read_text("utf-8").partition("#[cfg(test)]")[0]
-            yield f"rust/{crate}/src/{name}", re.sub(r"(?m)^\s*//.*$", "", text)
+            yield f"rust/{crate}/src/{name}", re.sub(r"(?m)^\s*//.*$", "", text).replace("'\"'", "")
 
 
 def of_text(text):
-    """Templates of all literals with words in Rust's text."""
+    """Templates of all literals with words in Rust's text; a capital or a colon at the end marks a word of a format."""
     for found in kept._LITERAL.finditer(text):
-        yield from split(kept._named(kept._plain(found[1])))
+        if not (re.match(r"\W*[A-Z]", found[1].replace("{", "a{", 1)) or found[1].endswith((":", "(", "\\n"))):
+            text = kept._named(kept._plain(found[1]))
+            yield from split(re.sub(r"\{(\d)\}", lambda place: f"{{value{int(place[1]) + 1}}}", text))
 
 
 def split(template):
