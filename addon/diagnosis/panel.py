@@ -69,7 +69,7 @@ class THENAR_PT_diagnosis(Tab, bpy.types.Panel):
         if doubt:
             text.alert(layout, context, doubt)
         box = layout.box().column(align=True)
-        box.label(text=told.heading, icon=ICONS[told.verdict])
+        box.label(text=text.spoken(told.heading), icon=ICONS[told.verdict])
         box.separator(factor=0.5)
         text.paragraph(box, context, told.sentence)
         if item is None or item.path != state.path:

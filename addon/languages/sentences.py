@@ -11,12 +11,15 @@ from dataclasses import dataclass
 
 from . import LANGUAGES, SENTENCE, iface, kept, table
 
-JOINTS = {"; ": "{first}; {second}", ". ": "{first} {second}"}
-"""How two sentences follow one another, as templates of their own; `: ` is the same everywhere."""
+JOINTS = {"; ": "{first}; {second}", ". ": "{first} {second}", ".": "{first}."}
+"""How two sentences follow one another, and how one ends, as templates of their own; `: ` is the same everywhere."""
+NAME_JOINTS = {" and ": "{first} and {second}", " from ": "{first} from {second}", ", nor ": "{first}, nor {second}"}
+"""How names follow one another."""
+_PUT_TOGETHER = {*JOINTS.values(), *NAME_JOINTS.values()}
 _PROBE = "no hand is chosen; pick the hand's mesh under Hand"
 """A template whose translations are different in all languages."""
 _FIELD = re.compile(r"\{(\w+)\}")
-_BETWEEN = re.compile(r"(, | and )")
+_BETWEEN = re.compile(r"(, nor |, | and | from )")
 _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 """A name with a number and its unit behind it."""
 _QUOTED = re.compile(r"('[^']*')")
@@ -25,6 +28,8 @@ _JOINT = re.compile(r"(?<=[^\s:;]); |: |(?<=[\w)%”'])\. (?=[A-Z])")
 _OWN_NAME = re.compile(r"(?<!region )'\{(\w+)\}'")
 """A field in quotes is what an object, a modifier or a file is called in the scene, and stays; of regions Thenar shows
 translated titles everywhere."""
+_AS_WRITTEN = {"key"}
+"""Fields that hold a word of a file, to be written as it is."""
 _ONE_WORD = {"lower"}
 """Fields that hold one word: a template of little more than these would fit any sentence."""
 
@@ -94,21 +99,25 @@ def _partly(text):
 
 
 def _translated(text, fits):
-    small = text[:1].lower() + text[1:]  # a capital may have been put there since
+    small, large = text[:1].lower() + text[1:], text[:1].upper() + text[1:]  # it may have been changed since
     for template in _templates():
-        for each in dict.fromkeys((text, small)):
+        for each in dict.fromkeys((text, small, large)):
             fields = template.found(each)
             if fields is not None and all(fits(template, value) for value in fields.values()):
-                own = set(_OWN_NAME.findall(template.text))
+                own = {*_OWN_NAME.findall(template.text), *_AS_WRITTEN}
                 filled = {name: value if name in own else _part(value) for name, value in fields.items()}
                 return kept(template.text).format(**filled)
+    if text.endswith(".") and not text.endswith(".."):
+        words = _translated(text[:-1], fits)
+        return None if words is None else kept(JOINTS["."]).format(first=words)
     return None
 
 
 def _is_short(template, value):
     """Whether a field holds no seam between sentences, and of a template of few letters no sentence at all."""
     plain = _IN_QUOTES.sub("x", value)
-    return _JOINT.search(plain) is None and (len(plain.split()) <= _FEW_WORDS or template.letters > _FEW_LETTERS)
+    is_one = _JOINT.search(plain) is None and not plain.startswith(". ")
+    return is_one and (len(plain.split()) <= _FEW_WORDS or template.letters > _FEW_LETTERS)
 
 
 def _parts_of(text, is_partial):
@@ -146,13 +155,21 @@ def _seamed(first, seam, second):
 
 def _part(value):
     """What a field holds: a sentence of its own, names from a list, or what stays as it is, as names in quotes do."""
-    inner = value.strip()
-    words = shown(inner)
-    return value.replace(inner, words) if words != inner else _part_of_names(value)
+    for inner in dict.fromkeys((value.strip(" ,;."), value.strip())):
+        words = shown(inner)
+        if words != inner:
+            return value.replace(inner, words)
+    return _part_of_names(value)
 
 
 def _part_of_names(value):
-    return "".join(map(_names, _QUOTED.split(value)))
+    words = "".join(map(_names, _QUOTED.split(value)))
+    for joint, template in NAME_JOINTS.items() if words != value else ():
+        first, *others = words.split(joint)
+        for second in others:
+            first = kept(template).format(first=first, second=second)
+        words = first
+    return words
 
 
 def _is_of_names(value):
@@ -162,7 +179,17 @@ def _is_of_names(value):
 
 
 def _names(words):
-    return words if not words or words[0] == "'" else "".join(map(_name, filter(None, _BETWEEN.split(words))))
+    if not words or words[0] == "'":
+        return words
+    parts, out = _BETWEEN.split(words), []
+    while parts:
+        for last in range(len(parts), 0, -2):  # a name may hold what stands between names
+            name = "".join(parts[:last])
+            if _name(name) != name or last <= 2:
+                break
+        out += [_name(name), *parts[last : last + 1]]
+        parts = parts[last + 1 :]
+    return "".join(out)
 
 
 def _name(word):
@@ -170,16 +197,17 @@ def _name(word):
     if sized is not None:
         return f"{_name(sized[1])} {sized[2]}"
     for each in (word, word[:1].upper() + word[1:]):
-        if iface(each) != each:
-            return iface(each)
-    return kept(word)
+        for look in (iface, kept):
+            if look(each) != each:
+                return look(each)
+    return word
 
 
 @functools.cache
 def _templates():
     """All of them, those with the most fixed letters first."""
     held = {english for name in LANGUAGES for context, english in table(name) if context == SENTENCE}
-    return [_template(text) for text in sorted(held - set(JOINTS.values()), key=_fixed)]
+    return [_template(text) for text in sorted(held - _PUT_TOGETHER, key=_fixed)]
 
 
 def _fixed(template):
@@ -196,4 +224,9 @@ def _field(parts, place):
     name = parts[place]
     if name in parts[1:place:2]:
         return f"(?P={name})"
-    return rf"(?P<{name}>[^\s,;:]+)" if name in _ONE_WORD else f"(?P<{name}>.+?)"
+    if name in _ONE_WORD:
+        return rf"(?P<{name}>[^\s,;:]+)"
+    before = parts[place - 1]
+    if place > 1 and not before:  # what follows a field directly is an addition, or nothing
+        return rf"(?P<{name}>(?:(?:[,;:.] | and | \().*?)?)"
+    return f"(?P<{name}>.*?)" if before and before[-1] != " " else f"(?P<{name}>.+?)"

@@ -152,7 +152,7 @@ def _draw_measures(layout, context, state):
             split.label(text="")
             _numbers(split, ("read", "simulated"))
         split = column.split(factor=SHARE)
-        split.label(text=row.name + (f" ({row.unit})" if row.unit else ""))
+        split.label(text=text.spoken(row.name) + (f" ({row.unit})" if row.unit else ""))
         _numbers(split, (row.measured, row.simulated))
 
 

@@ -25,6 +25,8 @@ RUST = {
     "python": ("conversion/errors.rs", "conversion/running.rs"),
 }
 """Crate -> files, or folders, whose strings with words are parts of errors; "" is all of them."""
+PLACES = {"'{hand}' on '{product}'": "addon/results/sentences.py"}
+"""What stands before the library's own sentence."""
 JOINTS = re.compile(r"(?:(?<=[^:;]):|;) ")
 """Where a sentence is put together of parts that have templates of their own."""
 _BARE = re.compile(r"\{\w+\}")
@@ -33,7 +35,7 @@ _BARE = re.compile(r"\{\w+\}")
 @cache
 def everything():
     """template -> where it stands."""
-    return {**of_python(), **of_rust()}
+    return {**PLACES, **of_python(), **of_rust()}
 
 
 @cache

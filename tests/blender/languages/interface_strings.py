@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import error_templates
+import finding_templates
 import sentence_templates
 import source_strings
 
@@ -148,8 +149,13 @@ def everything():
     Thenar must be registered."""
     from thenar_blender import languages
 
-    joints = dict.fromkeys(languages.sentences.JOINTS.values(), "addon/languages/sentences.py")
-    templates = {**joints, **error_templates.everything(), **sentence_templates.everything()}
+    joints = dict.fromkeys(languages.sentences._PUT_TOGETHER, "addon/languages/sentences.py")
+    templates = {
+        **joints,
+        **error_templates.everything(),
+        **finding_templates.everything(),
+        **sentence_templates.everything(),
+    }
     kept = {(languages.SENTENCE, text): where for text, where in templates.items()}
     return {**kept, **of_data(), **of_sources()[0], **of_classes()}
 

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import error_templates
+import finding_templates
 import pytest
 import stage
 from thenar_blender import languages, status
@@ -59,9 +60,9 @@ def test_there_are_hundreds_of_errors_from_both_languages():
     assert not {kind: text for kind, text in kinds.items() if text not in found}
 
 
-def test_every_error_is_found_again_and_no_other_is_taken_for_it(language):
+def test_every_sentence_is_found_again_and_no_other_is_taken_for_it(language):
     held = languages.table(language)
-    for template in error_templates.everything():
+    for template in {**error_templates.everything(), **finding_templates.everything()}:
         for number in range(3):
             sentence, values = drawn(template, number)
             words = sentences.shown(sentence)
@@ -139,6 +140,30 @@ def test_a_refused_solve_is_reported_in_the_language_and_kept_in_english(scene, 
     scene.thenar.use_force = True
     take()
     assert len(set(said)) == 3
+
+
+FINDINGS = (
+    "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p < 0.001. In “a b”: "
+    "measured force lies 0.12 N (8 % of the largest) above the simulation in the phase “x”, 12 standard errors of the "
+    "noise apart (p < 0.001 after 30 looks); the simulation itself may be off by 5 %.",
+    "Measured and simulated force differ by 0.1 N rms, 5 % of the largest; the noise is not known. In the frame of mean "
+    "force, the areas of contact overlap by 80 %; the peak is 100 kPa measured and 120 kPa simulated.",
+    "Around (1.0, 2.0, 3.0) mm (row 3, column 4 of the mat), within 5.0 mm, 'a', loading and holding at depths of 0.10 "
+    "to 1.00 mm, shows 3 kPa (2 to 4) more pressure than the simulation (p = 0.01); the place is known to 3.0 mm, and "
+    "it stays with the skin when the mat is moved.",
+    "The simulation lacks relaxation of the tissue and drainage of fluid from the tissue. It shows most while holding. "
+    "At least 90 % of such findings were right in studies whose truth was known.",
+    "Something is missing, but these recordings cannot distinguish a thicker or thinner tissue over the bone from "
+    "compliance of the fixture. Record next: X (settles it in 60 % of cases, takes about 30 minutes).",
+)
+"""As the library writes them: `rust/comparison/src/comparison/sentence.rs`, `rust/diagnosis/src/verdict_sentence.rs`."""
+
+
+@pytest.mark.parametrize("sentence", FINDINGS)
+def test_whole_findings_hold_no_english_and_every_number(language, sentence):
+    words = sentences.shown(sentence)
+    assert not ENGLISH.search(words), words
+    assert sorted(re.findall(r"\d+(?:\.\d+)?", words)) == sorted(re.findall(r"\d+(?:\.\d+)?", sentence))
 
 
 def test_planted_errors_are_extracted():
