@@ -44,8 +44,8 @@ EXPANDED = {
         "no repeats tell the noise",
     ),
     "{value1} {unit} ({value2} to {value3}) {side} {what} than the simulation": tuple(
-        f"{place}{{who}}, {{when}}, {shows} {{size}} {{unit}} ({{low}} to {{high}}) {side} {{what}} than the simulation "
-        "(p = {p}){bound}."
+        f"{place}{{who}}, {{when}}, {shows} {{size}} {{unit}} ({{low}} to {{high}}) {side} {{what}} than the "
+        "simulation (p = {p}){bound}."
         for place in ("", "Around ({x}, {y}, {z}) mm{cell}, within {radius} mm, ")
         for shows in ("shows", "show")
         for side in ("more", "less")

@@ -143,20 +143,20 @@ def test_a_refused_solve_is_reported_in_the_language_and_kept_in_english(scene, 
 
 
 FINDINGS = (
-    "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p < 0.001. In “a b”: "
-    "measured force lies 0.12 N (8 % of the largest) above the simulation in the phase “x”, 12 standard errors of the "
-    "noise apart (p < 0.001 after 30 looks); the simulation itself may be off by 5 %.",
-    "Measured and simulated force differ by 0.1 N rms, 5 % of the largest; the noise is not known. In the frame of mean "
-    "force, the areas of contact overlap by 80 %; the peak is 100 kPa measured and 120 kPa simulated.",
-    "Around (1.0, 2.0, 3.0) mm (row 3, column 4 of the mat), within 5.0 mm, 'a', loading and holding at depths of 0.10 "
-    "to 1.00 mm, shows 3 kPa (2 to 4) more pressure than the simulation (p = 0.01); the place is known to 3.0 mm, and "
-    "it stays with the skin when the mat is moved.",
+    "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p < 0.001. In “a b”"
+    ": measured force lies 0.12 N (8 % of the largest) above the simulation in the phase “x”, 12 standard errors of "
+    "the noise apart (p < 0.001 after 30 looks); the simulation itself may be off by 5 %.",
+    "Measured and simulated force differ by 0.1 N rms, 5 % of the largest; the noise is not known. In the frame of "
+    "mean force, the areas of contact overlap by 80 %; the peak is 100 kPa measured and 120 kPa simulated.",
+    "Around (1.0, 2.0, 3.0) mm (row 3, column 4 of the mat), within 5.0 mm, 'a', loading and holding at depths of "
+    "0.10 to 1.00 mm, shows 3 kPa (2 to 4) more pressure than the simulation (p = 0.01); the place is known to 3.0 mm, "
+    "and it stays with the skin when the mat is moved.",
     "The simulation lacks relaxation of the tissue and drainage of fluid from the tissue. It shows most while holding. "
     "At least 90 % of such findings were right in studies whose truth was known.",
     "Something is missing, but these recordings cannot distinguish a thicker or thinner tissue over the bone from "
     "compliance of the fixture. Record next: X (settles it in 60 % of cases, takes about 30 minutes).",
 )
-"""As the library writes them: `rust/comparison/src/comparison/sentence.rs`, `rust/diagnosis/src/verdict_sentence.rs`."""
+"""As `sentence.rs` of the crate comparison and `verdict_sentence.rs` of diagnosis write them."""
 
 
 @pytest.mark.parametrize("sentence", FINDINGS)
