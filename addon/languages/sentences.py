@@ -34,7 +34,7 @@ _ONE_WORD = {"lower"}
 """Fields that hold one word: a template of little more than these would fit any sentence."""
 
 
-_FEW_LETTERS, _FEW_WORDS = 20, 4
+_FEW_LETTERS, _FEW_WORDS = 16, 4
 """A template of so few letters, as `region {name}`, is taken for a sentence only if its fields hold so few words."""
 
 
@@ -103,8 +103,10 @@ def _translated(text, fits):
     for template in _templates():
         for each in dict.fromkeys((text, small, large)):
             fields = template.found(each)
-            if fields is not None and all(fits(template, value) for value in fields.values()):
-                own = {*_OWN_NAME.findall(template.text), *_AS_WRITTEN}
+            if fields is None:
+                continue
+            own = {*_OWN_NAME.findall(template.text), *_AS_WRITTEN}
+            if all(name in own or fits(template, value) for name, value in fields.items()):
                 filled = {name: value if name in own else _part(value) for name, value in fields.items()}
                 return kept(template.text).format(**filled)
     if text.endswith(".") and not text.endswith(".."):
