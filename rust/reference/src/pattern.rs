@@ -106,6 +106,22 @@ impl Pattern {
         }
     }
 
+    /// The symmetric matrix of these values times a vector.
+    pub fn times(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; vector.len()];
+        for (column, ends) in self.columns.windows(2).enumerate() {
+            let below = ends[0] + 1..ends[1];
+            let by = vector[column];
+            let mut own = values[ends[0]] * by;
+            for (row, value) in self.rows[below.clone()].iter().zip(&values[below]) {
+                product[*row] += value * by;
+                own += value * vector[*row];
+            }
+            product[column] += own;
+        }
+        product
+    }
+
     /// Entries on the diagonal.
     pub fn diagonal(&self) -> &[usize] {
         &self.columns[..self.columns.len() - 1]
