@@ -7,7 +7,7 @@ use crate::factor::Factor;
 use crate::obstacle::{Obstacle, Penalty, Touch};
 use crate::pattern::Pattern;
 use crate::prism_energy::{Element, Placed, evaluate};
-use crate::prisms::PrismMesh;
+use crate::prisms::{GROUP_NODES, PrismMesh};
 
 /// Longest step of a node, mm.
 const MOST_STEP_MM: f64 = 1.5;
@@ -19,6 +19,9 @@ const REGULARIZATION: (f64, f64, f64) = (3e-3, 4.0, 1e3);
 const NO_REGULARIZATION: f64 = 2e-4;
 /// Least decrease of the energy for a step, as a share of what its slope promises.
 const DECREASE: f64 = 1e-4;
+
+/// A group whose nodes moved against each other by less than this, mm, keeps its stiffness; its force is always computed.
+const SAME_MM: f64 = 1e-3;
 
 /// Tissue, product and where the nodes lie.
 pub struct Equilibrium<'a> {
@@ -35,6 +38,8 @@ pub struct Equilibrium<'a> {
     elements: Vec<Element>,
     /// Places at which the elements hold force and stiffness; empty where they hold none.
     evaluated: Vec<Vec3>,
+    /// Places of every group's nodes for which it holds its stiffness.
+    stiff_at: Vec<[[f64; 3]; GROUP_NODES]>,
     values: Vec<f64>,
     /// Room for the stiffness of the step before.
     spare: Vec<f64>,
@@ -68,6 +73,8 @@ impl Forces {
 /// Where a step leads.
 struct Next {
     places: Vec<Vec3>,
+    /// Decrease of the energy that the step promised, over the energy; infinite where it was shortened.
+    decrease: f64,
     /// Whether the full step at the regularization given went well.
     is_plain: bool,
     /// Forces there, where the stiffness kept belongs to them.
@@ -80,6 +87,9 @@ pub struct Limits {
     /// Residual over the contact forces that is enough.
     pub tolerance: f64,
     pub most_steps: usize,
+    /// Decrease of the energy that a full step promises, over the energy, after which it ends: a prism that was nearly folded holds up the
+    /// residual, but not the energy. 0: the residual decides.
+    pub decrease: f64,
 }
 
 /// How an iteration ended.
@@ -107,6 +117,7 @@ impl<'a> Equilibrium<'a> {
             steps: 0,
             elements: vec![Element::default(); mesh.groups.len()],
             evaluated: Vec::new(),
+            stiff_at: vec![[[f64::INFINITY; 3]; GROUP_NODES]; mesh.groups.len()],
             values: vec![0.0; pattern.rows.len()],
             spare: vec![0.0; pattern.rows.len()],
         })
@@ -154,10 +165,14 @@ impl<'a> Equilibrium<'a> {
                     0.0
                 };
             }
+            let is_near = next.decrease < limits.decrease;
             places = next.places;
             match next.forces.or_else(|| self.forces(&places, penalty, true)) {
                 Some(found) => forces = found,
                 None => return (End::Stuck, places, None),
+            }
+            if is_near {
+                return (End::Balanced, places, Some(forces));
             }
         }
         let end = if forces.unbalanced() < limits.tolerance {
@@ -205,6 +220,11 @@ impl<'a> Equilibrium<'a> {
                         if found.energy <= enough || norm(&found.residual) < 0.5 * unbalanced {
                             next = Some(Next {
                                 places: there,
+                                decrease: if share < 1.0 {
+                                    f64::INFINITY
+                                } else {
+                                    -0.5 * slope / forces.energy
+                                },
                                 is_plain,
                                 forces: is_plain.then_some(found),
                             });
@@ -253,9 +273,10 @@ impl<'a> Equilibrium<'a> {
         let work = self
             .elements
             .par_iter_mut()
+            .zip(&mut self.stiff_at)
             .zip(&mesh.groups)
             .with_min_len(128);
-        let is_sound = work.map(|(element, group)| {
+        let is_sound = work.map(|((element, stiff_at), group)| {
             let place = |k: u32| places.get(k as usize).copied().unwrap_or_default().into();
             let corners = group.nodes.map(place);
             let placed = Placed {
@@ -263,7 +284,12 @@ impl<'a> Equilibrium<'a> {
                 group,
                 places: &corners,
             };
-            evaluate(placed, bulk_ratio, with_stiffness, element)
+            let is_new = with_stiffness && !is_same_shape(&corners, stiff_at);
+            let is_sound = evaluate(placed, bulk_ratio, is_new, element);
+            if is_sound && is_new {
+                *stiff_at = corners;
+            }
+            is_sound
         });
         let is_sound = is_sound.reduce(|| true, |a, b| a && b);
         if is_sound && with_stiffness {
@@ -324,6 +350,12 @@ impl<'a> Equilibrium<'a> {
             touches,
         })
     }
+}
+
+/// Whether no node moved against the first by more than [`SAME_MM`].
+fn is_same_shape(places: &[[f64; 3]; GROUP_NODES], before: &[[f64; 3]; GROUP_NODES]) -> bool {
+    let moved = |k: usize, i: usize| places[k][i] - before[k][i];
+    (1..GROUP_NODES).all(|k| (0..3).all(|i| (moved(k, i) - moved(0, i)).abs() <= SAME_MM))
 }
 
 /// Euclidean norm.

@@ -37,9 +37,11 @@ const MOST_NODES: usize = 400_000;
 const GROWTH_LIMITS: Limits = Limits {
     tolerance: 0.1,
     most_steps: 25,
+    decrease: 1e-2,
 };
 const HARDENING_LIMITS: Limits = Limits {
     tolerance: 0.03,
+    decrease: 1e-3,
     ..GROWTH_LIMITS
 };
 /// Most Newton steps at the end.
@@ -279,6 +281,7 @@ impl Growth<'_> {
         let last_limits = Limits {
             tolerance,
             most_steps: MOST_STEPS,
+            decrease: 0.0,
         };
         for round in 0..=MOST_SHIFTS {
             self.equilibrium.shift_obstacle();
