@@ -18,7 +18,7 @@ const MOST_VALUES: usize = 400_000_000;
 const ACCURACY: f64 = 1e-4;
 /// Most iterations: a factor that needs more is of no use.
 const MOST_ITERATIONS: usize = 30;
-/// Supernodes are merged up to so many columns, where zeros are less than this share: columns of a node of tissue are nine.
+/// Supernodes are merged up to so many columns, where zeros are less than this share. A skin vertex has nine columns, three layers of three axes.
 const MERGED: &[(usize, f64)] = &[(9, 1.0), (36, 0.5), (96, 0.2), (usize::MAX, 0.05)];
 
 /// A matrix pattern with its elimination order, and room for the factor.

@@ -295,6 +295,9 @@ fn check(name: &str, limits: &Limits) {
     let rms = force_rms(&found);
     println!("{name}: force {:.1} % rms", 100.0 * rms);
     assert!(rms < limits.force_rms, "force {rms}");
+    let apart = plate_over_cylinder(&found);
+    println!("{name}: plate over cylinder within {:.1} %", 100.0 * apart);
+    assert!(apart < 0.03, "plate over cylinder {apart}");
     for r in &found {
         let place = format!("{} at {:.2}", r.name, r.share);
         assert!(
@@ -314,6 +317,20 @@ fn check(name: &str, limits: &Limits) {
             r.area
         );
     }
+}
+
+/// Largest difference of force between plate and cylinder, each over the finite elements', with one set of moduli.
+fn plate_over_cylinder(found: &[Ratios]) -> f64 {
+    let plates = found.iter().filter(|r| r.name.contains(" plate "));
+    let differences = plates.map(|plate| {
+        let name = plate.name.replace("plate", "cylinder");
+        let same = found
+            .iter()
+            .find(|r| r.name == name && (r.share - plate.share).abs() < 1e-9);
+        let cylinder = same.expect("the table has every depth for both");
+        (plate.force / cylinder.force - 1.0).abs()
+    });
+    differences.fold(0.0, f64::max)
 }
 
 #[test]
