@@ -8,7 +8,7 @@ use thenar_inference::forward::surrogate::mechanism::{
     DeformationMeasure, Law, Mechanism, UseAtStart,
 };
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
-use thenar_inference::forward::surrogate::relaxation_spectrum::Spectrum;
+use thenar_inference::forward::surrogate::relaxation_spectrum::{OUTER, Spectrum};
 use thenar_inference::forward::surrogate::tissue_laws::RAMP;
 use thenar_inference::forward::tables::elastic_table::radius;
 use thenar_inference::forward::tables::stiff_skin::{THICKNESSES_MM, ratio};
@@ -208,34 +208,29 @@ fn one<'a>(
     Some((name, scale))
 }
 
-/// Mean of the outer thirds of a normal law, in widths from its middle.
-const OUTER: f64 = 1.090_8;
-
 /// Amplitude and times of a load that fades by a smooth spectrum.
 fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
     let seen = seen_periods(ready);
-    let median = of_number(free, 1, &libm::exp);
-    let median_open = (!median.1.is_finite(), !median.2.is_finite());
     // A period so many widths from the median, and its interval: open beyond what the recordings last, and shorter than their steps. The
-    // median is a number of the fit, with a profile of its own; the others are sums of two.
+    // median is a number of the fit with a profile of its own, and the outer ones are profiled in its place.
     let period = |widths: f64| {
         let (log, error) = free.sum(&[0.0, 1.0, widths]);
-        let factor = libm::exp(HALF * error);
         let period = libm::exp(log);
-        let by_error = (period / factor, period * factor);
-        let (low, high) = match widths == 0.0 {
-            true => (
-                if median_open.0 { by_error.0 } else { median.1 },
-                if median_open.1 { by_error.1 } else { median.2 },
-            ),
-            false => by_error,
+        let profile = match widths == 0.0 {
+            true => free.profile(1),
+            false => free.outer(widths > 0.0, log),
         };
+        let is_open = profile.map_or((false, false), |known| known.is_open);
+        let by_error = (log - HALF * error, log + HALF * error);
+        let ends = profile.map_or(by_error, |known| known.ends);
+        let low = libm::exp(if is_open.0 { by_error.0 } else { ends.0 });
+        let high = libm::exp(if is_open.1 { by_error.1 } else { ends.1 });
         let factor = (high / low).sqrt();
         // Wholly outside of what recordings show it is the law's extrapolation, and no bound.
         let is_outside = low > seen.1 || high < seen.0;
         let is_open = (
-            median_open.0 || low < seen.0 || factor > MOST || is_outside,
-            median_open.1 || high > seen.1 || factor > MOST || is_outside,
+            is_open.0 || low < seen.0 || factor > MOST || is_outside,
+            is_open.1 || high > seen.1 || factor > MOST || is_outside,
         );
         (
             period,

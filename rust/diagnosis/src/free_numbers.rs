@@ -74,6 +74,16 @@ impl Free {
         })
     }
 
+    /// The interval of the shortest or the longest time constant's logarithm by the profile likelihood, which holds the fitted value.
+    pub fn outer(&self, is_longest: bool, value: f64) -> Option<Interval> {
+        let known = self.profiled.as_ref()?.outer.get(usize::from(is_longest))?;
+        Some(Interval {
+            value,
+            ends: (known.ends.0.min(value), known.ends.1.max(value)),
+            is_open: known.is_open,
+        })
+    }
+
     /// The sum of free shares and the ends of its interval, in other terms: by the profile likelihood of the sum (see
     /// `Profiled::numbers`), or by its standard error where none was asked for.
     pub fn sum_interval(&self, (sum, error): (f64, f64), scale: &dyn Fn(f64) -> f64) -> Three {

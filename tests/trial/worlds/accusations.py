@@ -1,13 +1,13 @@
 """Diagnoses studies of a world and counts what is said, by noise family.
 
     PYTHONPATH=tests target/venv/bin/python tests/trial/worlds/accusations.py [--world finite_element_pads]
-        [--truth nothing] [--cases 10] [--seed 1] [--noises white ...] [--workers 1] [--keep DIR]
+        [--truth nothing] [--motion ramps] [--cases 10] [--seed 1] [--noises white ...] [--workers 1] [--keep DIR]
 
 Prints a row for each family: how many of its cases end in each verdict, and how many name an effect or an instrument
 that is not there (where nothing is missing: how many accuse at all), with the 95 % bounds of the share (Clopper and
 Pearson). In the world of closed forms that is `is_wrong`; a world with a `judged` of its own says what is right and
-what is only missed. With `--keep`, verdicts are kept in DIR, and those that lie there are not asked for again. Exit
-code 1 if more than 3 % of all are wrong.
+what is only missed. With `--keep`, verdicts are kept in DIR, those that lie there are not asked for again, and how
+often each effect is suspected only is printed. Exit code 1 if more than 3 % of all are wrong.
 """
 
 import argparse
@@ -27,6 +27,7 @@ from trial.running import Binary, Fault
 
 WRONG = 0.03
 WORLDS = ("closed_forms", "finite_element_pads")
+RAMPS = "ramps"
 
 
 @dataclass(frozen=True)
@@ -39,14 +40,27 @@ class Asked:
     noise: str
     program: str
     keep: str | None = None
+    motion: str = RAMPS
 
     def kept(self):
         """The file of the verdict."""
-        return self.keep and Path(self.keep) / f"{self.world}_{self.truth}_{self.noise}_{self.seed}.json"
+        motion = "" if self.motion == RAMPS else f"_{self.motion}"
+        return self.keep and Path(self.keep) / f"{self.world}_{self.truth}_{self.noise}{motion}_{self.seed}.json"
+
+    @staticmethod
+    def of_kept(stem):
+        """The case whose verdict is kept in a file of that name, without its program."""
+        world = next(each for each in WORLDS if stem.startswith(each))
+        rest, seed = stem.removeprefix(world + "_").rsplit("_", 1)
+        motion = next((each for each in motions(world) if rest.endswith("_" + each)), RAMPS)
+        rest = rest.removesuffix("_" + motion)
+        noise = max((each for each in noises(world) if rest.endswith("_" + each)), key=len)
+        return Asked(world, int(seed), rest.removesuffix("_" + noise), noise, "", motion=motion)
 
     def draw(self):
         """The case."""
-        return importlib.import_module(f"trial.worlds.{self.world}").draw(self.seed, self.truth, self.noise)
+        moved = () if self.motion == RAMPS else (self.motion,)
+        return importlib.import_module(f"trial.worlds.{self.world}").draw(self.seed, self.truth, self.noise, *moved)
 
 
 def answer(asked):
@@ -95,6 +109,18 @@ def noises(world):
     return importlib.import_module(f"trial.worlds.{world}").NOISES
 
 
+def motions(world):
+    """Motions of a world."""
+    return getattr(importlib.import_module(f"trial.worlds.{world}"), "MOTIONS", (RAMPS,))
+
+
+def suspected(cases):
+    """How often each effect is suspected only, in verdicts that are kept."""
+    kept = [case.kept() for case in cases]
+    said = [json.loads(path.read_text()) for path in kept if path and path.exists()]
+    return collections.Counter(name for one in said for name in one.get("suspected", []))
+
+
 def bounds(count, of):
     """95 % bounds of a share."""
     low = beta.ppf(0.025, count, of - count + 1) if count else 0.0
@@ -107,6 +133,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--world", default="closed_forms", choices=WORLDS)
     parser.add_argument("--truth", default="nothing")
+    parser.add_argument("--motion", default=RAMPS)
     parser.add_argument("--cases", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--noises", nargs="+")
@@ -118,6 +145,8 @@ def arguments():
     given.noises = given.noises or list(noises(given.world))
     if given.truth not in world.TRUTHS or set(given.noises) - set(world.NOISES):
         parser.error(f"{given.world} has the truths {', '.join(world.TRUTHS)} and the noises {', '.join(world.NOISES)}")
+    if given.motion != RAMPS and (given.motion not in motions(given.world) or given.truth not in world.MOVED):
+        parser.error(f"{given.world} has no {given.truth} with the motion {given.motion}")
     return given
 
 
@@ -126,7 +155,7 @@ def main():
     given = arguments()
     seeds = range(given.seed, given.seed + given.cases)
     cases = [
-        Asked(given.world, seed, given.truth, noise, given.program, given.keep)
+        Asked(given.world, seed, given.truth, noise, given.program, given.keep, given.motion)
         for noise in given.noises
         for seed in seeds
     ]
@@ -140,6 +169,8 @@ def main():
         verdicts = collections.Counter(said[0] for _, said, _ in own)
         text = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.most_common())
         print(f"{noise:15s} wrong {words['wrong']:3d}, right {words['right']:3d} of {len(own)}; {text}", flush=True)
+        for name, count in suspected(case for case, _, _ in own).most_common():
+            print(f"    suspected only: {name} in {count}")
         for case, (verdict, names), word in own:
             if word == "wrong":
                 print(f"    seed {case.seed}: {verdict}: {', '.join(names)}")

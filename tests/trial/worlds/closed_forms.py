@@ -1,6 +1,6 @@
 """A world of closed forms: spheres on a half-space, with the noise and the habits of laboratories.
 
-    draw(seed, truth, noise) -> Case; Case.write(folder)
+    draw(seed, truth, noise, motion="ramps") -> Case; Case.write(folder)
 
 Nothing here is computed by finite elements or by Thenar, and there is no error of form: what a diagnosis finds besides
 the truth is its own fault. Noise and habits of recording are drawn apart, by families that no other world shares.
@@ -29,6 +29,9 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
 
 Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
+
+Motions: straight ramps, or those of `motions.py` (where the truth is `nothing` or `saturation`), in which the depth of
+`depth_jitter` jitters by 16 um.
 """
 
 import io
@@ -37,6 +40,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.spatial import Delaunay
+from trial.worlds import motions
 
 NOISES = (
     "white",
@@ -51,6 +55,8 @@ NOISES = (
     "mixture",
 )
 TRUTHS = ("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation")
+MOTIONS = ("ramps", *motions.MOTIONS)
+MOVED = ("nothing", "saturation")  # truths with motions besides ramps
 CEILING = (0.75, 0.92)
 MODULUS_MPA = (0.006, 0.02)
 RADIUS_MM = (4.0, 9.0)
@@ -97,10 +103,11 @@ class Case:
         (folder / "study.toml").write_text(text)
 
 
-def draw(seed, truth, noise):
-    """A case; the same arguments give the same case. ValueError for an unknown truth or noise."""
-    if truth not in TRUTHS or noise not in NOISES:
-        raise ValueError(f"no world of {truth} with {noise}")
+def draw(seed, truth, noise, motion="ramps"):
+    """A case; the same arguments give the same case. ValueError for what is not in this world."""
+    is_moved = motion == "ramps" or (motion in MOTIONS and truth in MOVED)
+    if truth not in TRUTHS or noise not in NOISES or not is_moved:
+        raise ValueError(f"no world of {truth} with {noise} and {motion}")
     random = np.random.default_rng([seed, *truth.encode(), 0, *noise.encode()])
     modulus = np.exp(random.uniform(*np.log(MODULUS_MPA)))
     deepest = random.uniform(*DEEPEST_MM)
@@ -122,14 +129,19 @@ def draw(seed, truth, noise):
         return Case(radii, session.recordings((radii, deepest), protocols, (reader, repeats, samples)), deepest, None)
     if truth == "saturation":
         reader.ceiling_n = random.uniform(*CEILING) * modulus * pressed(np.array([deepest]), first)[0]
+    if motion == "ramps":
+        unloads = fading is None
+        protocols = [(f"{v:g} mm/s", *_motion(deepest, v, has_hold, samples, unloads)) for v in speeds]
+    else:
+        protocols = motions.drawn(motion, deepest, np.random.default_rng([seed, *motion.encode()]))
+        reader.jitter = motions.JITTER_MM if noise == "depth_jitter" else reader.jitter
     recordings = []
     for tool, radius in radii.items():
-        for speed in speeds:
-            time, depth = _motion(deepest, speed, has_hold, samples, unloads=fading is None)
+        for protocol, time, depth in protocols:
             for _ in range(repeats):
                 at, true = reader.clocked(time, depth)
                 force = modulus * _faded(at, true, radius, fading)
-                recordings.append(Recording(f"{speed:g} mm/s", tool, reader.read(at, true, force)))
+                recordings.append(Recording(protocol, tool, reader.read(at, true, force)))
     return Case(radii, recordings, deepest)
 
 

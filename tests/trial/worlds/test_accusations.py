@@ -38,6 +38,28 @@ def test_a_verdict_is_kept_and_not_asked_for_again(tmp_path):
     assert accusations.answer(again) == ("cannot_tell", ["bone", "drift", "offset"])
 
 
+@pytest.mark.parametrize(
+    "case",
+    [
+        Asked("closed_forms", 12, "nothing", "white", "", "DIR"),
+        Asked("closed_forms", 12, "saturation", "depth_jitter", "", "DIR", "kinked"),
+        Asked("finite_element_pads", 3, "cycle_softening", "slow", "", "DIR"),
+    ],
+)
+def test_the_file_of_a_verdict_says_which_case_it_is(case):
+    found = Asked.of_kept(case.kept().stem)
+    assert [getattr(found, of) for of in ("world", "seed", "truth", "noise", "motion")] == [
+        getattr(case, of) for of in ("world", "seed", "truth", "noise", "motion")
+    ]
+
+
+def test_what_is_only_suspected_is_counted(tmp_path):
+    cases = [Asked("closed_forms", seed, "nothing", "white", "", str(tmp_path)) for seed in (1, 2, 3)]
+    for case, names in zip(cases, (["saturation"], ["saturation", "drift"]), strict=False):
+        case.kept().write_text(json.dumps({"suspected": names}))
+    assert accusations.suspected(cases) == {"saturation": 2, "drift": 1}
+
+
 def test_a_program_that_fails_is_a_fault_and_is_not_kept(tmp_path):
     found = accusations.answer(asked("/bin/false", keep=tmp_path / "kept"))
     assert found[0] == "fault" and "exit code 1" in found[1][0]
@@ -84,3 +106,7 @@ def test_a_truth_that_a_world_has_not_is_refused(monkeypatch, capsys):
     with pytest.raises(SystemExit):
         accusations.arguments()
     assert "closed_forms has the truths nothing, relaxation" in capsys.readouterr().err
+    monkeypatch.setattr(sys, "argv", ["accusations.py", "--truth", "relaxation", "--motion", "sine"])
+    with pytest.raises(SystemExit):
+        accusations.arguments()
+    assert "closed_forms has no relaxation with the motion sine" in capsys.readouterr().err

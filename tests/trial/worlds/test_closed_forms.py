@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from trial.worlds import closed_forms
+from trial.worlds import closed_forms, motions
 
 
 def test_shallow_sphere_is_hertz():
@@ -45,3 +45,47 @@ def test_draws_repeat_and_clocks_go_forward(noise):
         assert a.table[:, 2].max() > 0.05
     with pytest.raises(ValueError, match="no world"):
         closed_forms.draw(1, "nothing", "magic")
+
+
+def _protocols(motion, deepest):
+    """Protocols of eight draws of a motion."""
+    return [one for seed in range(8) for one in motions.drawn(motion, deepest, np.random.default_rng(seed))]
+
+
+@pytest.mark.parametrize("motion", motions.MOTIONS)
+def test_motions_go_down_to_the_largest_depth_without_a_jump(motion):
+    for _, time, depth in _protocols(motion, 1.2):
+        assert 1.15 < depth.max() <= 1.2 + 1e-12 and depth[0] < 0.0
+        speeds = np.abs(np.diff(depth) / np.diff(time))
+        assert (np.diff(time) > 0.0).all() and speeds.max() <= (1.35 / 0.25 if motion == "short" else 3.0)
+
+
+def test_kinked_approach_presses_slower_than_it_comes():
+    for name, time, depth in _protocols("kinked", 1.2):
+        speed = np.gradient(depth, time)
+        press = float(name.split()[2])
+        assert speed[2] == pytest.approx(0.9) and np.median(speed[(depth > 0.5) & (speed > 0.0)]) == pytest.approx(
+            press
+        )
+
+
+def test_a_sine_is_straight_nowhere_and_a_step_has_few_readings():
+    for _, time, depth in _protocols("sine", 1.2):
+        turns = np.abs(np.diff(depth, 2)) / np.diff(time)[1:] ** 2
+        assert np.median(turns) > 1.0
+    step = next(one for one in _protocols("short", 1.2) if one[0] == "step")
+    assert 1 <= ((step[2] > -0.14) & (step[2] < 1.19) & (step[1] < 2.0)).sum() <= 3
+
+
+def test_other_motions_change_no_case_of_straight_ramps_and_are_refused_for_a_truth_that_fades():
+    one, other = (closed_forms.draw(4, "nothing", "depth_jitter", motion) for motion in ("ramps", "kinked"))
+    assert one.radii == other.radii and one.deepest_mm == other.deepest_mm
+    assert len(one.recordings[0].table) != len(other.recordings[0].table)
+    with pytest.raises(ValueError, match="no world of relaxation with white and sine"):
+        closed_forms.draw(1, "relaxation", "white", "sine")
+
+
+def test_a_ceiling_of_other_motions_clips_their_presses():
+    case = closed_forms.draw(3, "saturation", "white", "kinked")
+    most = max(recording.table[:, 2].max() for recording in case.recordings)
+    assert all((one.table[:, 2] == most).sum() > 1 for one in case.recordings)

@@ -45,6 +45,20 @@ def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
 
 
+@pytest.mark.parametrize("seed", [1003, 1007])
+def test_a_press_after_a_faster_approach_is_accused_of_nothing(seed, tmp_path):
+    """A ceiling was named in both while a leg with a kink was smoothed."""
+    closed_forms.draw(seed, "nothing", "depth_jitter", "kinked").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+
+
+def test_a_real_ceiling_is_named_after_a_faster_approach(tmp_path):
+    closed_forms.draw(1101, "saturation", "depth_jitter", "kinked").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == ["saturation"]
+
+
 @pytest.mark.parametrize("seed", [1, 7])
 def test_a_sine_under_jitter_is_accused_of_nothing(seed, tmp_path):
     """Lines along its flanks meet above its crest, which a ceiling explained (7) or might explain (1)."""

@@ -79,18 +79,14 @@ def of_calibration(folder):
 
 
 def of_worlds(folder):
-    """Findings of closed forms and of pads: `<world>_<truth>_<noise>_<seed>.json`."""
+    """Findings of closed forms and of pads, in the files of `Asked.kept`."""
     for path in sorted(Path(folder).glob("*.json")):
-        world = next(each for each in accusations.WORLDS if path.stem.startswith(each))
-        rest, seed = path.stem.removeprefix(world + "_").rsplit("_", 1)
-        noises = accusations.noises(world)
-        noise = max((each for each in noises if rest.endswith("_" + each)), key=len)
-        asked = accusations.Asked(world, int(seed), rest.removesuffix("_" + noise), noise, "")
+        asked = accusations.Asked.of_kept(path.stem)
 
         def is_right(finding, asked=asked):
             return accusations.judged(asked, "missing_physics", [finding["effect"]]) == "right"
 
-        yield from of_study(json.loads(path.read_text()), world, is_right)
+        yield from of_study(json.loads(path.read_text()), asked.world, is_right)
 
 
 def of_grasps(folder):

@@ -200,6 +200,7 @@ mod tests {
                 is_open,
             }],
             variants: Vec::new(),
+            outer: Vec::new(),
         }
     }
 

@@ -5,9 +5,9 @@
 //! reliability of the readings (Fuller 1987, Measurement Error Models, section 1.1).
 
 use crate::observe::measured::Phase;
-use crate::observe::motion::by_lines;
+use crate::observe::motion::by_lines::by_lines;
 use crate::observe::protocol_phases::{Courses, Stretch};
-use crate::observe::robust_scale::median_deviation;
+use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
 
 /// What a jitter does to the force, over the noise of the force, below which depths are left as they were read.
@@ -65,12 +65,11 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
-    let lines = by_lines(courses.time_s, courses.depth_mm);
-    let is_motion =
-        |lines: &Vec<f64>| deviation(&off(courses.depth_mm, lines)) <= LINES_LEAVE * jitter_mm;
-    let mut course = lines.filter(is_motion).unwrap_or(depth);
+    let lines = by_lines((courses.time_s, courses.depth_mm), &depth);
+    let is_motion = deviation(&off(courses.depth_mm, &lines)) <= LINES_LEAVE * jitter_mm;
+    let mut course = if is_motion { lines } else { depth };
     let read = off(courses.depth_mm, &course);
-    let jitter_mm = deviation(&read);
+    let jitter_mm = trimmed_deviation(&read, MOVES);
     for k in 0..n {
         course[k] += match read[k].abs() <= MOVES * jitter_mm {
             true => reliability * read[k],
@@ -212,6 +211,8 @@ mod tests {
         let sine = |t: f64| 0.55 - 0.65 * libm::cos(2.0 * std::f64::consts::PI * t / 3.0);
         let top = errors((&sine, &moments(200, 0.06)), &|t| sine(t) > 0.99 * 1.2);
         assert!(mean(&top).abs() < 0.3 * JITTER_MM, "{}", mean(&top));
+        // Where a course is cut at noisy extremes, its ends are worse.
+        assert!(rms(&top) < 0.5 * JITTER_MM, "{}", rms(&top));
     }
 
     /// A ramp of two or three readings belongs to no hold: of its 98 readings the level is known to a tenth of the jitter, of its ends less.

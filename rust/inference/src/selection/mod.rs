@@ -5,6 +5,7 @@ pub mod candidates;
 pub(crate) mod candidate_fits;
 pub mod ladder;
 pub mod form_check;
+pub(crate) mod profile_ends;
 pub mod profile_interval;
 pub mod model_weights;
 pub mod cross_validation;

@@ -4,49 +4,17 @@
 //! one side, or not at all.
 
 use crate::forward::surrogate::candidate_model::Model;
-use crate::forward::surrogate::mechanism::{Law, Mechanism, Scales};
+use crate::forward::surrogate::mechanism::{Clock, Law, Mechanism, Scales};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
+use crate::forward::surrogate::relaxation_spectrum::OUTER;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::least_squares::surrogate_fit::{Refit, refit};
 use crate::observe::measured::Measured;
-use crate::parameters::surrogate_parameter::Kind;
 use crate::selection::candidates::singles;
 use crate::selection::form_check::FormCheck;
+pub use crate::selection::profile_ends::Interval;
+use crate::selection::profile_ends::{Profile, ROOT};
 use crate::selection::scored::{Rungs, Scored};
-
-/// Root of the rise of the deviance at the ends of a 90 % interval: 1.645^2 is the 90 % point of chi-squared with one degree of freedom.
-const ROOT: f64 = 1.644_854;
-/// Part of it within which an end is found.
-const NEAR: f64 = 0.04;
-/// Most fits for one end.
-const MOST_FITS: usize = 8;
-/// Part of a bracket that a step leaves on either side.
-const INSIDE: f64 = 0.1;
-
-/// The 90 % interval of one parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Value at the optimum.
-    pub value: f64,
-    /// Its ends; an end that is open is that of the admissible range.
-    pub ends: (f64, f64),
-    /// Whether the recordings leave the lower and the upper end open.
-    pub is_open: (bool, bool),
-}
-
-impl Interval {
-    /// Both intervals and what is between them.
-    fn joined(self, other: Interval) -> Interval {
-        Interval {
-            value: self.value,
-            ends: (self.ends.0.min(other.ends.0), self.ends.1.max(other.ends.1)),
-            is_open: (
-                self.is_open.0 || other.is_open.0,
-                self.is_open.1 || other.is_open.1,
-            ),
-        }
-    }
-}
 
 /// What recordings say of one mechanism of an explanation.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +24,8 @@ pub struct Profiled {
     pub numbers: Vec<Interval>,
     /// Variants of its law that are not excluded, in the order of the candidates; the fitted one is among them.
     pub variants: Vec<Mechanism>,
+    /// Logarithms of the shortest and the longest time constant of a spectrum over time; empty of any other law.
+    pub outer: Vec<Interval>,
 }
 
 impl Profiled {
@@ -121,6 +91,7 @@ pub fn profiled(
                     found = Some(Profiled {
                         numbers,
                         variants: vec![variant],
+                        outer: Vec::new(),
                     });
                 }
                 Some(known) => {
@@ -130,12 +101,50 @@ pub fn profiled(
                 }
             }
         }
-        found.unwrap_or(Profiled {
+        let mut found = found.unwrap_or(Profiled {
             numbers: Vec::new(),
             variants: Vec::new(),
-        })
+            outer: Vec::new(),
+        });
+        found.outer = outer(surrogate, (&mechanisms, number), (&start, overdispersion));
+        found
     };
     (0..of.mechanisms.len()).map(one).collect()
+}
+
+/// Intervals of the shortest and the longest time constant (logarithms) of one mechanism that fades over time.
+fn outer(
+    surrogate: &Surrogate<'_>,
+    (mechanisms, number): (&[Mechanism], usize),
+    (start, overdispersion): (&[f64], f64),
+) -> Vec<Interval> {
+    let before: usize = mechanisms[..number].iter().map(Mechanism::count).sum();
+    let first = surrogate.shared.len() + before;
+    let own = first..first + mechanisms[number].count();
+    let one = |at: f64| {
+        let (mut all, mut start) = (mechanisms.to_vec(), start.to_vec());
+        let Law::Relaxation {
+            clock: Clock::Time,
+            spectrum,
+        } = &mut all[number].law
+        else {
+            return None;
+        };
+        let (beside, numbers) = spectrum.beside(at, &start[own.clone()])?;
+        *spectrum = beside;
+        start[own.clone()].copy_from_slice(&numbers);
+        let model = Model::new(surrogate, &all);
+        let best = refit(surrogate, &model, &start);
+        let mut profile = Profile {
+            surrogate,
+            model,
+            least: best.deviance,
+            best,
+            overdispersion,
+        };
+        Some(profile.interval(first + 1))
+    };
+    [-OUTER, OUTER].into_iter().filter_map(one).collect()
 }
 
 /// The mechanisms of an explanation and their numbers, with free shares of one as their sum and portions.
@@ -175,96 +184,10 @@ fn variants(of: &[Mechanism], (number, scales): (usize, Scales)) -> Vec<Vec<Mech
     found.into_iter().map(with).collect()
 }
 
-/// The profile likelihood about an optimum.
-struct Profile<'a> {
-    surrogate: &'a Surrogate<'a>,
-    model: Model<'a>,
-    best: Refit,
-    /// Deviance of the best variant.
-    least: f64,
-    overdispersion: f64,
-}
-
-impl Profile<'_> {
-    /// Root of a deviance's rise over the least.
-    fn root(&self, deviance: f64) -> f64 {
-        ((deviance - self.least) / self.overdispersion)
-            .max(0.0)
-            .sqrt()
-    }
-
-    /// Of every parameter of one mechanism.
-    fn intervals(&mut self, mechanism: usize) -> Vec<Interval> {
-        let all = self.model.coordinates.iter().enumerate();
-        let own: Vec<usize> = all
-            .filter(|(_, c)| matches!(c.kind, Kind::Of(of, _) if of == mechanism))
-            .map(|(k, _)| k)
-            .collect();
-        own.into_iter().map(|k| self.interval(k)).collect()
-    }
-
-    fn interval(&mut self, coordinate: usize) -> Interval {
-        let bounds = self.model.coordinates[coordinate].bounds;
-        let ends = [bounds.0, bounds.1].map(|bound| self.end(coordinate, bound));
-        self.model.coordinates[coordinate].bounds = bounds;
-        Interval {
-            value: self.best.at[coordinate],
-            ends: (ends[0].unwrap_or(bounds.0), ends[1].unwrap_or(bounds.1)),
-            is_open: (ends[0].is_none(), ends[1].is_none()),
-        }
-    }
-
-    /// The end toward a bound; None where the deviance does not rise enough as far as there.
-    fn end(&mut self, coordinate: usize, bound: f64) -> Option<f64> {
-        let from = self.best.at[coordinate];
-        let own = self.root(self.best.deviance);
-        let error = self.best.covariance[(coordinate, coordinate)]
-            .max(0.0)
-            .sqrt();
-        let toward = |step: f64| match bound < from {
-            true => (from - step).max(bound),
-            false => (from + step).min(bound),
-        };
-        let mut at = self.best.at.clone();
-        let (mut inner, mut outer) = ((from, own), None::<(f64, f64)>);
-        let mut next = toward(ROOT * error);
-        for _ in 0..MOST_FITS {
-            if next == from {
-                return None;
-            }
-            self.model.coordinates[coordinate].bounds = (next, next);
-            let held = refit(self.surrogate, &self.model, &at);
-            let root = self.root(held.deviance);
-            if (root / ROOT - 1.0).abs() < NEAR {
-                return Some(next);
-            }
-            if root > ROOT {
-                outer = Some((next, root));
-            } else {
-                if next == bound {
-                    return None;
-                }
-                (inner, at) = ((next, root), held.at);
-            }
-            next = match outer {
-                Some((far, rise)) => {
-                    let share = (ROOT - inner.1) / (rise - inner.1).max(f64::MIN_POSITIVE);
-                    inner.0 + (far - inner.0) * share.clamp(INSIDE, 1.0 - INSIDE)
-                }
-                None => {
-                    let factor = (ROOT / root.max(0.1 * ROOT)).clamp(1.2, 4.0);
-                    toward((next - from).abs() * factor)
-                }
-            };
-        }
-        // The last value that is excluded, or, where none was met, the bound.
-        outer.map(|(far, _)| far)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::selection::profile_ends::NEAR;
     use thenar_contact::effects::Effect;
 
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
@@ -314,7 +237,6 @@ mod tests {
     /// A flat punch of 10 N/mm pressed to 2 mm and let go, whose load is lost with travel in closed form (x' = d' - x |d'| / length): the
     /// interval of the whole share, and whether it excludes that nothing is lost.
     fn lost(share: f64, sigma_n: f64) -> (Interval, bool) {
-        use crate::least_squares::surrogate_fit::refit;
         let (deepest, length) = (2.0f64, 0.8);
         let read = |k: u32| -> Reading {
             let way = f64::from(k) / 40.0;
@@ -332,9 +254,18 @@ mod tests {
         let punch = tool(deepest, |depth| 10.0 * depth, |_| 1.0);
         let readings = (0..=160).map(read).collect();
         let (ready, measured) = ready(vec![punch], &[(0, readings)], sigma_n);
-        let surrogate = ready.surrogate();
         let mut mechanisms = singles(ready.scales);
         mechanisms.retain(|m| m.effect == Effect::RateIndependentLoss);
+        let known = alone((&ready, &measured), &mechanisms);
+        (known.numbers[0], known.excludes_absence(&mechanisms[0]))
+    }
+
+    /// What recordings say of an explanation of one mechanism.
+    fn alone(
+        (ready, measured): (&PreparedStudy, &[Measured]),
+        mechanisms: &[Mechanism],
+    ) -> Profiled {
+        let surrogate = ready.surrogate();
         let scored = |mechanisms: &[Mechanism]| Scored {
             mechanisms: mechanisms.to_vec(),
             refit: refit(&surrogate, &Model::new(&surrogate, mechanisms), &[]),
@@ -350,11 +281,54 @@ mod tests {
             samples: ready.values.len(),
             overdispersion: 1.0,
         };
-        let known = profiled(&ready, &rungs, &measured, &scored(&mechanisms));
-        (
-            known[0].numbers[0],
-            known[0].excludes_absence(&mechanisms[0]),
-        )
+        profiled(ready, &rungs, measured, &scored(mechanisms)).remove(0)
+    }
+
+    /// A flat punch of 10 N/mm stepped to 2 mm and held so long, s, whose load loses 0.3 by a log-normal spectrum about 1 s, integrated at fine
+    /// steps: intervals of the logarithms of its outer time constants.
+    fn faded(hold_s: f64, width: f64) -> Vec<Interval> {
+        let lost = |time: f64| {
+            let (mut law, mut whole) = (0.0, 0.0);
+            for n in 0..=1000 {
+                let z = -6.0 + 0.012 * f64::from(n);
+                let weight = libm::exp(-0.5 * z * z);
+                law += weight * libm::exp(-time / libm::exp(width * z));
+                whole += weight;
+            }
+            0.3 * (1.0 - law / whole)
+        };
+        let read = |k: u32| -> Reading {
+            let after = 1e-3 * libm::pow(1e3 * hold_s, f64::from(k) / 120.0);
+            (1e-3 + after, 2.0, Phase::Hold, 20.0 * (1.0 - lost(after)))
+        };
+        let punch = tool(2.0, |depth| 10.0 * depth, |_| 1.0);
+        let step = [(0.0, 0.0, Phase::Load, 0.0), (1e-3, 2.0, Phase::Load, 20.0)];
+        let readings = step.into_iter().chain((0..=120).map(read)).collect();
+        let (ready, measured) = ready(vec![punch], &[(0, readings)], 0.3);
+        let mut mechanisms = singles(ready.scales);
+        mechanisms.retain(|m| m.effect == Effect::Relaxation);
+        alone((&ready, &measured), &mechanisms).outer
+    }
+
+    /// The planted ones lie in their intervals; a hold that ends before the longest leaves that open upwards.
+    #[test]
+    fn intervals_of_outer_time_constants_hold_what_was_planted() {
+        let width = 1.2;
+        let found = faded(300.0, width);
+        for (interval, planted) in found.iter().zip([-OUTER * width, OUTER * width]) {
+            assert_eq!(interval.is_open, (false, false), "{interval:?}");
+            assert!(
+                interval.ends.0 < planted && planted < interval.ends.1,
+                "{interval:?}"
+            );
+        }
+        let short = faded(1.0, width);
+        assert_eq!((found.len(), short.len()), (2, 2));
+        let length = |of: &Interval| of.ends.1 - of.ends.0;
+        assert!(
+            short[1].is_open.1 || length(&short[1]) > 3.0 * length(&found[1]),
+            "{short:?}"
+        );
     }
 
     /// Of many shares that stand for each other only the sum is asked: it holds what was planted, and none where nothing was.

@@ -105,6 +105,17 @@ fn range(surrogate: &Surrogate<'_>, mechanism: &Mechanism, number: usize) -> (f6
             _ => (1.0, widths.0, widths.1),
         },
         Law::Relaxation {
+            spectrum: Spectrum::Beside { widths, at },
+            ..
+        } if number > 0 => match number {
+            1 => {
+                let off = at * widths.1;
+                let (low, high) = (libm::log(MEDIANS_S.0), libm::log(MEDIANS_S.1));
+                (0.0, low + off.min(0.0), high + off.max(0.0))
+            }
+            _ => (1.0, widths.0, widths.1),
+        },
+        Law::Relaxation {
             spectrum: Spectrum::Portions(_),
             ..
         } => match number {

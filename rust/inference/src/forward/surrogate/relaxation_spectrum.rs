@@ -16,6 +16,14 @@ pub enum Spectrum {
         /// Smallest and largest width, in nats of the period.
         widths: (f64, f64),
     },
+    /// The same spectrum by the logarithm of a period `at` so many widths from the median in place of the median's, so that this period can be
+    /// held while the width is fitted.
+    Beside {
+        /// As of the smooth one.
+        widths: (f64, f64),
+        /// In widths.
+        at: f64,
+    },
 }
 
 impl Spectrum {
@@ -23,7 +31,7 @@ impl Spectrum {
     pub fn count(&self) -> usize {
         match self {
             Spectrum::Free(periods) | Spectrum::Portions(periods) => periods.len(),
-            Spectrum::Smooth { .. } => 3,
+            Spectrum::Smooth { .. } | Spectrum::Beside { .. } => 3,
         }
     }
 
@@ -52,7 +60,27 @@ impl Spectrum {
                     |(z, weight): &(f64, f64)| (libm::exp(middle + width * z), sum * weight / all);
                 NODES.iter().map(branch).collect()
             }
-            (Spectrum::Smooth { .. } | Spectrum::Portions(_), _) => Vec::new(),
+            (Spectrum::Beside { widths, at }, [sum, period, width]) => {
+                let smooth = Spectrum::Smooth { widths: *widths };
+                smooth.branches(&[*sum, period - width * at, *width])
+            }
+            (Spectrum::Smooth { .. } | Spectrum::Beside { .. } | Spectrum::Portions(_), _) => {
+                Vec::new()
+            }
+        }
+    }
+
+    /// A smooth spectrum and its numbers by the period `at` so many widths from the median; None of another spectrum.
+    pub(crate) fn beside(&self, at: f64, numbers: &[f64]) -> Option<(Spectrum, Vec<f64>)> {
+        match (self, numbers) {
+            (Spectrum::Smooth { widths }, [sum, middle, width]) => Some((
+                Spectrum::Beside {
+                    widths: *widths,
+                    at,
+                },
+                vec![*sum, middle + width * at, *width],
+            )),
+            _ => None,
         }
     }
 
@@ -70,6 +98,9 @@ impl Spectrum {
         Some((Spectrum::Portions(periods.clone()), numbers))
     }
 }
+
+/// Mean of the outer thirds of a normal law, in widths from its middle: the shortest and the longest of three time constants.
+pub const OUTER: f64 = 1.090_8;
 
 /// A normal law of mean 0 and variance 1 at even steps: places, and weights that do not sum to 1.
 const NODES: [(f64, f64); 7] = [
@@ -108,6 +139,22 @@ mod tests {
         assert!((moment(2) / 1.5f64.powi(2) - 1.0).abs() < 1e-3);
         let free = Spectrum::Free(vec![2.0, 3.0]).branches(&[0.1, 0.2]);
         assert_eq!(free, [(2.0, 0.1), (3.0, 0.2)]);
+    }
+
+    #[test]
+    fn smooth_spectrum_by_another_period_is_the_same() {
+        let spectrum = Spectrum::Smooth { widths: WIDTHS[0] };
+        for at in [-OUTER, OUTER] {
+            let (beside, numbers) = spectrum.beside(at, &[0.3, 0.7, 1.5]).expect("smooth");
+            assert!((numbers[1] - (0.7 + 1.5 * at)).abs() < 1e-15);
+            for (one, other) in beside
+                .branches(&numbers)
+                .iter()
+                .zip(smooth([0.3, 0.7, 1.5]))
+            {
+                assert!((one.0 / other.0 - 1.0).abs() < 1e-12 && one.1 == other.1);
+            }
+        }
     }
 
     #[test]
