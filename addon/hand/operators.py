@@ -143,7 +143,7 @@ def _try_regions(operator):
     try:
         bpy.ops.thenar.regions_from_bones()
     except RuntimeError as error:
-        operator.report({"WARNING"}, str(error).removeprefix("Error: ").strip())
+        operator.report({"WARNING"}, languages.reported(error))
 
 
 def _open_bones():

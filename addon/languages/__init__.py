@@ -44,6 +44,15 @@ def report(template, **values):
     return _filled(bpy.app.translations.pgettext_rpt(template, OWN), values)
 
 
+def reported(error):
+    """What an operator reported that was run by another one: the text of its `RuntimeError` without Blender's word for
+    an error, which is in the user's language."""
+    text = str(error).strip()
+    for word in ("Error", bpy.app.translations.pgettext_rpt("Error"), bpy.app.translations.pgettext_tip("Error")):
+        text = text.removeprefix(f"{word}: ")
+    return text
+
+
 def bone(name):
     """A bone of a finger by its capitalized part, `Distal`, in the user's language."""
     return bpy.app.translations.pgettext_iface(name, BONE)

@@ -44,7 +44,7 @@ class OpensFiles(ImportHelper):
         try:
             begin("INVOKE_DEFAULT", **asked)
         except RuntimeError as error:
-            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+            self.report({"ERROR"}, languages.reported(error))
         return {"CANCELLED"}  # what reads leaves the undo step
 
 

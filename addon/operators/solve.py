@@ -114,7 +114,7 @@ class THENAR_OT_grasp_lighter(bpy.types.Operator):
             bpy.ops.thenar.fit_grasp(strength="LIGHT", place="KEEP")
             bpy.ops.thenar.solve()
         except RuntimeError as error:  # what those operators report
-            self.report({"ERROR"}, str(error).strip().removeprefix("Error: "))
+            self.report({"ERROR"}, languages.reported(error))
             return {"CANCELLED"}
         return {"FINISHED"}
 

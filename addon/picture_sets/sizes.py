@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import workflow
+from .. import languages, workflow
 from ..hand import build
 from ..picture_stage import facts, laying, stage, views
 from ..scene.checks import Refusal
@@ -87,7 +87,7 @@ def _solved(context, shape, kind):
         bpy.ops.thenar.fit_grasp(strength="FIRM", kind=kind)
         bpy.ops.thenar.solve()
     except RuntimeError as error:  # what those operators report
-        raise Refusal(" ".join(str(error).removeprefix("Error: ").split())) from None
+        raise Refusal(" ".join(languages.reported(error).split())) from None
     return laying.gather(context)
 
 

@@ -164,7 +164,7 @@ class THENAR_OT_show_residual(bpy.types.Operator):
         try:
             bpy.ops.thenar.show_map(kind=kind)
         except RuntimeError as error:
-            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+            self.report({"ERROR"}, languages.reported(error))
             return {"CANCELLED"}
         if bpy.ops.thenar.look.poll():
             bpy.ops.thenar.look(kind="OPENED")

@@ -194,3 +194,12 @@ def test_planted_errors_are_extracted():
         "look at it",
         "{value1} of {n} is wet; dry it",
     ]
+
+
+@pytest.mark.parametrize(("word", "raised"), [("Fehler", "Fehler: Boden: das\n"), ("エラー", "エラー: Boden: das\n")])
+def test_what_another_operator_reported_loses_the_word_for_an_error(monkeypatch, word, raised):
+    """As Blender 5.2.2 raises a report "Boden: das" in German and Japanese."""
+    words = SimpleNamespace(pgettext_rpt=lambda _: word, pgettext_tip=lambda _: word)
+    monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=words)))
+    assert languages.reported(RuntimeError(raised)) == "Boden: das"
+    assert languages.reported(RuntimeError("Error: Boden: das\n")) == "Boden: das"
