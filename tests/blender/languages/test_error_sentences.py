@@ -85,7 +85,10 @@ def test_sentences_put_together_are_translated_part_by_part(language):
 
     place, problem = "protocol, row {row}", "{name} is {value}, but must be finite"
     said = sentences.shown("'Hand: 2' on 'The product': protocol, row 4: slide_mm is inf, but must be finite")
-    assert said.startswith("'Hand: 2' on 'The product': " + words(place).format(row=4))
+    joined, _, rest = said.partition(": " + words(place).format(row=4))
+    assert (
+        rest and "'Hand: 2'" in joined and "'The product'" in joined and not ENGLISH.search(joined.replace("The p", ""))
+    )
     assert said.endswith(words(problem).format(name="slide_mm", value="inf"))
     said = sentences.shown("at frame 7, 'Hand': no skin of 'Hand' lies over bone; give its materials a thickness first")
     assert "'Hand'" in said and "7" in said and not ENGLISH.search(said)
