@@ -220,7 +220,7 @@ impl<'a> Equilibrium<'a> {
                         if found.energy <= enough || norm(&found.residual) < 0.5 * unbalanced {
                             next = Some(Next {
                                 places: there,
-                                decrease: if share < 1.0 {
+                                decrease: if share < 1.0 || *regularization > 0.0 {
                                     f64::INFINITY
                                 } else {
                                     -0.5 * slope / forces.energy

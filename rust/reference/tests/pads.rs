@@ -322,6 +322,7 @@ fn check(name: &str, limits: &Limits) {
 /// Largest difference of force between plate and cylinder, each over the finite elements', with one set of moduli.
 fn plate_over_cylinder(found: &[Ratios]) -> f64 {
     let plates = found.iter().filter(|r| r.name.contains(" plate "));
+    assert!(plates.clone().count() > 0, "no plate in the table");
     let differences = plates.map(|plate| {
         let name = plate.name.replace("plate", "cylinder");
         let same = found
