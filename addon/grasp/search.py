@@ -97,8 +97,11 @@ def search(fit, watch=fitter.ALONE, asked=None):
                 ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
                 begun[kind] = _begun(ready, aim, watch)
             if begun[kind] and begun[kind][0].score <= most:
-                slid = [ways.slid(way) for way in ways.powers(stage, asked.end)] if kind == ways.POWER else []
-                found += _ended_or_slid(begun[kind], slid, (aim, most), watch)
+                other = []
+                if kind == ways.POWER:
+                    powers = ways.powers(stage, asked.end)
+                    other = [[change(way) for way in powers] for change in (ways.steep, ways.slid)]
+                found += _ended_or_other(begun[kind], other, (aim, most), watch)
         except (Refusal, native.module.SolveError) as refusal:
             fitter.leave_if_cancelled(watch)
             refusals[kind] = refusal
@@ -172,8 +175,9 @@ def _ended(begun, aim, watch, most=np.inf):
     return [replace(one, score=one.score - averted) for one in out]
 
 
-def _ended_or_slid(begun, slid, asked, watch):
-    """`_ended`, `asked` for an aim and a most; where that settles none, the best of the ways `slid` if it is better.
+def _ended_or_other(begun, other, asked, watch):
+    """`_ended`, `asked` for an aim and a most; where that settles none, the best of each list of ways of `other`, until
+    one settles.
 
     On a short bar a hand may have to slide along it; on a long one a hand that may ends at the bar's end.
     """
@@ -184,9 +188,11 @@ def _ended_or_slid(begun, slid, asked, watch):
     except (Refusal, native.module.SolveError) as error:
         fitter.leave_if_cancelled(watch)
         refusal = error
-    if slid and not (ended and settling.is_settled(ended[0].state, aim)):
+    for ready in other:
+        if ended and settling.is_settled(ended[0].state, aim):
+            break
         try:
-            again = _best(slid, aim, watch)
+            again = _best(ready, aim, watch)
             ended = min(ended or again, again, key=lambda found: in_steps(found[0].score))
         except (Refusal, native.module.SolveError):
             fitter.leave_if_cancelled(watch)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import native
-from ..grasp_fit import fitter, thumb
+from ..grasp_fit import fitter, sharing, thumb
 from ..grasp_fit import load as loads
 from ..grasp_fit.task import Goal
 from ..hand.pads import TISSUE_SHARE
@@ -56,6 +56,10 @@ SUNK = 5.0
 
 CROSSED = 20.0
 """Cost of a finger that stands in a thin wall: more than any balance gains that small motions bring."""
+
+EVEN, UNEVEN = 0.1, 3.0
+"""Rounds go on while a larger share of the fingers' force than `EVEN` is on the wrong fingers; all of it there counts
+`UNEVEN` tolerances."""
 
 LEAST_FACTOR = 0.6
 """The depth of a pad is eased by no more in one round."""
@@ -146,7 +150,8 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
     areas = loads.vertex_areas(stage.fit.press.reading.hand.rest_mm, stage.fit.press.reading.hand.triangles)
     wanted = fitter.wanted_depths(stage.hand.pads, stage.fit.wish) if aim.depths_mm is None else aim.depths_mm
     limits = np.array([pad.limit_mm for pad in stage.hand.pads])
-    best, found, left, reach = None, first, np.zeros(6), aim.total_n
+    best, least, found, left, reach = None, np.inf, first, np.zeros(6), aim.total_n
+    fair = sharing.sharing_of(stage.hand.pads, np.isfinite(wanted), len(areas))
     for count in range(rounds):
         watch.report("Balancing the forces", count / rounds)
         fitter.leave_if_cancelled(watch)
@@ -156,20 +161,24 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
             if best is None:
                 raise
             break
-        if best is None or cost_of(state, aim) < cost_of(best, aim):
-            best = state
-        if is_settled(state, aim) or count == rounds - 1:
+        force = np.asarray(state.contact.force_n)
+        uneven = 0.0 if fair is None else fair.unevenness(force)
+        cost = cost_of(state, aim) + UNEVEN * uneven
+        if cost < least:
+            best, least = state, cost
+        if (is_settled(state, aim) and uneven < EVEN) or count == rounds - 1:
             break
         reach = _reach(state, aim, reach)
         now = replace(aim, total_n=reach)
         own, whole = eased(state, now)
-        wanted = wanted * np.clip(own * whole, LEAST_FACTOR, 1.0 / LEAST_FACTOR)
+        more = 1.0 if fair is None else fair.factors(stage.hand.pads, force)
+        wanted = wanted * np.clip(own * whole * more, LEAST_FACTOR, 1.0 / LEAST_FACTOR)
         gap = gaps_of(stage, state.grasp)
         deepest = np.array([-gap[pad.rows].min() for pad in stage.hand.pads])
         limits = np.where(own < 1.0, np.minimum(limits, np.maximum(deepest, 0.3) * own), limits)
         share = np.clip((FAR - max(state.imbalance, state.lever)) / (FAR - NEAR), 0.0, 1.0)
         left = share * (left + np.concatenate([state.net_n, state.moment_nmm]))
-        goal = goal_of(wanted, aim.bar, limits, _load(stage, (state, gap), (now, left), areas))
+        goal = goal_of(wanted, aim.bar, limits, _load(stage, (state, gap), (now, left, fair), areas))
         goal = replace(goal, facing_mm=aim.facing_mm)
         evaluations = EVALUATIONS if count == 0 else LATER_EVALUATIONS
         found = fitter.refit(stage.hand, found, replace(stage.fit.wish, evaluations=evaluations), watch, goal)
@@ -220,9 +229,9 @@ def eased(state, aim):
 
 
 def _load(stage, pressed_at, aim, areas):
-    """What the next fit shall balance. What earlier rounds left over is added to it, or some of it would always stay:
-    the fit weighs balance against depths."""
-    (state, gap), (aim, left) = pressed_at, aim
+    """What the next fit shall balance, and how fingers shall share the force. What earlier rounds left over is added
+    to it, or some of it would always stay: the fit weighs balance against depths."""
+    (state, gap), (aim, left, fair) = pressed_at, aim
     most = MOST_LEFT * state.total_n
     left = np.clip(left, -most * LEVERS, most * LEVERS)
     stiffness = loads.stiffness_of(stage.hand.pads, areas, gap, np.asarray(state.contact.force_n))
@@ -230,4 +239,4 @@ def _load(stage, pressed_at, aim, areas):
     if total is None and state.total_n > MOST_N:
         total = 0.97 * MOST_N
     outer = aim.weight_n + left[:3]
-    return loads.Load(stiffness, aim.about_mm, max(state.total_n, 1.0), WEIGHT_MM, outer, left[3:], total)
+    return loads.Load(stiffness, aim.about_mm, max(state.total_n, 1.0), WEIGHT_MM, outer, left[3:], total, fair)

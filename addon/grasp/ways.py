@@ -18,9 +18,10 @@ STOPS_DEG = {"thumb_proximal": 30.0, "thumb_distal": 25.0}
 OPPOSED_DEG = -25.0
 """Twist of the thumb's first joint from which a power grip begins: pronated, its pad toward the fingers."""
 
-OBLIQUE_DEG = 12.0
+OBLIQUE_DEG, STEEP_DEG = 12.0, 22.0
 ALONG = -0.25
-"""The bar's axis against the line of the knuckles, and its place along the fingers in parts of the hand's breadth."""
+"""The bar's axis against the line of the knuckles, first and where no grip settles so, and its place along the fingers
+in parts of the hand's breadth."""
 
 THIN = 0.35
 """A pad begins no deeper in a pinch than this share of what is pinched is thick: around a rod of 8 mm two pads that
@@ -33,13 +34,14 @@ POWER, PINCH = "POWER", "PINCH"
 class Way:
     """One way to begin: its `kind`; the `stage.Stage` with the wish of that kind; where: a `places.Spot` or a
     `pinches.Pinch`. Of a power grip, which `end` of the bar's axis is at the thumb (1 or -1), and the palm's side,
-    `roll` of `ROLLS`."""
+    `roll` of `ROLLS`; `oblique_deg` as `OBLIQUE_DEG`."""
 
     kind: str
     stage: object
     spot: object
     end: int = 1
     roll: int = 0
+    oblique_deg: float = OBLIQUE_DEG
 
     @property
     def bar(self):
@@ -55,8 +57,13 @@ class Way:
         toward = np.cos(turn) * self.spot.side + np.sin(turn) * third
         center, axis = self.bar
         along = ALONG * fitter.breadth_of(hand)
-        placing = closing.Placing(center, axis, np.radians(OBLIQUE_DEG), along, toward)
+        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), along, toward)
         return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
+
+
+def steep(way):
+    """The way with the bar more obliquely across the hand, as people hold a tool that points forward."""
+    return replace(way, oblique_deg=STEEP_DEG)
 
 
 def slid(way):

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..hand.skinning import cross
+from . import sharing
 
-POWER = 1.6
-"""Force of a pad over its depth: between a half-space's 1.5 and a stiffening layer's 2."""
+POWER = sharing.POWER
 
 ARM_MM = 40.0
 """A moment counts as a force at this arm, half a hand's breadth."""
@@ -49,7 +49,8 @@ class Load:
     """`stiffness` (n,) of every vertex of the hand, N / mm^1.6, zero where no pad is.
 
     `outer_n` (3), `outer_moment_nmm` (3): what else acts on the product, about `about_mm` (3). `wanted_n`: what the
-    pads shall carry in sum, or None. `reference_n` makes residuals relative; `weight_mm` is what all of it counts, mm.
+    pads shall carry in sum, or None; `sharing`: a `sharing.Sharing` of it by fingers, or None. `reference_n` makes
+    residuals relative; `weight_mm` is what all but the sharing counts, mm.
     """
 
     stiffness: np.ndarray
@@ -59,18 +60,23 @@ class Load:
     outer_n: np.ndarray
     outer_moment_nmm: np.ndarray
     wanted_n: float | None = None
+    sharing: object = None
 
     def residuals(self, skin):
-        """Seven residuals, mm, of `Touched` skin: net force, net moment over `ARM_MM`, and sum."""
+        """Residuals, mm, of `Touched` skin: net force, net moment over `ARM_MM`, sum, and what each finger bears beyond
+        its share."""
         force = self.stiffness[skin.rows] * np.maximum(-skin.gap, 0.0) ** POWER
         push = -skin.outward * force[:, None]
         net = push.sum(axis=0) + self.outer_n
         moment = cross(skin.points - self.about_mm, push).sum(axis=0) + self.outer_moment_nmm
         excess = 0.0 if self.wanted_n is None else force.sum() - self.wanted_n
-        return self.weight_mm / self.reference_n * np.concatenate([net, moment / ARM_MM, [excess]])
+        balance = self.weight_mm / self.reference_n * np.concatenate([net, moment / ARM_MM, [excess]])
+        if self.sharing is None:
+            return balance
+        return np.append(balance, sharing.WEIGHT_MM / self.reference_n * self.sharing.excess(skin.rows, force))
 
     def slopes(self, skin, moves, turning):
-        """Derivative (7, d) of the residuals. `moves` (k, d, 3): how each point moves with each unknown; `turning`
+        """Derivative (7 or more, d) of the residuals. `moves` (k, d, 3): how points move with each unknown; `turning`
         (k, 3, 3): how the outward direction changes with the point, 1 / mm."""
         depth = np.maximum(-skin.gap, 0.0)
         force = (self.stiffness[skin.rows] * depth**POWER)[:, None, None]
@@ -80,7 +86,11 @@ class Load:
         moment = _crosses(force[:, :, 0] * skin.outward) + _crosses(skin.points - self.about_mm) @ push
         total = np.zeros_like(slope) if self.wanted_n is None else -rise * slope
         parts = np.concatenate([push, moment / ARM_MM, total], axis=1)
-        return self.weight_mm / self.reference_n * np.einsum("kij,kdj->id", parts, moves, optimize=True)
+        balance = self.weight_mm / self.reference_n * np.einsum("kij,kdj->id", parts, moves, optimize=True)
+        if self.sharing is None:
+            return balance
+        growth = np.einsum("kj,kdj->kd", (-rise * slope)[:, 0], moves)
+        return np.vstack([balance, sharing.WEIGHT_MM / self.reference_n * self.sharing.slopes(skin.rows, growth)])
 
 
 def _crosses(vectors):

@@ -261,6 +261,17 @@ def test_a_round_bar_is_held_in_balance_by_its_side(blender, scene, diameter):
     assert np.abs(pressed_places(blender)[:, 2]).max() < 0.5 * LENGTH_MM - 1.0, "no skin reaches the bar's end"
 
 
+@pytest.mark.parametrize("length_mm", [200.0, 240.0])
+def test_fingers_share_a_bar_by_their_strength_however_long_it_is(blender, scene, length_mm):
+    """Of maximal grips: 25, 35, 25 and 14 % (MacDermid and others 2004). None is idle, as two once were."""
+    scene(shapes.revolved(np.array([0.0, 30.0, 30.0, 0.0]), 0.5 * length_mm * np.array([-1.0, -1.0, 1.0, 1.0]), 48))
+    assert blender.ops.thenar.fit_grasp(kind="POWER") == {"FINISHED"}
+    blender.ops.thenar.solve()
+    force = {row.name: row.force_n for row in blender.context.scene.thenar.result.fingers}
+    fingers = np.array([force[name] for name in ("index", "middle", "ring", "little")])
+    assert fingers / fingers.sum() == pytest.approx([0.25, 0.35, 0.25, 0.14], abs=0.1)
+
+
 @pytest.mark.parametrize("length_mm", [140.0, 180.0])
 def test_an_ordinary_handle_is_held_by_the_whole_hand(blender, scene, length_mm):
     """Around 48 mm people close all of the hand; a pinch of 30 N was balanced better and went before it."""

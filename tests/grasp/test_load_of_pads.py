@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from thenar_blender.grasp_fit import load
+from thenar_blender.grasp_fit import load, sharing
 
 
 @dataclass(frozen=True)
@@ -12,6 +12,8 @@ class Pad:
     """Vertices of a pad."""
 
     rows: np.ndarray
+    role: str = ""
+    kind: str = "distal"
 
 
 def test_slopes_are_those_of_the_residuals_on_a_ball():
@@ -20,7 +22,9 @@ def test_slopes_are_those_of_the_residuals_on_a_ball():
     ways = rng.normal(size=(count, 3))
     points = ways / np.linalg.norm(ways, axis=1)[:, None] * rng.uniform(radius - 4.0, radius + 2.0, count)[:, None]
     moves = rng.normal(size=(count, 5, 3))
-    held = load.Load(rng.uniform(0.01, 0.1, count), rng.normal(size=3), 50.0, 60.0, np.ones(3), np.full(3, 40.0), 80.0)
+    shared = sharing.Sharing(rng.integers(-1, 3, count), np.array([0.5, 0.3, 0.2]))
+    stiffness, outer = rng.uniform(0.01, 0.1, count), (np.ones(3), np.full(3, 40.0))
+    held = load.Load(stiffness, rng.normal(size=3), 50.0, 60.0, *outer, 80.0, shared)
 
     def touched(x):
         there = points + np.einsum("kdj,d->kj", moves, x)
@@ -55,3 +59,25 @@ def test_stiffness_gives_back_the_force_that_was_pressed():
     pressed = stiffness * np.maximum(-gap, 0.0) ** load.POWER
     assert [pressed[pad.rows].sum() for pad in pads] == pytest.approx([6.0, 15.0])
     assert not stiffness[50:].any(), "skin outside the pads bears nothing"
+
+
+def test_a_finger_that_bears_too_much_is_known_by_strength():
+    """Shares of a maximal grip by MacDermid and others (2004): 25, 35, 25 and 14 of 99; thumb and palm have none."""
+    names = ("thumb_distal", "index_distal", "middle_distal", "middle_middle", "ring_distal", "little_distal", "wrist")
+    pads = [Pad(np.arange(2 * k, 2 * k + 2), name) for k, name in enumerate(names)]
+    pads[-1] = Pad(pads[-1].rows, "wrist", "palm")
+    fair = sharing.sharing_of(pads, np.ones(len(pads), bool), 15)
+    force = np.zeros(15)
+    for pad, sum_n in zip(pads, (80.0, 25.0, 20.0, 15.0, 25.0, 14.0, 60.0), strict=True):
+        force[pad.rows] = 0.5 * sum_n
+    assert fair.excess(np.arange(15), force) == pytest.approx(np.zeros(4), abs=1e-9)
+    assert fair.unevenness(force) == pytest.approx(0.0, abs=1e-9)
+    assert fair.factors(pads, force) == pytest.approx(np.ones(len(pads)))
+    force[pads[1].rows] += 10.0
+    others = np.array([25.0, 35.0, 25.0, 14.0]) / 99.0 * 20.0
+    assert fair.excess(np.arange(15), force) == pytest.approx(np.array([20.0, 0.0, 0.0, 0.0]) - others)
+    factors = fair.factors(pads, force)
+    assert factors[1] < 1.0 < factors[2] == factors[3] and factors[0] == factors[-1] == 1.0
+    two = sharing.sharing_of(pads, np.array([True, True, True, False, False, False, False]), 15)
+    assert two.shares == pytest.approx([25.0 / 60.0, 35.0 / 60.0]), "a pinch of thumb and two fingers"
+    assert sharing.sharing_of(pads, np.array([True, True] + [False] * 5), 15) is None
