@@ -9,7 +9,7 @@ import functools
 import re
 from dataclasses import dataclass
 
-from . import LANGUAGES, SENTENCE, iface, kept, table
+from . import LANGUAGES, SENTENCE, file_words, iface, kept, table
 
 JOINTS = {"; ": "{first}; {second}", ". ": "{first} {second}", ".": "{first}."}
 """How two sentences follow one another, and how one ends, as templates of their own; `: ` is the same everywhere."""
@@ -24,14 +24,14 @@ _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 """A name with a number and its unit behind it."""
 _QUOTED = re.compile(r"('[^']*')")
 _IN_QUOTES = re.compile(r"(?<!\w)'[^']*'(?!\w)|“[^”]*”")
-_JOINT = re.compile(r"(?<=[^\s:;]); |: |(?<=[\w)%”'])\. (?=[A-Z])")
-_OWN_NAME = re.compile(r"(?<!region )'\{(\w+)\}'")
+_JOINT = re.compile(r"""(?<=[^\s:;]); |: |(?<=[\w)%”'])\. (?=['"“]?[A-Z0-9])""")
+_OWN_NAME = re.compile(r"""(?<!region )(?:'|")\{(\w+)\}(?:'|")""")
 """A field in quotes is what an object, a modifier or a file is called in the scene, and stays; of regions Thenar shows
 translated titles everywhere."""
-_AS_WRITTEN = {"key"}
-"""Fields that hold a word of a file, to be written as it is."""
-_ONE_WORD = {"lower"}
+_ONE_WORD = {"lower", "key", "line", "row", "byte", "frame"}
 """Fields that hold one word: a template of little more than these would fit any sentence."""
+_INNER = str.maketrans(" ", "\ue000")
+"""A blank inside quotes while a template is looked for: what stands there is one word."""
 
 
 _FEW_LETTERS, _FEW_WORDS = 16, 4
@@ -60,7 +60,14 @@ class _Template:
                 return None
             at += len(piece)
         match = self.pattern.fullmatch(sentence)
-        return None if match is None else match.groupdict()
+        return None if match is None else {name: _plain(value) for name, value in match.groupdict().items()}
+
+    @property
+    def as_written(self):
+        """Fields that hold a name of the scene or words of a file, which stay as they are."""
+        if self.text in file_words.TEMPLATES:
+            return {*_FIELD.findall(self.text)}
+        return {*_OWN_NAME.findall(self.text), *file_words.FIELDS}
 
 
 def shown(text):
@@ -99,14 +106,15 @@ def _partly(text):
 
 
 def _translated(text, fits):
-    small, large = text[:1].lower() + text[1:], text[:1].upper() + text[1:]  # it may have been changed since
+    one = _as_words(text)
+    small, large = one[:1].lower() + one[1:], one[:1].upper() + one[1:]  # it may have been changed since
     for template in _templates():
-        for each in dict.fromkeys((text, small, large)):
+        for each in dict.fromkeys((one, small, large)):
             fields = template.found(each)
             if fields is None:
                 continue
-            own = {*_OWN_NAME.findall(template.text), *_AS_WRITTEN}
-            if all(name in own or fits(template, value) for name, value in fields.items()):
+            names, own = {*_OWN_NAME.findall(template.text)}, template.as_written
+            if all(name in names or fits(template, value) for name, value in fields.items()):
                 filled = {name: value if name in own else _part(value) for name, value in fields.items()}
                 return kept(template.text).format(**filled)
     if text.endswith(".") and not text.endswith(".."):
@@ -117,8 +125,10 @@ def _translated(text, fits):
 
 def _is_short(template, value):
     """Whether a field holds no seam between sentences, and of a template of few letters no sentence at all."""
-    plain = _IN_QUOTES.sub("x", value)
+    plain = _IN_QUOTES.sub("X", value)
     is_one = _JOINT.search(plain) is None and not plain.startswith(". ")
+    if template.text in file_words.TEMPLATES:  # a list of any length
+        return is_one
     return is_one and (len(plain.split()) <= _FEW_WORDS or template.letters > _FEW_LETTERS)
 
 
@@ -216,8 +226,17 @@ def _fixed(template):
     return -len(_FIELD.sub("", template)), template
 
 
+def _as_words(text):
+    """With no blank inside quotes."""
+    return _IN_QUOTES.sub(lambda found: found[0].translate(_INNER), text)
+
+
+def _plain(words):
+    return words.replace("\ue000", " ")
+
+
 def _template(text):
-    parts = _FIELD.split(text)
+    parts = _FIELD.split(_as_words(text))
     fields = [_field(parts, place) if place % 2 else re.escape(parts[place]) for place in range(len(parts))]
     return _Template(text, tuple(filter(None, parts[::2])), re.compile("".join(fields)))
 
@@ -226,6 +245,8 @@ def _field(parts, place):
     name = parts[place]
     if name in parts[1:place:2]:
         return f"(?P={name})"
+    if name == "number":
+        return rf"(?P<{name}>[^\s,;:]*\d[^\s,;:]*)"
     if name in _ONE_WORD:
         return rf"(?P<{name}>[^\s,;:]+)"
     before = parts[place - 1]

@@ -27,6 +27,18 @@ RUST = {
 """Crate -> files, or folders, whose strings with words are parts of errors; "" is all of them."""
 PLACES = {"'{hand}' on '{product}'": "addon/results/sentences.py"}
 """What stands before the library's own sentence."""
+KEYS = "rust/recordings/src/study/toml_tree.rs"
+"""Where `is no number` follows the key that a file gives."""
+_COLUMN = '{column} = "{first}" under [recordings.columns] in study.toml, or --column "{column}={first}"'
+APART = {
+    "{key} is {number}": KEYS,
+    "{key} is NaN": KEYS,
+    **dict.fromkeys(
+        ("which of {names} is it", f"name it: {_COLUMN}", "a minus before the name turns the sign"),
+        "rust/recordings/src/study/indentation.rs",
+    ),
+}
+"""What is too short for a sentence, and a question of `tables/run.rs` that is a problem with its remedy here."""
 JOINTS = re.compile(r"(?:(?<=[^:;]):|;) ")
 """Where a sentence is put together of parts that have templates of their own."""
 _BARE = re.compile(r"\{\w+\}")
@@ -35,7 +47,7 @@ _BARE = re.compile(r"\{\w+\}")
 @cache
 def everything():
     """template -> where it stands."""
-    return {**PLACES, **of_python(), **of_rust()}
+    return {**PLACES, **APART, **of_python(), **of_rust()}
 
 
 @cache
@@ -166,7 +178,8 @@ def of_rust():
     for crate, files in RUST.items():
         for name, text in sources(crate, files):
             for found in of_text(text):
-                out.setdefault(found, name)
+                of_key = name == KEYS and found.startswith("is ")
+                out.setdefault(f"{{key}} {found}" if of_key else found, name)
     return out
 
 

@@ -11,7 +11,7 @@ import finding_templates
 import pytest
 import stage
 from thenar_blender import languages, status
-from thenar_blender.languages import sentences
+from thenar_blender.languages import file_words, sentences
 from thenar_blender.operators import running
 
 NAMES = sorted(languages.LANGUAGES)
@@ -145,6 +145,59 @@ def test_a_refused_solve_is_reported_in_the_language_and_kept_in_english(scene, 
     assert len(set(said)) == 3
 
 
+@pytest.mark.parametrize(
+    ("error", "typed"),
+    [
+        (
+            'line 3: two columns hold force; leave one of them out, or name the one: force = "NAME" in study.toml, or '
+            "--column force=NAME",
+            ['force = "NAME"', "--column force=NAME"],
+        ),
+        (
+            "line 11: shape 'middle' is not known; use one of plane, cylinder, sphere, punch, mesh",
+            ["'middle'", "plane, cylinder, sphere, punch, mesh"],
+        ),
+        ("line 2: middle is no key of [skin]; use one of force, middle", ["force, middle"]),
+        ('effect friction: law is "coulom", but must be one of coulomb, power', ['"coulom"', "coulomb, power"]),
+        ('there is no effect "friktion"; there are adhesion, friction', ['"friktion"', "adhesion, friction"]),
+        ("there is no column Force; the first is Time", ["Force", "Time"]),
+        (
+            "recording 'a' must say which of 3 mats of its file it is; add mat = \"...\" with one of Product, Force",
+            ["Product, Force", 'mat = "'],
+        ),
+        ("no line of names holds force, depth", ["force, depth"]),
+        ("no sheet of the workbook has columns time, force", ["time, force"]),
+        (
+            "line 1: which of its columns 'Time', 'Force' is the force, and which the depth or travel?; name them: "
+            'force = "Force" and travel = "Depth" under [recordings.columns] in study.toml, or --column "force=Force" '
+            '--column "travel=Depth"',
+            ['force = "Force"', 'travel = "Depth"', '--column "travel=Depth"'],
+        ),
+        (
+            "line 1: the indentation has no depth: which of 'Tool (mm)' is it; name it: travel = \"Tool (mm)\" "
+            'under [recordings.columns] in study.toml, or --column "travel=Tool (mm)"; a minus before the name turns '
+            "the sign",
+            ['travel = "Tool (mm)"', '--column "travel=Tool (mm)"'],
+        ),
+        ("line 19: recording '0.5 mm/s, a' has no file; name the file, relative to the study's folder", [" file"]),
+        ("line 6: g0_mpa is -1; give a number above zero", ["g0_mpa", "-1"]),
+        ("line 18: direction is no list of three numbers; write it as [x, y, z]", ["direction", "[x, y, z]"]),
+    ],
+)
+def test_what_is_to_be_typed_into_a_file_stays_as_it_is(language, error, typed):
+    """Sentences of `rust/recordings` and `rust/contact`, with words that the interface has translations of."""
+    words = sentences.shown("/x/study.toml, " * error.startswith("line") + error)
+    rest = re.sub(r"'[^']*'|\"[^\"]*\"", "", words)
+    for each in typed:
+        assert each in words
+        rest = rest.replace(each, "")
+    assert not ENGLISH.search(rest), words
+
+
+def test_the_words_that_stay_are_those_of_errors():
+    assert not file_words.TEMPLATES - {*error_templates.everything()}
+
+
 FINDINGS = (
     "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p < 0.001. In “a b”"
     ": measured force lies 0.12 N (8 % of the largest) above the simulation in the phase “x”, 12 standard errors of "
@@ -156,6 +209,9 @@ FINDINGS = (
     "and it stays with the skin when the mat is moved.",
     "The simulation lacks relaxation of the tissue and drainage of fluid from the tissue. It shows most while holding. "
     "At least 90 % of such findings were right in studies whose truth was known.",
+    "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p = 0.001. '0.5 "
+    "mm/s, ball (a), number 0' and 7 more recordings, holding at depths of 1.13 to 1.14 mm, show 0.024 N (0.0192 to "
+    "0.0287) more force than the simulation (p = 0.001).",
     "Something is missing, but these recordings cannot distinguish a thicker or thinner tissue over the bone from "
     "compliance of the fixture. Record next: X (settles it in 60 % of cases, takes about 30 minutes).",
 )
@@ -166,6 +222,7 @@ FINDINGS = (
 def test_whole_findings_hold_no_english_and_every_number(language, sentence):
     words = sentences.shown(sentence)
     assert not ENGLISH.search(words), words
+    assert all(name in words for name in re.findall(r"(?<!\w)'[^']+'", sentence))
     assert sorted(re.findall(r"\d+(?:\.\d+)?", words)) == sorted(re.findall(r"\d+(?:\.\d+)?", sentence))
 
 
