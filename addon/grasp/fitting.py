@@ -231,7 +231,7 @@ def finish(context, fit, found, moves):
     objects = context.scene.objects
     missing = [name for name in (hand_name, armature_name, *part_names) if name not in objects]
     if missing:
-        raise checks.Refusal(f"{missing[0]!r} was removed while the grasp was fitted; fit again")
+        raise checks.Refusal(f"'{missing[0]}' was removed while the grasp was fitted; fit again")
     hand, armature = objects[hand_name], objects[armature_name]
     parts = [objects[name] for name in part_names]
     moves = moves_of(context, hand, parts, moves)

@@ -56,7 +56,7 @@ def check_own(armature):
     """Raises `RigError` where the constraints cannot be muted for good."""
     if armature.library is not None or armature.override_library is not None:
         raise RigError(
-            f"constraints hold the fingers of {armature.name!r}, which is linked from another file, so that they "
+            f"constraints hold the fingers of '{armature.name}', which is linked from another file, so that they "
             "cannot be muted; use Object > Relations > Make Local > Selected Objects first"
         )
 
@@ -113,7 +113,7 @@ def write(armature, rig, joints, angles):
             channels.restore(armature.pose.bones[name], values)
         reset(armature, before)
         raise RigError(
-            f"bone {missed!r} did not take the pose, though its constraints were muted: keys or a driver hold it; mute "
+            f"bone '{missed}' did not take the pose, though its constraints were muted: keys or a driver hold it; mute "
             "them, or pose the fingers by their controls"
         )
 

@@ -24,7 +24,7 @@ def armature_of(hand):
     for modifier in hand.modifiers:
         if modifier.type == "ARMATURE" and modifier.object is not None and modifier.show_viewport:
             return modifier.object
-    raise RigError(f"{hand.name!r} has no armature; add an Armature modifier that names one")
+    raise RigError(f"'{hand.name}' has no armature; add an Armature modifier that names one")
 
 
 def read_rig(context, hand):
@@ -90,10 +90,10 @@ def _found(armature, skeleton):
     found = recognise(skeleton, side)
     if found.chosen is None and found.hands:
         there = " and ".join(str(hand.side) for hand in found.hands)
-        raise RigError(f"no {side} hand among the bones of {armature.name!r}, only: {there}; change Side under Bones")
+        raise RigError(f"no {side} hand among the bones of '{armature.name}', only: {there}; change Side under Bones")
     if found.chosen is None:
         raise RigError(
-            f"no hand found among the bones of {armature.name!r}: {found.missing()}; under Bones, select the bones of "
+            f"no hand found among the bones of '{armature.name}': {found.missing()}; under Bones, select the bones of "
             "each digit in Pose Mode and press its name"
         )
     return found
@@ -125,11 +125,11 @@ def check_unconstrained(armature, stored):
     """Raises `RigError` where a constraint would overrule keys on the fingers."""
     for bone, constraint in constrained.holders(armature, constrained.digits_of(armature, stored)):
         raise RigError(
-            f"bone {bone.name!r} is held by its constraint {constraint.name!r}; mute it, or fit the bones it follows"
+            f"bone '{bone.name}' is held by its constraint '{constraint.name}'; mute it, or fit the bones it follows"
         )
     if constrained.is_constrained(armature, stored):
         raise RigError(
-            f"constraints of the fingers of {armature.name!r} are muted for a grasp only; press Back to the Controls "
+            f"constraints of the fingers of '{armature.name}' are muted for a grasp only; press Back to the Controls "
             "under Bones, then mute or remove them"
         )
 
@@ -141,7 +141,7 @@ def _check_joined(rig, stored):
         before = roles.before_of(role, stored)
         if before in rig.names and name in rig.names and not below[rig.names.index(before), rig.names.index(name)]:
             raise RigError(
-                f"bone {name!r} does not hang on {before!r}, so a turn of one leaves the other behind; press "
+                f"bone '{name}' does not hang on '{before}', so a turn of one leaves the other behind; press "
                 "Join Loose Bones under Bones"
             )
 
@@ -241,7 +241,7 @@ def _weights(context, hand, bones):
     """Normalised weights (n, b); bones that do not deform weigh nothing."""
     present = [bone.name for bone in bones if bone.use_deform and bone.name in hand.vertex_groups]
     if not present:
-        raise RigError(f"no vertex group of {hand.name!r} is named after a bone of its armature")
+        raise RigError(f"no vertex group of '{hand.name}' is named after a bone of its armature")
     read = group_weights(context, hand, present)
     out = np.zeros((len(hand.data.vertices), len(bones)))
     columns = {bone.name: column for column, bone in enumerate(bones)}

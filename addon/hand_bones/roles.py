@@ -135,7 +135,7 @@ def resolve(rig, role_names, limits=None):
             continue
         if name not in rig.names:
             part = role.replace("_", " ")
-            raise RoleError(f"no bone called {name!r} for {part}; name an existing bone or clear the field")
+            raise RoleError(f"no bone called '{name}' for {part}; name an existing bone or clear the field")
         bones[role] = rig.names.index(name)
     whole = [f for f in FINGERS if all(f"{f}_{s}" in bones for s in SEGMENTS[1:])]
     if not whole:

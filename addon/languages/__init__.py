@@ -48,9 +48,15 @@ def reported(error):
     """What an operator reported that was run by another one: the text of its `RuntimeError` without Blender's word for
     an error, which is in the user's language."""
     text = str(error).strip()
-    for word in ("Error", bpy.app.translations.pgettext_rpt("Error"), bpy.app.translations.pgettext_tip("Error")):
-        text = text.removeprefix(f"{word}: ")
+    for mark in error_marks():
+        text = text.removeprefix(mark)
     return text
+
+
+def error_marks():
+    """What Blender puts before the error that an operator reported, in English and in the user's language."""
+    said = bpy.app.translations
+    return tuple(f"{word}: " for word in ("Error", said.pgettext_rpt("Error"), said.pgettext_tip("Error")))
 
 
 def bone(name):

@@ -25,7 +25,7 @@ _SIZED = re.compile(r"(.*\D) (\d[\d.]* \S+)")
 _QUOTED = re.compile(r"('[^']*')")
 _IN_QUOTES = re.compile(r"(?<!\w)'[^']*'(?!\w)|“[^”]*”")
 _JOINT = re.compile(r"""(?<=[^\s:;]); |: |(?<=[\w)%”'])\. (?=['"“]?[A-Z0-9])""")
-_OWN_NAME = re.compile(r"""(?<!region )(?:'|")\{(\w+)\}(?:'|")""")
+_OWN_NAME = re.compile(r"""(?:(?<!region )['"]|(?<=In )“|(?<=handprint )“)\{(\w+)\}['"”]""")
 """A field in quotes is what an object, a modifier or a file is called in the scene, and stays; of regions Thenar shows
 translated titles everywhere."""
 _ONE_WORD = {"lower", "key", "line", "row", "byte", "frame"}
@@ -76,7 +76,7 @@ def shown(text):
     return text if language == _PROBE or not text else _shown(text, language)
 
 
-@functools.lru_cache(maxsize=512)
+@functools.lru_cache(maxsize=16384)
 def _shown(text, _language):
     for look in (_alone, _joined, _around, _partly):
         words = look(text)
@@ -137,7 +137,7 @@ def _parts_of(text, is_partial):
     starts, ends = [0, *(end for _, end in seams)], [*(start for start, _ in seams), len(text)]
     out, at, known = "", 0, 0
     while at < len(starts) and seams:
-        for last in range(len(ends) - 1, at - 1, -1):
+        for last in range(min(len(ends), at + _most_parts()) - 1, at - 1, -1):
             part = text[starts[at] : ends[last]]
             words = None if len(part) == len(text) else _alone(part)
             if words is not None:
@@ -150,6 +150,12 @@ def _parts_of(text, is_partial):
         out = _seamed(out, text[ends[at - 1] : starts[at]], words) if at else words
         at = last + 1
     return out if known else None
+
+
+@functools.cache
+def _most_parts():
+    """The most sentences that one template joins; its fields hold none, so that no more need be tried."""
+    return 2 + max(len(_JOINT.findall(template.text)) for template in _templates())
 
 
 def _seams(text):
@@ -212,7 +218,7 @@ def _name(word):
         for look in (iface, kept):
             if look(each) != each:
                 return look(each)
-    return word
+    return (_alone(word) if "“" in word else None) or word
 
 
 @functools.cache
@@ -250,6 +256,8 @@ def _field(parts, place):
     if name in _ONE_WORD:
         return rf"(?P<{name}>[^\s,;:]+)"
     before = parts[place - 1]
+    if before.endswith("“"):
+        return f"(?P<{name}>[^“”]*)"
     if place > 1 and not before:  # what follows a field directly is an addition, or nothing
         return rf"(?P<{name}>(?:(?:[,;:.] | and | \().*?)?)"
     return f"(?P<{name}>.*?)" if before and before[-1] != " " else f"(?P<{name}>.+?)"

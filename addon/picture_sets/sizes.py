@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .. import languages, workflow
+from .. import languages, status, workflow
 from ..hand import build
+from ..operators import running
 from ..picture_stage import facts, laying, stage, views
 from ..scene.checks import Refusal
 from ..terminal import headless
@@ -87,8 +88,14 @@ def _solved(context, shape, kind):
         bpy.ops.thenar.fit_grasp(strength="FIRM", kind=kind)
         bpy.ops.thenar.solve()
     except RuntimeError as error:  # what those operators report
-        raise Refusal(" ".join(languages.reported(error).split())) from None
+        raise Refusal(_in_english(error)) from None
     return laying.gather(context)
+
+
+def _in_english(error):
+    """What an operator reported, for a picture: in English, as `status` keeps it, where it is the last error."""
+    said, kept = " ".join(languages.reported(error).split()), status.last_error.partition(": ")[2]
+    return kept if running.in_words(kept) == said else said
 
 
 def _take_out(context, hand):

@@ -4,6 +4,7 @@ from contextlib import contextmanager
 
 import bpy
 
+from .. import languages
 from ..scene.checks import Refusal
 
 _OF_THE_WINDOW = {"window_managers", "workspaces", "screens"}
@@ -80,6 +81,7 @@ def _lists():
 def reason(error):
     """The last line of what an importer reported, without a full stop."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    said = [line.removeprefix("Error: ") for line in lines if line.startswith("Error: ") and "Traceback" not in line]
+    marks = languages.error_marks()
+    said = [languages.reported(line) for line in lines if line.startswith(marks) and "Traceback" not in line]
     text = (said or lines or [type(error).__name__])[-1 if not said else 0]
     return text.rstrip(".;") or type(error).__name__

@@ -34,13 +34,14 @@ def fill(state, comparison, about):
         rows.clear()
     several = len(comparison.recordings) > 1
     for recording in comparison.recordings:
-        prefix = f"{recording.name}: " if several else ""
+        own = f"“{recording.name}”"  # in quotes no language takes it for a word of the interface
+        prefix = f"{own}: " if several else ""
         for measure in recording.measures:
             if measure.name in _SHOWN:
                 _measure(state.measures.add(), measure, prefix + measure.of)
         for place in recording.worst[:3] if several else recording.worst:
             _worst(state.worst.add(), place, recording)
-            state.worst[-1].group = recording.name if several else ""
+            state.worst[-1].group = own if several else ""
             vertices = place.vertices if match is None else match.on_hand(place.vertices)
             state.worst[-1].vertices = ",".join(map(str, vertices))
         if recording.print is not None:

@@ -5,6 +5,7 @@ from functools import partial
 import bpy
 
 from .. import languages, names, tabs
+from ..languages import sentences
 from ..operators import computing, display, polling, running, selecting
 from ..scene.checks import Refusal
 from . import comparing, frames, laying, loading, outline, settings, showing
@@ -206,7 +207,7 @@ class THENAR_OT_compare(computing.Computing, bpy.types.Operator):
         if self._was_shown and bpy.ops.thenar.show_recording.poll():
             running.attempt(self, showing.put, context)
         running.redraw(context)
-        self.report({"INFO"}, comparison.sentence)
+        self.report({"INFO"}, sentences.shown(comparison.sentence))
         return {"FINISHED"}
 
 

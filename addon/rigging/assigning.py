@@ -22,7 +22,7 @@ def assign(context, hand, digit, names):
         bones = digits.in_order(skeleton, [bone for bone in chosen if skeleton.skin[bone] > 0.0])
     if len(bones) < 2:
         raise RigError(
-            f"{len(bones)} of the chosen bones move skin of {hand.name!r}, a digit needs two or three; select one "
+            f"{len(bones)} of the chosen bones move skin of '{hand.name}', a digit needs two or three; select one "
             "bone of its chain, or all of them"
         )
     found = digits.roles_of(skeleton, digit, bones)

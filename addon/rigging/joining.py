@@ -20,10 +20,10 @@ def join(context, hand):
     armature = reading.armature_of(hand)
     known = bonemap.get_map(armature)
     if armature.library is not None or armature.data.library is not None:
-        raise Refusal(f"the armature {armature.name!r} is linked from another file; make it local first")
+        raise Refusal(f"the armature '{armature.name}' is linked from another file; make it local first")
     if constrained.is_constrained(armature, known):
         raise Refusal(
-            f"constraints of a control rig hold the fingers of {armature.name!r}, which need no joining; grasp or pose "
+            f"constraints of a control rig hold the fingers of '{armature.name}', which need no joining; grasp or pose "
             "the hand as it is"
         )
     links = _links(known)

@@ -28,7 +28,7 @@ def from_bones(context, hand):
     present = [name for k, name in enumerate(skin_regions.NAMES) if (numbers == k).sum() >= 3]
     if len(present) < 3:
         raise Refusal(
-            f"hardly any skin of {hand.name!r} lies on the palm's side of its bones; check the bones and their "
+            f"hardly any skin of '{hand.name}' lies on the palm's side of its bones; check the bones and their "
             "flexion axis under Bones, and that the faces point outwards"
         )
     bone_names = set(reading.armature_of(hand).data.bones.keys())

@@ -57,7 +57,7 @@ class Found:
         if self.refused:
             root, why = next(iter(self.refused.items()))
             more = f" and {len(self.refused) - 1} more" if len(self.refused) > 1 else ""
-            return f"the bones below {root!r}{more} are not taken for a hand: {why}"
+            return f"the bones below '{root}'{more} are not taken for a hand: {why}"
         return "no bone that carries this mesh has three or more chains of bones below it"
 
 
@@ -105,7 +105,7 @@ def _hand(skeleton, root, chains):
     for number, label in sorted(labels.items()):
         if spoken[number] not in (None, label):
             bone = skeleton.names[digits.chains[number][0]]
-            remarks.append(f"{bone!r} is named {spoken[number]}, but lies where the {label} is")
+            remarks.append(f"'{bone}' is named {spoken[number]}, but lies where the {label} is")
     if len(labels) < 5:
         remarks.append(f"{len(labels)} digits: {', '.join(labels.values())}")
     roles = _roles(skeleton, root, digits, labels, chains)

@@ -71,7 +71,7 @@ def _detect(hand):
     try:
         bpy.ops.thenar.guess_bones()
     except RuntimeError as error:
-        return "WARNING", f"; {str(error).removeprefix('Error: ').strip()}"
+        return "WARNING", f"; {languages.reported(error)}"
     bones, regions = len(bonemap.get_map(armature)), len(hand.thenar.materials)
     return "INFO", languages.report(", with {bones} bones and {regions} regions", bones=bones, regions=regions)
 

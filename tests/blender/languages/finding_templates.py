@@ -67,7 +67,17 @@ EXPANDED = {
 _NUMBERS = ("gain", "depth at which contact begins", "force at rest", "counts per kPa")
 _NUMBERS += ("mat's place", "scan's place", "scan's turn")
 MORE = (
-    *("In “{name}”", "loading", "holding", "unloading", "sliding", "apart"),
+    *(
+        "In “{name}”",
+        "{key} of region “{region}”{others}",
+        "curves",
+        "maps",
+        "loading",
+        "holding",
+        "unloading",
+        "sliding",
+        "apart",
+    ),
     *(f"{name} of {{owner}}" for name in _NUMBERS),
     *(
         f"{{phases}} {at}"

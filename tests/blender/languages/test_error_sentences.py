@@ -13,6 +13,7 @@ import stage
 from thenar_blender import languages, status
 from thenar_blender.languages import file_words, sentences
 from thenar_blender.operators import running
+from thenar_blender.product_files import importing
 
 NAMES = sorted(languages.LANGUAGES)
 ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product|has|give|choose|press|no|cannot|which|with)\b")
@@ -47,7 +48,7 @@ def test_there_are_hundreds_of_errors_from_both_languages():
     kinds = {
         "literal": "no hand is chosen; pick the hand's mesh under Hand",
         "f-string": "the hand '{name}' has no faces; pick a mesh with a surface",
-        "name in quotes by !r": "'{name}' has no armature; add an Armature modifier that names one",
+        "name in quotes": "'{name}' has no armature; add an Armature modifier that names one",
         "what a function returns": "Live keeps the contact up to date; switch it off first",
         "what a name was assigned": "the hand '{name}' hangs on the product and would be scaled too; "
         "clear its parent first",
@@ -97,7 +98,10 @@ def test_sentences_put_together_are_translated_part_by_part(language):
     assert named != "Friction" and named in sentences.shown(effect) and not ENGLISH.search(sentences.shown(effect))
 
 
-@pytest.mark.parametrize("name", ["no end", "A: B; C", "hand and product", "it is empty", "Product", "x (y)"])
+@pytest.mark.parametrize(
+    "name",
+    ["no end", "A: B; C", "hand and product", "it is empty", "Product", "x (y)", "O'Brien", "Bob's hand", "x, y (z)"],
+)
 def test_names_in_quotes_stay_whatever_they_are(language, name):
     template = "'{name}' has no shape key '{SHAPE_KEY}'; press Solve first"
     said = sentences.shown(template.format(name=name, SHAPE_KEY="Thenar"))
@@ -198,6 +202,28 @@ def test_the_words_that_stay_are_those_of_errors():
     assert not file_words.TEMPLATES - {*error_templates.everything()}
 
 
+def test_a_recording_keeps_its_name_where_the_interface_has_such_a_word(language):
+    assert languages.iface("Left") != "Left"
+    in_one = (
+        "In “Left”: Measured force lies 0.12 N above the simulation in the phase “x”, 12 standard errors of the noise "
+    )
+    for said in (in_one + "apart (p < 0.001).", "The handprint “Left” overlaps with simulated contact by 80 %."):
+        assert "“Left”" in sentences.shown(said) != said
+
+
+def test_a_text_of_many_parts_takes_time_in_proportion_to_them(language, monkeypatch):
+    """An importer's report of 40 lines; a look at each template for every pair of ends would hold up the window."""
+    sentences.shown("Product"), sentences._shown.cache_clear()
+    tried, alone = [], sentences._alone
+    monkeypatch.setattr(sentences, "_alone", lambda text: tried.append(text) or alone(text))
+    taken = []
+    for parts in (20, 40):
+        tried.clear()
+        sentences.shown("the file: " + "; ".join(f"line {number}: face is degenerate" for number in range(parts)))
+        taken.append(len(tried))
+    assert taken[0] < taken[1] < 2.5 * taken[0]
+
+
 FINDINGS = (
     "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p < 0.001. In “a b”"
     ": measured force lies 0.12 N (8 % of the largest) above the simulation in the phase “x”, 12 standard errors of "
@@ -212,6 +238,10 @@ FINDINGS = (
     "Parameters within their bounds do not explain the recordings: noise alone leaves as much with p = 0.001. '0.5 "
     "mm/s, ball (a), number 0' and 7 more recordings, holding at depths of 1.13 to 1.14 mm, show 0.024 N (0.0192 to "
     "0.0287) more force than the simulation (p = 0.001).",
+    "At the end of what is admissible lie the thickness_mm of region “a b” and mat's place of “c”.",
+    "What is left of the curves is 3.0 times what noise and the simulation's own error leave; only what stands out "
+    "from that was named.",
+    "“Product, Force”: its depth hardly leaves the noise",
     "Something is missing, but these recordings cannot distinguish a thicker or thinner tissue over the bone from "
     "compliance of the fixture. Record next: X (settles it in 60 % of cases, takes about 30 minutes).",
 )
@@ -222,8 +252,22 @@ FINDINGS = (
 def test_whole_findings_hold_no_english_and_every_number(language, sentence):
     words = sentences.shown(sentence)
     assert not ENGLISH.search(words), words
-    assert all(name in words for name in re.findall(r"(?<!\w)'[^']+'", sentence))
+    assert all(name in words for name in re.findall(r"(?<!\w)'[^']+'|“Product[^”]*”", sentence))
     assert sorted(re.findall(r"\d+(?:\.\d+)?", words)) == sorted(re.findall(r"\d+(?:\.\d+)?", sentence))
+
+
+def test_no_error_quotes_a_name_by_its_representation():
+    """`{name!r}` of O'Brien has other quotes than the template. What a file holds instead of a number may."""
+    found = []
+    for path in sorted((error_templates.ROOT / "addon").rglob("*.py")):
+        if not path.relative_to(error_templates.ROOT).as_posix().startswith(error_templates.UNSEEN):
+            values = [
+                node for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.FormattedValue)
+            ]
+            found += [f"{path.name}: {ast.unparse(each.value)}" for each in values if each.conversion == ord("r")]
+    numbers = ["settings.py: protocol.diameter_mm", "settings.py: protocol.turn_deg"]
+    types = ["plain_pickle.py: found.text", "plain_pickle.py: self.text"]
+    assert sorted(found) == ["files.py: version", *types, *numbers]
 
 
 def test_planted_errors_are_extracted():
@@ -263,3 +307,4 @@ def test_what_another_operator_reported_loses_the_word_for_an_error(monkeypatch,
     monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=words)))
     assert languages.reported(RuntimeError(raised)) == "Boden: das"
     assert languages.reported(RuntimeError("Error: Boden: das\n")) == "Boden: das"
+    assert importing.reason(RuntimeError(f"Info: read\n{raised}{word}: second.\n")) == "Boden: das"
