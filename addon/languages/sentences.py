@@ -36,6 +36,8 @@ _INNER = str.maketrans(" ", "\ue000")
 
 _FEW_LETTERS, _FEW_WORDS = 16, 4
 """A template of so few letters, as `region {name}`, is taken for a sentence only if its fields hold so few words."""
+_MOST_SEAMS = 60
+"""A text of more is another program's report, and would hold up the window; 40 took 0.4 s on one core."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +136,8 @@ def _is_short(template, value):
 
 def _parts_of(text, is_partial):
     seams = _seams(text)
+    if len(seams) > _MOST_SEAMS:
+        return None
     starts, ends = [0, *(end for _, end in seams)], [*(start for start, _ in seams), len(text)]
     out, at, known = "", 0, 0
     while at < len(starts) and seams:

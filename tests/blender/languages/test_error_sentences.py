@@ -13,7 +13,9 @@ import stage
 from thenar_blender import languages, status
 from thenar_blender.languages import file_words, sentences
 from thenar_blender.operators import running
+from thenar_blender.picture_sets import sizes
 from thenar_blender.product_files import importing
+from thenar_blender.recordings import filling
 
 NAMES = sorted(languages.LANGUAGES)
 ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product|has|give|choose|press|no|cannot|which|with)\b")
@@ -211,17 +213,35 @@ def test_a_recording_keeps_its_name_where_the_interface_has_such_a_word(language
         assert "“Left”" in sentences.shown(said) != said
 
 
+def test_a_comparison_of_several_recordings_keeps_their_names(scene, language):
+    noise = "its depth hardly leaves the noise"
+    about = {"measures": [], "worst": [], "print": None, "unknown": [noise]}
+    recordings = [SimpleNamespace(name=name, **about) for name in ("Left", "Product", "Bob's hand, new")]
+    state = scene.thenar_recordings.comparison
+    filling.fill(state, SimpleNamespace(sentence="", notes=[], recordings=recordings), ("all", None, None))
+    own = languages.table(language)[languages.SENTENCE, noise]
+    assert [sentences.shown(note.name) for note in state.notes] == [f"“{each.name}”: {own}" for each in recordings]
+
+
+def test_pictures_hold_errors_in_english(language):
+    english = "No hand is chosen; pick the hand's mesh under Hand"
+    status.set_last_error(f"thenar.solve: {english}")
+    words = running.in_words(english)
+    assert words != english == sizes._in_english(RuntimeError(f"Error: {words}\n"))
+    assert sizes._in_english(RuntimeError("Error: another one\n")) == "another one"
+
+
 def test_a_text_of_many_parts_takes_time_in_proportion_to_them(language, monkeypatch):
-    """An importer's report of 40 lines; a look at each template for every pair of ends would hold up the window."""
+    """An importer's report; a look at each template for every pair of ends would hold up the window."""
     sentences.shown("Product"), sentences._shown.cache_clear()
     tried, alone = [], sentences._alone
     monkeypatch.setattr(sentences, "_alone", lambda text: tried.append(text) or alone(text))
     taken = []
-    for parts in (20, 40):
+    for parts in (10, 20, 400):
         tried.clear()
         sentences.shown("the file: " + "; ".join(f"line {number}: face is degenerate" for number in range(parts)))
         taken.append(len(tried))
-    assert taken[0] < taken[1] < 2.5 * taken[0]
+    assert taken[0] < taken[1] < 2.5 * taken[0] and taken[2] == 1
 
 
 FINDINGS = (
