@@ -14,7 +14,6 @@ WEIGHT_MM = 24.0
 """1 % of the sum of forces on the wrong finger costs as much as 0.24 mm of a pad's depth; 1 % left over of the balance
 costs 0.6 mm."""
 
-
 POWER = 1.6
 """Force of a pad over its depth: between a half-space's 1.5 and a stiffening layer's 2."""
 
@@ -49,8 +48,10 @@ class Sharing:
 
     def factors(self, pads, force_n):
         """Factors for the depths of pads (p,): a finger that bears less than its share goes deeper, one that bears more
-        less deep, by no more than `MOST`."""
+        less deep, by no more than `MOST`; all stay where no finger bears anything."""
         borne = self.sums(force_n)
+        if borne.sum() <= 0.0:
+            return np.ones(len(pads))
         ratio = self.shares * borne.sum() / np.maximum(borne, 1e-3 * max(float(force_n.sum()), 1e-9))
         own = np.append(np.clip(ratio ** (1.0 / POWER), 1.0 / MOST, MOST), 1.0)
         return own[[self.finger[pad.rows[0]] for pad in pads]]

@@ -78,6 +78,7 @@ def test_a_finger_that_bears_too_much_is_known_by_strength():
     assert fair.excess(np.arange(15), force) == pytest.approx(np.array([20.0, 0.0, 0.0, 0.0]) - others)
     factors = fair.factors(pads, force)
     assert factors[1] < 1.0 < factors[2] == factors[3] and factors[0] == factors[-1] == 1.0
+    assert fair.factors(pads, np.zeros(15)) == pytest.approx(np.ones(len(pads))), "nothing touches yet"
     two = sharing.sharing_of(pads, np.array([True, True, True, False, False, False, False]), 15)
     assert two.shares == pytest.approx([25.0 / 60.0, 35.0 / 60.0]), "a pinch of thumb and two fingers"
     assert sharing.sharing_of(pads, np.array([True, True] + [False] * 5), 15) is None
