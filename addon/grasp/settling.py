@@ -179,7 +179,7 @@ def settle(stage, first, aim, rounds, watch=fitter.ALONE):
         share = np.clip((FAR - max(state.imbalance, state.lever)) / (FAR - NEAR), 0.0, 1.0)
         left = share * (left + np.concatenate([state.net_n, state.moment_nmm]))
         goal = goal_of(wanted, aim.bar, limits, _load(stage, (state, gap), (now, left, fair), areas))
-        goal = replace(goal, facing_mm=aim.facing_mm)
+        goal = replace(goal, facing_mm=aim.facing_mm, is_near=True)
         evaluations = EVALUATIONS if count == 0 else LATER_EVALUATIONS
         found = fitter.refit(stage.hand, found, replace(stage.fit.wish, evaluations=evaluations), watch, goal)
     return best

@@ -54,7 +54,7 @@ WEIGHT_ALONG = 0.5
 bar's end: there pads that press run out, and others hook over the edge."""
 
 TRUST_RAD, TRUST_MM = 0.15, 5.0
-"""A fit with forces turns no joint and moves the hand no farther: what pads bear is known from the last press alone.
+"""A fit of a settling turns no joint and moves the hand no farther: what pads bear is known from the last press alone.
 Fits that went farther left 40 % over where they had promised balance."""
 
 BODY_MM = 1.0
@@ -78,7 +78,8 @@ class Goal:
     vertex of a pad shall pass, None for the tissue's own; `load` the forces that shall balance, or None; `bar` the
     center (3) and the axis (3), toward the thumb's side, of a bar that the thumb shall close around, or None.
     A pad that is `shallow_mm` too high or more is drawn in with a force that grows no further. `is_smooth`: skin that
-    is too deep counts with all its vertices. `facing_mm` as `thumb.WEIGHT_FACING`: what the thumb's facing weighs."""
+    is too deep counts with all its vertices. `facing_mm` as `thumb.WEIGHT_FACING`: what the thumb's facing
+    weighs. `is_near`: the fit goes no farther than `TRUST_RAD` and `TRUST_MM`."""
 
     wanted: np.ndarray
     limits: np.ndarray | None = None
@@ -87,6 +88,7 @@ class Goal:
     shallow_mm: float = 1.0
     is_smooth: bool = False
     facing_mm: float = WEIGHT_FACING
+    is_near: bool = False
 
 
 class Task:
@@ -119,7 +121,7 @@ class Task:
         self.bounds = np.array(bounds + shift)
         self.thumb = Thumb(hand, self.rig, goal, self.groups)
         self.start = np.concatenate([[angles[bone, column] for bone, column, _ in self.dofs], np.zeros(6)])
-        if goal.load is not None:
+        if goal.is_near:
             near = np.array([TRUST_RAD] * len(self.dofs) + [TRUST_MM] * 6)
             low, high = self.bounds.T
             self.bounds = np.stack([np.maximum(low, self.start - near), np.minimum(high, self.start + near)], axis=1)
@@ -133,10 +135,9 @@ class Task:
         def robust(values):
             return (np.arange(len(values)) < pads) & (values < 0.0)
 
-        is_narrow = self.goal.load is not None
-        return Problem(
-            self.residuals, self.jacobian, self.bounds[:, 0], self.bounds[:, 1], robust, self.goal.shallow_mm, is_narrow
-        )
+        low, high = self.bounds.T
+        goal = self.goal
+        return Problem(self.residuals, self.jacobian, low, high, robust, goal.shallow_mm, goal.is_near)
 
     def pose(self, x):
         """Angles (b, 3) and the motion of the hand (turn (3, 3), shift (3)) about the pivot."""
