@@ -22,18 +22,6 @@ ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product|has|give|choose|pre
 """Words that no translation holds."""
 
 
-@pytest.fixture(params=NAMES)
-def language(request, monkeypatch):
-    """Thenar as in a Blender of this language; bpy as a module has no translations."""
-
-    def look_up(template, context="*"):
-        return languages.table(request.param).get((context, template), template)
-
-    said = SimpleNamespace(pgettext_iface=look_up, pgettext_rpt=look_up, pgettext_tip=look_up)
-    monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=said)))
-    return request.param
-
-
 def drawn(template, number):
     """The sentence with a word of its own in each field, and the words by field."""
     draw = random.Random(f"{number} {template}")

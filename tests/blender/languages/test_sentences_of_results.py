@@ -1,7 +1,6 @@
 """Sentences of results are kept in English and shown in the user's language, with the numbers and names they hold."""
 
 import re
-from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -14,18 +13,6 @@ from thenar_blender.panels import text
 NAMES = sorted(languages.LANGUAGES)
 ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product)\b")
 """Words that no translation holds."""
-
-
-@pytest.fixture(params=NAMES)
-def language(request, monkeypatch):
-    """Thenar as in a Blender of this language; bpy as a module has no translations."""
-
-    def look_up(template, context="*"):
-        return languages.table(request.param).get((context, template), template)
-
-    said = SimpleNamespace(pgettext_iface=look_up, pgettext_rpt=look_up, pgettext_tip=look_up)
-    monkeypatch.setattr(languages, "bpy", SimpleNamespace(app=SimpleNamespace(translations=said)))
-    return request.param
 
 
 def filled(template):
