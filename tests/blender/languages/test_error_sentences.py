@@ -17,7 +17,6 @@ from thenar_blender.picture_sets import sizes
 from thenar_blender.product_files import importing
 from thenar_blender.recordings import filling
 
-NAMES = sorted(languages.LANGUAGES)
 ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product|has|give|choose|press|no|cannot|which|with)\b")
 """Words that no translation holds."""
 

@@ -10,7 +10,6 @@ from thenar_blender import languages
 from thenar_blender.languages import sentences
 from thenar_blender.panels import text
 
-NAMES = sorted(languages.LANGUAGES)
 ENGLISH = re.compile(r"\b(?:the|is|are|and|of|inside|product)\b")
 """Words that no translation holds."""
 
