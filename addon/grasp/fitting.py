@@ -18,7 +18,7 @@ from ..hand_shape import framing
 from ..ownership import own
 from ..product_objects import bringing, copies
 from ..scene import checks, mesh, read, regions, sizes, units
-from . import force, polishing, search, settings, settling
+from . import force, polishing, search, settings, settling, ways
 from .stage import stage_of
 
 _PALM = re.compile("palm|thenar")
@@ -116,6 +116,16 @@ def compute(fit, cancel=None, progress=None):
     if fit.force_n is None:
         return found
     return force.reach(fit, found, watch)
+
+
+def wish_of(wish, kind):
+    """The wish for a kind of grasp: a hook leaves out thumb and palm. Raises `checks.Refusal` without fingers."""
+    if kind != ways.HOOK:
+        return wish
+    digits = tuple(digit for digit in ways.HOOKED if wish.digits is None or digit in wish.digits)
+    if not digits:
+        raise checks.Refusal("a hook takes fingers, and none takes part; tick one under Digits")
+    return replace(wish, digits=digits)
 
 
 def is_searched(wish):

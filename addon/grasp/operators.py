@@ -11,7 +11,7 @@ from ..hand import pads
 from ..hand.operators import can_make, can_pose
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
-from . import fitting, samples, search, words
+from . import fitting, samples, search, ways, words
 from .settings import MOVES
 
 STRENGTHS = (
@@ -32,6 +32,8 @@ KINDS = (
     ("AUTO", "Automatic", "A power grip; a pinch where no power grip holds"),
     ("POWER", "Power", "The hand closes around a part of the product"),
     ("PINCH", "Pinch", "Thumb and fingertips from two sides: 30 N in sum if firm, 9 N if light"),
+    ("LATERAL", "Lateral", "Thumb against the side of the index finger, as a key is held: forces as of a pinch"),
+    ("HOOK", "Hook", "Four fingers close around a part of the product, without thumb and palm"),
 )
 END_OF = {"AUTO": 0, "FIRST": 1, "SECOND": -1}
 DIGITS = (
@@ -112,7 +114,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
             layout.prop(self, name)
         if self.place == "LAY":
             layout.prop(self, "kind")
-            if self.kind != "PINCH":
+            if self.kind not in (ways.PINCH, ways.LATERAL):
                 layout.prop(self, "end")
         if self.strength == "CUSTOM":
             for name in ("distal_mm", "middle_mm", "proximal_mm", "palm_mm"):
@@ -123,7 +125,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     def steps(self, context):
         settings = context.scene.thenar
         parts = workflow.product_parts(settings)
-        wish = self._wish()
+        wish = fitting.wish_of(self._wish(), self.kind if self.place == "LAY" else "AUTO")
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
         moves = fitting.moves_of(context, settings.hand, parts, self.moves)
         if fitting.is_searched(wish) and fitting.can_search(fit):

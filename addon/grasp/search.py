@@ -36,6 +36,7 @@ POOR = 8.0
 HOPELESS = 14.0
 BEHIND = 1.05
 OPPOSED = 1.5
+BARE = 3.0
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
@@ -46,15 +47,14 @@ counts more than `POOR` is compared with pinches; where the best one that is bal
 `HOPELESS`, pinches are tried first. What was only balanced a little counts at least `BEHIND` times what the best held
 one counts that was balanced to the end. A thumb whose pad faces away from the index finger's counts `OPPOSED`
 for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
-one is not counted. What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is
-no grasp."""
+one is not counted. A hook counts `BARE` for the share of pads that it leaves out, as for pads that hang clear. What
+leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a search is to find: the sum of forces of a power grip and of a pinch, N, or None for whatever comes; at
-    which `end` of a bar's axis the thumb shall be (1 or -1; 0: either); the `kind`, `ways.POWER` or `ways.PINCH`, or
-    AUTO."""
+    """What a search is to find: the sum of forces around a bar and between two sides, N, or None for whatever comes; at
+    which `end` of a bar's axis the thumb shall be (1 or -1; 0: either); the `kind`, one of `ways`, or AUTO."""
 
     total_n: float | None = None
     pinch_n: float | None = None
@@ -90,16 +90,15 @@ def search(fit, watch=fitter.ALONE, asked=None):
     for kind, most in plan if asked.kind == "AUTO" else [(asked.kind, np.inf)]:
         if _is_enough(found, kind):
             continue
-        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n if kind == ways.POWER else asked.pinch_n)
+        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n if kind in ways.AROUND else asked.pinch_n)
         try:
             if kind not in begun:
                 begun[kind] = []
-                ready = ways.powers(stage, asked.end) if kind == ways.POWER else ways.pinched(stage)
-                begun[kind] = _begun(ready, aim, watch)
+                begun[kind] = _begun(ways.of_kind(kind, stage, asked.end), aim, watch)
             if begun[kind] and begun[kind][0].score <= most:
                 other = []
-                if kind == ways.POWER:
-                    powers = ways.powers(stage, asked.end)
+                if kind in ways.AROUND:
+                    powers = ways.of_kind(kind, stage, asked.end)
                     other = [[change(way) for way in powers] for change in (ways.steep, ways.slid)]
                 found += _ended_or_other(begun[kind], other, (aim, most), watch)
         except (Refusal, native.module.SolveError) as refusal:
@@ -230,7 +229,9 @@ def _is_lost(state):
 
 
 def _faced(one, aim, watch):
-    """A grasp found with its thumb turned to the index finger, where that leaves it settled."""
+    """A power grip found with its thumb turned to the index finger, where that leaves it settled."""
+    if one.way.kind == ways.HOOK:
+        return one
     try:
         state = polishing.face(one.way.stage, one.state, replace(aim, bar=one.way.bar), watch)
     except (Refusal, native.module.SolveError):
@@ -285,13 +286,16 @@ def _found(state, aim, way):
         "thumb": OPPOSED * _averted(way, state.grasp),
         "place": float(way.spot.cost),
     }
+    if way.kind == ways.HOOK:
+        causes["bare"] = BARE * float(np.isnan(fitter.wanted_depths(way.stage.hand.pads, way.stage.fit.wish)).mean())
     pose = state.grasp.angles, state.grasp.place
     return Found(state.grasp, state, sum(causes.values()), way, held, pose, aim.total_n, causes)
 
 
 def _averted(way, grasp):
-    """What the cosine between the thumb pad's facing and the way to the index finger's pad lacks; 0 in a pinch."""
-    if way.bar is None:
+    """What the cosine between the thumb pad's facing and the way to the index finger's pad lacks; 0 but in a power
+    grip."""
+    if way.kind != ways.POWER:
         return 0.0
     return max(thumb.FACING - polishing.opposed(way.stage, grasp), 0.0)
 

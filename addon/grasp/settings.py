@@ -20,8 +20,8 @@ MOVES = (
 
 
 class ThenarGrasp(bpy.types.PropertyGroup):
-    """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; `kind` POWER or PINCH;
-    `facts` and `picture` are of `grasp_choices`; the rest says what it carries when it is pressed."""
+    """A grasp that was found: `pose` holds angles and the hand's place on the product as JSON; `kind` one of
+    `ways`; `facts` and `picture` are of `grasp_choices`; the rest says what it carries when it is pressed."""
 
     pose: StringProperty()
     kind: StringProperty()

@@ -1,10 +1,10 @@
-"""Ways to begin a grasp: power grips around a bar, pinches between two sides. Knows nothing of Blender."""
+"""Ways to begin a grasp: power grips and hooks around a bar, pinches and lateral grips. Knows nothing of Blender."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..grasp_fit import closing, fitter, pinches, pinching, places
+from ..grasp_fit import closing, fitter, laterals, pinches, pinching, places
 from ..hand.poses import OPEN
 from ..hand.skinning import TWIST
 from ..hand_bones.roles import angle_bounds, pose_angles
@@ -27,13 +27,17 @@ THIN = 0.35
 """A pad begins no deeper in a pinch than this share of what is pinched is thick: around a rod of 8 mm two pads that
 begin 4 mm deep would pass each other, and each would press its side. At 0.2 trays and a toothbrush were held worse."""
 
-POWER, PINCH = "POWER", "PINCH"
+POWER, PINCH, LATERAL, HOOK = "POWER", "PINCH", "LATERAL", "HOOK"
+AROUND = (POWER, HOOK)
+"""Kinds that close around a bar: with the whole hand, or with the four fingers alone."""
+
+HOOKED = ("index", "middle", "ring", "little")
 
 
 @dataclass(frozen=True)
 class Way:
     """One way to begin: its `kind`; the `stage.Stage` with the wish of that kind; where: a `places.Spot` or a
-    `pinches.Pinch`. Of a power grip, which `end` of the bar's axis is at the thumb (1 or -1), and the palm's side,
+    `pinches.Pinch`. Around a bar, which `end` of the bar's axis is at the thumb (1 or -1), and the palm's side,
     `roll` of `ROLLS`; `oblique_deg` as `OBLIQUE_DEG`."""
 
     kind: str
@@ -46,18 +50,19 @@ class Way:
     @property
     def bar(self):
         """What the thumb closes around: center (3) and axis (3) of the bar, toward the thumb's side; or None."""
-        return (self.spot.center, self.end * self.spot.axis) if self.kind == POWER else None
+        return (self.spot.center, self.end * self.spot.axis) if self.kind in AROUND else None
 
     def start(self, hand, wanted):
         """Place (4, 4) and angles (b, 3) of the hand from which a fit begins; `wanted` (p,) depths of its pads."""
-        if self.kind == PINCH:
+        if self.kind not in AROUND:
             return pinching.start_of(hand, self.stage.gauge, self.spot)
         turn = 2.0 * np.pi * self.roll / ROLLS
         third = np.cross(self.spot.axis, self.spot.side)
         toward = np.cos(turn) * self.spot.side + np.sin(turn) * third
         center, axis = self.bar
         along = ALONG * fitter.breadth_of(hand)
-        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), along, toward)
+        aside = closing.middle_of_grip(hand.rig, hand.joints, hand.pads)
+        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), along, toward, aside)
         return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
 
 
@@ -82,11 +87,18 @@ def _opposed(hand):
     return angles
 
 
-def powers(stage, end):
-    """Power grips of a product on a `Stage`; `end` 1 or -1 keeps the thumb there, 0 tries both."""
+def of_kind(kind, stage, end):
+    """The ways of a kind on a `Stage`; `end` as in `powers`."""
+    if kind in AROUND:
+        return powers(stage, end, kind)
+    return pinched(stage) if kind == PINCH else lateral(stage)
+
+
+def powers(stage, end, kind=POWER):
+    """Power grips or hooks of a product on a `Stage`; `end` 1 or -1 keeps the thumb there, 0 tries both."""
     bars = places.spots(stage.gauge.product, stage.vertices, stage.triangles, stage.mark)
     return [
-        Way(POWER, stage, bar, side, roll)
+        Way(kind, stage, bar, side, roll)
         for bar in bars
         for side in (1, -1)
         if end in (0, side)
@@ -107,4 +119,19 @@ def pinched(stage):
         depth = min(wish.targets_mm["distal"], THIN * spot.width_mm)
         own = replace(wish, targets_mm={"distal": depth}, digits=tuple(digits))
         out.append(Way(PINCH, replace(stage, fit=replace(stage.fit, wish=own)), spot))
+    return out
+
+
+def lateral(stage):
+    """Grips between thumb and the side of the index finger; none for a hand, or a wish, without the two."""
+    wish, hand = stage.fit.wish, laterals.hand_of(stage.hand)
+    is_wanted = "distal" in wish.targets_mm and (wish.digits is None or set(laterals.DIGITS) <= set(wish.digits))
+    if hand is None or not is_wanted:
+        return []
+    found = pinches.spots(stage.gauge, stage.vertices, stage.triangles, stage.mark, laterals.Side(hand))
+    out = []
+    for spot in found:
+        depth = min(wish.targets_mm["distal"], THIN * spot.width_mm)
+        own = replace(wish, targets_mm={"distal": depth, pinching.SIDE: depth}, digits=spot.digits)
+        out.append(Way(LATERAL, replace(stage, hand=hand, fit=replace(stage.fit, wish=own)), spot))
     return out

@@ -4,10 +4,9 @@ import json
 from functools import partial
 
 import bpy
-import numpy as np
 
 from .. import languages, native, workflow
-from ..grasp import fitting, search, settings
+from ..grasp import fitting, search, settings, ways
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_pose
@@ -15,16 +14,13 @@ from ..operators import computing, polling
 from ..scene.checks import Refusal
 from . import panel, reasons
 
-FINGERS = ("index", "little", "middle", "ring")
-KINDS = (("POWER", None), ("PINCH", None), ("HOOK", FINGERS))
-"""Kinds of grasps that are sought, and the digits that take part; None: all, and the palm."""
-_BARE = 3.0
-"""What counts against a grasp that leaves out parts of the hand, for the share of pads left out: as for pads that hang
-clear."""
+KINDS = (ways.POWER, ways.PINCH, ways.LATERAL, ways.HOOK)
+"""Kinds of grasps that are sought."""
 
 
 class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
-    """Look for grasps of the other kinds, power, pinch and hook, and add them to the list; the hand stays as it is"""
+    """Look for grasps of the other kinds, power, pinch, lateral and hook, and add them to the list; the hand stays as \
+it is"""
 
     bl_idname = "thenar.more_grasps"
     bl_label = "Look for Other Kinds"
@@ -41,13 +37,13 @@ class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
         stored, parts = context.scene.thenar_grasps, workflow.product_parts(context.scene.thenar)
         have, rows, refused = {row.kind for row in stored.found}, [], []
         first = json.loads(stored.found[0].facts or "{}")
-        for kind, digits in KINDS:
+        for kind in KINDS:
             if kind in have:
                 continue
-            wish = fitter.Wish(pads.FIRM_MM, digits)
+            wish = fitting.wish_of(fitter.Wish(pads.FIRM_MM), kind)
             fit = fitting.prepare(context, context.scene.thenar.hand, parts, wish)
             _refuse_another(stored, fit)
-            asked = search.Asked(*_sums(first, kind), kind="PINCH" if kind == "PINCH" else "POWER")
+            asked = search.Asked(*_sums(first), kind=kind)
             try:
                 found = yield partial(fitting.search_all, fit, asked)
             except (Refusal, native.module.SolveError) as refusal:
@@ -55,7 +51,7 @@ class THENAR_OT_more_grasps(computing.Computing, bpy.types.Operator):
                     raise
                 refused.append(kind)
                 continue
-            rows.append(_row(fitting.rows_of(found[:1])[0], kind, fit))
+            rows += fitting.rows_of(found[:1])
         _add(stored, rows)
         return [row["kind"] for row in rows], refused
 
@@ -77,23 +73,13 @@ def _refuse_another(stored, fit):
         raise Refusal("the grasps were found for another hand or product; press Grasp again")
 
 
-def _sums(first, kind):
+def _sums(first):
     """The sums of a power grip and a pinch, N, as strong as the first grasp of the list was asked to be."""
     asked = first.get("asked_n")
     if asked is None:
         return fitting.sums_of("FIRM")
     light = "LIGHT" if asked <= fitting.TOTALS_N["LIGHT"] else "FIRM"
     return fitting.sums_of(light)
-
-
-def _row(row, kind, fit):
-    """The row of a grasp of that kind; what the hand leaves out counts against it."""
-    bare = _BARE * float(np.isnan(fitter.wanted_depths(fit.hand.pads, fit.wish)).mean())
-    if kind != "HOOK":
-        return row
-    facts = json.loads(row["facts"])
-    facts["counted"]["bare"] = round(bare, 4)
-    return row | {"kind": kind, "score": row["score"] + bare, "facts": json.dumps(facts)}
 
 
 def _add(stored, rows):

@@ -6,7 +6,7 @@ from ..languages import iface
 
 _LEAST = 0.02
 """Difference of scores below which nothing is said of a cause."""
-KINDS = {"POWER": "Power", "PINCH": "Pinch", "HOOK": "Hook"}
+KINDS = {"POWER": "Power", "PINCH": "Pinch", "LATERAL": "Lateral", "HOOK": "Hook"}
 
 
 def title(row, number):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .pinching import Pinching
+from .pinching import TIPS, Pinching
 from .places import own_frame, sampled
 
 SAMPLES = 400
@@ -61,12 +61,24 @@ class Pinch(Pinching):
     cost: float = 0.0
 
 
-def spots(gauge, vertices, triangles, mark=None):
-    """Places to pinch a product (`walls.Gauge`), best first; perhaps none. The rest as of `places.spots`."""
+class Tips:
+    """The thumb against fingertips: how thick a product may be, mm, and how the hand comes to it."""
+
+    most_mm, jaws = MOST_MM, TIPS
+
+    def approaches(self, gauge, pinched, axes):
+        """Directions (3) for the fingers to point in, each with the cost of what is in the way, and the digits."""
+        return _approaches(gauge, pinched, axes)
+
+
+def spots(gauge, vertices, triangles, mark=None, way=None):
+    """Places to pinch a product (`walls.Gauge`), best first; perhaps none. The rest as of `places.spots`; `way`: how,
+    `Tips` or `laterals.Side`."""
+    way = way or Tips()
     origin, axes = own_frame(vertices, triangles)
     points, normals = _samples(gauge, vertices, triangles)
     widths, is_opposite = _thickness(gauge, points, normals)
-    kept = np.flatnonzero(is_opposite)
+    kept = np.flatnonzero(is_opposite & (widths <= way.most_mm))
     if not len(kept):
         return []
     points, normals, widths = points[kept], normals[kept], widths[kept]
@@ -80,9 +92,9 @@ def spots(gauge, vertices, triangles, mark=None):
     for k in order:
         if found and cost[k] > min(pinch.cost for pinch in found) + WORSE:
             break
-        for reach, blocked, is_broad in _approaches(gauge, (centers[k], normals[k], widths[k]), axes):
-            digits = ALL if is_broad else JAW
-            found.append(Pinch(centers[k], normals[k], reach, float(widths[k]), digits, float(cost[k] + blocked)))
+        for reach, blocked, digits in way.approaches(gauge, (centers[k], normals[k], widths[k]), axes):
+            where = centers[k], normals[k], reach, float(widths[k])
+            found.append(Pinch(*where, way.jaws, digits, float(cost[k] + blocked)))
     found.sort(key=lambda pinch: round(pinch.cost, 2))
     kept = []
     for pinch in found:
@@ -112,15 +124,9 @@ def _thickness(gauge, points, normals):
 
 
 def _approaches(gauge, pinched, axes):
-    """Directions (3) for the fingers to point in, each with the cost of what is in the way, and whether it is broad."""
+    """Directions (3) for the fingers to point in, each with the cost of what is in the way, and the digits."""
     center, across, width = pinched
-    first = axes[:, np.abs(axes.T @ across).round(3).argmin()]
-    first = first - across * (first @ across)
-    first = first / np.linalg.norm(first)
-    second = np.cross(across, first)
-    for way in range(WAYS):
-        turn = 2.0 * np.pi * way / WAYS
-        reach = np.cos(turn) * first + np.sin(turn) * second
+    for reach in around(across, axes):
         aside = np.cross(across, reach)
         high = 0.5 * width + HALF_FINGER_MM
         blocks = [
@@ -133,7 +139,18 @@ def _approaches(gauge, pinched, axes):
             gaps = gauge.gaps(center + block @ np.stack([reach, aside, across]))
             shares.append((gaps < ROOM_MM).mean())
         broad = gauge.gaps(center + np.outer([-BROAD_MM, BROAD_MM], aside))
-        yield reach, BLOCKED * sum(shares), bool((broad < 0.5).all())
+        yield reach, BLOCKED * sum(shares), ALL if (broad < 0.5).all() else JAW
+
+
+def around(across, axes):
+    """`WAYS` unit directions (3) around `across`, the first one along the axis of the product that lies most across."""
+    first = axes[:, np.abs(axes.T @ across).round(3).argmin()]
+    first = first - across * (first @ across)
+    first = first / np.linalg.norm(first)
+    second = np.cross(across, first)
+    for way in range(WAYS):
+        turn = 2.0 * np.pi * way / WAYS
+        yield np.cos(turn) * first + np.sin(turn) * second
 
 
 def _grid(along, aside, across):

@@ -116,6 +116,20 @@ SPREAD = {
 """A pinch begins between these two: pads together and far apart. The thumb pronates in both, and its pad faces those of
 index and middle finger within 21 degrees at every width of a median hand."""
 
+LATERAL = {
+    **_fingers((0, 60, 67, 32), (0, 66, 71, 36), (2, 68, 73, 38), (4, 68, 73, 38)),
+    **_thumb((16, -13, -25), 7, 1),
+    **_cup(4, 8),
+}
+LATERAL_SPREAD = {
+    **_fingers((0, 56, 71, 32), (0, 62, 75, 36), (2, 64, 77, 38), (4, 64, 77, 38)),
+    **_thumb((-3, -10, -14), 8, 17),
+    **_cup(4, 8),
+}
+"""A grip between thumb and the side of the index finger begins between these two: the middles of the thumb's pad and of
+the side of the index finger's middle phalanx 8 and 30 mm apart, each facing the other within 14 degrees (least squares
+over the thumb's and the index finger's joints of a median hand, within their limits)."""
+
 HELD_BOTTLE = {
     **_fingers(
         (2.39, 36.62, 58.01, 28.55),
