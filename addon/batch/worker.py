@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 
 from .. import names, native, workflow
-from ..grasp import fitting, search
+from ..grasp import fitting
 from ..grasp_fit import fitter
 from ..hand import build, pads
 from ..hand_bones import posing
@@ -145,7 +145,7 @@ def _fit(context, strength):
     wish = fitter.Wish({"light": pads.LIGHT_MM, "firm": pads.FIRM_MM}[strength])
     fit = fitting.prepare(context, settings.hand, workflow.product_parts(settings), wish)
     if fitting.can_search(fit):
-        found = fitting.search_all(fit, search.Asked(*fitting.sums_of(strength.upper())))[0].grasp
+        found = fitting.search_all(fit, fitting.asked_of(strength.upper()))[0].grasp
     else:
         found = fitting.compute(fit)
     fitting.finish(context, fit, found, "AUTO")

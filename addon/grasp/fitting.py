@@ -18,7 +18,7 @@ from ..hand_shape import framing
 from ..ownership import own
 from ..product_objects import bringing, copies
 from ..scene import checks, mesh, read, regions, sizes, units
-from . import force, polishing, search, settings, settling, ways
+from . import force, hooks, polishing, search, settings, settling, ways
 from .stage import stage_of
 
 _PALM = re.compile("palm|thenar")
@@ -29,6 +29,9 @@ reads them (Xie Table 6): firm is about two thirds of one on a common handle, li
 PINCHES_N = {"LIGHT": 9.0, "FIRM": 30.0}
 """The same of a pinch, 15 N from each side where it is firm: palmar pinches are 70 to 110 N at most (Mathiowetz 1985),
 and objects are lifted with a few newtons."""
+
+HUNG_N = {"LIGHT": 30.0, "FIRM": 100.0}
+"""The weight that hangs in a hook: a bag of 3 and of 10 kg."""
 
 SETTLE_ROUNDS = 10
 """Rounds of pressing and fitting again, at most."""
@@ -122,7 +125,7 @@ def wish_of(wish, kind):
     """The wish for a kind of grasp: a hook leaves out thumb and palm. Raises `checks.Refusal` without fingers."""
     if kind != ways.HOOK:
         return wish
-    digits = tuple(digit for digit in ways.HOOKED if wish.digits is None or digit in wish.digits)
+    digits = tuple(digit for digit in hooks.FINGERS if wish.digits is None or digit in wish.digits)
     if not digits:
         raise checks.Refusal("a hook takes fingers, and none takes part; tick one under Digits")
     return replace(wish, digits=digits)
@@ -153,6 +156,12 @@ def search_all(fit, asked, cancel=None, progress=None):
 def sums_of(name, own_n=0.0):
     """The sums of forces, N, of a power grip and of a pinch by the name of a strength; `own_n` for both if not 0."""
     return (own_n or TOTALS_N.get(name), own_n or PINCHES_N.get(name))
+
+
+def asked_of(name, own_n=0.0, end=0, kind="AUTO"):
+    """What a search is asked for by the name of a strength; `own_n` for all sums and the weight if not 0."""
+    hung_n = own_n or HUNG_N.get(name, HUNG_N["FIRM"])
+    return search.Asked(*sums_of(name, own_n), end, kind, hung_n)
 
 
 def settle_here(fit, weight_n, total_n, cancel=None, progress=None):

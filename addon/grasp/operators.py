@@ -11,7 +11,7 @@ from ..hand import pads
 from ..hand.operators import can_make, can_pose
 from ..operators import computing, polling, running
 from ..scene.checks import Refusal
-from . import fitting, samples, search, ways, words
+from . import fitting, samples, ways, words
 from .settings import MOVES
 
 STRENGTHS = (
@@ -33,7 +33,11 @@ KINDS = (
     ("POWER", "Power", "The hand closes around a part of the product"),
     ("PINCH", "Pinch", "Thumb and fingertips from two sides: 30 N in sum if firm, 9 N if light"),
     ("LATERAL", "Lateral", "Thumb against the side of the index finger, as a key is held: forces as of a pinch"),
-    ("HOOK", "Hook", "Four fingers close around a part of the product, without thumb and palm"),
+    (
+        "HOOK",
+        "Hook",
+        "The product hangs in four bent fingers, without thumb and palm: a weight of 100 N if firm, 30 N if light",
+    ),
 )
 END_OF = {"AUTO": 0, "FIRST": 1, "SECOND": -1}
 DIGITS = (
@@ -93,7 +97,9 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         default={digit[0] for digit in DIGITS},
     )
     force_n: FloatProperty(
-        name="Force (N)", description="Sum of forces that the skin shall carry, N; 0 for the strength's own", min=0.0
+        name="Force (N)",
+        description="Sum of forces that the skin shall carry, in a hook the weight, N; 0 for the strength's own",
+        min=0.0,
     )
     kind: EnumProperty(name="Kind", description="How the hand holds the product", items=KINDS)
     end: EnumProperty(name="Thumb At", description="Which end of the handle the thumb is at", items=ENDS)
@@ -129,7 +135,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
         moves = fitting.moves_of(context, settings.hand, parts, self.moves)
         if fitting.is_searched(wish) and fitting.can_search(fit):
-            asked = search.Asked(*fitting.sums_of(self.strength, self.force_n), END_OF[self.end], self.kind)
+            asked = fitting.asked_of(self.strength, self.force_n, END_OF[self.end], self.kind)
             found = yield partial(fitting.search_all, fit, asked)
             fitting.finish(context, fit, found[0].grasp, moves)
             fitting.keep(context, fit, found)

@@ -54,12 +54,14 @@ leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO
 @dataclass(frozen=True)
 class Asked:
     """What a search is to find: the sum of forces around a bar and between two sides, N, or None for whatever comes; at
-    which `end` of a bar's axis the thumb shall be (1 or -1; 0: either); the `kind`, one of `ways`, or AUTO."""
+    which `end` of a bar's axis the thumb shall be (1 or -1; 0: either); the `kind`, one of `ways`, or AUTO; the weight
+    `hung_n` that hangs in a hook, N."""
 
     total_n: float | None = None
     pinch_n: float | None = None
     end: int = 0
     kind: str = "AUTO"
+    hung_n: float = 100.0
 
 
 @dataclass(frozen=True)
@@ -90,22 +92,23 @@ def search(fit, watch=fitter.ALONE, asked=None):
     for kind, most in plan if asked.kind == "AUTO" else [(asked.kind, np.inf)]:
         if _is_enough(found, kind):
             continue
-        aim = settling.Aim(np.zeros(3), np.zeros(3), asked.total_n if kind in ways.AROUND else asked.pinch_n)
+        wanted_n = {ways.POWER: asked.total_n, ways.HOOK: asked.hung_n}.get(kind, asked.pinch_n)
+        aim = settling.Aim(np.zeros(3), np.zeros(3), wanted_n)
         try:
             if kind not in begun:
                 begun[kind] = []
                 begun[kind] = _begun(ways.of_kind(kind, stage, asked.end), aim, watch)
             if begun[kind] and begun[kind][0].score <= most:
                 other = []
-                if kind in ways.AROUND:
-                    powers = ways.of_kind(kind, stage, asked.end)
+                if kind == ways.POWER:
+                    powers = ways.powers(stage, asked.end)
                     other = [[change(way) for way in powers] for change in (ways.steep, ways.slid)]
                 found += _ended_or_other(begun[kind], other, (aim, most), watch)
         except (Refusal, native.module.SolveError) as refusal:
             fitter.leave_if_cancelled(watch)
             refusals[kind] = refusal
     if not found:
-        raise refusals.get(ways.POWER) or refusals[ways.PINCH]
+        raise refusals.get(ways.POWER) or next(iter(refusals.values()))
     found.sort(key=lambda one: in_steps(one.score))
     return [_finished(one, time.perf_counter() - began) for one in found]
 
@@ -135,11 +138,11 @@ def _begun(ready, aim, watch):
         fitter.leave_if_cancelled(watch)
         try:
             grasp = _fine(way, task, x, watch)
-            state = settling.settle(way.stage, grasp, replace(aim, bar=way.bar), FINE_ROUNDS, watch)
+            state = settling.settle(way.stage, grasp, way.aim(aim), FINE_ROUNDS, watch)
         except (Refusal, native.module.SolveError) as refusal:
             refusals.append(refusal)
             continue
-        out.append(_found(state, aim, way))
+        out.append(_found(state, way.aim(aim), way))
     if not out:
         raise refusals[0] if refusals else fitter.GraspError("no way to hold the product was found")
     return sorted(out, key=lambda found: in_steps(found.score))
@@ -150,19 +153,19 @@ def _ended(begun, aim, watch, most=np.inf):
     than `most` stay as they are. Raises `Refusal` where even the best one is none."""
     out, worked = list(begun), 0
     for place in range(min(LAST, len(out))):
-        if place > 0 and (out[place].score > most or settling.is_settled(out[place - 1].state, aim)):
+        one = out[place]
+        own, passed = one.way.aim(aim), [one]
+        if place > 0 and (one.score > most or _is_settled(out[place - 1], aim)):
             break
         worked = place + 1
-        if settling.is_settled(out[place].state, aim):
+        if _is_settled(one, aim):
             break
         watch.report("Balancing the forces", 0.8 + 0.05 * place)
-        one = out[place]
-        own, passed = replace(aim, bar=one.way.bar), [one]
         for further in (_settled, polishing.polish, _with_thumb_freed):
             if further is not _settled and _is_lost(one.state):
                 break
             try:
-                one = _found(further(one.way.stage, one.state, own, watch), aim, one.way)
+                one = _found(further(one.way.stage, one.state, own, watch), own, one.way)
             except (Refusal, native.module.SolveError):
                 fitter.leave_if_cancelled(watch)
             passed.append(one)
@@ -188,7 +191,7 @@ def _ended_or_other(begun, other, asked, watch):
         fitter.leave_if_cancelled(watch)
         refusal = error
     for ready in other:
-        if ended and settling.is_settled(ended[0].state, aim):
+        if ended and _is_settled(ended[0], aim):
             break
         try:
             again = _best(ready, aim, watch)
@@ -198,6 +201,11 @@ def _ended_or_other(begun, other, asked, watch):
     if not ended:
         raise refusal
     return ended
+
+
+def _is_settled(one, aim):
+    """Whether a grasp found is settled as its way has the aim."""
+    return settling.is_settled(one.state, one.way.aim(aim))
 
 
 def _behind(ended, begun):
@@ -230,14 +238,13 @@ def _is_lost(state):
 
 def _faced(one, aim, watch):
     """A power grip found with its thumb turned to the index finger, where that leaves it settled."""
-    if one.way.kind == ways.HOOK:
-        return one
+    own = one.way.aim(aim)
     try:
-        state = polishing.face(one.way.stage, one.state, replace(aim, bar=one.way.bar), watch)
+        state = polishing.face(one.way.stage, one.state, own, watch)
     except (Refusal, native.module.SolveError):
         fitter.leave_if_cancelled(watch)
         return one
-    return one if state is one.state else _found(state, aim, one.way)
+    return one if state is one.state else _found(state, own, one.way)
 
 
 def _settled(stage, state, aim, watch):
@@ -295,7 +302,7 @@ def _found(state, aim, way):
 def _averted(way, grasp):
     """What the cosine between the thumb pad's facing and the way to the index finger's pad lacks; 0 but in a power
     grip."""
-    if way.kind != ways.POWER:
+    if way.bar is None:
         return 0.0
     return max(thumb.FACING - polishing.opposed(way.stage, grasp), 0.0)
 

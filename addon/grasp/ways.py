@@ -8,6 +8,7 @@ from ..grasp_fit import closing, fitter, laterals, pinches, pinching, places
 from ..hand.poses import OPEN
 from ..hand.skinning import TWIST
 from ..hand_bones.roles import angle_bounds, pose_angles
+from . import hooks
 
 ROLLS = 4
 """Directions around a bar from which the palm is tried."""
@@ -29,9 +30,7 @@ begin 4 mm deep would pass each other, and each would press its side. At 0.2 tra
 
 POWER, PINCH, LATERAL, HOOK = "POWER", "PINCH", "LATERAL", "HOOK"
 AROUND = (POWER, HOOK)
-"""Kinds that close around a bar: with the whole hand, or with the four fingers alone."""
-
-HOOKED = ("index", "middle", "ring", "little")
+"""Kinds that close around a bar: with the whole hand, or with the four fingers alone, in which it hangs."""
 
 
 @dataclass(frozen=True)
@@ -50,19 +49,36 @@ class Way:
     @property
     def bar(self):
         """What the thumb closes around: center (3) and axis (3) of the bar, toward the thumb's side; or None."""
-        return (self.spot.center, self.end * self.spot.axis) if self.kind in AROUND else None
+        return (self.spot.center, self.end * self.spot.axis) if self.kind == POWER else None
+
+    @property
+    def toward(self):
+        """The way (3) in which the palm faces around a bar."""
+        turn = 2.0 * np.pi * self.roll / ROLLS
+        return np.cos(turn) * self.spot.side + np.sin(turn) * np.cross(self.spot.axis, self.spot.side)
+
+    @property
+    def down(self):
+        """The way (3) in which a product hangs in a hook."""
+        return hooks.down(self.stage.hand, self.toward, self.end * self.spot.axis)
+
+    def aim(self, aim):
+        """An `Aim` of the search as this way has it: with the bar, or with the weight that hangs in a hook."""
+        if self.kind != HOOK:
+            return replace(aim, bar=self.bar)
+        return replace(aim, weight_n=aim.total_n * self.down, about_mm=self.spot.center, total_n=None)
 
     def start(self, hand, wanted):
         """Place (4, 4) and angles (b, 3) of the hand from which a fit begins; `wanted` (p,) depths of its pads."""
         if self.kind not in AROUND:
             return pinching.start_of(hand, self.stage.gauge, self.spot)
-        turn = 2.0 * np.pi * self.roll / ROLLS
-        third = np.cross(self.spot.axis, self.spot.side)
-        toward = np.cos(turn) * self.spot.side + np.sin(turn) * third
-        center, axis = self.bar
-        along = ALONG * fitter.breadth_of(hand)
+        center, axis, breadth = self.spot.center, self.end * self.spot.axis, fitter.breadth_of(hand)
+        if self.kind == HOOK:
+            placing = closing.Placing(center, axis, 0.0, hooks.ALONG * breadth, self.toward)
+            opened = pose_angles(hand.rig, hand.joints, hooks.START)
+            return fitter.start_of(hand, self.stage.gauge, wanted, (placing, opened, hooks.STOPS_DEG))
         aside = closing.middle_of_grip(hand.rig, hand.joints, hand.pads)
-        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), along, toward, aside)
+        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), ALONG * breadth, self.toward, aside)
         return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
 
 
@@ -90,13 +106,17 @@ def _opposed(hand):
 def of_kind(kind, stage, end):
     """The ways of a kind on a `Stage`; `end` as in `powers`."""
     if kind in AROUND:
-        return powers(stage, end, kind)
+        return powers(stage, end) if kind == POWER else hooked(stage, end)
     return pinched(stage) if kind == PINCH else lateral(stage)
 
 
-def powers(stage, end, kind=POWER):
-    """Power grips or hooks of a product on a `Stage`; `end` 1 or -1 keeps the thumb there, 0 tries both."""
+def powers(stage, end):
+    """Power grips of a product on a `Stage`; `end` 1 or -1 keeps the thumb there, 0 tries both."""
     bars = places.spots(stage.gauge.product, stage.vertices, stage.triangles, stage.mark)
+    return _around(POWER, stage, bars, end)
+
+
+def _around(kind, stage, bars, end):
     return [
         Way(kind, stage, bar, side, roll)
         for bar in bars
@@ -104,6 +124,14 @@ def powers(stage, end, kind=POWER):
         if end in (0, side)
         for roll in range(ROLLS)
     ]
+
+
+def hooked(stage, end):
+    """Hooks in which a product hangs; none for a hand, or a wish, without fingers. `end` as in `powers`."""
+    own = hooks.stage_for(stage)
+    if not np.isfinite(fitter.wanted_depths(own.hand.pads, own.fit.wish)).any():
+        return []
+    return [way for way in _around(HOOK, own, hooks.bars(own), end) if hooks.hangs(way.spot, way.down)]
 
 
 def pinched(stage):

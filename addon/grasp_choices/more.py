@@ -6,7 +6,7 @@ from functools import partial
 import bpy
 
 from .. import languages, native, workflow
-from ..grasp import fitting, search, settings, ways
+from ..grasp import fitting, settings, ways
 from ..grasp_fit import fitter
 from ..hand import pads
 from ..hand.operators import can_pose
@@ -43,7 +43,7 @@ it is"""
             wish = fitting.wish_of(fitter.Wish(pads.FIRM_MM), kind)
             fit = fitting.prepare(context, context.scene.thenar.hand, parts, wish)
             _refuse_another(stored, fit)
-            asked = search.Asked(*_sums(first), kind=kind)
+            asked = fitting.asked_of(_strength(first), kind=kind)
             try:
                 found = yield partial(fitting.search_all, fit, asked)
             except (Refusal, native.module.SolveError) as refusal:
@@ -73,13 +73,10 @@ def _refuse_another(stored, fit):
         raise Refusal("the grasps were found for another hand or product; press Grasp again")
 
 
-def _sums(first):
-    """The sums of a power grip and a pinch, N, as strong as the first grasp of the list was asked to be."""
+def _strength(first):
+    """The strength that the first grasp of the list was asked for."""
     asked = first.get("asked_n")
-    if asked is None:
-        return fitting.sums_of("FIRM")
-    light = "LIGHT" if asked <= fitting.TOTALS_N["LIGHT"] else "FIRM"
-    return fitting.sums_of(light)
+    return "LIGHT" if asked is not None and asked <= fitting.TOTALS_N["LIGHT"] else "FIRM"
 
 
 def _add(stored, rows):

@@ -1,8 +1,14 @@
-"""The grasps found as choices: causes add up to the score, other kinds are added, and one click takes one."""
+"""The grasps found as choices: causes add up to the score, other kinds are added, and one click takes one; lateral
+grips and hooks, by what of the hand bears."""
 
 import json
 
 import numpy as np
+import pytest
+from handles import grasping, shapes
+from thenar_blender import names
+
+KEY_MM = [-30.0, -12.0, -1.25], [30.0, 12.0, 1.25]
 
 
 def angles(context):
@@ -30,7 +36,7 @@ def test_other_kinds_are_added_and_taken_by_a_click(scene, bar, blender):
     assert (angles(context) == pose).all(), "the hand stays as it is"
     assert stored.found[0].pose == first and stored.shown == 0
     kinds = [row.kind for row in stored.found]
-    assert {"POWER", "PINCH"} <= set(kinds)
+    assert {"POWER", "PINCH", "HOOK"} <= set(kinds)
     assert len({row.picture for row in stored.found}) > len(set(kinds)) - 1, "pictures differ"
     scores = [row.score for row in stored.found][1:]
     assert scores == sorted(scores)
@@ -44,3 +50,106 @@ def test_other_kinds_are_added_and_taken_by_a_click(scene, bar, blender):
 def test_without_a_grasp_there_is_nothing_to_add_to(scene, bar, blender):
     scene(bar)
     assert not blender.ops.thenar.more_grasps.poll()
+
+
+def carried(result):
+    """Force by region, N, of regions that bear any."""
+    return {row.name: row.force_n for row in result.regions if row.force_n > 0.01}
+
+
+def pressed(hand):
+    """Numbers of the pressed vertices of a solved hand (n,), and their pressure."""
+    pressure = np.array([each.value for each in hand.data.attributes[names.PRESSURE_KPA].data])
+    return np.flatnonzero(pressure > 0.0), pressure[pressure > 0.0]
+
+
+def toward_thumb(hand, digit):
+    """How far the pressed skin of a digit lies toward the thumb from the digit's middle, mm, in the hand at rest."""
+    rows, weight = pressed(hand)
+    groups = {
+        group.index for group in hand.vertex_groups if group.name in (f"{digit}_distal_pad", f"{digit}_middle_pad")
+    }
+    own = [any(group.group in groups for group in hand.data.vertices[row].groups) for row in rows]
+    rest = np.array([vertex.co for vertex in hand.data.vertices])
+    bone = hand.parent.data.bones[f"{digit}_middle"]
+    first = hand.parent.data.bones["index_proximal"].head_local
+    last = hand.parent.data.bones["little_proximal"].head_local
+    way = np.array(first - last)
+    way -= np.array(bone.vector) * (way @ np.array(bone.vector)) / bone.length**2
+    own = np.asarray(own)
+    middle = np.average(rest[rows[own]], axis=0, weights=weight[own])
+    return 1000.0 * float((middle - np.array(bone.head_local)) @ way / np.linalg.norm(way))
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+def test_a_key_is_held_by_the_thumb_against_the_side_of_the_index_finger(scene, blender, side):
+    blender.ops.thenar.make_hand(side=side)
+    product = grasping._add(shapes.block(*KEY_MM, 3), (20, -30, 40))
+    blender.context.scene.thenar.product = product
+    assert blender.ops.thenar.fit_grasp(kind="LATERAL") == {"FINISHED"}
+    assert blender.context.scene.thenar_grasps.found[0].kind == "LATERAL"
+    blender.ops.thenar.solve()
+    result = blender.context.scene.thenar.result
+    force = carried(result)
+    assert result.force_n == pytest.approx(30.0, rel=0.1)
+    assert np.linalg.norm(result.force_vector_n) < 0.05 * result.force_n
+    thumb = sum(value for name, value in force.items() if name.startswith("thumb"))
+    index = sum(value for name, value in force.items() if name.startswith("index"))
+    assert thumb > 0.4 * result.force_n and index > 0.4 * result.force_n
+    assert toward_thumb(blender.context.scene.thenar.hand, "index") > 6.0
+
+
+def test_a_bar_in_a_power_grip_lies_on_the_fingers_palm_side(scene, blender):
+    hand, _ = scene(shapes.revolved(np.array([0.0, 20.0, 20.0, 0.0]), np.array([-80.0, -80.0, 80.0, 80.0]), 48))
+    assert blender.ops.thenar.fit_grasp() == {"FINISHED"}
+    blender.ops.thenar.solve()
+    assert abs(toward_thumb(hand, "index")) < 5.0, "the measure of the test above tells the sides of a finger"
+
+
+def test_what_the_thumb_cannot_span_is_refused_for_a_lateral_grip(scene, blender):
+    scene(shapes.block([-60.0, -60.0, -25.0], [60.0, 60.0, 25.0], 2))
+    with pytest.raises(RuntimeError, match="No two sides of the product can be pinched"):
+        blender.ops.thenar.fit_grasp(kind="LATERAL")
+
+
+def ring(radius, thickness):
+    """A ring about z: vertices (n, 3), mm, and triangles (m, 3)."""
+    turn, around = np.meshgrid(*(np.linspace(0.0, 2.0 * np.pi, n, endpoint=False) for n in (72, 28)), indexing="ij")
+    off = radius + 0.5 * thickness * np.cos(around)
+    points = np.stack([off * np.cos(turn), off * np.sin(turn), 0.5 * thickness * np.sin(around)], axis=-1)
+    at = np.arange(72 * 28).reshape(72, 28)
+    after, both = np.roll(at, -1, 0), np.roll(np.roll(at, -1, 0), -1, 1)
+    first, second = np.stack([at, after, both], -1), np.stack([at, both, np.roll(at, -1, 1)], -1)
+    return points.reshape(-1, 3), np.concatenate([first.reshape(-1, 3), second.reshape(-1, 3)])
+
+
+@pytest.mark.parametrize(("strength", "weight"), [("FIRM", 100.0), ("LIGHT", 30.0)])
+def test_a_ring_hangs_in_four_fingers_below_them(scene, blender, strength, weight):
+    hand, product = scene(ring(70.0, 22.0), turn=(10, 40, 0), shift=(0.2, 0.1, -0.3))
+    assert blender.ops.thenar.fit_grasp(kind="HOOK", strength=strength) == {"FINISHED"}
+    assert blender.context.scene.thenar_grasps.found[0].kind == "HOOK"
+    blender.ops.thenar.solve()
+    result = blender.context.scene.thenar.result
+    push = np.array(result.force_vector_n)
+    assert np.linalg.norm(push) == pytest.approx(weight, rel=0.05), "the fingers bear the weight"
+    assert {name.partition("_")[0] for name in carried(result)} == {"index", "middle", "ring", "little"}
+    up = grasping.seen(hand)[0][pressed(hand)[0]].mean(axis=0) - 1000.0 * np.array(product.matrix_world.translation)
+    assert push @ up > 0.8 * np.linalg.norm(push) * np.linalg.norm(up), "the middle of the ring is below the fingers"
+
+
+def test_a_hook_without_fingers_is_refused(scene, blender, bar):
+    scene(bar)
+    with pytest.raises(RuntimeError, match="A hook takes fingers"):
+        blender.ops.thenar.fit_grasp(kind="HOOK", digits={"thumb", "palm"})
+
+
+def test_a_strong_grip_of_a_bar_keeps_off_its_ends(scene, blender):
+    half = 100.0
+    hand, product = scene(shapes.revolved(np.array([0.0, 24.0, 24.0, 0.0]), half * np.array([-1, -1, 1, 1]), 64))
+    assert blender.ops.thenar.fit_grasp(kind="POWER", force_n=337.0) == {"FINISHED"}
+    blender.ops.thenar.solve()
+    assert blender.context.scene.thenar.result.force_n == pytest.approx(337.0, rel=0.05)
+    world = np.array(product.matrix_world)
+    points = grasping.seen(hand)[0][pressed(hand)[0]] - 1000.0 * world[:3, 3]
+    along = points @ (world[:3, 2] / np.linalg.norm(world[:3, 2]))
+    assert np.abs(along).max() < half - 5.0

@@ -61,7 +61,7 @@ def test_a_way_with_a_finger_in_a_wall_is_settled_but_not_polished(monkeypatch):
     state = SimpleNamespace(
         grasp=grasp, sunk_mm=0.0, imbalance=0.1, lever=0.3, peaks_mpa=np.array([0.2]), total_n=150.0
     )
-    way, settled = SimpleNamespace(stage=None, bar=None), []
+    way, settled = SimpleNamespace(stage=None, bar=None, aim=lambda aim: aim), []
     monkeypatch.setattr(search, "_rough", lambda ready, watch: [(None, None, way)])
     monkeypatch.setattr(search, "_fine", lambda *_: grasp)
     monkeypatch.setattr(search, "_found", lambda *_: search.Found(grasp, state, 9.0, way, 0.1, (), None, {}))
@@ -132,7 +132,7 @@ def test_small_motions_lead_through_no_wall_and_end_no_worse(monkeypatch, wall_m
 @pytest.mark.parametrize(("left_n", "kept"), [((30.0, 60.0, 110.0, 110.0), 0), ((60.0, 40.0, 20.0, 45.0), 2)])
 def test_a_way_ends_where_it_is_balanced_best(monkeypatch, left_n, kept):
     """Each of settling, polishing and freeing the thumb may end worse than it began; touch and place do not count."""
-    states, way = [state_of(net) for net in left_n], SimpleNamespace(stage=None, bar=None)
+    states, way = [state_of(net) for net in left_n], SimpleNamespace(stage=None, bar=None, aim=lambda aim: aim)
     scores = {id(state): 10.0 - place for place, state in enumerate(reversed(states))}
 
     def found(state, aim, way):
@@ -152,7 +152,7 @@ def test_a_way_ends_where_it_is_balanced_best(monkeypatch, left_n, kept):
 
 
 def found_of(score, friction, kind=ways.POWER, net_n=8.0):
-    way = SimpleNamespace(kind=kind, stage=None, bar=None)
+    way = SimpleNamespace(kind=kind, stage=None, bar=None, aim=lambda aim: aim)
     causes = {"settled": 3.0, "touch": score - 3.0}
     return search.Found(state_of(net_n).grasp, state_of(net_n), score, way, friction, (), None, causes)
 

@@ -299,8 +299,8 @@ impl fmt::Display for Warning {
             ),
             Warning::OffBalance { net, sum } => write!(
                 f,
-                "the product is held from several sides, but {net:.1} N of {sum:.1} N are left over: it would slip out; move the \
-                 product or the fingers"
+                "the product is held from several sides, but {net:.1} N of {sum:.1} N are left over: without a \
+                 load of that size it would slip out; move the product or the fingers"
             ),
             Warning::AdhesionUnsettled => f.write_str(
                 "adhesion is about to make the skin leap and did not settle: take smaller steps there",
