@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..grasp_fit import closing, places
-from ..hand.poses import OPEN, POSES
 
 FINGERS = ("index", "middle", "ring", "little")
 
@@ -20,9 +19,6 @@ ALONG = 0.45
 
 STOPS_DEG = {f"{finger}_proximal": 25.0 for finger in FINGERS}
 """The knuckles bend no further before a fit, or the fingers press the bar into the palm."""
-
-START = OPEN | {role: turns for role, turns in POSES["relaxed"].items() if role.startswith("thumb")}
-"""The open hand, its thumb at ease: it takes no part."""
 
 OFF_MM = 20.0
 """A bar that lies so far from the product's middle hangs above it; nearer, the product may hang either way."""
