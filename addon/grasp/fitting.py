@@ -122,12 +122,15 @@ def compute(fit, cancel=None, progress=None):
 
 
 def wish_of(wish, kind):
-    """The wish for a kind of grasp: a hook leaves out thumb and palm. Raises `checks.Refusal` without fingers."""
+    """The wish for a kind of grasp: a hook leaves out thumb and palm. Raises `checks.Refusal` where nothing is left."""
     if kind != ways.HOOK:
         return wish
     digits = tuple(digit for digit in hooks.FINGERS if wish.digits is None or digit in wish.digits)
-    if not digits:
-        raise checks.Refusal("a hook takes fingers, and none takes part; tick one under Digits")
+    if not digits or not set(hooks.DEPTHS) & set(wish.targets_mm):
+        raise checks.Refusal(
+            "a hook takes the last and middle pads of fingers, and none takes part; tick a finger under Digits, "
+            "and give its pads a depth"
+        )
     return replace(wish, digits=digits)
 
 

@@ -1,6 +1,7 @@
 """Hooks: a bar hangs in four bent fingers, as a bucket's or a bag's handle, without thumb and palm. No Blender.
 
-What hangs turns until its middle is below the bar: its weight acts at the bar, along the fingers of the hanging hand.
+What hangs turns until its middle is below the bar: its weight acts along the fingers of the hanging hand. Along the
+bar it stays where it is: fingers off its middle have a moment to bear.
 """
 
 from dataclasses import replace
@@ -45,9 +46,14 @@ def bars(stage):
 
 def _hung(spot):
     """The spot with its `side` away from the product's middle, which is the origin of the own frame."""
-    off = spot.center - spot.axis * (spot.center @ spot.axis)
+    off = loaded_at(spot)
     far = float(np.linalg.norm(off))
     return replace(spot, side=off / far) if far > OFF_MM else spot
+
+
+def loaded_at(spot):
+    """The point (3) of a bar's axis at which the weight acts, above the product's middle, the own frame's origin."""
+    return spot.center - spot.axis * (spot.center @ spot.axis)
 
 
 def down(hand, toward, axis):
@@ -60,6 +66,6 @@ def down(hand, toward, axis):
 
 def hangs(spot, way_down):
     """Whether a product hangs from the spot in that direction (3)."""
-    off = spot.center - spot.axis * (spot.center @ spot.axis)
+    off = loaded_at(spot)
     far = float(np.linalg.norm(off))
     return far <= OFF_MM or float(-off @ way_down) > BELOW * far

@@ -118,7 +118,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         layout.use_property_split = True
         for name in ("strength", "place", "moves"):
             layout.prop(self, name)
-        if self.place == "LAY":
+        if self._is_searched():
             layout.prop(self, "kind")
             if self.kind not in (ways.PINCH, ways.LATERAL):
                 layout.prop(self, "end")
@@ -131,7 +131,7 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
     def steps(self, context):
         settings = context.scene.thenar
         parts = workflow.product_parts(settings)
-        wish = fitting.wish_of(self._wish(), self.kind if self.place == "LAY" else "AUTO")
+        wish = fitting.wish_of(self._wish(), self.kind if self._is_searched() else "AUTO")
         fit = fitting.prepare(context, settings.hand, parts, wish, self.force_n or None)
         moves = fitting.moves_of(context, settings.hand, parts, self.moves)
         if fitting.is_searched(wish) and fitting.can_search(fit):
@@ -143,6 +143,10 @@ class THENAR_OT_fit_grasp(computing.Computing, bpy.types.Operator):
         found = yield partial(fitting.compute, fit)
         fitting.finish(context, fit, found, moves)
         return found
+
+    def _is_searched(self):
+        """Whether the place is searched, so that kind and end are asked for."""
+        return self.place == "LAY" and self.moves != "FINGERS"
 
     def _wish(self):
         depths = {"LIGHT": pads.LIGHT_MM, "FIRM": pads.FIRM_MM}.get(self.strength)

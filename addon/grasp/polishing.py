@@ -43,6 +43,13 @@ JOINTS = (
     ("thumb_metacarpal", "abduction"),
     ("thumb_proximal", "flexion"),
 )
+OF_TWO = (
+    ("index_proximal", "abduction"),
+    ("index_middle", "flexion"),
+    ("thumb_metacarpal", "twist"),
+    ("thumb_distal", "flexion"),
+)
+"""Joints that move as well where no more than two digits take part: these have to press on one line."""
 
 
 def polish(stage, state, aim, watch=fitter.ALONE):
@@ -171,9 +178,10 @@ class _Moves:
         joints = stage.hand.joints
         taking = stage.fit.wish.digits
         self.grasp = grasp
+        moved = JOINTS if taking is None or len(taking) > 2 else JOINTS + OF_TWO
         self.joints = [
             (joints.bones[role], COLUMNS[angle], angle_bounds(joints, role, angle))
-            for role, angle in JOINTS
+            for role, angle in moved
             if role in joints.bones and (taking is None or role.partition("_")[0] in taking)
         ]
         self.count = 6 + len(self.joints)

@@ -70,7 +70,7 @@ class Asked:
 class Found:
     """A grasp of the search with what was found of it, and the `way` it began. `score` counts against it; `friction`
     suffices to hold it; `pose` is angles (b, 3) and place (4, 4) in the product's own frame; `asked_n` the sum of
-    forces that was asked for; `causes` what the score is the sum of, by cause."""
+    forces that was asked for, of a hook the weight; `causes` what the score is the sum of, by cause."""
 
     grasp: fitter.Grasp
     state: settling.State
@@ -132,7 +132,8 @@ def _begun(ready, aim, watch):
     """The grasps that ways lead to, balanced a little, best first. Raises `Refusal` or `SolveError` where none does."""
     if not ready:
         raise fitter.GraspError(
-            "no two sides of the product can be pinched; choose another kind of grasp, or make the product thinner"
+            "no two sides of the product can be pinched by the digits that take part; choose another kind of grasp, "
+            "tick thumb and index finger under Digits, or make the product thinner"
         )
     out, refusals = [], []
     for count, (task, x, way) in enumerate(_rough(ready, watch)):
@@ -301,9 +302,12 @@ def _found(state, aim, way):
         "place": float(way.spot.cost),
     }
     if way.kind == ways.HOOK:
-        causes["bare"] = BARE * float(np.isnan(fitter.wanted_depths(way.stage.hand.pads, way.stage.fit.wish)).mean())
+        causes["bare"] = BARE * float(
+            np.isnan(fitter.wanted_depths(way.stage.fit.hand.pads, way.stage.fit.wish)).mean()
+        )
     pose = state.grasp.angles, state.grasp.place
-    return Found(state.grasp, state, sum(causes.values()), way, held, pose, aim.total_n, causes)
+    asked_n = float(np.linalg.norm(aim.weight_n)) if way.kind == ways.HOOK else aim.total_n
+    return Found(state.grasp, state, sum(causes.values()), way, held, pose, asked_n, causes)
 
 
 def _averted(way, grasp):

@@ -61,7 +61,7 @@ EVEN, UNEVEN = 0.1, 3.0
 """Rounds go on while a larger share of the fingers' force than `EVEN` is on the wrong fingers; all of it there counts
 `UNEVEN` tolerances."""
 
-STANDS_OUT, LEAST_EASED_MPA = 1.3, 0.12
+STANDS_OUT, LEAST_EASED_MPA = 1.5, 0.12
 """A pad is eased where its peak is this many times the mean of the pads that press, and above so much: people move
 force off the skin that hurts first. Without it, a thumb around 60 mm pressed with 268 kPa while fingers had 150."""
 

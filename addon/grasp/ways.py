@@ -66,7 +66,7 @@ class Way:
         """An `Aim` of the search as this way has it: with the bar, or with the weight that hangs in a hook."""
         if self.kind != HOOK:
             return replace(aim, bar=self.bar)
-        return replace(aim, weight_n=aim.total_n * self.down, about_mm=self.spot.center, total_n=None)
+        return replace(aim, weight_n=aim.total_n * self.down, about_mm=hooks.loaded_at(self.spot), total_n=None)
 
     def start(self, hand, wanted):
         """Place (4, 4) and angles (b, 3) of the hand from which a fit begins; `wanted` (p,) depths of its pads."""

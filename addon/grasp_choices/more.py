@@ -43,7 +43,7 @@ it is"""
             wish = fitting.wish_of(fitter.Wish(pads.FIRM_MM), kind)
             fit = fitting.prepare(context, context.scene.thenar.hand, parts, wish)
             _refuse_another(stored, fit)
-            asked = fitting.asked_of(_strength(first), kind=kind)
+            asked = fitting.asked_of(_strength(stored.found[0].kind, first.get("asked_n")), kind=kind)
             try:
                 found = yield partial(fitting.search_all, fit, asked)
             except (Refusal, native.module.SolveError) as refusal:
@@ -73,10 +73,13 @@ def _refuse_another(stored, fit):
         raise Refusal("the grasps were found for another hand or product; press Grasp again")
 
 
-def _strength(first):
-    """The strength that the first grasp of the list was asked for."""
-    asked = first.get("asked_n")
-    return "LIGHT" if asked is not None and asked <= fitting.TOTALS_N["LIGHT"] else "FIRM"
+_BY_KIND = {ways.POWER: fitting.TOTALS_N, ways.HOOK: fitting.HUNG_N}
+
+
+def _strength(kind, asked_n):
+    """The strength that the first grasp of the list, of a kind, was asked for."""
+    known = _BY_KIND.get(kind, fitting.PINCHES_N)
+    return "LIGHT" if asked_n is not None and asked_n < 0.5 * (known["LIGHT"] + known["FIRM"]) else "FIRM"
 
 
 def _add(stored, rows):

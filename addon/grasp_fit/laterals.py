@@ -21,13 +21,11 @@ SIDEWAYS = 0.5
 
 DIGITS = ("thumb", "index")
 JAWS = pinching.Jaws(LATERAL, LATERAL_SPREAD, pinching.SIDE)
-TIP = "tip"
-"""Kind of the index finger's last pad here: it takes no part."""
 
 STEP_MM = 3.0
 """The hand's opening is taken in steps of so much, mm, where room for it is looked for."""
 
-POINTS = 200
+POINTS = 80
 NEAR_MM = 14.0
 """So many points of the skin stand for the hand; those so near to the middle of the grip touch the product anyway."""
 
@@ -37,15 +35,19 @@ BLOCKED = 24.0
 
 
 def hand_of(hand):
-    """The hand whose pads are the thumb's and the side of the index finger; None for a hand that has not both."""
+    """The hand with the side of the index finger as a pad; None for a hand that has not both of what a grip takes.
+
+    The index finger's last pad is none here, but skin that shall stay off the product: else cards and pencils are held
+    by it.
+    """
     side = _side_of(hand)
     if side is None or not any(pad.role == "thumb_distal" and pad.kind == pinching.DISTAL for pad in hand.pads):
         return None
     out = []
     for pad in hand.pads:
         if pad.role == "index_distal" and pad.kind == pinching.DISTAL:
-            pad = replace(pad, kind=TIP)
-        elif pad.name == side[0].name:
+            continue
+        if pad.name == side[0].name:
             out.append(replace(pad, name="index_side", kind=pinching.SIDE, rows=side[1]))
             pad = replace(pad, rows=np.setdiff1d(pad.rows, side[1]))
         if len(pad.rows) >= pads_of_hand.DEEPEST:

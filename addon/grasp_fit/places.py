@@ -35,9 +35,6 @@ MARK_STEP_MM = 2.5
 WORSE = 1.2
 """A spot whose cost is so much above the best one's is left out."""
 
-HALF_GRIP_MM = 60.0
-"""A median hand around a bar presses 105 to 120 mm of it, heel to thumb, as the search of grasps leaves it."""
-
 FINGER_MM = (10.0, 20.0)
 """A finger needs room at these distances from the bar's surface."""
 
@@ -247,7 +244,7 @@ def _ridges(places, depth):
 
 def _costs(read, found):
     """`Spot.cost` of each spot."""
-    along = np.linspace(-HALF_GRIP_MM, HALF_GRIP_MM, 9)
+    along = np.linspace(-48.0, 48.0, 7)
     turns = np.linspace(0.0, 2.0 * np.pi, 9)[:-1]
     centers = np.array([spot.center for spot in found])
     axes = np.array([spot.axis for spot in found])

@@ -3,9 +3,9 @@
     target/venv/bin/python tests/bench/hand/lateral_and_hook.py [--kinds LATERAL HOOK] [--things card "steering wheel"]
         [--sheet PICTURE.jpg]
 
-A median hand takes each by *Grasp* with that kind and is solved. A lateral grip shall be borne by thumb and index
-finger, a hook by the four fingers alone. `--sheet` draws `SHOWN` from four sides. With THENAR_RESULTS=1 writes
-the rows of tests/bench/RESULTS.md.
+A median hand takes each by *Grasp* with that kind and is solved. A lateral grip shall be borne by the thumb and
+the index finger's middle and proximal phalanges, a hook by the four fingers alone. `--sheet` draws `SHOWN` from
+four sides. With THENAR_RESULTS=1 writes the rows of tests/bench/RESULTS.md.
 """
 
 import argparse
@@ -18,12 +18,12 @@ import numpy as np
 
 TESTS = Path(__file__).resolve().parents[2]
 COMMAND = "target/venv/bin/python tests/bench/hand/lateral_and_hook.py"
-BEARERS = {"LATERAL": ("thumb", "index"), "HOOK": ("index", "middle", "ring", "little")}
+BEARERS = {"LATERAL": ("thumb", "index_middle", "index_proximal"), "HOOK": ("index", "middle", "ring", "little")}
 LOAD_N = {"LIGHT": 30.0, "FIRM": 100.0}
 WANTED = {"LATERAL": 0.0, "HOOK": LOAD_N["FIRM"]}
 """What the skin's forces shall leave over, N: nothing, or the weight that hangs."""
 
-SHOWN = {"LATERAL": ("mug handle", "card", "pencil"), "HOOK": ("dumbbell", "steering wheel", "tube")}
+SHOWN = {"LATERAL": ("mug handle", "pencil", "phone"), "HOOK": ("dumbbell", "steering wheel", "tube")}
 """What `--sheet` draws."""
 
 ALONE = 0.95
