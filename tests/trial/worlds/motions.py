@@ -5,6 +5,9 @@
 - `kinked`: approach at 0.9 mm/s, press at 0.2 mm/s from a depth of 0 to 30 % of the largest, hold, lift; read at 10 or
   25 Hz. In half of the studies a second protocol presses at 0.4 mm/s.
 - `short`: a stand, a ramp of 0.25 s read at 10 Hz, a hold, a lift of 2 s; and a slow press as a second protocol.
+- `stand`: a stand of 0.2 to 0.9 s, a ramp at 0.5 to 2 mm/s, a hold of 3 s, a lift of 2 s, a stand; read at 10 or 25 Hz.
+- `s_curve`: the same course of a stage that takes the first and the last 10 to 30 % of a way's time to reach its speed
+  and to leave it, at constant acceleration.
 - `sine`: four periods of 3 s, read every 0.06 s; in half of the studies a second protocol with periods of 1.5 s.
 
 The depth of an indenter is continuous and piecewise smooth in each; nothing else is shared with a reader of motions.
@@ -12,7 +15,7 @@ The depth of an indenter is continuous and piecewise smooth in each; nothing els
 
 import numpy as np
 
-MOTIONS = ("kinked", "short", "sine")
+MOTIONS = ("kinked", "short", "sine", "stand", "s_curve")
 LIFT_MM = 0.15
 JITTER_MM = 0.016
 
@@ -31,6 +34,11 @@ def drawn(motion, deepest, random):
     if motion == "sine":
         periods = [3.0, 1.5] if random.random() < 0.5 else [3.0]
         return [(f"period of {period:g} s", *_sine(deepest, period)) for period in periods]
+    if motion in ("stand", "s_curve"):
+        stand, speed, rate = random.uniform(0.2, 0.9), random.uniform(0.5, 2.0), random.choice([10.0, 25.0])
+        part = random.uniform(0.1, 0.3) if motion == "s_curve" else 0.0
+        speeds = [speed, 0.5 * speed] if random.random() < 0.5 else [speed]
+        return [(f"press at {v:.3g} mm/s", *_stood((stand, deepest, v), part, rate)) for v in speeds]
     raise ValueError(f"no motion {motion}")
 
 
@@ -47,6 +55,36 @@ def _sine(deepest, period):
     time = np.arange(0.0, 4.0 * period, 0.06)
     height = 0.5 * (deepest + LIFT_MM)
     return time, height - LIFT_MM - height * np.cos(2.0 * np.pi * time / period)
+
+
+def _stood(course, part, rate):
+    """Times and depths: a stand (s), a way to a depth (mm) at a mean speed (mm/s), a hold, a lift, a stand; each way
+    starts and stops within `part` of its time."""
+    stand, deepest, speed = course
+    knots = np.array(
+        [
+            (0.0, -LIFT_MM),
+            (stand, -LIFT_MM),
+            (stand + (deepest + LIFT_MM) / speed, deepest),
+            (stand + (deepest + LIFT_MM) / speed + 3.0, deepest),
+            (stand + (deepest + LIFT_MM) / speed + 5.0, -LIFT_MM),
+            (stand + (deepest + LIFT_MM) / speed + 5.0 + stand, -LIFT_MM),
+        ]
+    )
+    time = np.arange(0.0, knots[-1, 0], 1.0 / rate)
+    leg = np.clip(np.searchsorted(knots[:, 0], time, side="right") - 1, 0, len(knots) - 2)
+    start, end = knots[leg], knots[leg + 1]
+    along = (time - start[:, 0]) / (end[:, 0] - start[:, 0])
+    return time, start[:, 1] + (end[:, 1] - start[:, 1]) * _way(along, part)
+
+
+def _way(along, part):
+    """Part of a way that is gone at a part of its time, where speed grows and falls evenly within `part` of the time."""
+    if part == 0.0:
+        return along
+    near = np.minimum(along, 1.0 - along)
+    gone = np.where(near < part, near**2 / (2.0 * part), near - 0.5 * part) / (1.0 - part)
+    return np.where(along <= 0.5, gone, 1.0 - gone)
 
 
 def _read(knots, rate):

@@ -77,6 +77,27 @@ def test_a_sine_is_straight_nowhere_and_a_step_has_few_readings():
     assert 1 <= ((step[2] > -0.14) & (step[2] < 1.19) & (step[1] < 2.0)).sum() <= 3
 
 
+@pytest.mark.parametrize("part", [0.1, 0.3])
+def test_an_s_curve_starts_and_stops_at_rest_with_even_acceleration(part):
+    along = np.linspace(0.0, 1.0, 2001)
+    gone = motions._way(along, part)
+    speed = np.diff(gone) / np.diff(along)
+    assert gone[0] == 0.0 and gone[-1] == 1.0 and speed[0] < 0.01 and speed[-1] < 0.01
+    assert speed.max() == pytest.approx(1.0 / (1.0 - part))
+    most = np.abs(np.diff(speed)).max() / along[1]
+    assert most == pytest.approx(1.0 / (part * (1.0 - part)), rel=1e-6)
+
+
+def test_a_stage_stands_before_its_ramp_and_holds_for_three_seconds():
+    for name, time, depth in _protocols("stand", 1.2):
+        step = time[1] - time[0]
+        stood = (depth < -motions.LIFT_MM + 1e-9)[time < 1.5].sum() * step
+        assert 0.2 <= stood <= 0.9 + 2.0 * step
+        assert (depth > 1.2 - 1e-9).sum() * step == pytest.approx(3.0, abs=1.5 * step)
+        speed = np.diff(depth)[time[1:] < stood + 1.0] / step
+        assert speed.max() == pytest.approx(float(name.split()[2]), rel=0.01)
+
+
 def test_other_motions_change_no_case_of_straight_ramps_and_are_refused_for_a_truth_that_fades():
     one, other = (closed_forms.draw(4, "nothing", "depth_jitter", motion) for motion in ("ramps", "kinked"))
     assert one.radii == other.radii and one.deepest_mm == other.deepest_mm
