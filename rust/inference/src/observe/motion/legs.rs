@@ -14,8 +14,22 @@ pub(crate) struct Leg {
     pub(crate) phase: Phase,
 }
 
+/// What becomes of a stand of few readings at the beginning or the end of a recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum EndStands {
+    /// It belongs to the leg next to it.
+    Joined,
+    /// It is a part of its own: in the leg next to it, it would be a kink.
+    Apart,
+}
+
+/// Whether a leg is the stand that a recording of that many legs begins or ends with.
+pub(crate) fn is_end_stand(leg: &Leg, (k, count): (usize, usize)) -> bool {
+    leg.phase == Phase::Hold && (k == 0 || k + 1 == count)
+}
+
 /// Legs and stands by the depth alone; what has few readings and goes no way belongs to the longer of its neighbors.
-pub(crate) fn legs(time: &[f64], depth: &[f64]) -> Vec<Leg> {
+pub(crate) fn legs((time, depth): (&[f64], &[f64]), ends: EndStands) -> Vec<Leg> {
     let mut found: Vec<Leg> = Vec::new();
     for (k, phase) in moves(time, depth).into_iter().enumerate() {
         match found.last_mut() {
@@ -34,8 +48,10 @@ pub(crate) fn legs(time: &[f64], depth: &[f64]) -> Vec<Leg> {
         leg.phase != Phase::Hold && (depth[to] - depth[from]).abs() > least
     };
     while found.len() > 1 {
-        let stays = |k: &usize| length(&found[*k]) < FEWEST && !goes(&found[*k]);
-        let shortest = (0..found.len()).filter(stays);
+        let is_apart =
+            |k: usize| ends == EndStands::Apart && is_end_stand(&found[k], (k, found.len()));
+        let is_none = |k: &usize| length(&found[*k]) < FEWEST && !goes(&found[*k]) && !is_apart(*k);
+        let shortest = (0..found.len()).filter(is_none);
         let Some(k) = shortest.min_by_key(|k| length(&found[*k])) else {
             break;
         };

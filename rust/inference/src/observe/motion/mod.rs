@@ -1,5 +1,6 @@
 //! The motion of a stage under noisy readings of its depth.
 
 pub(crate) mod by_lines;
+pub(crate) mod cut;
 pub(crate) mod legs;
 pub(crate) mod line;
