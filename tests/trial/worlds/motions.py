@@ -79,7 +79,7 @@ def _stood(course, part, rate):
 
 
 def _way(along, part):
-    """Part of a way that is gone at a part of its time, where speed grows and falls evenly within `part` of the time."""
+    """Part of a way gone at a part of its time, where speed grows and falls evenly within `part` of the time."""
     if part == 0.0:
         return along
     near = np.minimum(along, 1.0 - along)

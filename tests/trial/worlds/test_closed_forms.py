@@ -88,7 +88,7 @@ def test_an_s_curve_starts_and_stops_at_rest_with_even_acceleration(part):
     assert most == pytest.approx(1.0 / (part * (1.0 - part)), rel=1e-6)
 
 
-def test_a_stage_stands_before_its_ramp_and_holds_for_three_seconds():
+def test_a_ramp_follows_a_stand_and_is_held_for_three_seconds():
     for name, time, depth in _protocols("stand", 1.2):
         step = time[1] - time[0]
         stood = (depth < -motions.LIFT_MM + 1e-9)[time < 1.5].sum() * step
