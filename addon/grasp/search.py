@@ -37,7 +37,6 @@ HOPELESS = 14.0
 BEHIND = 1.05
 OPPOSED = 1.5
 BARE = 3.0
-EASY = 0.5 * FRICTION
 LOST = 0.4
 TOO_HARD_MPA = 0.6
 """So many starts are fitted roughly; of them so many are pressed and balanced a little; the best one is settled, and
@@ -49,8 +48,7 @@ counts more than `POOR` is compared with pinches; where the best one that is bal
 one counts that was balanced to the end. A thumb whose pad faces away from the index finger's counts `OPPOSED`
 for each unit that the cosine lacks of `thumb.FACING`, among power grips alone: against a pinch the share of the best
 one is not counted. A hook counts `BARE` for the share of pads that it leaves out, as for pads that hang clear.
-Friction of `EASY` counts as held with ease. What leaves more than `LOST` of its forces over, or presses a vertex harder
-than `TOO_HARD_MPA`, is no grasp."""
+What leaves more than `LOST` of its forces over, or presses a vertex harder than `TOO_HARD_MPA`, is no grasp."""
 
 
 @dataclass(frozen=True)
@@ -230,12 +228,7 @@ def _best_balanced(passed, aim):
     """Where one way was balanced best, a finger in a wall counted; the latest of those alike.
 
     By what balancing wants and not by the score, which would give up balance and the wanted sum for pads that touch.
-    By the score where nothing settles and little friction holds: around a bar as thick as the hand spans, forces
-    balance without friction only between the thumb and one finger, and nobody holds it so.
     """
-    easy = [one for one in passed if one.friction <= EASY]
-    if easy and not any(settling.is_settled(one.state, aim) for one in passed):
-        return min(reversed(easy), key=lambda one: in_steps(one.score))
     return min(reversed(passed), key=lambda one: in_steps(settling.cost_of(one.state, aim)))
 
 

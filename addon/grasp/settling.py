@@ -61,13 +61,6 @@ EVEN, UNEVEN = 0.1, 3.0
 """Rounds go on while a larger share of the fingers' force than `EVEN` is on the wrong fingers; all of it there counts
 `UNEVEN` tolerances."""
 
-STANDS_OUT, LEAST_EASED_MPA = 1.5, 0.12
-"""A pad is eased where its peak is this many times the mean of the pads that press, and above so much: people move
-force off the skin that hurts first. Without it, a thumb around 60 mm pressed with 268 kPa while fingers had 150."""
-
-PRESSES_MPA = 0.02
-"""A pad that presses less counts as not pressing."""
-
 LEAST_FACTOR = 0.6
 """The depth of a pad is eased by no more in one round."""
 
@@ -227,11 +220,8 @@ def cost_of(state, aim):
 
 
 def eased(state, aim):
-    """Factors for depths: of every pad (p,), at most 1, where it is pressed too hard or much harder than the others;
-    of all, for the sum of forces."""
-    pressing = state.peaks_mpa[state.peaks_mpa > PRESSES_MPA]
-    even = STANDS_OUT * float(pressing.mean()) if len(pressing) else np.inf
-    too_hard = np.maximum(state.peaks_mpa / np.clip(even, LEAST_EASED_MPA, 0.9 * MOST_MPA), 1e-6)
+    """Factors for depths: of every pad (p,), at most 1, where it is pressed too hard; of all, for the sum of forces."""
+    too_hard = np.maximum(state.peaks_mpa / (0.9 * MOST_MPA), 1e-6)
     own = np.clip(too_hard ** (-1.0 / loads.POWER), LEAST_FACTOR, 1.0)
     goal = min(state.total_n, 0.97 * MOST_N) if aim.total_n is None else aim.total_n
     whole = (goal / max(state.total_n, 1e-3 * max(goal, 1.0))) ** (1.0 / loads.POWER)

@@ -77,8 +77,7 @@ class Way:
             placing = closing.Placing(center, axis, 0.0, hooks.ALONG * breadth, self.toward)
             opened = pose_angles(hand.rig, hand.joints, OPEN)
             return fitter.start_of(hand, self.stage.gauge, wanted, (placing, opened, hooks.STOPS_DEG))
-        aside = closing.middle_of_grip(hand.rig, hand.joints, hand.pads)
-        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), ALONG * breadth, self.toward, aside)
+        placing = closing.Placing(center, axis, np.radians(self.oblique_deg), ALONG * breadth, self.toward)
         return fitter.start_of(hand, self.stage.gauge, wanted, (placing, _opposed(hand), STOPS_DEG))
 
 

@@ -53,15 +53,13 @@ def product_axis(vertices):
 class Placing:
     """How a product shall lie in the palm: its `axis` through `center` (3), turned `oblique` radians against the line
     of the knuckles, `offset_mm` from them along the fingers. `toward` (3): where the palm faces; None: as it stands,
-    and the axis may be turned end for end. `aside_mm`: so far from the knuckles' middle, toward the thumb's side, lies
-    what of the hand comes to the center."""
+    and the axis may be turned end for end."""
 
     center: np.ndarray
     axis: np.ndarray
     oblique: float
     offset_mm: float
     toward: np.ndarray | None = None
-    aside_mm: float = 0.0
 
 
 def lay_into_palm(rig, joints, pads, gauge, placing):
@@ -80,22 +78,12 @@ def lay_into_palm(rig, joints, pads, gauge, placing):
     turn = goal @ hand.T
     place = np.eye(4)
     place[:3, :3] = turn
-    middle = knuckles + distal * placing.offset_mm + across * placing.aside_mm
-    away = turn @ middle + turn @ facing * CLEAR_MM
+    away = turn @ (knuckles + distal * placing.offset_mm) + turn @ facing * CLEAR_MM
     place[:3, 3] = placing.center - away
     rows = np.concatenate([pad.rows for pad in pads if pad.kind == "palm"] or [pad.rows for pad in pads])
     part, posed = rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["palm_press"]))
     normals = skin_normals(part, posed) if gauge.is_thin else None
     return approach((skin(part, posed), normals), gauge, place, turn @ facing)
-
-
-def middle_of_grip(rig, joints, pads):
-    """How far from the knuckles' middle, toward the thumb's side, the pads of a closed hand have their middle, mm."""
-    knuckles, radial, _, _ = hand_frame(rig, joints)
-    rows = np.concatenate([pad.rows for pad in pads])
-    points = skin(rig.subset(rows), pose_matrices(rig, pose_angles(rig, joints, POSES["power_48"])))
-    along = (points - knuckles) @ radial
-    return float(0.5 * (along.min() + along.max()))
 
 
 def _as_it_stands(placing, palm, across):

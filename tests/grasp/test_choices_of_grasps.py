@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 from handles import grasping, shapes
 from thenar_blender import names
-from thenar_blender.grasp import fitting, ways
-from thenar_blender.grasp.stage import stage_of
 from thenar_blender.grasp_choices import more
-from thenar_blender.grasp_fit import fitter
-from thenar_blender.hand import pads
-from thenar_blender.hand.skinning import pose_matrices, skin
 
 KEY_MM = [-30.0, -12.0, -1.25], [30.0, 12.0, 1.25]
 
@@ -163,16 +158,3 @@ def test_other_kinds_are_sought_as_strong_as_the_first():
     assert more._strength("HOOK", 30.0) == "LIGHT" and more._strength("HOOK", 100.0) == "FIRM"
     assert more._strength("PINCH", 9.0) == "LIGHT" and more._strength("LATERAL", 30.0) == "FIRM"
     assert more._strength("POWER", 60.0) == "LIGHT" and more._strength("POWER", None) == "FIRM"
-
-
-def test_the_middle_of_the_hand_comes_to_the_middle_of_a_bar(scene, blender):
-    """The pads of the hand as a power grip begins reach about as far to both sides of the bar's middle."""
-    hand, product = scene(shapes.revolved(np.array([0.0, 24.0, 24.0, 0.0]), 150.0 * np.array([-1, -1, 1, 1]), 64))
-    fit = fitting.prepare(blender.context, hand, [product], fitter.Wish(pads.FIRM_MM))
-    way = ways.powers(stage_of(fit), 1)[0]
-    own = way.stage.hand
-    place, angles = way.start(own, fitter.wanted_depths(own.pads, way.stage.fit.wish))
-    rows = np.concatenate([pad.rows for pad in own.pads])
-    points = skin(own.rig.moved(place).subset(rows), pose_matrices(own.rig, angles))
-    along = (points - way.spot.center) @ way.spot.axis
-    assert abs(along.min() + along.max()) < 14.0
