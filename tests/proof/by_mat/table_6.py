@@ -4,11 +4,9 @@
 
 Solves the three cylinders of `blend-samples`, reads each by a virtual F-Scan mat over thresholds of 0 to 5 kPa and 24
 placements, solves the 48 mm grasp at three forces, and prints the rows of tests/proof/RESULTS.md and of README.md.
-Then *Grasp* seeks on each cylinder a grip in balance at the force of the table, read in the same way. With
-THENAR_RESULTS=1 it writes the rows of the former itself. Nothing is fitted to the table but the total force.
+With THENAR_RESULTS=1 it writes the former itself. Nothing is fitted to the table but the total force.
 """
 
-import math
 import sys
 from pathlib import Path
 
@@ -28,10 +26,6 @@ JUDGED = ("area_mm2", "mean_kpa", "peak_kpa")
 """What Table 6 can judge: the force is the target of the fit."""
 
 
-REACHED = 0.02
-"""A force counts as reached within this share, and as in balance with no more of it left over."""
-
-
 def main():
     """Measures, prints and records."""
     thenar_blender.register()
@@ -46,7 +40,6 @@ def main():
     frames = table_6.read_frames(bpy.context, ROOT / "blend-samples" / "cylinder_48.blend")
     print("\n".join(table_6.frame_lines(frames)), end="\n\n")
     figures += [frame_figure(name, reading) for name, reading in frames.items()]
-    figures += [balanced_figure(diameter) for diameter in table_6.PAPER]
     print(results.HEAD, "| --- | --- | --- | --- | --- |", sep="\n")
     for each in figures:
         print("| " + " | ".join(each.cells(COMMAND)) + " |")
@@ -66,23 +59,6 @@ def frame_figure(name, reading):
     """The row of one force frame; the paper prints no reading of it that could be wanted."""
     what = f"force frame of Fig. 21 on the 48 mm cylinder: {name}, {reading['wanted_n']:.0f} N"
     return results.Figure(what, "stated", with_skin(reading))
-
-
-def balanced_figure(diameter):
-    """The row of a grip in balance: *Grasp* at the force of the table, as the mat reads it, and what is left over."""
-    headless.open_file(ROOT / "blend-samples" / f"cylinder_{diameter}.blend")
-    wanted_n = table_6.measured(diameter)["force_n"][0]
-    bpy.ops.thenar.fit_grasp(kind="POWER", force_n=wanted_n)
-    workflow.solve(bpy.context)
-    reading, result = table_6.read_scene(bpy.context), bpy.context.scene.thenar.result
-    print("\n".join(table_6.lines(reading)), end="\n\n")
-    left = math.hypot(*result.force_vector_n) / result.force_n
-    is_met = abs(result.force_n / wanted_n - 1.0) <= REACHED and left <= REACHED
-    said_of = f"{result.force_n:.0f} N, {left:.1%} left over; {with_skin(reading)}"
-    wanted = f"{wanted_n:.0f} N, 2 % left over at most"
-    return results.Figure(
-        f"{diameter} mm cylinder, grasped in balance at the force of the table", wanted, said_of, is_met
-    )
 
 
 def with_skin(reading):
