@@ -68,17 +68,31 @@ class Tips:
 
     def approaches(self, gauge, pinched, axes):
         """Directions (3) for the fingers to point in, each with the cost of what is in the way, and the digits."""
-        return _approaches(gauge, pinched, axes)
+        center, across, width = pinched
+        for reach in around(across, axes):
+            aside = np.cross(across, reach)
+            high = 0.5 * width + HALF_FINGER_MM
+            blocks = [
+                _grid(-FINGER_MM, BESIDE_MM, np.array([-high, high])),
+                _grid(-WEB_MM, BESIDE_MM, np.linspace(-high, high, 5)),
+                _grid(-PALM_MM, 2.5 * BESIDE_MM, np.linspace(-high - 15.0, high + 15.0, 5)),
+            ]
+            shares = []
+            for block in blocks:
+                gaps = gauge.gaps(center + block @ np.stack([reach, aside, across]))
+                shares.append((gaps < ROOM_MM).mean())
+            broad = gauge.gaps(center + np.outer([-BROAD_MM, BROAD_MM], aside))
+            yield reach, BLOCKED * sum(shares), ALL if (broad < 0.5).all() else JAW
 
 
-def spots(gauge, vertices, triangles, mark=None, way=None):
-    """Places to pinch a product (`walls.Gauge`), best first; perhaps none. The rest as of `places.spots`; `way`: how,
-    `Tips` or `laterals.Side`."""
-    way = way or Tips()
+def spots(gauge, vertices, triangles, mark=None, hold=None):
+    """Places to pinch a product (`walls.Gauge`), best first; perhaps none. The rest as of `places.spots`; `hold`: how,
+    `Tips` (the default) or `laterals.Side`."""
+    hold = hold or Tips()
     origin, axes = own_frame(vertices, triangles)
     points, normals = _samples(gauge, vertices, triangles)
     widths, is_opposite = _thickness(gauge, points, normals)
-    kept = np.flatnonzero(is_opposite & (widths <= way.most_mm))
+    kept = np.flatnonzero(is_opposite & (widths <= hold.most_mm))
     if not len(kept):
         return []
     points, normals, widths = points[kept], normals[kept], widths[kept]
@@ -92,9 +106,9 @@ def spots(gauge, vertices, triangles, mark=None, way=None):
     for k in order:
         if found and cost[k] > min(pinch.cost for pinch in found) + WORSE:
             break
-        for reach, blocked, digits in way.approaches(gauge, (centers[k], normals[k], widths[k]), axes):
+        for reach, blocked, digits in hold.approaches(gauge, (centers[k], normals[k], widths[k]), axes):
             where = centers[k], normals[k], reach, float(widths[k])
-            found.append(Pinch(*where, way.jaws, digits, float(cost[k] + blocked)))
+            found.append(Pinch(*where, hold.jaws, digits, float(cost[k] + blocked)))
     found.sort(key=lambda pinch: round(pinch.cost, 2))
     kept = []
     for pinch in found:
@@ -121,25 +135,6 @@ def _thickness(gauge, points, normals):
     gap, out = gauge.read(along[np.arange(len(points)), first])
     is_opposite = is_out.any(axis=1) & ((out * -normals).sum(axis=1) > OPPOSITE)
     return steps[first] - np.where(is_opposite, gap, 0.0), is_opposite
-
-
-def _approaches(gauge, pinched, axes):
-    """Directions (3) for the fingers to point in, each with the cost of what is in the way, and the digits."""
-    center, across, width = pinched
-    for reach in around(across, axes):
-        aside = np.cross(across, reach)
-        high = 0.5 * width + HALF_FINGER_MM
-        blocks = [
-            _grid(-FINGER_MM, BESIDE_MM, np.array([-high, high])),
-            _grid(-WEB_MM, BESIDE_MM, np.linspace(-high, high, 5)),
-            _grid(-PALM_MM, 2.5 * BESIDE_MM, np.linspace(-high - 15.0, high + 15.0, 5)),
-        ]
-        shares = []
-        for block in blocks:
-            gaps = gauge.gaps(center + block @ np.stack([reach, aside, across]))
-            shares.append((gaps < ROOM_MM).mean())
-        broad = gauge.gaps(center + np.outer([-BROAD_MM, BROAD_MM], aside))
-        yield reach, BLOCKED * sum(shares), ALL if (broad < 0.5).all() else JAW
 
 
 def around(across, axes):

@@ -90,6 +90,12 @@ def grasp_row(path):
     return row(kept["vertices"], kept["shown"], kept["triangles"], palm, product)
 
 
+def palm_of(hand):
+    """Vertices of a made hand that do not bend."""
+    groups = [hand.vertex_groups[name].index for name in ("hypothenar", "palm_hollow")]
+    return [vertex.index for vertex in hand.data.vertices if any(each.group in groups for each in vertex.groups)]
+
+
 def pose_rows():
     """The rows of the pose library, with a median hand."""
     import bpy
@@ -101,8 +107,7 @@ def pose_rows():
     bpy.ops.thenar.make_hand(percentile=50)
     hand = bpy.context.scene.thenar.hand
     rest, triangles = grasping.seen(hand)
-    groups = [hand.vertex_groups[name].index for name in ("hypothenar", "palm_hollow")]
-    palm = [vertex.index for vertex in hand.data.vertices if any(each.group in groups for each in vertex.groups)]
+    palm = palm_of(hand)
     for pose in POSES:
         bpy.ops.thenar.apply_pose(name=pose)
         yield row(rest, grasping.seen(hand)[0], triangles, palm)

@@ -19,8 +19,7 @@ import numpy as np
 TESTS = Path(__file__).resolve().parents[2]
 COMMAND = "target/venv/bin/python tests/bench/hand/lateral_and_hook.py"
 BEARERS = {"LATERAL": ("thumb", "index_middle", "index_proximal"), "HOOK": ("index", "middle", "ring", "little")}
-LOAD_N = {"LIGHT": 30.0, "FIRM": 100.0}
-WANTED = {"LATERAL": 0.0, "HOOK": LOAD_N["FIRM"]}
+WANTED = {"LATERAL": 0.0, "HOOK": 100.0}
 """What the skin's forces shall leave over, N: nothing, or the weight that hangs."""
 
 SHOWN = {"LATERAL": ("mug handle", "pencil", "phone"), "HOOK": ("dumbbell", "steering wheel", "tube")}
@@ -68,8 +67,7 @@ def held(kind, mesh):
     bpy.ops.thenar.make_hand(percentile=50)
     hand = bpy.context.scene.thenar.hand
     rest, triangles = grasping.seen(hand)
-    groups = [hand.vertex_groups[name].index for name in ("hypothenar", "palm_hollow")]
-    palm = [vertex.index for vertex in hand.data.vertices if any(each.group in groups for each in vertex.groups)]
+    palm = sheets.palm_of(hand)
     product = grasping._add(mesh, (10, 20, 30))
     bpy.context.scene.thenar.product = product
     cpu = time.process_time()
