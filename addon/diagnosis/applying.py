@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import names, native
+from .. import languages, names, native
 from ..properties import effect_settings
 from ..results import sentences
 from ..scene import matching
@@ -46,10 +46,11 @@ def apply(context, index):
     finding = reading.finding(found, index)
     _refuse_parameter(finding)
     _refuse_unnamed(found, finding)
+    doubt = " ".join(filter(None, (freshness.problem(state), _shows_less(found))))
     row = next((row for row in native.effects() if row["name"] == finding["effect"]), None)
     if row is None:
         raise Refusal(f"Thenar has no effect '{finding['effect']}' to switch on; correct it by hand")
-    title, doubt = wording.title(row["name"]), freshness.problem(state)
+    title = wording.title(row["name"])
     if row["kind"] == "instrument":
         _to_model(state, finding)
         return Taken(f"{title} is the instrument's: nothing on the skin is changed; it is in the study's model", doubt)
@@ -63,6 +64,22 @@ def apply(context, index):
         "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
     )
     return Taken(f"{title} is on {where}{waits}", doubt)
+
+
+def _shows_less(found):
+    """A doubt where the contact model, with what is switched on, predicts held-out recordings worse than the fit does."""
+    tried = reading.by_contact_model(found)
+    removed = ((found.get("fit") or {}).get("reducible_error_removed") or {}).get("value")
+    if tried is None or removed is None or not found["fit"]["by_contact_model"].get("is_behind_the_fit"):
+        return ""
+    if tried <= 0.0:
+        return languages.iface("The contact model with it predicts held-out recordings no better than without")
+    return languages.iface(
+        "The contact model with it removes {share} of the error of held-out recordings, the fit {fit}: "
+        "simulations show less than was found",
+        share=wording.share(tried),
+        fit=wording.share(removed),
+    )
 
 
 def _refuse_parameter(finding):
@@ -111,12 +128,19 @@ def _hand(context):
 
 
 def _wanted(context, found, finding, row):
-    """The finding in the terms of the hand's properties; its own numbers go before the model's. Raises `Refusal`."""
+    """The finding in the terms of the hand's properties. Raises `Refusal`.
+
+    Its own numbers go before the model's, unless the contact model was held against held-out recordings with these.
+    """
     amplitude, numbers, choices = reading.switched(found, finding["effect"])
+    tried = reading.by_contact_model(found) is not None
+    known = (set() if amplitude is None else {"amplitude"}) | numbers.keys() if tried else set()
     shapes = {shape["name"]: shape["unit"] for shape in row["shape"]}
     options = {choice["name"]: choice["options"] for choice in row["choices"]}
     for name, told in (finding.get("parameters") or {}).items():
         value, unit = told.get("value"), told.get("unit") or "1"
+        if name in known:
+            continue
         if name == "amplitude":
             amplitude = _checked(value, (finding, name))
         elif name in shapes:

@@ -252,6 +252,9 @@ def _gain(fit):
             yield "The share of the reducible error that is removed cannot be given: noise is larger than the effect."
         else:
             yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
+    tried = (fit.get("by_contact_model") or {}).get("reducible_error_removed") or {}
+    if tried.get("value") is not None:
+        yield f"By the contact model itself, with what is switched on: {wording.share(tried['value'])}."
     score = fit.get("log_score")
     if score and score.get("value") is not None:
         text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])}"

@@ -57,6 +57,12 @@ def switched(found, effect):
     return amplitude, {name: told[name] for name in told if name not in choices and told[name] is not None}, choices
 
 
+def by_contact_model(found):
+    """Share of the reducible held-out error that the contact model removes with the findings' model; None if it was not tried."""
+    tried = (found.get("fit") or {}).get("by_contact_model") or {}
+    return (tried.get("reducible_error_removed") or {}).get("value")
+
+
 def rivals(found, effect):
     """Other effects that cannot be told apart from `effect` with these recordings."""
     alike = [names for names in found.get("cannot_tell", []) if effect in names]

@@ -138,15 +138,20 @@ fn explained(
     (ready, rungs): (&PreparedStudy, &Rungs),
     (options, quiet): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, InferenceError> {
-    let sized = crate::gates::size_gate::decide(ready, rungs, fitting.measured(), options.seed);
+    let mut sized = crate::gates::size_gate::decide(ready, rungs, fitting.measured(), options.seed);
     let asked = (&sized.decision.cannot_tell[..], quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
-    Ok(told(
+    let with = (&mut sized, &mut *fitting);
+    let failed = crate::by_contact_model::check((ready, rungs), with, (options.seed, quiet))?;
+    let mut found = told(
         (study, ceiling),
         (comparison, fitting),
         ((ready, rungs, sized), next),
-    ))
+    );
+    found.notes.extend(failed);
+    crate::by_contact_model::switch_on(&mut found);
+    Ok(found)
 }
 
 /// What the recordings could not show.

@@ -83,7 +83,7 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
             };
             vec![("law", growth.law()), ("measure", measure)]
         }
-        Law::Delay | Law::Offset => vec![("channel", "force")],
+        _ if mechanism.is_instrument() => vec![("channel", "force")],
         _ => Vec::new(),
     };
     let known = mechanism.effect.entry().choices;

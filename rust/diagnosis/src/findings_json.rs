@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::by_contact_model::is_behind;
 use crate::findings::{Diagnosis, Finding, Rival, Suggestion, Switched};
 use crate::track_record::Confidence;
 use crate::unlisted_finding::{Correction, Unlisted};
@@ -167,6 +168,14 @@ fn fit(gain: Option<&Gain>) -> Value {
             "log_score": {
                 "value": rounded(gain.log_score), "unit": "nats", "placebo": rounded(gain.placebo), "of_evidence": rounded(gain.confirmed),
             },
+            "by_contact_model": gain.contact_model.as_ref().map(|by| json!({
+                "before": spread(by.before),
+                "after": spread(by.after),
+                "is_behind_the_fit": is_behind(gain),
+                "reducible_error_removed": {
+                    "value": rounded(by.removed), "low": rounded(by.interval.0), "high": rounded(by.interval.1),
+                },
+            })),
             "evidence_confirmed_given_the_other": gain.members.iter()
                 .map(|(name, share)| ((*name).to_owned(), json!(rounded(*share)))).collect::<Map<String, Value>>(),
         }),

@@ -17,6 +17,7 @@ mod place;
 mod verdict_sentence;
 mod findings_json;
 mod grasp;
+mod by_contact_model;
 mod diagnose;
 #[cfg(test)]
 #[path = "../../inference/tests/synthetic_rungs/mod.rs"]
@@ -27,6 +28,7 @@ pub use findings::{
     Curve, Diagnosis, Finding, Number, Rival, Suggestion, Switched, Verdict, When, Where,
 };
 pub use findings_json::findings_json;
+pub use thenar_inference::selection::contact_model_check::ContactModelCheck;
 pub use thenar_inference::selection::cross_validation::{Gain, Spread};
 pub use track_record::{Confidence, Form, Kind, Record};
 pub use unlisted_finding::{Correction, Unlisted};

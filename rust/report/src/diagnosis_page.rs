@@ -9,6 +9,7 @@ use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};
 use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
 use thenar_inference::number_format::{self, capital};
+use thenar_inference::selection::contact_model_check::ContactModelCheck;
 use thenar_inference::selection::cross_validation::{Gain, HeldOutBy};
 
 /// Recordings that are drawn.
@@ -189,6 +190,27 @@ after; repeats predict one another to {:.2}. {share} \
 Their log predictive density rises by {:.1} (plug-in estimate of the elpd difference); by the same change on the wrong recordings at the wrong \
 moments it rises by {:.1} at most (99 of 100 draws).</p>\n",
         gain.before.rms, gain.after.rms, gain.floor.rms, gain.log_score, gain.placebo
+    ) + &gain
+        .contact_model
+        .as_ref()
+        .map_or_else(String::new, by_contact_model)
+}
+
+/// What the contact model itself makes of them.
+fn by_contact_model(check: &ContactModelCheck) -> String {
+    let share = match check.interval.0 < 0.0 && check.interval.1 > 0.0 {
+        true => "noise decides how much of the reducible error that removes".to_owned(),
+        false => format!(
+            "that removes {:.0} % of the reducible error ({:.0} to {:.0} %)",
+            100.0 * check.removed,
+            100.0 * check.interval.0,
+            100.0 * check.interval.1
+        ),
+    };
+    format!(
+        "<p>The contact model on the study's mesh, with the effects that <i>Switch On</i> switches on, predicts them to {:.2} standard deviations \
+({:.2} before): {share}. Of repeats the first was followed; moduli, first touch, gain and the error of the base's form are the fit's.</p>\n",
+        check.after.rms, check.before.rms
     )
 }
 

@@ -260,15 +260,23 @@ def _spots(local):
 def _gains(severe):
     """Reducible held-out error removed: where the right name was given, and wherever a gain is told."""
 
-    def shares(group):
-        told = [(verdict.get("fit") or {}).get("reducible_error_removed") for _, verdict in group]
+    def shares(group, of=lambda fit: fit):
+        told = [(of(verdict.get("fit") or {}) or {}).get("reducible_error_removed") for _, verdict in group]
         return [one["value"] for one in told if one and one.get("value") is not None]
 
-    right = shares([pair for pair in severe if is_exact(*pair)])
+    exact = [pair for pair in severe if is_exact(*pair)]
+    right, simulated = shares(exact), shares(exact, lambda fit: fit.get("by_contact_model"))
     worse = [({}, share) for share in right]
     return [
         _median(("removed", "named: reducible error removed, median"), right, (0.75, 0.9, False)),
         _share(("worse", "named: held-out error made worse"), worse, lambda _, share: share < 0.0, (0.03, 0.01, True)),
+        _median(("removed by contact", "the same by the contact model"), simulated, (0.7, 0.9, False)),
+        _share(
+            ("worse by contact", "held-out error made worse by the contact model"),
+            [({}, share) for share in simulated],
+            lambda _, share: share < 0.0,
+            (0.03, 0.01, True),
+        ),
         _median(("removed by any", "kappa >= 1: removed, named or not, median"), shares(severe), (None, None, False)),
     ]
 

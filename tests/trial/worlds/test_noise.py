@@ -32,10 +32,18 @@ def test_a_ceiling_that_is_only_noise_of_the_depth_is_not_named(tmp_path):
     assert said["findings"] == [] and said["suspected"] in ([], ["saturation"])
 
 
+def removed(said):
+    """Share of the reducible held-out error that the fit removes, and that the contact model does with what is named."""
+    fit = said["fit"]
+    return tuple(of["reducible_error_removed"]["value"] for of in (fit, fit["by_contact_model"]))
+
+
 def test_a_real_ceiling_is_named_through_jitter(tmp_path):
     closed_forms.draw(950, "saturation", "depth_jitter").write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["saturation"]
+    fit, simulated = removed(said)
+    assert simulated > 0.9 * fit, "it clips the load cell, not a mat"
 
 
 @pytest.mark.parametrize(("noise", "seed"), NULLS)
@@ -77,6 +85,8 @@ def test_relaxation_is_named_through_jitter(tmp_path):
     closed_forms.draw(1, "relaxation", "depth_jitter").write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["relaxation"]
+    fit, simulated = removed(said)
+    assert simulated > 0.9 * fit
 
 
 def test_a_large_effect_whose_law_only_resembles_its_name_is_named(tmp_path):
@@ -86,6 +96,8 @@ def test_a_large_effect_whose_law_only_resembles_its_name_is_named(tmp_path):
     assert [finding["effect"] for finding in said["findings"]] == ["cycle_softening"]
     fit = said["fit"]
     assert fit["log_score"]["of_evidence"] < 0.6 and fit["reducible_error_removed"]["value"] > 0.3
+    _, simulated = removed(said)
+    assert simulated > 0.3, "the contact model begins each recording with tissue as it was used before"
 
 
 def test_a_ceiling_that_predicts_nothing_is_not_named_with_an_effect(tmp_path):

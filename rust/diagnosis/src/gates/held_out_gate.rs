@@ -225,6 +225,7 @@ mod tests {
             placebo,
             members: Vec::new(),
             held_out_by: HeldOutBy::Protocol,
+            contact_model: None,
         }
     }
 

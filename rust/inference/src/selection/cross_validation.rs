@@ -10,6 +10,7 @@ use crate::noise::whitening::Whitening;
 use crate::observe::measured::Measured;
 use crate::parameters::surrogate_parameter::Kind;
 use crate::random::Random;
+use crate::selection::contact_model_check::ContactModelCheck;
 use crate::selection::negative_control::{HeldOut, negative_control};
 use crate::selection::scored::Scored;
 
@@ -22,7 +23,7 @@ const ENDS: (f64, f64) = (0.05, 0.95);
 
 /// Squared errors of one recording, over the noise: without and with the finding, repeat against repeat, and their number.
 #[derive(Debug, Clone, Copy)]
-struct Errors {
+pub(crate) struct Errors {
     before: f64,
     after: f64,
     floor: f64,
@@ -60,63 +61,56 @@ impl Judged<'_> {
         is_repeated.then(|| self.over(&folds, HeldOutBy::Repeat))?
     }
 
+    /// The fits that predict what is held out, in the way that a gain was found by.
+    pub(crate) fn fits(&self, held_out_by: HeldOutBy) -> Vec<Fold> {
+        let folds = match held_out_by {
+            HeldOutBy::Protocol => folds(&self.ready.courses),
+            HeldOutBy::Repeat => Some(repeats(&self.ready.courses)),
+        };
+        folds.map_or_else(Vec::new, |folds| self.fitted(&folds))
+    }
+
+    fn fitted(&self, folds: &[usize]) -> Vec<Fold> {
+        let last = folds.iter().copied().max();
+        let fold = |number: usize| {
+            let is_out = |c: usize| folds[c] == number;
+            let of = |mechanisms: &[Mechanism]| {
+                let from = (mechanisms, &self.found.refit.at[..]);
+                predicted(self.ready, self.measured, from, &is_out)
+            };
+            Fold {
+                courses: (0..folds.len()).filter(|c| is_out(*c)).collect(),
+                before: of(&[]),
+                after: of(&self.found.mechanisms),
+            }
+        };
+        last.map_or_else(Vec::new, |last| (0..=last).map(fold).collect())
+    }
+
     fn over(&self, folds: &[usize], held_out_by: HeldOutBy) -> Option<Gain> {
         let (mut all, mut held) = (Vec::new(), Vec::new());
         let mut deviance = 0.0;
-        for number in 0..=folds.iter().copied().max()? {
-            let is_out = |c: usize| folds[c] == number;
-            let before = predicted(
-                self.ready,
-                self.measured,
-                (&[], &self.found.refit.at),
-                &is_out,
-            );
-            let after = predicted(
-                self.ready,
-                self.measured,
-                (&self.found.mechanisms, &self.found.refit.at),
-                &is_out,
-            );
+        for (number, fold) in self.fitted(folds).iter().enumerate() {
+            let (before, after) = (&fold.before, &fold.after);
             deviance += before.deviance - after.deviance;
-            for (c, course) in self
-                .ready
-                .courses
-                .iter()
-                .enumerate()
-                .filter(|(c, _)| is_out(*c))
-            {
-                let mut sum = Errors {
-                    before: 0.0,
-                    after: 0.0,
-                    floor: 0.0,
-                    count: 0.0,
-                };
+            for &c in &fold.courses {
                 let mut own = HeldOut {
                     protocol: number,
                     error: Vec::new(),
                     patch: Vec::new(),
                 };
-                for row in &course.rows {
-                    let Some(sample) = row.sample else {
-                        continue;
-                    };
-                    let sigma = self.ready.sigma[sample];
+                let samples = self.ready.courses[c].rows.iter().filter_map(|r| r.sample);
+                for sample in samples {
                     own.error.push(before.residual[sample]);
                     own.patch
                         .push(before.residual[sample] - after.residual[sample]);
-                    let square = |simulated: &[f64]| {
-                        ((row.force_n - simulated[sample]) / sigma)
-                            .clamp(-MOST, MOST)
-                            .powi(2)
-                    };
-                    sum.before += square(&before.simulated);
-                    sum.after += square(&after.simulated);
-                    sum.count += 1.0;
                 }
-                sum.floor = sum.count * floor(self.ready, c);
-                all.push(sum);
+                all.push(errors(self.ready, c, (&before.simulated, &after.simulated)));
                 held.push(own);
             }
+        }
+        if all.is_empty() {
+            return None;
         }
         let nats = |squares: f64| 0.5 * squares / self.overdispersion;
         Some(Gain {
@@ -127,6 +121,45 @@ impl Judged<'_> {
             ..summary(self.ready, &all, self.seed)
         })
     }
+}
+
+/// Recordings that are held out at once, and the fits to all others that predict them.
+pub(crate) struct Fold {
+    /// Numbers of the recordings held out.
+    pub courses: Vec<usize>,
+    /// Without the finding.
+    pub before: Refit,
+    /// With it.
+    pub after: Refit,
+}
+
+/// Squared errors of one recording's predictions (stacked samples), without and with a finding.
+pub(crate) fn errors(
+    ready: &PreparedStudy,
+    course: usize,
+    (before, after): (&[f64], &[f64]),
+) -> Errors {
+    let mut sum = Errors {
+        before: 0.0,
+        after: 0.0,
+        floor: 0.0,
+        count: 0.0,
+    };
+    for row in &ready.courses[course].rows {
+        let Some(sample) = row.sample else {
+            continue;
+        };
+        let square = |simulated: &[f64]| {
+            ((row.force_n - simulated[sample]) / ready.sigma[sample])
+                .clamp(-MOST, MOST)
+                .powi(2)
+        };
+        sum.before += square(before);
+        sum.after += square(after);
+        sum.count += 1.0;
+    }
+    sum.floor = sum.count * floor(ready, course);
+    sum
 }
 
 /// By recording, the number of the fold with which it is held out: its protocol's, or where there is but one its own.
@@ -240,7 +273,7 @@ fn predicted(
     within(&shown_by, Some(&fitted.at))
 }
 
-fn summary(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
+pub(crate) fn summary(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
     let rms = |of: &[&Errors], which: &dyn Fn(&Errors) -> f64| {
         let (sum, n) = of
             .iter()
@@ -293,6 +326,7 @@ fn summary(ready: &PreparedStudy, all: &[Errors], seed: u64) -> Gain {
         placebo: 0.0,
         members: Vec::new(),
         held_out_by: HeldOutBy::Protocol,
+        contact_model: None,
     }
 }
 
@@ -341,4 +375,6 @@ pub struct Gain {
     pub members: Vec<(&'static str, f64)>,
     /// What was held out at once.
     pub held_out_by: HeldOutBy,
+    /// The same recordings predicted by the contact model on the study's mesh; None where it was not asked or has no such effect.
+    pub contact_model: Option<ContactModelCheck>,
 }

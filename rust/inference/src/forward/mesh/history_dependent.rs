@@ -19,6 +19,8 @@ use crate::observe::study::across;
 
 /// Shortest time in which a recording that begins in the skin got there, s.
 const QUICKEST: f64 = 1e-3;
+/// Presses that stand for use before a recording, at most: softening has long come to rest.
+const MOST_USED: usize = 10;
 /// Runs kept for each recording.
 const MOST_KEPT: usize = 6;
 
@@ -29,6 +31,8 @@ struct Task {
     /// By moment, a force over `scale`.
     demands: Vec<Demand>,
     placement: Placement,
+    /// Loading travel that the tissue has behind it, mm.
+    used_mm: f64,
     /// Moduli over those of the key.
     scale: f64,
 }
@@ -96,13 +100,17 @@ impl Replay {
             },
             demands: over(self.demands(recording, nuisance), scale),
             placement: misplaced(nuisance.placement, &self.instrument),
+            used_mm: self.used_before_mm[recording],
             scale,
         }
     }
 
     fn known(&self, task: &Task) -> Option<AtSkin> {
         let is_alike = |f: &&Followed| {
-            f.key == task.key && f.placement == task.placement && f.demands == task.demands
+            f.key == task.key
+                && f.placement == task.placement
+                && f.used_mm == task.used_mm
+                && f.demands == task.demands
         };
         let found = self.followed[task.recording].iter().find(is_alike)?;
         Some(found.at_skin.clone().scaled(task.scale))
@@ -137,6 +145,7 @@ impl Replay {
                 key: task.key,
                 demands: task.demands,
                 placement: task.placement,
+                used_mm: task.used_mm,
                 at_skin,
             });
         }
@@ -153,7 +162,7 @@ impl Replay {
         let recording = task.recording;
         let measured = &self.observed.measured[recording];
         let place = &self.places[self.place_of[recording]];
-        let rows = rows(&measured.moments, &task.demands);
+        let rows = rows(&measured.moments, (&task.demands, task.used_mm));
         let added = rows.len() - measured.moments.len();
         let protocol = Protocol {
             rows,
@@ -219,18 +228,18 @@ fn over(mut demands: Vec<Demand>, scale: f64) -> Vec<Demand> {
     demands
 }
 
-/// One row a moment; a recording that begins within the skin is led there from first touch at its own speed.
-fn rows(moments: &[Moment], demands: &[Demand]) -> Vec<Row> {
+/// One row a moment; a recording that begins within the skin is led there from first touch at its own speed, and tissue that was used
+/// before is pressed as often as that took, at once, as deep as the recording goes.
+fn rows(moments: &[Moment], (demands, used_mm): (&[Demand], f64)) -> Vec<Row> {
     let row = |(moment, demand): (&Moment, &Demand)| Row {
         time_s: moment.time_s,
         demand: *demand,
         slide: moment.slide_mm,
     };
     let mut rows: Vec<Row> = moments.iter().zip(demands).map(row).collect();
-    let (Some(first), Some(Demand::Depth(depth))) = (moments.first(), demands.first()) else {
-        return rows;
-    };
-    if *depth > 0.0 {
+    if let (Some(first), Some(Demand::Depth(depth))) = (moments.first(), demands.first())
+        && *depth > 0.0
+    {
         let speed = first.rate_mm_s.max(0.0);
         let seconds = if speed > 0.0 { depth / speed } else { QUICKEST };
         let start = Row {
@@ -240,5 +249,57 @@ fn rows(moments: &[Moment], demands: &[Demand]) -> Vec<Row> {
         };
         rows.insert(0, start);
     }
-    rows
+    let mut all = use_before(&rows, used_mm);
+    all.append(&mut rows);
+    all
+}
+
+/// Presses before the rows that follow, each to their deepest and back, until so much travel is made.
+fn use_before(rows: &[Row], used_mm: f64) -> Vec<Row> {
+    let deepest = rows.iter().fold(0.0, |deepest, row| match row.demand {
+        Demand::Depth(depth) => f64::max(deepest, depth),
+        _ => deepest,
+    });
+    let (Some(first), true) = (rows.first(), used_mm > 0.0 && deepest > 0.0) else {
+        return Vec::new();
+    };
+    let times = ((used_mm / deepest).ceil() as usize).min(MOST_USED);
+    let each = (used_mm / times as f64).min(deepest);
+    let depths = (0..2 * times).map(|k| if k % 2 == 0 { each } else { 0.0 });
+    let before = |k: usize| (2 * times - k) as f64 * QUICKEST;
+    let row = |(k, depth): (usize, f64)| Row {
+        time_s: first.time_s - before(k),
+        demand: Demand::Depth(depth),
+        slide: Vec3::zeros(),
+    };
+    depths.enumerate().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn use_before_makes_its_travel_and_ends_unloaded() {
+        let row = |time_s: f64, depth: f64| Row {
+            time_s,
+            demand: Demand::Depth(depth),
+            slide: Vec3::zeros(),
+        };
+        let rows = [row(2.0, 0.0), row(3.0, 1.5), row(4.0, 0.2)];
+        let before = use_before(&rows, 4.0);
+        let depths: Vec<f64> = before
+            .iter()
+            .map(|row| match row.demand {
+                Demand::Depth(depth) => depth,
+                _ => f64::NAN,
+            })
+            .collect();
+        let travel: f64 = depths.iter().sum();
+        assert!((travel - 4.0).abs() < 1e-12 && depths.iter().all(|d| *d <= 1.5));
+        assert_eq!(depths.last(), Some(&0.0));
+        assert!(before.windows(2).all(|two| two[1].time_s > two[0].time_s));
+        assert!(before.last().is_some_and(|last| last.time_s < 2.0));
+        assert!(use_before(&rows, 0.0).is_empty());
+    }
 }

@@ -8,6 +8,7 @@ pub(crate) mod mat_reading;
 pub(crate) mod scan_shapes;
 pub mod replay;
 pub(crate) mod elastic_lookup;
+pub(crate) mod corrected_base;
 pub(crate) mod single_press;
 pub(crate) mod history_dependent;
 pub(crate) mod scan_prediction;

@@ -45,6 +45,7 @@ pub struct Followed {
     pub(crate) key: Key,
     pub(crate) demands: Vec<Demand>,
     pub(crate) placement: Placement,
+    pub(crate) used_mm: f64,
     pub(crate) at_skin: AtSkin,
 }
 
@@ -64,6 +65,8 @@ pub struct Replay {
     pub effects: Vec<ActiveEffect>,
     /// By recording: protocols followed, the last ones last.
     pub followed: Vec<Vec<Followed>>,
+    /// By recording: loading travel that the tissue has behind it as the recording begins, mm; what softens by use remembers it.
+    pub(crate) used_before_mm: Vec<f64>,
     /// Effects of the instrument.
     pub instrument: Vec<ActiveEffect>,
 }
@@ -139,9 +142,11 @@ impl Replay {
         let has_scan = observed.measured.iter().any(|m| m.scan.is_some());
         let scanned = has_scan.then(|| Scanned::new(&mesh.positions, &mesh.triangles));
         let followed = observed.measured.iter().map(|_| Vec::new()).collect();
+        let used_before_mm = vec![0.0; observed.measured.len()];
         Ok(Replay {
             tissue,
             followed,
+            used_before_mm,
             observed,
             places,
             place_of,

@@ -69,6 +69,7 @@ impl<'a> Model<'a> {
 }
 
 /// The free numbers of a model by what they belong to.
+#[derive(Clone)]
 pub struct Setting {
     /// Modulus at first touch, MPa.
     pub first: f64,

@@ -1,0 +1,165 @@
+//! The last word on a finding: held-out recordings predicted by the contact model with what the finding switches on.
+
+use thenar_contact::{ActiveEffect, Control};
+
+use crate::effect_numbers::numbers_of_effect;
+use crate::findings::{Diagnosis, Switched};
+use crate::gates::size_gate::Sized;
+use crate::wording::effect_in_words;
+use thenar_inference::errors::InferenceError;
+use thenar_inference::fit::fitting::Fitting;
+use thenar_inference::forward::surrogate::mechanism::Law;
+use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
+use thenar_inference::selection::cross_validation::{Gain, Judged};
+use thenar_inference::selection::scored::{Rungs, Scored};
+
+/// Share of what the fit removes of held-out error that the contact model must remove as well; below, it is said.
+const LEAST: f64 = 0.7;
+
+/// Standard deviations of the noise by which its error must be larger too: where a finding is small against the noise, shares mean little.
+const CLEARLY: f64 = 0.1;
+
+/// Adds the check to the gain of what is named. What the contact model cannot do is a note.
+///
+/// # Errors
+/// `Cancelled` alone.
+pub fn check(
+    (ready, rungs): (&PreparedStudy, &Rungs),
+    (sized, fitting): (&mut Sized<'_>, &mut Fitting),
+    (seed, control): (u64, &Control<'_>),
+) -> Result<Option<String>, InferenceError> {
+    let (Some(named), Some(gain)) = (sized.decision.named, &mut sized.gain) else {
+        return Ok(None);
+    };
+    let measured = fitting.measured().to_vec();
+    let judged = Judged {
+        ready,
+        measured: &measured,
+        found: named,
+        overdispersion: rungs.overdispersion,
+        seed,
+    };
+    let switched = |scored: &Scored| effects_of(ready, scored);
+    let with = (&mut fitting.replay, &switched as _);
+    let of = (gain.held_out_by, gain.removed);
+    match judged.by_contact_model(of, with, control) {
+        Ok(found) => {
+            gain.contact_model = found;
+            Ok(None)
+        }
+        Err(InferenceError::Cancelled) => Err(InferenceError::Cancelled),
+        Err(error) => Ok(Some(format!(
+            "the contact model could not follow the held-out recordings with what is named: {error}"
+        ))),
+    }
+}
+
+/// Gives what is switched on the numbers with which the contact model was checked, and says what that came to.
+pub fn switch_on(found: &mut Diagnosis) {
+    let Some((gain, check)) = found
+        .gain
+        .as_ref()
+        .and_then(|g| Some((g, g.contact_model.as_ref()?)))
+    else {
+        return;
+    };
+    for (_, g0, g_lim) in &mut found.materials {
+        *g0 *= check.moduli[0];
+        *g_lim *= check.moduli[1];
+    }
+    let mut changed = Vec::new();
+    for (switched, active) in found.effects.iter_mut().zip(&check.effects) {
+        let of_fit = switched.clone();
+        switched.amplitude = active.amplitude;
+        for (name, value) in &mut switched.numbers {
+            *value = active.number(name);
+        }
+        if differs(&of_fit, switched) {
+            changed.push(effect_in_words(switched.name));
+        }
+    }
+    if !changed.is_empty() {
+        found.notes.push(format!(
+            "{}: the contact model has a law of its own; what is switched on in it, and its moduli, are the numbers with which it answers \
+             as the fit does",
+            changed.join(" and ")
+        ));
+    }
+    if is_behind(gain) {
+        found.notes.push(match check.removed > 0.0 {
+            true => format!(
+                "the contact model with what is named removes {:.0} % of the error of held-out recordings beyond noise, the fit {:.0} %: \
+                 simulations show less than was found",
+                100.0 * check.removed,
+                100.0 * gain.removed
+            ),
+            false => "the contact model with what is named predicts held-out recordings no better than without: simulations do not show \
+                      what was found"
+                .to_owned(),
+        });
+    }
+}
+
+/// Whether the contact model predicts held-out recordings clearly worse than the fit: it removes less of the error, by more than noise decides.
+pub fn is_behind(gain: &Gain) -> bool {
+    gain.contact_model.as_ref().is_some_and(|check| {
+        check.removed < LEAST * gain.removed && check.after.rms > gain.after.rms + CLEARLY
+    })
+}
+
+/// Whether a number differs by more than a twentieth.
+fn differs(a: &Switched, b: &Switched) -> bool {
+    let is_other = |a: f64, b: f64| (a - b).abs() > 0.05 * a.abs();
+    let mut both = a.numbers.iter().zip(&b.numbers);
+    is_other(a.amplitude, b.amplitude) || both.any(|(a, b)| is_other(a.1, b.1))
+}
+
+/// What a finding switches on; None for a step of the gain, which is no effect of one recording.
+fn effects_of(ready: &PreparedStudy, scored: &Scored) -> Option<Vec<ActiveEffect>> {
+    let mut all = Vec::new();
+    for (number, mechanism) in scored.mechanisms.iter().enumerate() {
+        if matches!(mechanism.law, Law::GainStep { .. }) {
+            return None;
+        }
+        let (_, switched) = numbers_of_effect(ready, (scored, &[]), number);
+        all.push(active(&switched)?);
+    }
+    Some(all)
+}
+
+/// An effect as the contact model takes it; None if its catalogue has no such number or choice.
+fn active(switched: &Switched) -> Option<ActiveEffect> {
+    let mut effect = ActiveEffect::named(switched.name, switched.amplitude).ok()?;
+    for (name, value) in &switched.numbers {
+        effect = effect.with(name, *value).ok()?;
+    }
+    for (name, option) in &switched.choices {
+        effect = effect.choose(name, option).ok()?;
+    }
+    Some(effect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switched_numbers_and_choices_reach_the_contact_model() {
+        let switched = Switched {
+            name: "stiffening_law",
+            amplitude: 1.0,
+            numbers: vec![("reference_depth_mm", 2.5)],
+            choices: vec![("law", "power"), ("measure", "depth")],
+        };
+        let effect = active(&switched).unwrap();
+        assert_eq!(effect.number("reference_depth_mm"), 2.5);
+        let choices = effect.entry().choices.iter().zip(&effect.chosen);
+        let chosen: Vec<&str> = choices.map(|(choice, k)| choice.options[*k]).collect();
+        assert!(chosen.contains(&"power") && chosen.contains(&"depth"));
+        let unknown = Switched {
+            numbers: vec![("nothing", 1.0)],
+            ..switched
+        };
+        assert!(active(&unknown).is_none());
+    }
+}

@@ -1,0 +1,325 @@
+//! Numbers with which the contact model answers as the surrogate did with those that it was fitted with.
+//!
+//! Surrogate and contact model have laws of the same names which are not the same law: a modulus that grows with the tool's depth or with
+//! the depth of the skin's own region, a stiff skin with or without tension, the part of a clock. So the numbers that are switched on in
+//! the contact model are sought there: moduli and the effects' own numbers, by least squares against the surrogate's fitted curves of one
+//! recording for each protocol and place that the fit knows. No reading enters, so what is held out stays so. Numbers of effects that remember stay: to follow
+//! every protocol for every step takes a minute of a study's time, and relaxation, softening and loss are the same law in both.
+
+use nalgebra::DMatrix;
+use thenar_contact::effects::Effect;
+use thenar_contact::{ActiveEffect, Control, Material};
+
+use crate::errors::InferenceError;
+use crate::forward::mesh::replay::Replay;
+use crate::forward::surrogate::candidate_model::Model;
+use crate::forward::surrogate::mechanism::Mechanism;
+use crate::least_squares::huber::HUBER;
+use crate::least_squares::levenberg_marquardt::{Limits, Objective, Point, Stopping, descend};
+use crate::noise::whitening::Whitening;
+use crate::selection::contact_model_check::Task;
+use crate::selection::cross_validation::Judged;
+
+/// Largest logarithm of the factor on a number, and the standard deviation about 0 that holds what curves do not tell.
+const MOST_LOG: f64 = 4.0;
+const PRIOR: f64 = 2.0;
+/// Step of derivatives: a contact answers in small steps, as vertices come to bear.
+const STEP: f64 = 0.05;
+/// Gain over the whole below which the search ends.
+const SETTLED: f64 = 0.02;
+/// Least part of a whole share, such as an amplitude of 1 or a Poisson's ratio of one half.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Numbers of an effect that have one factor: 0 is the amplitude, k + 1 the shape number k.
+pub(crate) type Slot = (usize, Vec<usize>);
+
+/// Factors from the surrogate's numbers to those of the contact model, as logarithms.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Factors {
+    /// Of the modulus at first touch, and of that where it stops growing.
+    pub moduli: [f64; 2],
+    pub(crate) numbers: Vec<(Slot, f64)>,
+}
+
+/// Where a search ended: the place, and the derivatives there, from which a search for another fit may begin.
+pub(crate) struct Ended {
+    pub(crate) factors: Factors,
+    at: Vec<f64>,
+    jacobian: DMatrix<f64>,
+}
+
+impl Factors {
+    /// Materials with their moduli changed.
+    pub(crate) fn materials(&self, of: &[Material]) -> Vec<Material> {
+        let one = |m: &Material| Material {
+            g0_mpa: m.g0_mpa * libm::exp(self.moduli[0]),
+            g_lim_mpa: m.g_lim_mpa * libm::exp(self.moduli[1]),
+            ..*m
+        };
+        of.iter().map(one).collect()
+    }
+
+    /// Effects with their numbers changed, within what is admissible.
+    pub fn effects(&self, of: &[ActiveEffect]) -> Vec<ActiveEffect> {
+        let mut all = of.to_vec();
+        for ((effect, places), log) in &self.numbers {
+            let (one, factor) = (&mut all[*effect], libm::exp(*log));
+            let entry = one.entry();
+            for place in places {
+                match place.checked_sub(1) {
+                    None => one.amplitude = (one.amplitude * factor).clamp(0.0, entry.most),
+                    Some(k) => {
+                        let [low, high] = entry.shape[k].admissible;
+                        one.shape[k] = (one.shape[k] * factor).clamp(low, high);
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    fn at(slots: &[Slot], at: &[f64]) -> Factors {
+        Factors {
+            moduli: [at[0], at[1]],
+            numbers: slots.iter().cloned().zip(at[2..].iter().copied()).collect(),
+        }
+    }
+}
+
+/// The effects whose numbers are sought, and those numbers: of effects without memory alone.
+fn sought(effects: &[ActiveEffect]) -> (Vec<usize>, Vec<Slot>) {
+    let each = effects.iter().enumerate();
+    let found = each
+        .map(|(k, effect)| (k, slots(k, effect)))
+        .filter(|(_, slots)| !slots.is_empty());
+    let (numbers, slots): (Vec<usize>, Vec<Vec<Slot>>) = found.unzip();
+    (numbers, slots.concat())
+}
+
+/// What may be changed of an effect, by its number among those switched on; nothing of the instrument's.
+fn slots(number: usize, effect: &ActiveEffect) -> Vec<Slot> {
+    let groups: &[&[&str]] = match effect.effect {
+        Effect::StiffSkin => &[&["modulus_mpa"]],
+        Effect::StiffeningLaw => &[&[], &["reference_depth_mm", "reference_strain"]],
+        Effect::Bone => &[&["thickness_mm"]],
+        Effect::Compressibility => &[&["poisson_ratio"]],
+        _ => &[],
+    };
+    let shape = effect.entry().shape;
+    let place = |name: &&str| shape.iter().position(|n| n.name == *name).map(|k| k + 1);
+    let slot = |names: &&[&str]| match names.is_empty() {
+        true => (number, vec![0]),
+        false => (number, names.iter().filter_map(place).collect()),
+    };
+    groups.iter().map(slot).collect()
+}
+
+/// The search for factors.
+struct Search<'a, 'b> {
+    replay: &'a mut Replay,
+    control: &'a Control<'b>,
+    whitening: Whitening,
+    tasks: &'a [Task],
+    effects: &'a [ActiveEffect],
+    /// Those of the effects that are switched on in the search.
+    on: Vec<usize>,
+    slots: Vec<Slot>,
+    /// Derivatives found for the fit to all recordings, which those to fewer take.
+    kept: Option<DMatrix<f64>>,
+    /// What is to be met, and where each recording's samples begin in it.
+    target: Vec<f64>,
+    starts: Vec<(usize, usize)>,
+}
+
+impl Judged<'_> {
+    /// The factors for a finding's fit at `at`, from what it gives in these recordings.
+    ///
+    /// # Errors
+    /// What the contact model says of a press or an effect, or `Cancelled`.
+    pub(crate) fn factors(
+        &self,
+        replay: &mut Replay,
+        (tasks, effects, at): (&[Task], &[ActiveEffect], &[f64]),
+        (from, control): (Option<&Ended>, &Control<'_>),
+    ) -> Result<Option<Ended>, InferenceError> {
+        let (on, slots) = sought(effects);
+        if slots.is_empty() {
+            return Ok(None);
+        }
+        let target = self.curves(&on, at);
+        let mut met = self.measured.to_vec();
+        let mut next = 0;
+        let mut starts = Vec::new();
+        for one in &mut met {
+            starts.push((next, one.samples.len()));
+            for (sample, value) in one.samples.iter_mut().zip(&target[next..]) {
+                sample.value = *value;
+            }
+            next += one.samples.len();
+        }
+        let is_used: Vec<bool> = (0..met.len())
+            .map(|r| tasks.iter().any(|task| task.recording == r))
+            .collect();
+        let begin = from.map_or_else(|| vec![0.0; 2 + slots.len()], |ended| ended.at.clone());
+        let mut search = Search {
+            replay,
+            control,
+            whitening: Whitening::new(&met, &self.ready.noise, &is_used),
+            tasks,
+            effects,
+            on,
+            slots,
+            kept: from.map(|ended| ended.jacobian.clone()),
+            target,
+            starts,
+        };
+        let found = descend(&mut search, &begin)?;
+        Ok(Some(Ended {
+            factors: Factors::at(&search.slots, &found.point.at),
+            at: found.point.at,
+            jacobian: found.jacobian,
+        }))
+    }
+
+    /// What the surrogate gives at a fit with some of its mechanisms alone: all samples, stacked.
+    fn curves(&self, on: &[usize], at: &[f64]) -> Vec<f64> {
+        let surrogate = self.ready.surrogate();
+        let whole = Model::new(&surrogate, &self.found.mechanisms);
+        let mut set = whole.setting(&surrogate, at);
+        set.of = on.iter().map(|k| set.of[*k].clone()).collect();
+        let some = on.iter().map(|k| self.found.mechanisms[*k].clone());
+        let some: Vec<Mechanism> = some.collect();
+        let model = Model::new(&surrogate, &some);
+        let forces: Vec<Vec<f64>> = (0..self.ready.courses.len())
+            .map(|course| surrogate.forces(&model, &set, course))
+            .collect();
+        surrogate.stacked(&forces)
+    }
+}
+
+impl Objective for Search<'_, '_> {
+    type Error = InferenceError;
+
+    fn limits(&self) -> Vec<Limits> {
+        let free = Limits {
+            bounds: (-MOST_LOG, MOST_LOG),
+            prior: Some(PRIOR),
+        };
+        let of = |(effect, places): &Slot| {
+            let effect = &self.effects[*effect];
+            let entry = effect.entry();
+            let mut bounds = free.bounds;
+            for place in places {
+                let (value, ends) = match place.checked_sub(1) {
+                    None => (effect.amplitude, [LEAST_SHARE, entry.most]),
+                    Some(k) => (effect.shape[k], entry.shape[k].admissible),
+                };
+                bounds.0 = bounds.0.max(libm::log(ends[0] / value)).min(0.0);
+                bounds.1 = bounds.1.min(libm::log(ends[1] / value)).max(0.0);
+            }
+            Limits { bounds, ..free }
+        };
+        [free; 2]
+            .into_iter()
+            .chain(self.slots.iter().map(of))
+            .collect()
+    }
+
+    fn whitening(&self) -> &Whitening {
+        &self.whitening
+    }
+
+    fn predictions(&mut self, at: &[f64]) -> Result<Vec<Vec<f64>>, InferenceError> {
+        let factors = Factors::at(&self.slots, at);
+        let all = factors.effects(self.effects);
+        let effects: Vec<ActiveEffect> = self.on.iter().map(|k| all[*k].clone()).collect();
+        let shown = crate::selection::contact_model_check::shown(
+            self.replay,
+            (self.tasks, &effects, &factors),
+            self.control,
+        )?;
+        let mut all: Vec<Vec<f64>> = self
+            .starts
+            .iter()
+            .map(|(first, count)| self.target[*first..first + count].to_vec())
+            .collect();
+        for (task, values) in self.tasks.iter().zip(shown) {
+            for k in &task.forces {
+                all[task.recording][*k] = values[*k];
+            }
+        }
+        Ok(all)
+    }
+
+    fn stacked(&self, predictions: &[Vec<f64>]) -> Vec<f64> {
+        predictions.concat()
+    }
+
+    fn threshold(&self, _: &[f64], _: &[Vec<f64>]) -> f64 {
+        HUBER
+    }
+
+    fn jacobian(
+        &mut self,
+        point: &Point,
+        _: Option<&DMatrix<f64>>,
+    ) -> Result<DMatrix<f64>, InferenceError> {
+        if let Some(kept) = &self.kept {
+            return Ok(kept.clone());
+        }
+        let limits = self.limits();
+        let here = point.simulated.concat();
+        let mut jacobian = DMatrix::zeros(here.len(), point.at.len());
+        for (column, limit) in limits.iter().enumerate() {
+            let step = match point.at[column] + STEP <= limit.bounds.1 {
+                true => STEP,
+                false => -STEP,
+            };
+            let mut at = point.at.clone();
+            at[column] += step;
+            let moved = self.predictions(&at)?.concat();
+            for (row, (b, a)) in moved.iter().zip(&here).enumerate() {
+                jacobian[(row, column)] = (b - a) / step;
+            }
+        }
+        Ok(jacobian)
+    }
+
+    fn stopping(&self, objective: f64) -> Stopping {
+        let small = SETTLED * (1.0 + objective);
+        Stopping {
+            small,
+            enough: 1,
+            promised: small,
+        }
+    }
+
+    fn before_step(&self, _: f64) -> Result<(), InferenceError> {
+        self.control.check().map_err(|_| InferenceError::Cancelled)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_act_on_their_numbers_alone_and_stay_admissible() {
+        let law = ActiveEffect::new(Effect::StiffeningLaw, 1.0);
+        let relaxation = ActiveEffect::new(Effect::Relaxation, 0.4);
+        let before = [relaxation, law];
+        let (on, slots) = sought(&before);
+        assert_eq!((&on[..], slots.len()), (&[1][..], 2));
+        let factors = Factors::at(&slots, &[0.1, -0.2, 0.5, libm::log(2.0)]);
+        let after = factors.effects(&before);
+        // An amplitude of 1 is all of it.
+        assert_eq!(after[1].amplitude, 1.0);
+        let twice = 2.0 * before[1].number("reference_depth_mm");
+        assert!((after[1].number("reference_depth_mm") - twice).abs() < 1e-9);
+        assert_eq!(after[1].number("exponent"), before[1].number("exponent"));
+        assert!(after[0] == before[0]);
+        let tissue = factors.materials(&[Material::default()]);
+        let ratio = tissue[0].g0_mpa / Material::default().g0_mpa;
+        assert!((libm::log(ratio) - 0.1).abs() < 1e-12);
+    }
+}
