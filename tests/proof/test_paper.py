@@ -39,18 +39,38 @@ def test_nodal_forces_are_lemkes_and_gauss_seidels(depth):
 
 
 def test_displacement_is_response_less_bulge():
-    """Pressed vertices move by R p; those clear of the product also rise by Eq. 5 with a(dmax) of Eq. 6."""
+    """Pressed vertices move by R p along the product's normal, as Eq. 13 measures their distance.
+
+    Those clear of the product move along their own normal, as the half space of Eq. 1 does, and also rise by Eq. 5 with
+    a(dmax) of Eq. 6.
+    """
     contact, vertices, gap, normal = compare(TISSUE, MATERIAL, 0.5)
     plain = paper_model.response(vertices, gap, TISSUE) @ contact.force_n
     bulge = paper_model.swelling(vertices, contact.force_n, gap, TISSUE)
-    along = contact.displacement_mm @ normal
+    moved, inward = contact.displacement_mm, np.array([0.0, 0.0, -1.0])
     pressed = contact.force_n > 0.0
-    assert np.allclose(along[pressed], plain[pressed], atol=1e-8)
+    assert np.allclose(moved[pressed], plain[pressed, None] * normal, atol=1e-8)
     free = (gap > 0.0) & (gap + plain - bulge > 1e-3)
     assert free.sum() > 20
     assert bulge[free].max() > 0.01
-    assert np.allclose(along[free], (plain - bulge)[free], atol=1e-8)
-    assert (gap + along >= -0.02).all()
+    assert np.allclose(moved[free], (plain - bulge)[free, None] * inward, atol=1e-8)
+    assert (gap + moved @ normal >= -1e-9).all()
+
+
+def test_swelling_ends_at_the_product():
+    """A peg with a brim 0.02 mm above the skin that swells: the skin meets the brim, and goes no farther."""
+    peg = [(0.0, -1.0), (2.0, -1.0), (2.0, 0.02), (12.0, 0.02), (12.0, 4.0), (0.0, 4.0)]
+    skin, rod = meshes.disc_patch(14.0, 0.9), meshes.revolved(np.array(peg[:2] + [(2.0, 4.0), (0.0, 4.0)]), 96)
+    under, bare = (
+        pressing.press(skin, product, [MATERIAL], "paper") for product in (meshes.revolved(np.array(peg), 96), rod)
+    )
+    r = np.hypot(skin[0][:, 0], skin[0][:, 1])
+    height, wanted = under.displacement_mm[:, 2], bare.displacement_mm[:, 2]
+    ring, lifted = (r > 3.0) & (r < 11.5), (r > 3.0) & (r < 11.5) & (wanted > 0.021)
+    print(f"{lifted.sum()} of {ring.sum()} vertices would rise beyond the brim, by {wanted.max():.3f} mm at most")
+    assert lifted.sum() > 20 and height[ring].max() < 0.02 + 1e-9
+    assert np.allclose(height[lifted], 0.02, atol=1e-9)
+    assert np.allclose(height[ring & ~lifted & (wanted < 0.02)], wanted[ring & ~lifted & (wanted < 0.02)], atol=1e-9)
 
 
 def test_swelling_changes_no_force():

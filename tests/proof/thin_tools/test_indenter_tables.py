@@ -14,6 +14,8 @@ BULGE = {"fingertip": 8.0, "palm": 15.0}
 """Distance from the middle at which the skin rises most, mm (Table 2)."""
 OFF = 0.15
 """Most that it may be off."""
+SWELLING = {"fingertip": (2.0, 8.0, 2.0), "palm": (3.0, 15.0, 2.5)}
+"""a0 (mm/N), b and c (mm) of Table 2."""
 
 
 def indenter(depth=0.0, radius=RADIUS):
@@ -54,17 +56,56 @@ def test_one_newton_is_reached_and_the_bulge_lies_where_the_tables_say(site):
     assert height > 0.0 and depth > RADIUS, "deeper than half the tool is wide"
 
 
-def test_the_published_constants_swell_the_palm_where_they_say():
-    """What swelling adds to the half space's dip; a fingertip's lies where `paper` moves skin toward the tool."""
-    material = thenar.Material.palm()
+def published(site, swelling=True):
+    """The paper's own tissue on a half space (Table 2), with or without its swelling."""
+    material = {"fingertip": thenar.Material.finger, "palm": thenar.Material.palm}[site]()
     numbers = {name: getattr(material, name) for name in ("g0_mpa", "g_lim_mpa", "d_lim_mm", "zone_mm")}
-    flat = thenar.Material(thickness_mm=np.inf, swelling=(0.0, 8.0, 2.0), **numbers)
-    (vertices, swollen), (_, dipped) = (pressed(m, "paper") for m in (material, flat))
+    return thenar.Material(thickness_mm=np.inf, swelling=SWELLING[site] if swelling else (0.0, 8.0, 2.0), **numbers)
+
+
+@pytest.mark.parametrize("site", BULGE)
+def test_the_published_constants_swell_the_skin_where_they_say(site):
+    """What swelling adds to the half space's dip."""
+    (vertices, swollen), (_, dipped) = (pressed(published(site, on), "paper") for on in (True, False))
     both = swollen.displacement_mm[:, 2], dipped.displacement_mm[:, 2]
     (at, height), (net_at, net) = rise(vertices, both[0] - both[1]), rise(vertices, both[0])
-    print(f"{-both[0].min():.2f} mm deep, swells {height:.3f} mm at {at:.1f} mm; net {net:.3f} at {net_at:.1f}")
+    print(f"{site}: {-both[0].min():.2f} mm deep, swells {height:.3f} mm at {at:.1f} mm; net {net:.3f} at {net_at:.1f}")
     assert swollen.total_force_n[2] == pytest.approx(FORCE, rel=1e-3)
-    assert at == pytest.approx(BULGE["palm"], rel=OFF) and height > 0.05
+    assert at == pytest.approx(BULGE[site], rel=OFF) and height > 0.05
+
+
+@pytest.mark.parametrize("site", BULGE)
+def test_the_published_constants_shape_the_skin_as_equations_4_to_6_do(site):
+    """Free skin moves along its own normal, by the dip of a flat punch less the Gaussian under the punch's pressure.
+
+    A punch of radius a loads the part sqrt(1 - s^2 / a^2) of its force beyond the distance s from its middle, and its
+    half space dips by F asin(a / r) / (4 pi G a) outside (Johnson, Contact Mechanics 3.8).
+    """
+    material, (a0, middle, width) = published(site), SWELLING[site]
+    vertices, contact = pressed(material, "paper")
+    r, moved = np.hypot(vertices[:, 0], vertices[:, 1]), contact.displacement_mm
+    stiffened = min(-moved[:, 2].min() / material.d_lim_mm, 1.0)
+    shear = material.g0_mpa + (material.g_lim_mpa - material.g0_mpa) * stiffened
+    free = (r > 1.5) & (r < material.zone_mm - RADIUS)
+    dip = FORCE * np.arcsin(RADIUS / r[free]) / (4.0 * np.pi * shear * RADIUS)
+    bulge = a0 * material.g0_mpa / shear * FORCE * spread(r[free], middle, width)
+    # By rings: the mesh's 20 pressed vertices carry the force 0.1 mm off the tool's axis.
+    rings = [(r[free] >= inner) & (r[free] < inner + 1.0) for inner in np.arange(1.5, material.zone_mm - 1.5)]
+    off, size = (
+        np.array([value[ring].mean() for ring in rings]) for value in (moved[free, 2] - bulge + dip, dip + bulge)
+    )
+    print(f"{site}: {free.sum()} vertices, rise by {bulge.max():.3f} mm, rings {np.abs(off / size).max():.2%} off")
+    assert free.sum() > 400 and bulge.max() > 0.05
+    assert np.abs(off / size).max() < 0.02
+    assert np.abs(moved[free, :2]).max() < 1e-9, "toward no side of the tool"
+
+
+def spread(r, middle, width):
+    """Mean of the Gaussian of Eq. 5 at distances `r` (n,), over the load of a punch."""
+    share, angle = (np.arange(24) + 0.5) / 24.0, (np.arange(48) + 0.5) * np.pi / 24.0
+    s = RADIUS * np.sqrt(1.0 - (1.0 - share) ** 2)
+    x, y = np.outer(s, np.cos(angle)).ravel(), np.outer(s, np.sin(angle)).ravel()
+    return np.exp(-0.5 * ((np.hypot(r[:, None] - x, y) - middle) / width) ** 2).mean(axis=1)
 
 
 @pytest.mark.parametrize("depth", [0.5, 3.0])

@@ -5,7 +5,7 @@
 //! Eq. 4), the Gaussian of Eq. 5 to 8 is added outside the contact (Eq. 7, 12), and is flattened, at no force, where it
 //! would rise into the product.
 
-use thenar_surface::Vec3;
+use thenar_surface::{Gap, Vec3};
 
 use super::setting::SolveSetting;
 use crate::response::assembly::{Load, displacements};
@@ -15,7 +15,11 @@ use crate::skin::prepare::Skin;
 /// Beyond this many widths the Gaussian of Eq. 5 is below 1e-7 of its height.
 const GAUSSIAN_REACH: f64 = 5.7;
 
-/// Displacement of every site, mm: the pressed zone by its `travel`, the rest of the active zone by response and swelling.
+/// Displacement of every site, mm: pressed skin by its `travel`, the rest of the active zone by response and swelling.
+///
+/// Skin that is pressed goes along the product's normal, in which Eq. 13 measures its distance. Free skin goes along its own, as the
+/// half space of Eq. 1 does: beside a thin tool the nearest side's normal lies across it. However it rises, it comes no nearer to the
+/// product than it moves.
 pub fn displacement(
     skin: &Skin,
     setting: &SolveSetting<'_>,
@@ -41,10 +45,7 @@ pub fn displacement(
     for site in 0..sites.len() {
         let index = site as u32;
         let gap = &setting.detection.gaps[sites.vertex[site] as usize];
-        let inward = match gap {
-            Some(gap) => gap.normal,
-            None => -setting.detection.normals[sites.vertex[site] as usize],
-        };
+        let own = -setting.detection.normals[sites.vertex[site] as usize];
         if let Ok(k) = zone.binary_search(&index) {
             let rise = if force[k] > 0.0 {
                 0.0
@@ -54,12 +55,14 @@ pub fn displacement(
             let room = gap
                 .as_ref()
                 .map_or(f64::INFINITY, |g| g.distance + travel[k]);
+            let is_pressed = |g: &&Gap| force[k] > 0.0 || g.distance < 0.0;
+            let inward = gap.as_ref().filter(is_pressed).map_or(own, |g| g.normal);
             field[site] = inward * (travel[k] - rise.min(room.max(0.0)));
         } else if sites.is_skin(site) && is_active(skin, zone, index) {
             let press = setting.weight[site] * response[site].x;
             let rise = swelling(skin, &pressed, (index, &swelling_height));
             let room = gap.as_ref().map_or(f64::INFINITY, |g| g.distance + press);
-            field[site] = inward * (press - rise.min(room.max(0.0)));
+            field[site] = own * (press - rise.min(room.max(0.0)));
         }
     }
     field
