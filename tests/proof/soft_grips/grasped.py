@@ -1,7 +1,7 @@
 """Soft grips on twelve handles grasped by the add-on's buttons: a row each for what is shown, measured apart.
 
     BLENDER_USER_RESOURCES=target/test-blender/venv target/venv/bin/python tests/proof/soft_grips/grasped.py
-        [--starts made tilted ...] [--percentile 50]
+        [--starts made tilted ...] [--handles toothbrush ...] [--percentile 50]
 
 How deep the shown skin lies in the shown, pressed grip is measured by `handles.measuring`, which shares nothing with
 the library.
@@ -30,13 +30,14 @@ def main():
     """Grasps every handle and solves it with every grip. Exit code 1 if one that is shown is wrong."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--starts", nargs="+", default=["made"])
+    parser.add_argument("--handles", nargs="+", choices=list(shapes.SHAPES), default=list(shapes.SHAPES))
     parser.add_argument("--percentile", type=int, default=50)
     asked = parser.parse_args()
     thenar_blender.register()
     counts = {"solved": 0, "refused": 0, "wrong": 0}
     for start in asked.starts:
-        for name, make in shapes.SHAPES.items():
-            row = grasping.grasp(make(), asked.percentile, start)
+        for name in asked.handles:
+            row = grasping.grasp(shapes.SHAPES[name](), asked.percentile, start)
             if "refused" in row:
                 print(f"{start}, {name}: refused as rigid", flush=True)
                 continue

@@ -119,6 +119,33 @@ def test_skin_on_a_sharp_edge_of_a_soft_grip_settles(grip):
     assert stiff.total_force_n[2] == pytest.approx(rigid.total_force_n[2], rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("count", "turns", "tray"), [(800, (1.3, 0.3), (3.6, 1.5, 6.0)), (500, (2.3, 0.0), (4.0, 3.4, 7.0))]
+)
+def test_a_fingertip_over_the_edge_of_a_soft_tray_settles(count, turns, tray):
+    """Skin at the edge met one wall or the other from press to press, and its yield jumped by 0.33 and 0.10 mm.
+
+    The tray: depth of its face in the pad, how far the pad lies from its edge, and its thickness (mm).
+    """
+    depth, over, thick = tray
+    tray = meshes.box((-30.0, -over, -depth), (30.0, 60.0, thick - depth))
+    vertices, triangles = pressing.fingertip(count)
+    about_z, about_x = meshes.rotation((0.0, 0.0, 1.0), turns[0]), meshes.rotation((1.0, 0.0, 0.0), turns[1])
+    vertices = vertices @ (about_x @ about_z).T
+    vertices -= [0.0, 0.0, vertices[:, 2].max()]
+    prepared = thenar.Skin(vertices, triangles, materials=[thenar.Material.finger_layer()])
+    contact = prepared.press(*tray, grip=thenar.Elastomer(8.0, 0.1, 0.3))
+    warm = prepared.press(*tray, grip=thenar.Elastomer(8.0, 0.1, 0.3), warm_start=True)
+    gap = contact.pressed_product.gap_mm(vertices + contact.displacement_mm)["gap_mm"]
+    change = np.linalg.norm(warm.total_force_n - contact.total_force_n) / np.linalg.norm(contact.total_force_n)
+    print(f"skin within {np.abs(gap[contact.in_contact]).max():.1e} mm of the grip, again {change:.1e} of the force")
+    assert contact.grade != "do not use" and not any("settled to" in text for text in contact.warnings)
+    assert np.abs(gap[contact.in_contact]).max() < 1e-3 and gap.min() > -1e-3
+    assert change < 1e-3, "a press that starts from the result ends there"
+    borne = (contact.force_n[:, None] * contact.product_normal).sum(axis=0)
+    assert contact.total_force_n == pytest.approx(-borne, abs=1e-6)
+
+
 def test_a_foam_is_pressed_no_thinner_than_it_can_be():
     skin, product = meshes.disc_patch(16.0, 0.8), paraboloid(16.0, 0.8, 1.5)
     foam = thenar.Elastomer(0.5, 0.004, 0.0)

@@ -72,13 +72,6 @@ fn come_nearer(
     (grip, field): (&Covered, &mut [Vec3]),
 ) {
     let detection = setting.detection;
-    let area = |site: u32| detection.areas[vertex(skin, site)];
-    let mut loads = Vec::new();
-    for (k, &site) in found.zone.iter().enumerate() {
-        if found.force[k] > 0.0 {
-            loads.push((grip.place(&found.touch[k], area(site)), found.force[k]));
-        }
-    }
     let mut near: Vec<(u32, Gap)> = Vec::new();
     for site in (0..field.len() as u32).filter(|&s| skin.sites.is_skin(s as usize)) {
         let gap = match found.zone.binary_search(&site) {
@@ -87,14 +80,34 @@ fn come_nearer(
         };
         near.extend(gap.map(|gap| (site, gap)));
     }
-    let place = |(site, gap): &(u32, Gap)| grip.place(gap, area(*site));
-    let places: Vec<Place> = near.iter().map(place).collect();
-    let mut yields = vec![0.0; field.len()];
-    for ((site, gap), depth) in near.iter().zip(grip.yield_at(&places, &loads)) {
-        field[*site as usize] += gap.normal * depth;
-        yields[*site as usize] = depth;
+    let place = |(site, gap): &(u32, Gap)| grip.place(gap, detection.areas[vertex(skin, *site)]);
+    let force = |site: u32| {
+        let k = found.zone.binary_search(&site).ok()?;
+        Some(found.force[k]).filter(|force| *force > 0.0)
+    };
+    let yields_at = |gaps: &[(u32, Gap)]| {
+        let places: Vec<Place> = gaps.iter().map(place).collect();
+        let bearing = gaps.iter().filter_map(|at| Some((place(at), force(at.0)?)));
+        grip.yield_at(&places, &bearing.collect::<Vec<(Place, f64)>>())
+    };
+    let mut depths = yields_at(&near);
+    for ((site, gap), depth) in near.iter().zip(&depths) {
+        field[*site as usize] += gap.normal * *depth;
     }
-    grip.yields().found = yields;
+    let mut yields = grip.yields();
+    yields.met = vec![None; field.len()];
+    for (site, gap) in &near {
+        yields.met[*site as usize] = Some(*gap);
+    }
+    if !yields.held.is_empty() {
+        let held = |(site, gap): &(u32, Gap)| (*site, yields.held[*site as usize].unwrap_or(*gap));
+        depths = yields_at(&near.iter().map(held).collect::<Vec<(u32, Gap)>>());
+    }
+    yields.found = vec![0.0; field.len()];
+    for ((site, _), depth) in near.iter().zip(depths) {
+        let overlap = (-detection.distances[vertex(skin, *site)]).max(0.0);
+        yields.found[*site as usize] = depth.min(overlap);
+    }
 }
 
 /// Field of the loads by update of the last live press's field; small changes of load are deferred.

@@ -28,6 +28,9 @@ const UNSEEN_MM: f64 = 0.01;
 const ROUGH_MM: f64 = 0.1;
 /// Presses before it is given up.
 const MOST_PRESSES: usize = 24;
+/// Presses from which on the skin's moduli take the yield at the walls that were met then. Moduli decide which wall skin at an edge of the
+/// product meets, and what it yields jumps from one wall to the other: without a hold the two chase each other.
+const HELD_FROM: usize = 4;
 /// No grip is pressed thinner than this share of itself.
 const LEAST_THICKNESS: f64 = 0.05;
 /// Share of the thickness by which a grip may be pressed beyond that.
@@ -132,7 +135,7 @@ impl Pressing<'_> {
             let contact = self.press(&Press { start, ..*press }, &quiet)?;
             let depth = covered.depth(&self.loads(press, covered, &contact)?);
             let (beyond, depth) = (harden(covered, &depth, &thickness), depth);
-            let stale = renew(covered, self.skin);
+            let stale = renew(covered, self.skin, presses >= HELD_FROM);
             let left = beyond.max(stale);
             let deepest = depth.iter().fold(0.0, |most, d| f64::max(most, d.abs()));
             if left <= TOLERANCE * deepest + LEAST_TOLERANCE_MM || presses == MOST_PRESSES {
@@ -261,12 +264,15 @@ fn harden(covered: &Covered, depth: &[f64], thickness: &[f64]) -> f64 {
 
 /// Takes what the grip yielded in the last press out of the depths that the skin's moduli follow; returns the largest change, mm.
 ///
-/// Where no modulus follows depth, nothing is taken.
-fn renew(covered: &Covered, skin: &Skin) -> f64 {
+/// Where no modulus follows depth, nothing is taken. `is_held`: from now on at the walls that the last press met.
+fn renew(covered: &Covered, skin: &Skin, is_held: bool) -> f64 {
     let mut yields = covered.yields();
     let follows = |m: &crate::Material| m.stiffening > 0.0 || m.g0_mpa != m.g_lim_mpa;
     if !skin.tissue.materials.iter().any(follows) {
         return 0.0;
+    }
+    if is_held && yields.held.is_empty() {
+        yields.held = yields.met.clone();
     }
     let before = std::mem::take(&mut yields.taken);
     let was = |site: usize| before.get(site).copied().unwrap_or(0.0);

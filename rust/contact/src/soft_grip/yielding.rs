@@ -31,13 +31,17 @@ pub(crate) struct Covered {
     yields: Mutex<Yields>,
 }
 
-/// How far the grip yields where sites of the skin lie, mm; empty for not at all.
+/// How far the grip yields where sites of the skin lie, by site; empty for not at all. Depths in mm.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Yields {
     /// As taken by the skin's moduli.
     pub taken: Vec<f64>,
-    /// Of the last press.
+    /// Of the last press; no more than the site is deep, since nothing more can be taken from its depth.
     pub found: Vec<f64>,
+    /// Where each site met the product in the last press.
+    pub met: Vec<Option<Gap>>,
+    /// Where each is taken to meet it in the presses to come; empty where that is not held.
+    pub held: Vec<Option<Gap>>,
 }
 
 /// A place on a grip, and a vertex area that a force on it is spread over.
