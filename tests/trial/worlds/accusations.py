@@ -26,7 +26,11 @@ from scipy.stats import beta
 from trial.running import Binary, Fault
 
 WRONG = 0.03
-WORLDS = ("closed_forms", "finite_element_pads")
+WORLDS = {
+    "closed_forms": "trial.worlds.closed_forms",
+    "finite_element_pads": "trial.worlds.finite_element_pads",
+    "laboratory_fingertips": "trial.fingertips.laboratory_fingertips",
+}
 RAMPS = "ramps"
 
 
@@ -60,14 +64,19 @@ class Asked:
     def draw(self):
         """The case."""
         moved = () if self.motion == RAMPS else (self.motion,)
-        return importlib.import_module(f"trial.worlds.{self.world}").draw(self.seed, self.truth, self.noise, *moved)
+        return module(self.world).draw(self.seed, self.truth, self.noise, *moved)
+
+
+def module(world):
+    """The module of a world."""
+    return importlib.import_module(WORLDS[world])
 
 
 def answer(asked):
     """(verdict, names) of one case, or ("fault", [sentence]); of *cannot tell*, the names that it cannot tell apart."""
     kept = asked.kept()
     if kept and kept.exists():
-        return _said(json.loads(kept.read_text()))
+        return _said(json.loads(kept.read_text()), asked)
     with tempfile.TemporaryDirectory() as place:
         asked.draw().write(Path(place) / "study")
         try:
@@ -78,12 +87,19 @@ def answer(asked):
         if kept:
             kept.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(found, kept)
-        return _said(json.loads(found.read_text()))
+        return _said(json.loads(found.read_text()), asked)
 
 
-def _said(found):
-    names = {finding["effect"] for finding in found["findings"]}
-    return found["verdict"], sorted(names.union(*found["cannot_tell"]))
+def _said(found, asked):
+    return found["verdict"], sorted(named(asked, found["findings"]).union(*found["cannot_tell"]))
+
+
+def named(asked, findings):
+    """Names of findings; a world may have its own, by what a finding says besides."""
+    world = module(asked.world)
+    if hasattr(world, "named"):
+        return set(world.named(asked.draw(), findings))
+    return {finding["effect"] for finding in findings}
 
 
 def is_wrong(truth, verdict, names):
@@ -95,7 +111,7 @@ def is_wrong(truth, verdict, names):
 
 def judged(asked, verdict, names):
     """`right`, `missed` or `wrong`."""
-    world = importlib.import_module(f"trial.worlds.{asked.world}")
+    world = module(asked.world)
     if hasattr(world, "judged"):
         return world.judged(asked.truth, asked.draw().pad.stiffening, verdict, names)
     if is_wrong(asked.truth, verdict, names):
@@ -106,12 +122,12 @@ def judged(asked, verdict, names):
 
 def noises(world):
     """Noise families of a world."""
-    return importlib.import_module(f"trial.worlds.{world}").NOISES
+    return module(world).NOISES
 
 
 def motions(world):
     """Motions of a world."""
-    return getattr(importlib.import_module(f"trial.worlds.{world}"), "MOTIONS", (RAMPS,))
+    return getattr(module(world), "MOTIONS", (RAMPS,))
 
 
 def suspected(cases):
@@ -141,7 +157,7 @@ def arguments():
     parser.add_argument("--keep")
     parser.add_argument("--program", default=str(Path(__file__).parents[3] / "target/release/thenar"))
     given = parser.parse_args()
-    world = importlib.import_module(f"trial.worlds.{given.world}")
+    world = module(given.world)
     given.noises = given.noises or list(noises(given.world))
     if given.truth not in world.TRUTHS or set(given.noises) - set(world.NOISES):
         parser.error(f"{given.world} has the truths {', '.join(world.TRUTHS)} and the noises {', '.join(world.NOISES)}")

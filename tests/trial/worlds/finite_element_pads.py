@@ -124,7 +124,7 @@ class Case:
         """Writes `study.toml`, `skin.ply` and the recordings."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "skin.ply").write_text(_ply(*half_ellipsoid(self.pad.semi_axes_mm, 0.17 * self.pad.thickness_mm)))
+        (folder / "skin.ply").write_text(ply(*half_ellipsoid(self.pad.semi_axes_mm, 0.17 * self.pad.thickness_mm)))
         text = f'[study]\ntitle = "Pad of {self.pad.name}"\n[skin]\nmesh = "skin.ply"\n[skin.materials.default]\n'
         text += f"g0_mpa = 0.006\ng_lim_mpa = 0.05\nd_lim_mm = 4.0\nthickness_mm = {self.pad.thickness_mm:.2f}\n"
         for tool in sorted({one.tool for one in self.recordings}):
@@ -331,7 +331,8 @@ def half_ellipsoid(semi_axes, spacing):
     return vertices, faces
 
 
-def _ply(vertices, faces):
+def ply(vertices, faces):
+    """The text of a PLY file."""
     lines = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}"]
     lines += [f"property double {axis}" for axis in "xyz"]
     lines += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]

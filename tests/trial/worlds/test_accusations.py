@@ -27,7 +27,7 @@ def program(folder, verdict, effects=(), cannot_tell=()):
 
 def asked(program, truth="nothing", world="finite_element_pads", keep=None):
     """One case with white noise."""
-    noise = {"finite_element_pads": "laboratory", "closed_forms": "white"}[world]
+    noise = "white" if world == "closed_forms" else "laboratory"
     return Asked(world, 1, truth, noise, program, keep)
 
 
@@ -44,6 +44,7 @@ def test_a_verdict_is_kept_and_not_asked_for_again(tmp_path):
         Asked("closed_forms", 12, "nothing", "white", "", "DIR"),
         Asked("closed_forms", 12, "saturation", "depth_jitter", "", "DIR", "kinked"),
         Asked("finite_element_pads", 3, "cycle_softening", "slow", "", "DIR"),
+        Asked("laboratory_fingertips", 4, "relaxation_and_mat_ceiling", "remounted", "", "DIR"),
     ],
 )
 def test_the_file_of_a_verdict_says_which_case_it_is(case):
@@ -51,6 +52,15 @@ def test_the_file_of_a_verdict_says_which_case_it_is(case):
     assert [getattr(found, of) for of in ("world", "seed", "truth", "noise", "motion")] == [
         getattr(case, of) for of in ("world", "seed", "truth", "noise", "motion")
     ]
+
+
+def test_a_world_may_have_its_own_names_of_findings(tmp_path):
+    ceiling = {"effect": "saturation", "channel": "map"}
+    (tmp_path / "laboratory_fingertips_mat_ceiling_laboratory_1.json").write_text(
+        json.dumps({"verdict": "instrument", "findings": [ceiling], "cannot_tell": []})
+    )
+    case = Asked("laboratory_fingertips", 1, "mat_ceiling", "laboratory", "", str(tmp_path))
+    assert accusations.answer(case) == ("instrument", ["mat_ceiling"])
 
 
 def test_what_is_only_suspected_is_counted(tmp_path):
@@ -77,6 +87,8 @@ def test_a_program_that_fails_is_a_fault_and_is_not_kept(tmp_path):
         ("closed_forms", "relaxation", "parameters", [], "missed"),
         ("finite_element_pads", "exponential", "missing_physics", ["stiffening_law"], "right"),
         ("finite_element_pads", "nothing", "missing_physics", ["stiffening_law"], "wrong"),
+        ("laboratory_fingertips", "exponential", "missing_physics", ["stiffening_law"], "right"),
+        ("laboratory_fingertips", "nothing", "missing_physics", ["stiffening_law"], "wrong"),
     ],
 )
 def test_each_world_judges_by_its_own_rules(world, truth, verdict, names, wanted):
