@@ -13,6 +13,8 @@ Truths, and the right answers, written down before any diagnosis ran:
   alone. *Too little data* is a miss, any other verdict is wrong.
 - `stiff_skin`: an outer 1 mm that is 20 times as stiff as the pulp under it.
 - `relaxation`: two terms of a Prony series in each spring of a bed (`tissue_bed.py`), so also in lifts and cycles.
+- `drainage`, added after the first 50 verdicts had been seen, to see what a relaxation is confused with: the same bed
+  with time constants that grow as the contact's area. This is the law that the diagnosis tries, in code of its own.
 - `cycle_softening`: damage by work in each spring, which does not heal in the session.
 - `inclusion`: a stiff spot (in the slim tip). Right: an inclusion within a sensel (2 mm) of its place in the skin's
   plane; one that is farther off is called `inclusion_elsewhere`, a wrong name.
@@ -50,6 +52,7 @@ TRUTHS = (
     "exponential",
     "stiff_skin",
     "relaxation",
+    "drainage",
     "inclusion",
     "friction",
     "cycle_softening",

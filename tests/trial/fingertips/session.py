@@ -87,10 +87,11 @@ class Session:
     def _memory(self):
         draw = self.random.uniform
         slow = [(draw(0.1, 0.2), draw(0.2, 0.5)), (draw(0.08, 0.16), draw(2.0, 5.0))]
+        fades = self.truths & {"relaxation", "drainage"}
         damage = Damage(draw(0.2, 0.4), draw(0.5, 2.0), self.deepest)
         friction = draw(0.15, 0.5)
         return (
-            slow if "relaxation" in self.truths else [],
+            slow if fades else [],
             damage if "cycle_softening" in self.truths else None,
             friction if "friction" in self.truths else 0.0,
         )
@@ -132,11 +133,19 @@ class Session:
 
     def _answer(self, tool, motion):
         """True force, contact area and force along the slide."""
-        followed = self.beds[tool].follow(motion.time, motion.depth, self.terms, self.damage)
+        slower = self._drains(tool) if "drainage" in self.truths else None
+        followed = self.beds[tool].follow(motion.time, motion.depth, self.terms, self.damage, slower)
         area = self.tip.area_mm2(tool, followed.reach_mm)
         # A slab of that area and of what is left of the thickness, sheared.
         shear = self.tip.modulus_mpa * area.max() / (self.tip.thickness_mm - motion.depth.max())
         return followed.force_n, area, dragged(motion.slide, followed.force_n, self.friction, shear), shear
+
+    def _drains(self, tool):
+        """Fluid has the farther to go the wider the contact is: time constants grow as its area over the widest."""
+        widest, touch = self.tip.area_mm2("plate", self.deepest), 0.05 * self.deepest
+        depth = np.linspace(0.0, self.deepest, 60)
+        part = self.tip.area_mm2(tool, np.maximum(depth, touch)) / widest
+        return lambda at: np.interp(at, depth, part)
 
     def _record(self, tool, name, protocol, motion):
         force, area, along, _ = self._answer(tool, motion)

@@ -24,6 +24,13 @@ def test_a_linear_bed_relaxes_as_its_closed_form():
     np.testing.assert_allclose(found, (1.0 - share) * np.minimum(time, 1.0) + branch, atol=1e-9)
 
 
+def test_a_slower_clock_fades_as_one_with_longer_times():
+    time = np.linspace(0.0, 3.0, 61)
+    depth = np.minimum(time, 1.0)
+    slower = HERTZ.follow(time, depth, [(0.3, 0.4)], slower=lambda at: 3.0).force_n
+    np.testing.assert_allclose(slower, HERTZ.follow(time, depth, [(0.3, 1.2)]).force_n, atol=1e-12)
+
+
 def test_a_lift_from_relaxed_tissue_parts_early_and_never_pulls():
     time = np.linspace(0.0, 4.0, 401)
     depth = np.interp(time, [0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 1.0, 0.0])

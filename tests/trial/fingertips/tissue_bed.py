@@ -49,8 +49,11 @@ class Bed:
         self.meets = depth_mm[:-1]
         self.stiffness = np.maximum(np.diff(np.append(0.0, slope)), 0.0)
 
-    def follow(self, time_s, tool_depth_mm, terms=(), damage=None):
-        """Forces at times as the tool's depth goes straight between them, from rested springs; `terms`: (share, s)."""
+    def follow(self, time_s, tool_depth_mm, terms=(), damage=None, slower=None):
+        """Forces at times as the tool's depth goes straight between them, from rested springs; `terms`: (share, s).
+
+        `slower(depth)` is a factor of the time constants at a depth of the tool; none is 1.
+        """
         shares = np.array([share for share, _ in terms])
         taus = np.array([tau for _, tau in terms])
         strain = np.zeros(len(self.meets))
@@ -59,9 +62,10 @@ class Bed:
         before = (time_s[0], tool_depth_mm[0])
         for now in zip(time_s, tool_depth_mm, strict=True):
             count = max(1, int(np.ceil((now[0] - before[0]) / FINEST_S))) if len(terms) or damage else 1
-            dt = (now[0] - before[0]) / count
-            fade = np.exp(-dt / taus)
-            rise = shares * np.where(dt > 0.0, -np.expm1(-dt / taus) * taus / max(dt, 1e-12), 1.0)
+            dt = max((now[0] - before[0]) / count, 1e-12)
+            middle = slower(0.5 * (before[1] + now[1])) if slower else 1.0
+            fade = np.exp(-dt / (taus * middle))
+            rise = -shares * np.expm1(-dt / (taus * middle)) * taus * middle / dt
             for part in range(1, count + 1):
                 depth = before[1] + (now[1] - before[1]) * part / count
                 faded = fade[:, None] * branches
