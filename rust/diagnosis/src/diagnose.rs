@@ -9,6 +9,7 @@ use thenar_contact::Control;
 use thenar_recordings::Study;
 
 use crate::channels::mat_ceiling::{Ceiling, add_ceiling, with_ceiling};
+use crate::channels::mat_gain::add_gain;
 use crate::channels::slides::add_friction;
 use crate::findings::{Diagnosis, Suggestion, Verdict};
 use crate::gates::decision::Decision;
@@ -232,6 +233,7 @@ fn told(
         .into_iter()
         .for_each(|seen| add_ceiling(&mut found, seen));
     add_friction(study, &mut found);
+    add_gain(study, &mut found);
     let is_named = matches!(found.verdict, Verdict::MissingPhysics | Verdict::Instrument);
     found.is_more_than_noise &= !is_named;
     found.sentence = crate::verdict_sentence::sentence(

@@ -24,6 +24,8 @@ pub enum Kind {
     Slide,
     /// A ceiling at which the cells of a mat clip.
     MatCeiling,
+    /// A gain of a mat, from its sum against the load cell.
+    MatGain,
     /// A cause in the skin, from a grasp.
     GraspSkin,
     /// A fault of mat or force sensor, from a grasp.
@@ -52,6 +54,7 @@ impl Kind {
             Kind::Place => "place",
             Kind::Slide => "slide",
             Kind::MatCeiling => "mat_ceiling",
+            Kind::MatGain => "mat_gain",
             Kind::GraspSkin => "grasp_skin",
             Kind::GraspInstrument => "grasp_instrument",
         }

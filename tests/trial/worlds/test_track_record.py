@@ -27,6 +27,7 @@ def test_kinds_part_one_of_two_maps_and_slides():
     ceiling = finding("saturation", kind="instrument", channel="map")
     assert of(skin, [skin, ceiling], "calibration") == "skin_form_known"
     assert of(ceiling, [skin, ceiling], "calibration") == "mat_ceiling"
+    assert of(finding("gain", kind="instrument", channel="map"), [skin], "calibration") == "mat_gain"
     with pytest.raises(ValueError, match="is of kind place"):
         of(skin | {"track_record": {"kind": "place"}}, [skin], "calibration")
 

@@ -56,7 +56,7 @@ def _kind(finding, findings, world):
     if finding["channel"] == "tangential_force":
         return "slide"
     if finding["channel"] == "map":
-        return "place" if is_skin else "mat_ceiling"
+        return "place" if is_skin else "mat_gain" if finding["effect"] == "gain" else "mat_ceiling"
     form = "form_measured" if world in OVER_BONE else "form_known"
     of_force = [one for one in findings if one["channel"] == "force"]
     return f"{'one_of_two' if len(of_force) > 1 else 'skin' if is_skin else 'instrument'}_{form}"

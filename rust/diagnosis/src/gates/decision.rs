@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use crate::findings::Verdict;
-use crate::gates::pair_gates::{CLOCKS, is_adequate, is_pair, is_static};
+use crate::gates::pair_gates::{CLOCKS, are_apart, is_adequate, is_pair, is_static};
 use crate::wording::effect_in_words;
 use thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
@@ -265,17 +265,17 @@ pub fn opponents<'a>(rungs: &'a Rungs, pair: [&str; 2]) -> Option<[&'a Scored; 2
 }
 
 /// True if only a second contact size could tell two names apart, and there is none: a clock that is fixed, and one that grows as
-/// the contact's area, differ nowhere else.
+/// the contact's area. Within one size they differ little, unless what was recorded says otherwise (`are_apart`).
 fn is_alias(ready: &PreparedStudy, best: &Scored, rival: &Scored) -> bool {
     let radii = ready
         .elastic
         .places
         .iter()
         .map(|p| radius(p, ready.scales.deepest));
-    are_clocks([best, rival]) && !have_sizes(radii)
+    are_clocks([best, rival]) && !have_sizes(radii) && !are_apart(best, rival)
 }
 
-/// True of the two clocks that differ by the contact's size alone.
+/// True of the two clocks that differ by the contact's size.
 pub fn are_clocks(two: [&Scored; 2]) -> bool {
     let both = two.map(|s| s.mechanisms[0].effect);
     CLOCKS.iter().all(|c| both.contains(c))
