@@ -67,7 +67,7 @@ def apply(context, index):
 
 
 def _shows_less(found):
-    """A doubt where the contact model, with what is switched on, predicts held-out recordings worse than the fit does."""
+    """A doubt where the contact model, with what is switched on, predicts held-out recordings worse than the fit."""
     tried = reading.by_contact_model(found)
     removed = ((found.get("fit") or {}).get("reducible_error_removed") or {}).get("value")
     if tried is None or removed is None or not found["fit"]["by_contact_model"].get("is_behind_the_fit"):

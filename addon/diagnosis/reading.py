@@ -58,7 +58,7 @@ def switched(found, effect):
 
 
 def by_contact_model(found):
-    """Share of the reducible held-out error that the contact model removes with the findings' model; None if it was not tried."""
+    """Share of the reducible held-out error that the contact model removes with what is named; None if not tried."""
     tried = (found.get("fit") or {}).get("by_contact_model") or {}
     return (tried.get("reducible_error_removed") or {}).get("value")
 

@@ -10,6 +10,7 @@ use thenar_inference::errors::InferenceError;
 use thenar_inference::fit::fitting::Fitting;
 use thenar_inference::forward::surrogate::mechanism::Law;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
+use thenar_inference::selection::contact_model_check::ByContactModel;
 use thenar_inference::selection::cross_validation::{Gain, Judged};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
@@ -19,30 +20,42 @@ const LEAST: f64 = 0.7;
 /// Standard deviations of the noise by which its error must be larger too: where a finding is small against the noise, shares mean little.
 const CLEARLY: f64 = 0.1;
 
+/// What findings are judged by.
+pub struct Judging<'a> {
+    pub ready: &'a PreparedStudy,
+    pub rungs: &'a Rungs,
+    /// Of what is drawn.
+    pub seed: u64,
+}
+
 /// Adds the check to the gain of what is named. What the contact model cannot do is a note.
 ///
 /// # Errors
 /// `Cancelled` alone.
 pub fn check(
-    (ready, rungs): (&PreparedStudy, &Rungs),
-    (sized, fitting): (&mut Sized<'_>, &mut Fitting),
-    (seed, control): (u64, &Control<'_>),
+    sized: &mut Sized<'_>,
+    fitting: &mut Fitting,
+    judging: &Judging<'_>,
+    control: &Control<'_>,
 ) -> Result<Option<String>, InferenceError> {
     let (Some(named), Some(gain)) = (sized.decision.named, &mut sized.gain) else {
         return Ok(None);
     };
     let measured = fitting.measured().to_vec();
-    let judged = Judged {
-        ready,
-        measured: &measured,
-        found: named,
-        overdispersion: rungs.overdispersion,
-        seed,
+    let switched = |scored: &Scored| effects_of(judging.ready, scored);
+    let mut asked = ByContactModel {
+        judged: Judged {
+            ready: judging.ready,
+            measured: &measured,
+            found: named,
+            overdispersion: judging.rungs.overdispersion,
+            seed: judging.seed,
+        },
+        replay: &mut fitting.replay,
+        switched: &switched,
+        control,
     };
-    let switched = |scored: &Scored| effects_of(ready, scored);
-    let with = (&mut fitting.replay, &switched as _);
-    let of = (gain.held_out_by, gain.removed);
-    match judged.by_contact_model(of, with, control) {
+    match asked.check(gain.held_out_by, gain.removed) {
         Ok(found) => {
             gain.contact_model = found;
             Ok(None)

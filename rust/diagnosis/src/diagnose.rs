@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use thenar_contact::Control;
 use thenar_recordings::Study;
 
+use crate::by_contact_model::Judging;
 use crate::channels::mat_ceiling::{Ceiling, add_ceiling, with_ceiling};
 use crate::channels::mat_gain::add_gain;
 use crate::channels::slides::add_friction;
@@ -143,8 +144,12 @@ fn explained(
     let asked = (&sized.decision.cannot_tell[..], quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
-    let with = (&mut sized, &mut *fitting);
-    let failed = crate::by_contact_model::check((ready, rungs), with, (options.seed, quiet))?;
+    let judging = Judging {
+        ready,
+        rungs,
+        seed: options.seed,
+    };
+    let failed = crate::by_contact_model::check(&mut sized, fitting, &judging, quiet)?;
     let mut found = told(
         (study, ceiling),
         (comparison, fitting),

@@ -28,8 +28,7 @@ pub use findings::{
     Curve, Diagnosis, Finding, Number, Rival, Suggestion, Switched, Verdict, When, Where,
 };
 pub use findings_json::findings_json;
-pub use thenar_inference::selection::contact_model_check::ContactModelCheck;
-pub use thenar_inference::selection::cross_validation::{Gain, Spread};
+pub use thenar_inference::selection::cross_validation::{ContactModelCheck, Gain, Spread};
 pub use track_record::{Confidence, Form, Kind, Record};
 pub use unlisted_finding::{Correction, Unlisted};
 pub use wording::variable_in_words;

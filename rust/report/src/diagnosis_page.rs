@@ -9,8 +9,7 @@ use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};
 use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
 use thenar_inference::number_format::{self, capital};
-use thenar_inference::selection::contact_model_check::ContactModelCheck;
-use thenar_inference::selection::cross_validation::{Gain, HeldOutBy};
+use thenar_inference::selection::cross_validation::{ContactModelCheck, Gain, HeldOutBy};
 
 /// Recordings that are drawn.
 const MOST_CURVES: usize = 6;

@@ -11,7 +11,7 @@ import pytest
 import small_studies
 import stage
 from thenar_blender import native
-from thenar_blender.diagnosis import applying, curves, diagnosing, freshness, letter, reading
+from thenar_blender.diagnosis import curves, diagnosing, freshness, letter, reading
 from thenar_blender.scene.checks import Refusal
 
 
@@ -224,28 +224,6 @@ def test_a_bone_slopes_along_the_hand_however_the_study_lay(diagnose):
     assert bpy.ops.thenar.apply_finding(index=1) == {"FINISHED"}
     _, told_numbers, _ = effects()["bone"]
     assert [told_numbers[f"direction_{axis}"] for axis in "xyz"] == pytest.approx([0.0, -0.8, 0.6], abs=1e-6)
-
-
-def tried(removed):
-    """A thin bone whose number in the contact model is not the fit's, and what the contact model removes with it."""
-    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
-    found["findings"][1]["parameters"]["thickness_mm"] = {"value": 4.0, "unit": "mm", "low": 3.0, "high": 5.0}
-    found["model"]["effects"] = [{"name": "bone", "amplitude": 1.0, "thickness_mm": 4.75}]
-    share = {"value": removed, "low": 0.0, "high": 1.0}
-    found["fit"]["by_contact_model"] = {"reducible_error_removed": share, "is_behind_the_fit": removed < 0.7}
-    return found
-
-
-@pytest.mark.parametrize(
-    ("removed", "doubt"),
-    [(0.9, ""), (0.4, "removes 40 % of the error of held-out recordings, the fit 96 %"), (-0.5, "no better than without")],
-)
-def test_what_is_switched_on_has_the_numbers_that_the_contact_model_was_tried_with(diagnose, removed, doubt):
-    stage.scene()
-    diagnose(tried(removed))
-    taken = applying.apply(bpy.context, 1)
-    assert effects()["bone"][1]["thickness_mm"] == pytest.approx(4.75)
-    assert doubt in taken.doubt and bool(doubt) == bool(taken.doubt)
 
 
 def test_another_study_begins_with_a_model_of_its_own(diagnose):

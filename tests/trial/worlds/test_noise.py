@@ -33,7 +33,7 @@ def test_a_ceiling_that_is_only_noise_of_the_depth_is_not_named(tmp_path):
 
 
 def removed(said):
-    """Share of the reducible held-out error that the fit removes, and that the contact model does with what is named."""
+    """Share of the reducible held-out error that the fit removes, and the contact model with what is named."""
     fit = said["fit"]
     return tuple(of["reducible_error_removed"]["value"] for of in (fit, fit["by_contact_model"]))
 

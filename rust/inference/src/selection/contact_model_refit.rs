@@ -8,7 +8,7 @@
 
 use nalgebra::DMatrix;
 use thenar_contact::effects::Effect;
-use thenar_contact::{ActiveEffect, Control, Material};
+use thenar_contact::{ActiveEffect, Control};
 
 use crate::errors::InferenceError;
 use crate::forward::mesh::replay::Replay;
@@ -17,7 +17,7 @@ use crate::forward::surrogate::mechanism::Mechanism;
 use crate::least_squares::huber::HUBER;
 use crate::least_squares::levenberg_marquardt::{Limits, Objective, Point, Stopping, descend};
 use crate::noise::whitening::Whitening;
-use crate::selection::contact_model_check::Task;
+use crate::selection::contact_model_tasks::{Factors, Slot, Task, shown};
 use crate::selection::cross_validation::Judged;
 
 /// Largest logarithm of the factor on a number, and the standard deviation about 0 that holds what curves do not tell.
@@ -30,60 +30,11 @@ const SETTLED: f64 = 0.02;
 /// Least part of a whole share, such as an amplitude of 1 or a Poisson's ratio of one half.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Numbers of an effect that have one factor: 0 is the amplitude, k + 1 the shape number k.
-pub(crate) type Slot = (usize, Vec<usize>);
-
-/// Factors from the surrogate's numbers to those of the contact model, as logarithms.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Factors {
-    /// Of the modulus at first touch, and of that where it stops growing.
-    pub moduli: [f64; 2],
-    pub(crate) numbers: Vec<(Slot, f64)>,
-}
-
 /// Where a search ended: the place, and the derivatives there, from which a search for another fit may begin.
 pub(crate) struct Ended {
     pub(crate) factors: Factors,
     at: Vec<f64>,
     jacobian: DMatrix<f64>,
-}
-
-impl Factors {
-    /// Materials with their moduli changed.
-    pub(crate) fn materials(&self, of: &[Material]) -> Vec<Material> {
-        let one = |m: &Material| Material {
-            g0_mpa: m.g0_mpa * libm::exp(self.moduli[0]),
-            g_lim_mpa: m.g_lim_mpa * libm::exp(self.moduli[1]),
-            ..*m
-        };
-        of.iter().map(one).collect()
-    }
-
-    /// Effects with their numbers changed, within what is admissible.
-    pub fn effects(&self, of: &[ActiveEffect]) -> Vec<ActiveEffect> {
-        let mut all = of.to_vec();
-        for ((effect, places), log) in &self.numbers {
-            let (one, factor) = (&mut all[*effect], libm::exp(*log));
-            let entry = one.entry();
-            for place in places {
-                match place.checked_sub(1) {
-                    None => one.amplitude = (one.amplitude * factor).clamp(0.0, entry.most),
-                    Some(k) => {
-                        let [low, high] = entry.shape[k].admissible;
-                        one.shape[k] = (one.shape[k] * factor).clamp(low, high);
-                    }
-                }
-            }
-        }
-        all
-    }
-
-    fn at(slots: &[Slot], at: &[f64]) -> Factors {
-        Factors {
-            moduli: [at[0], at[1]],
-            numbers: slots.iter().cloned().zip(at[2..].iter().copied()).collect(),
-        }
-    }
 }
 
 /// The effects whose numbers are sought, and those numbers: of effects without memory alone.
@@ -131,23 +82,32 @@ struct Search<'a, 'b> {
     starts: Vec<(usize, usize)>,
 }
 
-impl Judged<'_> {
-    /// The factors for a finding's fit at `at`, from what it gives in these recordings.
+/// A fit that the contact model is to answer as: its recordings, effects and numbers.
+pub(crate) struct Matching<'a> {
+    pub(crate) judged: &'a Judged<'a>,
+    pub(crate) tasks: &'a [Task],
+    pub(crate) effects: &'a [ActiveEffect],
+    pub(crate) at: &'a [f64],
+}
+
+impl Matching<'_> {
+    /// The factors, from what the fit gives in these recordings; None where no number is sought.
     ///
     /// # Errors
     /// What the contact model says of a press or an effect, or `Cancelled`.
     pub(crate) fn factors(
         &self,
         replay: &mut Replay,
-        (tasks, effects, at): (&[Task], &[ActiveEffect], &[f64]),
-        (from, control): (Option<&Ended>, &Control<'_>),
+        from: Option<&Ended>,
+        control: &Control<'_>,
     ) -> Result<Option<Ended>, InferenceError> {
+        let (tasks, effects) = (self.tasks, self.effects);
         let (on, slots) = sought(effects);
         if slots.is_empty() {
             return Ok(None);
         }
-        let target = self.curves(&on, at);
-        let mut met = self.measured.to_vec();
+        let target = self.curves(&on);
+        let mut met = self.judged.measured.to_vec();
         let mut next = 0;
         let mut starts = Vec::new();
         for one in &mut met {
@@ -164,7 +124,7 @@ impl Judged<'_> {
         let mut search = Search {
             replay,
             control,
-            whitening: Whitening::new(&met, &self.ready.noise, &is_used),
+            whitening: Whitening::new(&met, &self.judged.ready.noise, &is_used),
             tasks,
             effects,
             on,
@@ -182,15 +142,16 @@ impl Judged<'_> {
     }
 
     /// What the surrogate gives at a fit with some of its mechanisms alone: all samples, stacked.
-    fn curves(&self, on: &[usize], at: &[f64]) -> Vec<f64> {
-        let surrogate = self.ready.surrogate();
-        let whole = Model::new(&surrogate, &self.found.mechanisms);
-        let mut set = whole.setting(&surrogate, at);
+    fn curves(&self, on: &[usize]) -> Vec<f64> {
+        let (ready, mechanisms) = (self.judged.ready, &self.judged.found.mechanisms);
+        let surrogate = ready.surrogate();
+        let whole = Model::new(&surrogate, mechanisms);
+        let mut set = whole.setting(&surrogate, self.at);
         set.of = on.iter().map(|k| set.of[*k].clone()).collect();
-        let some = on.iter().map(|k| self.found.mechanisms[*k].clone());
+        let some = on.iter().map(|k| mechanisms[*k].clone());
         let some: Vec<Mechanism> = some.collect();
         let model = Model::new(&surrogate, &some);
-        let forces: Vec<Vec<f64>> = (0..self.ready.courses.len())
+        let forces: Vec<Vec<f64>> = (0..ready.courses.len())
             .map(|course| surrogate.forces(&model, &set, course))
             .collect();
         surrogate.stacked(&forces)
@@ -233,17 +194,13 @@ impl Objective for Search<'_, '_> {
         let factors = Factors::at(&self.slots, at);
         let all = factors.effects(self.effects);
         let effects: Vec<ActiveEffect> = self.on.iter().map(|k| all[*k].clone()).collect();
-        let shown = crate::selection::contact_model_check::shown(
-            self.replay,
-            (self.tasks, &effects, &factors),
-            self.control,
-        )?;
+        let found = shown(self.replay, (self.tasks, &effects, &factors), self.control)?;
         let mut all: Vec<Vec<f64>> = self
             .starts
             .iter()
             .map(|(first, count)| self.target[*first..first + count].to_vec())
             .collect();
-        for (task, values) in self.tasks.iter().zip(shown) {
+        for (task, values) in self.tasks.iter().zip(found) {
             for k in &task.forces {
                 all[task.recording][*k] = values[*k];
             }
@@ -302,6 +259,7 @@ impl Objective for Search<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use thenar_contact::Material;
 
     #[test]
     fn factors_act_on_their_numbers_alone_and_stay_admissible() {

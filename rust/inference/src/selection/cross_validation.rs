@@ -10,9 +10,9 @@ use crate::noise::whitening::Whitening;
 use crate::observe::measured::Measured;
 use crate::parameters::surrogate_parameter::Kind;
 use crate::random::Random;
-use crate::selection::contact_model_check::ContactModelCheck;
 use crate::selection::negative_control::{HeldOut, negative_control};
 use crate::selection::scored::Scored;
+use thenar_contact::ActiveEffect;
 
 /// Errors beyond this many standard deviations of the noise count as that many: outliers of a recording are nobody's gain.
 const MOST: f64 = 8.0;
@@ -377,4 +377,21 @@ pub struct Gain {
     pub held_out_by: HeldOutBy,
     /// The same recordings predicted by the contact model on the study's mesh; None where it was not asked or has no such effect.
     pub contact_model: Option<ContactModelCheck>,
+}
+
+/// How the contact model with a finding's effects predicts recordings that were held out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactModelCheck {
+    /// Error without the finding, in standard deviations of the noise.
+    pub before: Spread,
+    /// Error of the contact model with it.
+    pub after: Spread,
+    /// Share of the reducible error that is removed; negative: the contact model predicts worse with what the finding switches on.
+    pub removed: f64,
+    /// Ends of its 90 % interval.
+    pub interval: (f64, f64),
+    /// Factors on the fit's moduli with which this was found: at first touch, and where they stop growing.
+    pub moduli: [f64; 2],
+    /// The effects that are to be switched on, with the numbers with which this was found.
+    pub effects: Vec<ActiveEffect>,
 }

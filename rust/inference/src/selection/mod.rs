@@ -10,6 +10,7 @@ pub mod profile_interval;
 pub mod model_weights;
 pub mod cross_validation;
 pub mod contact_model_check;
-pub mod contact_model_refit;
+pub(crate) mod contact_model_refit;
+pub(crate) mod contact_model_tasks;
 pub(crate) mod negative_control;
 pub mod empirical_factor;

@@ -1,13 +1,21 @@
 //! Forces of the contact model with effects, about a base force that is known: the effects are simulated, the form of the base is not.
 
-use thenar_contact::Control;
+use thenar_contact::{Control, Material};
 
 use crate::errors::InferenceError;
-use crate::forward::mesh::nuisance::{At, Nuisance};
+use crate::forward::mesh::nuisance::Nuisance;
 use crate::forward::mesh::replay::Replay;
 
 /// Part of a recording's largest base force below which a moment gives no factor.
 const LEAST_LOAD: f64 = 1e-3;
+
+/// A recording as the contact model is to follow it.
+#[derive(Clone, Copy)]
+pub(crate) struct Case<'a> {
+    pub recording: usize,
+    pub materials: &'a [Material],
+    pub nuisance: &'a Nuisance,
+}
 
 impl Replay {
     /// What a recording's base is corrected by, by moment: a known force (N at the skin; NaN where none is) over the contact model's own
@@ -17,11 +25,12 @@ impl Replay {
     /// What the contact model says of a press, or `Cancelled`.
     pub(crate) fn base_factors(
         &mut self,
-        (recording, known): (usize, &[f64]),
-        at: At<'_>,
+        case: Case<'_>,
+        known: &[f64],
         control: &Control<'_>,
     ) -> Result<Vec<f64>, InferenceError> {
-        let base = self.look_up(recording, at, control)?;
+        let at = (case.materials, case.nuisance);
+        let base = self.look_up(case.recording, at, control)?;
         Ok(factors(known, &base.force))
     }
 
@@ -31,22 +40,23 @@ impl Replay {
     /// What the contact model says of a press or an effect, or `Cancelled`.
     pub(crate) fn predict_corrected(
         &mut self,
-        recording: usize,
-        at: At<'_>,
-        (factors, control): (&[f64], &Control<'_>),
+        case: Case<'_>,
+        factors: &[f64],
+        control: &Control<'_>,
     ) -> Result<Vec<f64>, InferenceError> {
+        let at = (case.materials, case.nuisance);
         let mut at_skin = match self.remembers() {
-            true => self.follow(recording, at, control)?,
-            false => self.look_up(recording, at, control)?,
+            true => self.follow(case.recording, at, control)?,
+            false => self.look_up(case.recording, at, control)?,
         };
         for (force, factor) in at_skin.force.iter_mut().zip(factors) {
             *force *= factor;
         }
         let bare = Nuisance {
             form: Nuisance::none().form,
-            ..*at.1
+            ..*case.nuisance
         };
-        self.shown(recording, &bare, at_skin)
+        self.shown(case.recording, &bare, at_skin)
     }
 
     /// Index of the moment that each sample of a recording belongs to.

@@ -1,0 +1,36 @@
+"""What *Switch On* puts on the hand: the numbers that the contact model was tried with, and a doubt."""
+
+import json
+
+import bpy
+import letters
+import pytest
+import stage
+from thenar_blender.diagnosis import applying
+
+
+def tried(removed):
+    """A thin bone whose number in the contact model is not the fit's, and what the contact model removes with it."""
+    found = json.loads(json.dumps(letters.FINDINGS["missing_physics"]))
+    found["findings"][1]["parameters"]["thickness_mm"] = {"value": 4.0, "unit": "mm", "low": 3.0, "high": 5.0}
+    found["model"]["effects"] = [{"name": "bone", "amplitude": 1.0, "thickness_mm": 4.75}]
+    share = {"value": removed, "low": 0.0, "high": 1.0}
+    found["fit"]["by_contact_model"] = {"reducible_error_removed": share, "is_behind_the_fit": removed < 0.7}
+    return found
+
+
+@pytest.mark.parametrize(
+    ("removed", "doubt"),
+    [
+        (0.9, ""),
+        (0.4, "removes 40 % of the error of held-out recordings, the fit 96 %"),
+        (-0.5, "no better than without"),
+    ],
+)
+def test_what_is_switched_on_has_the_numbers_that_the_contact_model_was_tried_with(removed, doubt):
+    hand, _ = stage.scene()
+    bpy.context.scene.thenar_diagnosis.findings = json.dumps(tried(removed))
+    taken = applying.apply(bpy.context, 1)
+    bone = next(effect for effect in hand.thenar.effects if effect.name == "bone")
+    assert bone.numbers["thickness_mm"].value == pytest.approx(4.75)
+    assert doubt in taken.doubt and bool(doubt) == ("contact model" in taken.doubt)
