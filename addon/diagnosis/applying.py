@@ -18,6 +18,8 @@ EVERYWHERE = {"", "default", names.WHOLE_SKIN}
 PARAMETER = "region_stiffness"
 """What a diagnosis of grasps names that is a material's number."""
 _AXES = "xyz"
+_MOVED = 0.05
+"""Part by which a modulus has to differ from the fit's to be said."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ def apply(context, index):
     finding = reading.finding(found, index)
     _refuse_parameter(finding)
     _refuse_unnamed(found, finding)
-    doubt = " ".join(filter(None, (freshness.problem(state), _shows_less(found))))
+    doubt = " ".join(filter(None, (freshness.problem(state), _shows_less(found, finding), _moduli(found, finding))))
     row = next((row for row in native.effects() if row["name"] == finding["effect"]), None)
     if row is None:
         raise Refusal(f"Thenar has no effect '{finding['effect']}' to switch on; correct it by hand")
@@ -66,20 +68,46 @@ def apply(context, index):
     return Taken(f"{title} is on {where}{waits}", doubt)
 
 
-def _shows_less(found):
+def _shows_less(found, finding):
     """A doubt where the contact model, with what is switched on, predicts held-out recordings worse than the fit."""
     tried = reading.by_contact_model(found)
-    removed = ((found.get("fit") or {}).get("reducible_error_removed") or {}).get("value")
-    if tried is None or removed is None or not found["fit"]["by_contact_model"].get("is_behind_the_fit"):
+    check = (found.get("fit") or {}).get("by_contact_model") or {}
+    if tried is None or not _was_tried(found, finding) or not check.get("is_behind_the_fit"):
         return ""
     if tried <= 0.0:
-        return languages.iface("The contact model with it predicts held-out recordings no better than without")
+        return languages.iface(
+            "The contact model with what is named predicts held-out recordings no better than without"
+        )
     return languages.iface(
-        "The contact model with it removes {share} of the error of held-out recordings, the fit {fit}: "
+        "The contact model with what is named removes {share} of the error of held-out recordings, the fit {fit}: "
         "simulations show less than was found",
         share=wording.share(tried),
-        fit=wording.share(removed),
+        fit=wording.share(check.get("removed_by_the_fit")),
     )
+
+
+def _moduli(found, finding):
+    """The moduli that an effect's numbers belong to, where they are not the fit's; empty otherwise."""
+    check = (found.get("fit") or {}).get("by_contact_model") or {}
+    factors = [factor for factor in check.get("moduli_over_the_fits") or () if factor is not None]
+    materials = list(((found.get("model") or {}).get("materials") or {}).values())
+    is_moved = any(abs(factor - 1.0) > _MOVED for factor in factors)
+    if not is_moved or not materials or not _was_tried(found, finding):
+        return ""
+    g0, g_lim = (materials[0].get(name) for name in ("g0_mpa", "g_lim_mpa"))
+    if g0 is None or g_lim is None:
+        return ""
+    return languages.iface(
+        "Its numbers belong to G0 {g0} kPa and G Limit {g_lim} kPa under Materials",
+        g0=wording.number(KPA_PER_MPA * g0),
+        g_lim=wording.number(KPA_PER_MPA * g_lim),
+    )
+
+
+def _was_tried(found, finding):
+    """Whether the contact model was asked about this finding: only about effects that curves name."""
+    listed = (found.get("model") or {}).get("effects") or ()
+    return finding.get("channel") in (None, "force") and any(e.get("name") == finding["effect"] for e in listed)
 
 
 def _refuse_parameter(finding):
@@ -133,7 +161,7 @@ def _wanted(context, found, finding, row):
     Its own numbers go before the model's, unless the contact model was held against held-out recordings with these.
     """
     amplitude, numbers, choices = reading.switched(found, finding["effect"])
-    tried = reading.by_contact_model(found) is not None
+    tried = reading.by_contact_model(found) is not None and _was_tried(found, finding)
     known = (set() if amplitude is None else {"amplitude"}) | numbers.keys() if tried else set()
     shapes = {shape["name"]: shape["unit"] for shape in row["shape"]}
     options = {choice["name"]: choice["options"] for choice in row["choices"]}

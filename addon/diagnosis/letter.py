@@ -253,8 +253,10 @@ def _gain(fit):
         else:
             yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
     tried = (fit.get("by_contact_model") or {}).get("reducible_error_removed") or {}
-    if tried.get("value") is not None:
-        yield f"By the contact model itself, with what is switched on: {wording.share(tried['value'])}."
+    if tried.get("high") is not None and tried["high"] <= 0.0:
+        yield "The contact model with what is switched on predicts them no better than without."
+    elif tried.get("low") is not None and tried["low"] >= 0.0:
+        yield f"With what is switched on the contact model itself removes {wording.share(tried['value'])}."
     score = fit.get("log_score")
     if score and score.get("value") is not None:
         text = f"The log predictive density of held-out recordings rises by {wording.number(score['value'])}"

@@ -55,7 +55,7 @@ pub fn check(
         switched: &switched,
         control,
     };
-    match asked.check(gain.held_out_by, gain.removed) {
+    match asked.check(gain.held_out_by) {
         Ok(found) => {
             gain.contact_model = found;
             Ok(None)
@@ -91,11 +91,18 @@ pub fn switch_on(found: &mut Diagnosis) {
             changed.push(effect_in_words(switched.name));
         }
     }
-    if !changed.is_empty() {
+    let is_moved = check
+        .moduli
+        .iter()
+        .any(|factor| (factor - 1.0).abs() > 0.05);
+    if is_moved || !changed.is_empty() {
+        let what = match changed.is_empty() {
+            true => "the tissue".to_owned(),
+            false => changed.join(" and "),
+        };
         found.notes.push(format!(
-            "{}: the contact model has a law of its own; what is switched on in it, and its moduli, are the numbers with which it answers \
-             as the fit does",
-            changed.join(" and ")
+            "{what}: the contact model has a law of its own; what is switched on in it, and the moduli that belong to it, are the numbers \
+             with which it answers as the fit does"
         ));
     }
     if is_behind(gain) {
@@ -104,7 +111,7 @@ pub fn switch_on(found: &mut Diagnosis) {
                 "the contact model with what is named removes {:.0} % of the error of held-out recordings beyond noise, the fit {:.0} %: \
                  simulations show less than was found",
                 100.0 * check.removed,
-                100.0 * gain.removed
+                100.0 * check.by_fit.0
             ),
             false => "the contact model with what is named predicts held-out recordings no better than without: simulations do not show \
                       what was found"
@@ -116,7 +123,8 @@ pub fn switch_on(found: &mut Diagnosis) {
 /// Whether the contact model predicts held-out recordings clearly worse than the fit: it removes less of the error, by more than noise decides.
 pub fn is_behind(gain: &Gain) -> bool {
     gain.contact_model.as_ref().is_some_and(|check| {
-        check.removed < LEAST * gain.removed && check.after.rms > gain.after.rms + CLEARLY
+        let (removed, rms) = check.by_fit;
+        check.removed < LEAST * removed && check.after.rms > rms + CLEARLY
     })
 }
 

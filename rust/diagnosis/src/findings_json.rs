@@ -172,6 +172,8 @@ fn fit(gain: Option<&Gain>) -> Value {
                 "before": spread(by.before),
                 "after": spread(by.after),
                 "is_behind_the_fit": is_behind(gain),
+                "removed_by_the_fit": rounded(by.by_fit.0),
+                "moduli_over_the_fits": by.moduli.map(rounded),
                 "reducible_error_removed": {
                     "value": rounded(by.removed), "low": rounded(by.interval.0), "high": rounded(by.interval.1),
                 },

@@ -197,18 +197,22 @@ moments it rises by {:.1} at most (99 of 100 draws).</p>\n",
 
 /// What the contact model itself makes of them.
 fn by_contact_model(check: &ContactModelCheck) -> String {
-    let share = match check.interval.0 < 0.0 && check.interval.1 > 0.0 {
-        true => "noise decides how much of the reducible error that removes".to_owned(),
-        false => format!(
-            "that removes {:.0} % of the reducible error ({:.0} to {:.0} %)",
+    let share = match check.interval {
+        (_, high) if high <= 0.0 => "no better than without".to_owned(),
+        (low, _) if low < 0.0 => {
+            "noise decides how much of the reducible error that removes".to_owned()
+        }
+        (low, high) => format!(
+            "that removes {:.0} % of the reducible error ({:.0} to {:.0} %), the fit {:.0} % of the same",
             100.0 * check.removed,
-            100.0 * check.interval.0,
-            100.0 * check.interval.1
+            100.0 * low,
+            100.0 * high,
+            100.0 * check.by_fit.0
         ),
     };
     format!(
         "<p>The contact model on the study's mesh, with the effects that <i>Switch On</i> switches on, predicts them to {:.2} standard deviations \
-({:.2} before): {share}. Of repeats the first was followed; moduli, first touch, gain and the error of the base's form are the fit's.</p>\n",
+({:.2} before): {share}. Of repeats the first was followed; first touch, gain and the error of the base's form are the fit's.</p>\n",
         check.after.rms, check.before.rms
     )
 }

@@ -33,3 +33,12 @@ def test_another_name_is_another_verdict():
         changed = copy.deepcopy(verdict) | {key: other}
         assert frozen.names(changed) != frozen.names(verdict)
     assert frozen.names(verdict | {"sentence": "y"}) == frozen.names(verdict)
+
+
+def test_contact_model_removes_what_the_fit_does_once_its_numbers_are_sought():
+    """A law that grows with the tool's depth in the fit and with the region's own in the contact model: -3.3 before."""
+    said = frozen.said("case_228")
+    assert [one["effect"] for one in said["findings"]] == ["stiffening_law"]
+    tried = said["fit"]["by_contact_model"]
+    assert tried["reducible_error_removed"]["value"] > 0.8 * tried["removed_by_the_fit"] > 0.0
+    assert not tried["is_behind_the_fit"]

@@ -19,6 +19,8 @@ const UNEVEN: f64 = 0.25;
 /// Part of a frame's load that the cells of the border bear together, from which the mat may not cover all of it: noise above the threshold
 /// puts less there.
 const BORDER: f64 = 0.03;
+/// Part of a frame's peak from which a cell bears clearly: one that is silent between two such is dead.
+const CLEARLY: f64 = 0.1;
 /// Readings at one side of a depth from which the force there is taken, and part of the largest depth from which loading has ended.
 const NEAR: usize = 2;
 const TOP: f64 = 0.98;
@@ -112,6 +114,7 @@ fn of_protocol<'a>(study: &'a Study, map: &StudyRecording) -> Vec<&'a Curve> {
             && r.protocol == map.protocol
             && r.indenter == map.indenter
             && r.site == map.site
+            && (&r.subject, &r.day) == (&map.subject, &map.day)
     };
     let curves = study.recordings.iter().filter(is_own);
     curves
@@ -127,6 +130,10 @@ fn force_at(curve: &Curve, depth: f64) -> Option<f64> {
     let (depths, forces) = (curve.channel("depth_mm")?, curve.channel("force_n")?);
     let most = depths.iter().copied().fold(0.0, f64::max);
     let end = depths.iter().position(|d| *d >= TOP * most)? + 1;
+    let least = depths[..end].iter().copied().fold(f64::INFINITY, f64::min);
+    if depth < least || depth > most + (1.0 - TOP) * most {
+        return None;
+    }
     let after = depths[..end]
         .iter()
         .position(|d| *d >= depth)
@@ -199,6 +206,7 @@ impl Mat {
             let value = values[self.cells[row * self.columns + column].0];
             if value.is_finite() { value } else { 0.0 }
         };
+        let peak = values.iter().copied().fold(0.0, f64::max);
         let (mut load, mut border, mut hidden) = (0.0, 0.0, 0.0);
         for row in 0..self.rows {
             for column in 0..self.columns {
@@ -217,7 +225,8 @@ impl Mat {
                     (column + 1 < self.columns).then(|| read(row, column + 1)),
                 ];
                 let bear = beside.iter().flatten().filter(|v| **v > 0.0).count();
-                if bear == beside.len() {
+                let is_loaded = |k: usize| beside[k].is_some_and(|v| v > CLEARLY * peak);
+                if (is_loaded(0) && is_loaded(1)) || (is_loaded(2) && is_loaded(3)) {
                     return None;
                 }
                 if bear > 0 {
@@ -240,7 +249,7 @@ pub fn add_gain(study: &Study, found: &mut Diagnosis) {
     let factor = libm::exp(0.5 * (seen.ends[0] + seen.ends[1]));
     found.notes.push(format!(
         "together the cells of the mat bear {factor:.2} times what the load cell reads at the same depth of the same protocol, in {} frames \
-         at every load: the gain of one of the two is off",
+         above a quarter of the largest load: the gain of one of the two is off",
         seen.frames
     ));
     let is_other = |f: &Finding| f.effect == "cycle_softening" || f.effect == "gain";
@@ -331,6 +340,21 @@ mod tests {
         assert_eq!(mat.load_n(&values), None);
         values[12] = 1.0;
         assert!(mat.load_n(&values).is_some());
+        // A dead row between two that read, and two dead cells next to each other.
+        let mut line = vec![0.0; 25];
+        for k in [6, 7, 8, 16, 17, 18] {
+            line[k] = 10.0;
+        }
+        assert_eq!(mat.load_n(&line), None);
+        line[11] = 10.0;
+        assert_eq!(mat.load_n(&line), None);
+        // Noise in a cell apart from the contact is no dead cell next to it.
+        let mut apart = vec![0.0; 25];
+        for k in [6, 7, 11, 12] {
+            apart[k] = 10.0;
+        }
+        apart[14] = 0.1;
+        assert!(mat.load_n(&apart).is_some());
     }
 
     #[test]

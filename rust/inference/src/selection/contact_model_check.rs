@@ -43,26 +43,38 @@ pub struct ByContactModel<'a, 'b> {
 }
 
 impl ByContactModel<'_, '_> {
-    /// The check of a finding that removes a share of the reducible error, as it was held out; None where nothing can be held out or the contact model has no such effect.
+    /// The check of a finding, held out as its gain was found; None where nothing can be held out or the contact model has no such effect.
     ///
     /// # Errors
     /// What the contact model says of a press or an effect, or `Cancelled`.
     pub fn check(
         &mut self,
         held_out_by: HeldOutBy,
-        removed: f64,
+    ) -> Result<Option<ContactModelCheck>, InferenceError> {
+        let found = self.tried(held_out_by);
+        self.replay.used_before_mm.fill(0.0);
+        self.replay.set_effects(&[], self.control)?;
+        found
+    }
+
+    fn tried(
+        &mut self,
+        held_out_by: HeldOutBy,
     ) -> Result<Option<ContactModelCheck>, InferenceError> {
         let Some(whole) = (self.switched)(self.judged.found) else {
             return Ok(None);
         };
         let mut folds = Vec::new();
-        let first = self.first_of_each();
+        let all: Vec<usize> = (0..self.judged.ready.courses.len()).collect();
+        let first = self.first_of_each(&all);
         let followed = match first.len() {
-            1 => (0..self.judged.ready.courses.len()).collect(),
+            1 => all.clone(),
             _ => first.clone(),
         };
         self.replay.set_effects(&[], self.control)?;
-        for fold in self.judged.fits(held_out_by) {
+        let (judged, control) = (self.judged.clone(), self.control);
+        for fold in judged.fits(held_out_by) {
+            control.check().map_err(|_| InferenceError::Cancelled)?;
             let found = Scored {
                 refit: fold.after.clone(),
                 ..self.judged.found.clone()
@@ -84,29 +96,36 @@ impl ByContactModel<'_, '_> {
             return Ok(None);
         }
         let none = Factors::default();
-        let mut best = self.checked(&folds, &whole, &none)?;
-        let at = &self.judged.found.refit.at[..];
-        let ended = match best.removed < removed - BEHIND {
-            true => self.matched((&first, at), &whole, None)?,
-            false => None,
-        };
-        if let Some(ended) = ended {
-            for one in &mut folds {
-                let is_known = |course: &&usize| !one.fold.courses.contains(course);
-                let known: Vec<usize> = first.iter().filter(is_known).copied().collect();
-                let at = (&known[..], &one.fold.after.at[..]);
-                let own = self.matched(at, &one.effects, Some(&ended))?;
-                one.factors = own.map(|own| own.factors).unwrap_or_default();
-            }
-            let factors = ended.factors;
-            let again = self.checked(&folds, &whole, &factors)?;
-            if again.removed > best.removed {
-                best = again;
-            }
+        let found = self.checked(&folds, &whole, &none)?;
+        if found.removed >= found.by_fit.0 - BEHIND {
+            return Ok(Some(found));
         }
-        self.replay.used_before_mm.fill(0.0);
-        self.replay.set_effects(&[], self.control)?;
-        Ok(Some(best))
+        match self.sought(&mut folds, (&all, &first), &whole) {
+            Ok(again) => Ok(Some(again.unwrap_or(found))),
+            Err(InferenceError::Cancelled) => Err(InferenceError::Cancelled),
+            Err(_) => Ok(Some(found)),
+        }
+    }
+
+    /// The check with numbers that were sought; None where none are. They are taken whatever held-out recordings say of them.
+    fn sought(
+        &mut self,
+        folds: &mut [Prepared],
+        (all, first): (&[usize], &[usize]),
+        whole: &[ActiveEffect],
+    ) -> Result<Option<ContactModelCheck>, InferenceError> {
+        let at = self.judged.found.refit.at.clone();
+        let Some(ended) = self.matched((first, &at), whole, None)? else {
+            return Ok(None);
+        };
+        for one in &mut *folds {
+            let others = all.iter().filter(|c| !one.fold.courses.contains(c));
+            let known = self.first_of_each(&others.copied().collect::<Vec<usize>>());
+            let at = (&known[..], &one.fold.after.at[..]);
+            let own = self.matched(at, &one.effects, Some(&ended))?;
+            one.factors = own.map_or_else(Factors::default, |own| own.factors);
+        }
+        Ok(Some(self.checked(folds, whole, &ended.factors)?))
     }
 
     /// Factors with which the contact model answers as a fit does in the recordings that it knows.
@@ -139,7 +158,7 @@ impl ByContactModel<'_, '_> {
         whole: &[ActiveEffect],
         factors: &Factors,
     ) -> Result<ContactModelCheck, InferenceError> {
-        let mut all: Vec<Errors> = Vec::new();
+        let (mut all, mut by_fit) = (Vec::<Errors>::new(), Vec::new());
         for one in folds {
             let effects = one.factors.effects(&one.effects);
             let with = (&one.tasks[..], &effects[..], &one.factors);
@@ -148,12 +167,19 @@ impl ByContactModel<'_, '_> {
                 let mut simulated = one.fold.after.simulated.clone();
                 let (first, count) = self.judged.ready.courses[task.course].samples;
                 simulated[first..first + count].copy_from_slice(&values);
-                let both = (&one.fold.before.simulated[..], &simulated[..]);
+                let fit = (
+                    &one.fold.before.simulated[..],
+                    &one.fold.after.simulated[..],
+                );
+                by_fit.push(errors(self.judged.ready, task.course, fit));
+                let both = (fit.0, &simulated[..]);
                 all.push(errors(self.judged.ready, task.course, both));
             }
         }
         let found = summary(self.judged.ready, &all, self.judged.seed);
+        let fit = summary(self.judged.ready, &by_fit, self.judged.seed);
         Ok(ContactModelCheck {
+            by_fit: (fit.removed, fit.after.rms),
             before: found.before,
             after: found.after,
             removed: found.removed,
@@ -163,14 +189,12 @@ impl ByContactModel<'_, '_> {
         })
     }
 
-    /// The first recording of every protocol at every place.
-    fn first_of_each(&self) -> Vec<usize> {
+    /// Of these recordings the first of every protocol at every place.
+    fn first_of_each(&self, among: &[usize]) -> Vec<usize> {
         let all = &self.judged.ready.courses;
-        let is_first = |c: &usize| {
-            let same =
-                |o: &usize| all[*o].protocol == all[*c].protocol && all[*o].place == all[*c].place;
-            !(0..*c).any(|o| same(&o))
-        };
-        (0..all.len()).filter(is_first).collect()
+        let is_same =
+            |a: usize, b: usize| all[a].protocol == all[b].protocol && all[a].place == all[b].place;
+        let is_first = |c: &usize| among.iter().find(|o| is_same(**o, *c)) == Some(c);
+        among.iter().copied().filter(is_first).collect()
     }
 }

@@ -3,7 +3,7 @@
 //! Surrogate and contact model have laws of the same names which are not the same law: a modulus that grows with the tool's depth or with
 //! the depth of the skin's own region, a stiff skin with or without tension, the part of a clock. So the numbers that are switched on in
 //! the contact model are sought there: moduli and the effects' own numbers, by least squares against the surrogate's fitted curves of one
-//! recording for each protocol and place that the fit knows. No reading enters, so what is held out stays so. Numbers of effects that remember stay: to follow
+//! recording for each protocol and place that the fit knows. No reading enters. Numbers of effects that remember stay: to follow
 //! every protocol for every step takes a minute of a study's time, and relaxation, softening and loss are the same law in both.
 
 use nalgebra::DMatrix;
@@ -27,13 +27,14 @@ const PRIOR: f64 = 2.0;
 const STEP: f64 = 0.05;
 /// Gain over the whole below which the search ends.
 const SETTLED: f64 = 0.02;
+/// Presses of all places after which the best is taken.
+const MOST_EVALUATIONS: usize = 40;
 /// Least part of a whole share, such as an amplitude of 1 or a Poisson's ratio of one half.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Where a search ended: the place, and the derivatives there, from which a search for another fit may begin.
+/// Where a search ended, and the derivatives there, which a search for another fit takes.
 pub(crate) struct Ended {
     pub(crate) factors: Factors,
-    at: Vec<f64>,
     jacobian: DMatrix<f64>,
 }
 
@@ -80,6 +81,7 @@ struct Search<'a, 'b> {
     /// What is to be met, and where each recording's samples begin in it.
     target: Vec<f64>,
     starts: Vec<(usize, usize)>,
+    evaluations: usize,
 }
 
 /// A fit that the contact model is to answer as: its recordings, effects and numbers.
@@ -120,7 +122,7 @@ impl Matching<'_> {
         let is_used: Vec<bool> = (0..met.len())
             .map(|r| tasks.iter().any(|task| task.recording == r))
             .collect();
-        let begin = from.map_or_else(|| vec![0.0; 2 + slots.len()], |ended| ended.at.clone());
+        let begin = vec![0.0; 2 + slots.len()];
         let mut search = Search {
             replay,
             control,
@@ -132,11 +134,11 @@ impl Matching<'_> {
             kept: from.map(|ended| ended.jacobian.clone()),
             target,
             starts,
+            evaluations: 0,
         };
         let found = descend(&mut search, &begin)?;
         Ok(Some(Ended {
             factors: Factors::at(&search.slots, &found.point.at),
-            at: found.point.at,
             jacobian: found.jacobian,
         }))
     }
@@ -191,10 +193,23 @@ impl Objective for Search<'_, '_> {
     }
 
     fn predictions(&mut self, at: &[f64]) -> Result<Vec<Vec<f64>>, InferenceError> {
+        self.evaluations += 1;
         let factors = Factors::at(&self.slots, at);
         let all = factors.effects(self.effects);
         let effects: Vec<ActiveEffect> = self.on.iter().map(|k| all[*k].clone()).collect();
-        let found = shown(self.replay, (self.tasks, &effects, &factors), self.control)?;
+        let with = (self.tasks, &effects[..], &factors);
+        let found = match shown(self.replay, with, self.control) {
+            Err(InferenceError::Cancelled) => return Err(InferenceError::Cancelled),
+            // Numbers with which a press fails are no way to go.
+            Err(_) => {
+                return Ok(self
+                    .starts
+                    .iter()
+                    .map(|(_, n)| vec![f64::NAN; *n])
+                    .collect());
+            }
+            Ok(found) => found,
+        };
         let mut all: Vec<Vec<f64>> = self
             .starts
             .iter()
@@ -243,7 +258,10 @@ impl Objective for Search<'_, '_> {
     }
 
     fn stopping(&self, objective: f64) -> Stopping {
-        let small = SETTLED * (1.0 + objective);
+        let small = match self.evaluations < MOST_EVALUATIONS {
+            true => SETTLED * (1.0 + objective),
+            false => f64::INFINITY,
+        };
         Stopping {
             small,
             enough: 1,

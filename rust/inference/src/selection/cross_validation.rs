@@ -31,6 +31,7 @@ pub(crate) struct Errors {
 }
 
 /// A finding to be judged by recordings that it was not fitted to.
+#[derive(Clone)]
 pub struct Judged<'a> {
     /// The study.
     pub ready: &'a PreparedStudy,
@@ -62,17 +63,17 @@ impl Judged<'_> {
     }
 
     /// The fits that predict what is held out, in the way that a gain was found by.
-    pub(crate) fn fits(&self, held_out_by: HeldOutBy) -> Vec<Fold> {
+    pub(crate) fn fits(&self, held_out_by: HeldOutBy) -> impl Iterator<Item = Fold> {
         let folds = match held_out_by {
             HeldOutBy::Protocol => folds(&self.ready.courses),
             HeldOutBy::Repeat => Some(repeats(&self.ready.courses)),
         };
-        folds.map_or_else(Vec::new, |folds| self.fitted(&folds))
+        self.fitted(folds.unwrap_or_default())
     }
 
-    fn fitted(&self, folds: &[usize]) -> Vec<Fold> {
-        let last = folds.iter().copied().max();
-        let fold = |number: usize| {
+    fn fitted(&self, folds: Vec<usize>) -> impl Iterator<Item = Fold> {
+        let numbers = folds.iter().max().map_or(0, |last| last + 1);
+        let fold = move |number: usize| {
             let is_out = |c: usize| folds[c] == number;
             let of = |mechanisms: &[Mechanism]| {
                 let from = (mechanisms, &self.found.refit.at[..]);
@@ -84,13 +85,13 @@ impl Judged<'_> {
                 after: of(&self.found.mechanisms),
             }
         };
-        last.map_or_else(Vec::new, |last| (0..=last).map(fold).collect())
+        (0..numbers).map(fold)
     }
 
     fn over(&self, folds: &[usize], held_out_by: HeldOutBy) -> Option<Gain> {
         let (mut all, mut held) = (Vec::new(), Vec::new());
         let mut deviance = 0.0;
-        for (number, fold) in self.fitted(folds).iter().enumerate() {
+        for (number, fold) in self.fitted(folds.to_vec()).enumerate() {
             let (before, after) = (&fold.before, &fold.after);
             deviance += before.deviance - after.deviance;
             for &c in &fold.courses {
@@ -390,6 +391,8 @@ pub struct ContactModelCheck {
     pub removed: f64,
     /// Ends of its 90 % interval.
     pub interval: (f64, f64),
+    /// Share that the fit removes in the same recordings, and its error there, in standard deviations of the noise.
+    pub by_fit: (f64, f64),
     /// Factors on the fit's moduli with which this was found: at first touch, and where they stop growing.
     pub moduli: [f64; 2],
     /// The effects that are to be switched on, with the numbers with which this was found.

@@ -7,7 +7,7 @@ use crate::forward::mesh::nuisance::Nuisance;
 use crate::forward::mesh::replay::Replay;
 
 /// Part of a recording's largest base force below which a moment gives no factor.
-const LEAST_LOAD: f64 = 1e-3;
+const LEAST_LOAD: f64 = 0.03;
 
 /// A recording as the contact model is to follow it.
 #[derive(Clone, Copy)]
