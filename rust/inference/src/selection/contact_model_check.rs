@@ -19,6 +19,9 @@ use crate::selection::scored::Scored;
 /// Share of the reducible error by which the contact model may stay behind the surrogate before its numbers are sought anew.
 const BEHIND: f64 = 0.03;
 
+/// Mean square misfit of the fit's curves, over the noise's variance, from which the contact model has no numbers for them.
+const UNMET: f64 = 1.0;
+
 /// A finding's effects as the contact model takes them; None where it has no such effect.
 pub type Switching<'a> = &'a dyn Fn(&Scored) -> Option<Vec<ActiveEffect>>;
 
@@ -107,7 +110,7 @@ impl ByContactModel<'_, '_> {
         }
     }
 
-    /// The check with numbers that were sought; None where none are. They are taken whatever held-out recordings say of them.
+    /// The check with numbers that were sought; None where none are, or where with none the contact model answers as the fit does. They are taken whatever held-out recordings say of them.
     fn sought(
         &mut self,
         folds: &mut [Prepared],
@@ -115,7 +118,8 @@ impl ByContactModel<'_, '_> {
         whole: &[ActiveEffect],
     ) -> Result<Option<ContactModelCheck>, InferenceError> {
         let at = self.judged.found.refit.at.clone();
-        let Some(ended) = self.matched((first, &at), whole, None)? else {
+        let ended = self.matched((first, &at), whole, None)?;
+        let Some(ended) = ended.filter(|ended| ended.left < UNMET) else {
             return Ok(None);
         };
         for one in &mut *folds {

@@ -3,8 +3,9 @@
 //! Surrogate and contact model have laws of the same names which are not the same law: a modulus that grows with the tool's depth or with
 //! the depth of the skin's own region, a stiff skin with or without tension, the part of a clock. So the numbers that are switched on in
 //! the contact model are sought there: moduli and the effects' own numbers, by least squares against the surrogate's fitted curves of one
-//! recording for each protocol and place that the fit knows. No reading enters. Numbers of effects that remember stay: to follow
-//! every protocol for every step takes a minute of a study's time, and relaxation, softening and loss are the same law in both.
+//! recording for each protocol and place that the fit knows. No reading enters; for a fit without some protocols the search begins where
+//! that for the fit to all ended. Numbers of effects that remember stay: to follow every protocol for every step takes a minute of a study's
+//! time, and relaxation, softening and loss are the same law in both.
 
 use nalgebra::DMatrix;
 use thenar_contact::effects::Effect;
@@ -27,14 +28,17 @@ const PRIOR: f64 = 2.0;
 const STEP: f64 = 0.05;
 /// Gain over the whole below which the search ends.
 const SETTLED: f64 = 0.02;
-/// Presses of all places after which the best is taken.
-const MOST_EVALUATIONS: usize = 40;
+/// Presses of all places after which the best is taken: with derivatives of its own, and with those of another fit.
+const MOST_EVALUATIONS: (usize, usize) = (40, 12);
 /// Least part of a whole share, such as an amplitude of 1 or a Poisson's ratio of one half.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Where a search ended, and the derivatives there, which a search for another fit takes.
+/// Where a search ended, and the derivatives there: a search for another fit begins with both.
 pub(crate) struct Ended {
     pub(crate) factors: Factors,
+    /// Mean square by which curves are not met, over the noise's variance.
+    pub(crate) left: f64,
+    at: Vec<f64>,
     jacobian: DMatrix<f64>,
 }
 
@@ -122,7 +126,7 @@ impl Matching<'_> {
         let is_used: Vec<bool> = (0..met.len())
             .map(|r| tasks.iter().any(|task| task.recording == r))
             .collect();
-        let begin = vec![0.0; 2 + slots.len()];
+        let begin = from.map_or_else(|| vec![0.0; 2 + slots.len()], |ended| ended.at.clone());
         let mut search = Search {
             replay,
             control,
@@ -139,6 +143,8 @@ impl Matching<'_> {
         let found = descend(&mut search, &begin)?;
         Ok(Some(Ended {
             factors: Factors::at(&search.slots, &found.point.at),
+            left: found.point.objective / search.whitening.used().max(1) as f64,
+            at: found.point.at,
             jacobian: found.jacobian,
         }))
     }
@@ -258,7 +264,11 @@ impl Objective for Search<'_, '_> {
     }
 
     fn stopping(&self, objective: f64) -> Stopping {
-        let small = match self.evaluations < MOST_EVALUATIONS {
+        let most = match self.kept {
+            None => MOST_EVALUATIONS.0,
+            Some(_) => MOST_EVALUATIONS.1,
+        };
+        let small = match self.evaluations < most {
             true => SETTLED * (1.0 + objective),
             false => f64::INFINITY,
         };
