@@ -109,7 +109,10 @@ impl Matching<'_> {
     ) -> Result<Option<Ended>, InferenceError> {
         let (tasks, effects) = (self.tasks, self.effects);
         let (on, slots) = sought(effects);
-        if slots.is_empty() {
+        // The skin of a known ball has tension, which none on a mesh has: no number makes up for that.
+        let has_tension = self.judged.ready.elastic.places.iter().any(|p| p.is_exact)
+            && effects.iter().any(|e| e.effect == Effect::StiffSkin);
+        if slots.is_empty() || has_tension {
             return Ok(None);
         }
         let target = self.curves(&on);
