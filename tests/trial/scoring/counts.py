@@ -261,8 +261,8 @@ def _gains(severe):
     """Reducible held-out error removed: where the right name was given, and wherever a gain is told."""
 
     def shares(group, of=lambda fit: fit):
-        told = [(of(verdict.get("fit") or {}) or {}).get("reducible_error_removed") for _, verdict in group]
-        return [one["value"] for one in told if one and one.get("value") is not None]
+        removed = [(of(verdict.get("fit") or {}) or {}).get("reducible_error_removed") for _, verdict in group]
+        return [one["value"] for one in removed if one and one.get("value") is not None]
 
     exact = [pair for pair in severe if is_exact(*pair)]
     right, simulated = shares(exact), shares(exact, lambda fit: fit.get("by_contact_model"))

@@ -18,7 +18,7 @@ const GAUSSIAN_REACH: f64 = 5.7;
 /// Displacement of every site, mm: pressed skin by its `travel`, the rest of the active zone by response and swelling.
 ///
 /// Skin that is pressed goes along the product's normal, in which Eq. 13 measures its distance. Free skin goes along its own, as the
-/// half space of Eq. 1 does: beside a thin tool the nearest side's normal lies across it. However it rises, it comes no nearer to the
+/// half space of Eq. 1 does: next to a thin tool the nearest side's normal lies across it. However it rises, it comes no nearer to the
 /// product than it moves.
 pub fn displacement(
     skin: &Skin,

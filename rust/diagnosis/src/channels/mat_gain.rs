@@ -218,14 +218,14 @@ impl Mat {
                 if value > 0.0 {
                     continue;
                 }
-                let beside = [
+                let neighbors = [
                     (row > 0).then(|| read(row - 1, column)),
                     (row + 1 < self.rows).then(|| read(row + 1, column)),
                     (column > 0).then(|| read(row, column - 1)),
                     (column + 1 < self.columns).then(|| read(row, column + 1)),
                 ];
-                let bear = beside.iter().flatten().filter(|v| **v > 0.0).count();
-                let is_loaded = |k: usize| beside[k].is_some_and(|v| v > CLEARLY * peak);
+                let bear = neighbors.iter().flatten().filter(|v| **v > 0.0).count();
+                let is_loaded = |k: usize| neighbors[k].is_some_and(|v| v > CLEARLY * peak);
                 if (is_loaded(0) && is_loaded(1)) || (is_loaded(2) && is_loaded(3)) {
                     return None;
                 }

@@ -16,7 +16,7 @@ use crate::selection::cross_validation::{
 };
 use crate::selection::scored::Scored;
 
-/// Share of the reducible error by which the contact model may stay behind the surrogate before its numbers are sought anew.
+/// Share of the reducible error by which the contact model may stay behind the surrogate before its numbers are sought.
 const BEHIND: f64 = 0.03;
 
 /// Mean square misfit of the fit's curves, over the noise's variance, from which the contact model has no numbers for them.

@@ -139,7 +139,7 @@ impl Judged<'_> {
     }
 }
 
-/// Whether a ceiling or a floor is one of forces, as in a sensor whose amplifier is set anew for each recording.
+/// Whether a ceiling or a floor is one of forces, as in a sensor whose amplifier is set for each recording.
 fn limits_force(mechanism: &Mechanism) -> bool {
     matches!(
         mechanism.law,
