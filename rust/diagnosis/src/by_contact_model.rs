@@ -43,6 +43,10 @@ pub fn check(
     };
     let measured = fitting.measured().to_vec();
     let switched = |scored: &Scored| effects_of(judging.ready, scored);
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
     let mut asked = ByContactModel {
         judged: Judged {
             ready: judging.ready,
@@ -53,7 +57,8 @@ pub fn check(
         },
         replay: &mut fitting.replay,
         switched: &switched,
-        control,
+        control: &quiet,
+        progress: &|share| (control.progress)("asking the contact model", share),
     };
     match asked.check(gain.held_out_by) {
         Ok(found) => {

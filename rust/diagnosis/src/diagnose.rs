@@ -77,15 +77,13 @@ pub fn diagnose(
             let climb = |within: &Control<'_>| {
                 thenar_inference::selection::ladder::climb(&ready, fitting.measured(), within)
             };
-            let rungs = parts.run((0.4, 0.95), climb)?;
+            let rungs = parts.run((0.4, 0.8), climb)?;
             let ladder = (&ready, &rungs);
             let studied = (study, ceiling);
-            explained(
-                studied,
-                (comparison, &mut fitting),
-                ladder,
-                (options, &quiet),
-            )?
+            parts.run((0.8, 1.0), |within| {
+                let fitted = (comparison, &mut fitting);
+                explained(studied, fitted, ladder, (options, within))
+            })?
         }
         None => {
             let mut found = crate::place::without_curves(study, comparison);
@@ -138,10 +136,14 @@ fn explained(
     (study, ceiling): (&Study, Option<Ceiling>),
     (comparison, fitting): (Comparison, &mut Fitting),
     (ready, rungs): (&PreparedStudy, &Rungs),
-    (options, quiet): (&DiagnoseOptions, &Control<'_>),
+    (options, control): (&DiagnoseOptions, &Control<'_>),
 ) -> Result<Diagnosis, InferenceError> {
+    let quiet = Control {
+        cancelled: control.cancelled,
+        progress: &|_, _| {},
+    };
     let mut sized = crate::gates::size_gate::decide(ready, rungs, fitting.measured(), options.seed);
-    let asked = (&sized.decision.cannot_tell[..], quiet);
+    let asked = (&sized.decision.cannot_tell[..], &quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;
     let judging = Judging {
@@ -149,7 +151,7 @@ fn explained(
         rungs,
         seed: options.seed,
     };
-    let failed = crate::by_contact_model::check(&mut sized, fitting, &judging, quiet)?;
+    let failed = crate::by_contact_model::check(&mut sized, fitting, &judging, control)?;
     let mut found = told(
         (study, ceiling),
         (comparison, fitting),

@@ -6,6 +6,7 @@
 
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
+use crate::observe::motion::rounding::{is_followed, is_rounding, level_stands, step_mm};
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
@@ -29,6 +30,8 @@ pub(crate) struct Depths {
     pub jitter_mm: f64,
     /// Part of it that the force follows, 0 to 1.
     pub reliability: f64,
+    /// Step to which readings are rounded, mm, where that is all that parts them from the motion; else 0.
+    pub step_mm: f64,
 }
 
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
@@ -58,6 +61,22 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         under += expected * expected;
     }
     let pressed = slope.iter().filter(|s| **s != 0.0).count();
+    let step_mm = step_mm(courses.depth_mm, stretches);
+    let mut lines = by_lines((courses.time_s, courses.depth_mm), (&depth, step_mm));
+    if is_rounding((courses.depth_mm, &lines), step_mm) {
+        let rounding_mm = step_mm / 12f64.sqrt();
+        let squares: f64 = slope.iter().map(|s| s * s).sum();
+        let does = (squares / pressed.max(1) as f64).sqrt() * rounding_mm;
+        let is_noise =
+            does > LEAST * noise_n && !is_followed(courses, (&lines, &slope), (step_mm, noise_n));
+        level_stands(courses, (stretches, &mut lines), (step_mm, noise_n));
+        return is_noise.then_some(Depths {
+            depth_mm: lines,
+            jitter_mm: rounding_mm,
+            reliability: 0.0,
+            step_mm,
+        });
+    }
     let matters =
         jitter_mm > 0.0 && pressed > 0 && (under / pressed as f64).sqrt() > LEAST * noise_n;
     if !matters {
@@ -65,7 +84,6 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
-    let lines = by_lines((courses.time_s, courses.depth_mm), &depth);
     let is_motion = deviation(&off(courses.depth_mm, &lines)) <= LINES_LEAVE * jitter_mm;
     let mut course = if is_motion { lines } else { depth };
     let read = off(courses.depth_mm, &course);
@@ -80,6 +98,7 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         depth_mm: course,
         jitter_mm,
         reliability,
+        step_mm: 0.0,
     })
 }
 
@@ -238,5 +257,75 @@ mod tests {
     #[test]
     fn small_jitter_leaves_the_readings() {
         assert!(found(0.0, 2e-4, 1).0.is_none());
+    }
+
+    const STEP_MM: f64 = 0.01;
+    const SPEED_MM_S: f64 = 0.506;
+
+    /// From above the skin in to `deepest`, a stand of 3 s and out.
+    fn stood(deepest: f64) -> impl Fn(f64) -> f64 {
+        let ramp = (deepest + 0.1) / SPEED_MM_S;
+        move |t: f64| (SPEED_MM_S * t.min(2.0 * ramp + 3.0 - t) - 0.1).clamp(-0.1, deepest)
+    }
+
+    /// What is found of a stage that rounds where it goes (or not), read every 0.08 s in steps of 10 um, so that rounding is a wave of 1.7 s; and
+    /// where it went, mm.
+    fn rounded(deepest: f64, goes_in_steps: bool, seed: u64) -> (Option<Depths>, Vec<f64>) {
+        let mut random = Random::new(seed);
+        let (path, time) = (stood(deepest), moments(130, 0.08));
+        let round = |d: f64| STEP_MM * (d / STEP_MM).round();
+        let read: Vec<f64> = time.iter().map(|t| round(path(*t))).collect();
+        let truth: Vec<f64> = match goes_in_steps {
+            true => read.clone(),
+            false => time.iter().map(|t| path(*t)).collect(),
+        };
+        let push = |d: &f64| 1.5 * d.max(0.0).powf(1.5) + 0.002 * random.normal();
+        let force: Vec<f64> = truth.iter().map(push).collect();
+        let courses = Courses {
+            time_s: &time,
+            depth_mm: &read,
+            force_n: &force,
+            slide_mm: &[],
+        };
+        (without_jitter(courses, &stretches(courses)), truth)
+    }
+
+    /// Rounding is off by 2.9 um (root mean square), and by the same all along a stand.
+    #[test]
+    fn rounded_depths_are_read_as_the_motion_was() {
+        let (mut legs, mut stands) = (Vec::new(), Vec::new());
+        for seed in 1..13 {
+            // A stand between two steps, each time elsewhere.
+            let deepest = 1.3 + STEP_MM * (seed as f64 / 12.0);
+            let (found, truth) = rounded(deepest, false, seed);
+            let found = found.expect("its steps matter");
+            assert!((found.step_mm / STEP_MM - 1.0).abs() < 1e-6);
+            for (is, was) in found.depth_mm.iter().zip(&truth) {
+                match *was == deepest {
+                    true => stands.push(is - was),
+                    false => legs.push(is - was),
+                }
+            }
+        }
+        assert!(rms(&legs) < 0.0015, "{}", rms(&legs));
+        assert!(rms(&stands) < 0.0015, "{}", rms(&stands));
+    }
+
+    /// A stage that goes in steps, an exact table in even ones, and steps that do little are left as they were read.
+    #[test]
+    fn steps_of_the_stage_stay() {
+        for seed in 1..7 {
+            assert!(rounded(1.3, true, seed).0.is_none(), "{seed}");
+        }
+        let exact: Vec<f64> = (0..60).map(|k| 0.05 * f64::from(k.min(119 - k))).collect();
+        let time = moments(60, 0.1);
+        let force: Vec<f64> = exact.iter().map(|d| 1.5 * d.powf(1.5)).collect();
+        let courses = Courses {
+            time_s: &time,
+            depth_mm: &exact,
+            force_n: &force,
+            slide_mm: &[],
+        };
+        assert!(without_jitter(courses, &stretches(courses)).is_none());
     }
 }

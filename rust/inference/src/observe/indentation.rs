@@ -90,12 +90,18 @@ pub fn observe(
     let stretches = alike.map_or_else(|| stretches(courses), |division| division.stretches.clone());
     let steady = without_jitter(courses, &stretches);
     if let Some(found) = &steady {
-        unknown.push(format!(
-            "its depth jitters by {:.0} um about a smooth motion, of which the force follows {:.0} %: the rest is taken for noise of \
-             the reading",
-            1000.0 * found.jitter_mm,
-            100.0 * found.reliability
-        ));
+        unknown.push(match found.step_mm > 0.0 {
+            true => format!(
+                "its depth is read in steps of {:.1} um, within which it follows straight lines: it is taken as these lines",
+                1000.0 * found.step_mm
+            ),
+            false => format!(
+                "its depth jitters by {:.0} um about a smooth motion, of which the force follows {:.0} %: the rest is taken for noise of \
+                 the reading",
+                1000.0 * found.jitter_mm,
+                100.0 * found.reliability
+            ),
+        });
     }
     let courses = Courses {
         depth_mm: steady.as_ref().map_or(&depth, |found| &found.depth_mm),

@@ -22,6 +22,9 @@ const BEHIND: f64 = 0.03;
 /// Mean square misfit of the fit's curves, over the noise's variance, from which the contact model has no numbers for them.
 const UNMET: f64 = 1.0;
 
+/// Shares that are done once the folds are fitted, are predicted, once numbers for all recordings are found, and for all folds.
+const DONE: [f64; 4] = [0.3, 0.4, 0.7, 0.95];
+
 /// A finding's effects as the contact model takes them; None where it has no such effect.
 pub type Switching<'a> = &'a dyn Fn(&Scored) -> Option<Vec<ActiveEffect>>;
 
@@ -43,6 +46,8 @@ pub struct ByContactModel<'a, 'b> {
     pub switched: Switching<'a>,
     /// Stops it.
     pub control: &'a Control<'b>,
+    /// Takes the share that is done.
+    pub progress: &'a dyn Fn(f64),
 }
 
 impl ByContactModel<'_, '_> {
@@ -75,9 +80,11 @@ impl ByContactModel<'_, '_> {
             _ => first.clone(),
         };
         self.replay.set_effects(&[], self.control)?;
-        let (judged, control) = (self.judged.clone(), self.control);
-        for fold in judged.fits(held_out_by) {
-            control.check().map_err(|_| InferenceError::Cancelled)?;
+        let judged = self.judged.clone();
+        let fits = judged.fits(held_out_by);
+        let number = fits.len();
+        for (k, fold) in fits.enumerate() {
+            self.is_at(DONE[0] * k as f64 / number as f64)?;
             let found = Scored {
                 refit: fold.after.clone(),
                 ..self.judged.found.clone()
@@ -98,6 +105,7 @@ impl ByContactModel<'_, '_> {
         if folds.is_empty() {
             return Ok(None);
         }
+        self.is_at(DONE[0])?;
         let none = Factors::default();
         let found = self.checked(&folds, &whole, &none)?;
         if found.removed >= found.by_fit.0 - BEHIND {
@@ -117,19 +125,29 @@ impl ByContactModel<'_, '_> {
         (all, first): (&[usize], &[usize]),
         whole: &[ActiveEffect],
     ) -> Result<Option<ContactModelCheck>, InferenceError> {
+        self.is_at(DONE[1])?;
         let at = self.judged.found.refit.at.clone();
         let ended = self.matched((first, &at), whole, None)?;
         let Some(ended) = ended.filter(|ended| ended.left < UNMET) else {
             return Ok(None);
         };
-        for one in &mut *folds {
+        let number = folds.len() as f64;
+        for (k, one) in folds.iter_mut().enumerate() {
+            self.is_at(DONE[2] + (DONE[3] - DONE[2]) * k as f64 / number)?;
             let others = all.iter().filter(|c| !one.fold.courses.contains(c));
             let known = self.first_of_each(&others.copied().collect::<Vec<usize>>());
             let at = (&known[..], &one.fold.after.at[..]);
             let own = self.matched(at, &one.effects, Some(&ended))?;
             one.factors = own.map_or_else(Factors::default, |own| own.factors);
         }
+        self.is_at(DONE[3])?;
         Ok(Some(self.checked(folds, whole, &ended.factors)?))
+    }
+
+    /// Says how far it is, and ends if the caller asked to.
+    fn is_at(&self, share: f64) -> Result<(), InferenceError> {
+        (self.progress)(share);
+        self.control.check().map_err(|_| InferenceError::Cancelled)
     }
 
     /// Factors with which the contact model answers as a fit does in the recordings that it knows.

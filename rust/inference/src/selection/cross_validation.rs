@@ -63,7 +63,7 @@ impl Judged<'_> {
     }
 
     /// The fits that predict what is held out, in the way that a gain was found by.
-    pub(crate) fn fits(&self, held_out_by: HeldOutBy) -> impl Iterator<Item = Fold> {
+    pub(crate) fn fits(&self, held_out_by: HeldOutBy) -> impl ExactSizeIterator<Item = Fold> {
         let folds = match held_out_by {
             HeldOutBy::Protocol => folds(&self.ready.courses),
             HeldOutBy::Repeat => Some(repeats(&self.ready.courses)),
@@ -71,7 +71,7 @@ impl Judged<'_> {
         self.fitted(folds.unwrap_or_default())
     }
 
-    fn fitted(&self, folds: Vec<usize>) -> impl Iterator<Item = Fold> {
+    fn fitted(&self, folds: Vec<usize>) -> impl ExactSizeIterator<Item = Fold> {
         let numbers = folds.iter().max().map_or(0, |last| last + 1);
         let fold = move |number: usize| {
             let is_out = |c: usize| folds[c] == number;

@@ -36,15 +36,16 @@ enum Course {
 
 type Part = (Leg, Course);
 
-/// Depths of the motion at every reading, mm; `smooth` are those of smooth courses between turning points.
-pub(crate) fn by_lines((time, depth): (&[f64], &[f64]), smooth: &[f64]) -> Vec<f64> {
+/// Depths of the motion at every reading, mm; `smooth` are those of smooth courses between turning points, `step` is the step to which
+/// readings are rounded, mm.
+pub(crate) fn by_lines((time, depth): (&[f64], &[f64]), (smooth, step): (&[f64], f64)) -> Vec<f64> {
     let mut found = depth.to_vec();
     let joined = legs((time, depth), EndStands::Joined);
     // A step of few readings is no line: its recording is smoothed.
     if joined.iter().any(|leg| leg.end - leg.start < FEWEST) {
         return smooth.to_vec();
     }
-    let of = Readings::new((time, depth), &joined);
+    let of = Readings::new((time, depth), (&joined, step));
     let parts = parts(joined, of);
     for run in parts.chunk_by(|a, b| a.1 == Course::Smooth && b.1 == Course::Smooth) {
         let (leg, course) = run[0];
@@ -265,7 +266,7 @@ mod tests {
         let time = moments();
         let of = |seed: u64| {
             let read = jittering(truth, &time, seed);
-            let found = by_lines((&time, &read), &read);
+            let found = by_lines((&time, &read), (&read, 0.0));
             let off = time.iter().zip(found).filter(|(t, _)| is_counted(**t));
             let squares: Vec<f64> = off.map(|(t, d)| (d - truth(*t)).powi(2)).collect();
             (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
@@ -326,7 +327,7 @@ mod tests {
             for seed in 1..21 {
                 let read = jittering(shape, &time, seed);
                 let legs = legs((&time, &read), EndStands::Joined);
-                let of = Readings::new((&time, &read), &legs);
+                let of = Readings::new((&time, &read), (&legs, 0.0));
                 let lines = parts(legs, of);
                 let lines = lines.iter().filter(|part| part.1 == Course::Line);
                 assert_eq!(lines.count(), 0, "{seed}");
@@ -347,7 +348,7 @@ mod tests {
         let (mut squares, mut count) = (0.0, 0.0);
         for seed in 1..41 {
             let read = jittering(&stood, &time, seed);
-            let found = by_lines((&time, &read), &read);
+            let found = by_lines((&time, &read), (&read, 0.0));
             for (t, d) in time.iter().zip(found).filter(|(t, _)| held(**t)) {
                 squares += (d - stood(*t)).powi(2);
                 count += 1.0;

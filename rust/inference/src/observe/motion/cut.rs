@@ -59,7 +59,7 @@ mod tests {
             let one = |t: &f64| path(*t) + 0.016 * random.normal();
             let depth: Vec<f64> = time.iter().map(one).collect();
             let legs = legs((&time, &depth), EndStands::Apart);
-            let of = Readings::new((&time, &depth), &legs);
+            let of = Readings::new((&time, &depth), (&legs, 0.0));
             let cut = cut_where_straight(legs, of);
             all += cut.len();
             curved += cut

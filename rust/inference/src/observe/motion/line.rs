@@ -7,21 +7,29 @@ use crate::observe::smoothing::smoothed_with_freedom;
 /// Fall of the deviance from which a stand creeps: the 99.9 % point of chi-squared with one degree of freedom, since a session has many stands.
 const CREEPS: f64 = 10.83;
 
-/// Readings of a recording: s, mm, and the variance of their jitter, mm2.
+/// Distance from a line by least squares within which readings that are rounded lie, in their steps: half of one, and what the line is off by.
+pub(crate) const ROUNDED: f64 = 1.001;
+
+/// Readings of a recording: s, mm, the variance of their jitter, mm2, and the step to which they are rounded, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Readings<'a> {
     pub(crate) time: &'a [f64],
     pub(crate) depth: &'a [f64],
     pub(crate) variance: f64,
+    pub(crate) step: f64,
 }
 
 impl<'a> Readings<'a> {
     /// With the variance that smooth courses leave of all legs together: of one short leg a smooth course may leave next to nothing.
-    pub(crate) fn new((time, depth): (&'a [f64], &'a [f64]), legs: &[Leg]) -> Readings<'a> {
+    pub(crate) fn new(
+        (time, depth): (&'a [f64], &'a [f64]),
+        (legs, step): (&[Leg], f64),
+    ) -> Readings<'a> {
         let bare = Readings {
             time,
             depth,
             variance: f64::NAN,
+            step,
         };
         let (mut squares, mut left) = (0.0, 0.0);
         for leg in legs {
@@ -98,9 +106,14 @@ pub(crate) fn smooth_squares(leg: Leg, of: Readings<'_>) -> (f64, f64) {
     (squares, freedom)
 }
 
-/// Whether BIC prefers a leg's line to its smooth course, or the smooth course by less than `lead`.
+/// Whether BIC prefers a leg's line to its smooth course, or the smooth course by less than `lead`, or rounding is all that parts readings from
+/// the line: at even times the error of rounding is a slow wave, which a smooth course follows.
 pub(crate) fn is_straight((leg, lead): (Leg, f64), of: Readings<'_>) -> bool {
     let line = Line::through(leg, of);
+    let off = |k: usize| (of.depth[k] - line.at(of.time[k])).abs();
+    if (leg.start..leg.end).all(|k| off(k) < ROUNDED * of.step) {
+        return true;
+    }
     bic((line.squares, line.freedom), leg, of) <= bic(smooth_squares(leg, of), leg, of) + lead
 }
 

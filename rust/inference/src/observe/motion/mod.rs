@@ -4,3 +4,4 @@ pub(crate) mod by_lines;
 pub(crate) mod cut;
 pub(crate) mod legs;
 pub(crate) mod line;
+pub(crate) mod rounding;
