@@ -1,17 +1,19 @@
 //! The last word on a finding: held-out recordings predicted by the contact model with what the finding switches on.
 
+use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control};
 
 use crate::effect_numbers::numbers_of_effect;
 use crate::findings::{Diagnosis, Switched};
-use crate::gates::size_gate::Sized;
+use crate::gates::size_gate::{Sized, unnamed};
 use crate::wording::effect_in_words;
 use thenar_inference::errors::InferenceError;
 use thenar_inference::fit::fitting::Fitting;
 use thenar_inference::forward::surrogate::mechanism::Law;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
+use thenar_inference::parameters::surrogate_priors::is_form_known;
 use thenar_inference::selection::contact_model_check::ByContactModel;
-use thenar_inference::selection::cross_validation::{Gain, Judged};
+use thenar_inference::selection::cross_validation::{ContactModelCheck, Gain, Judged};
 use thenar_inference::selection::scored::{Rungs, Scored};
 
 /// Share of what the fit removes of held-out error that the contact model must remove as well; below, it is said.
@@ -28,14 +30,14 @@ pub struct Judging<'a> {
     pub seed: u64,
 }
 
-/// Adds the check to the gain of what is named. What the contact model cannot do is a note.
+/// Adds the check to the gain of what is named, which stays named unless the contact model refutes it. What the contact model cannot do is a note.
 ///
 /// # Errors
 /// `Cancelled` alone.
-pub fn check(
-    sized: &mut Sized<'_>,
+pub fn check<'a>(
+    sized: &mut Sized<'a>,
     fitting: &mut Fitting,
-    judging: &Judging<'_>,
+    judging: &Judging<'a>,
     control: &Control<'_>,
 ) -> Result<Option<String>, InferenceError> {
     let (Some(named), Some(gain)) = (sized.decision.named, &mut sized.gain) else {
@@ -63,6 +65,19 @@ pub fn check(
     match asked.check(gain.held_out_by) {
         Ok(found) => {
             gain.contact_model = found;
+            if is_refuted(judging.ready, named, gain) {
+                let reason = format!(
+                    "suspected is {}, which explains more than noise would, but with it the contact model predicts held-out recordings worse than \
+                     without",
+                    effect_in_words(named.names()[0])
+                );
+                let nothing = unnamed(judging.ready, judging.rungs, &measured, &reason);
+                *sized = Sized {
+                    decision: nothing.suspecting(&named.names()),
+                    gain: None,
+                    profiled: Vec::new(),
+                };
+            }
             Ok(None)
         }
         Err(InferenceError::Cancelled) => Err(InferenceError::Cancelled),
@@ -70,6 +85,17 @@ pub fn check(
             "the contact model could not follow the held-out recordings with what is named: {error}"
         ))),
     }
+}
+
+/// Whether the contact model speaks against a name: on skin whose form is known from measurements alone, with numbers that were sought in it, it predicts
+/// held-out recordings clearly worse than without. Laws that differ between fit and contact model, and effects of two, are not judged by it.
+fn is_refuted(ready: &PreparedStudy, named: &Scored, gain: &Gain) -> bool {
+    let [one] = &named.mechanisms[..] else {
+        return false;
+    };
+    let is_judged = matches!(one.effect, Effect::Bone | Effect::Compressibility);
+    let is_worse = |check: &ContactModelCheck| check.after.rms > check.before.rms + CLEARLY;
+    is_judged && !is_form_known(&ready.elastic) && gain.contact_model.as_ref().is_some_and(is_worse)
 }
 
 /// Gives what is switched on the numbers with which the contact model was checked, and says what that came to.

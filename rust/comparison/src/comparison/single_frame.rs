@@ -152,6 +152,7 @@ fn measured(still: &Still<'_>, samples: Vec<Sample>) -> Measured {
         mat: Some(still.mat.clone()),
         scan: None,
         is_calibrated: still.is_calibrated,
+        depth_error_mm: 0.0,
         unknown: still.unknown.clone(),
     }
 }

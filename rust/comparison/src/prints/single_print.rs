@@ -83,6 +83,7 @@ fn measured(still: &StillPrint<'_>) -> Measured {
         mat: Some(still.mat.clone()),
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: still.unknown.clone(),
     }
 }

@@ -69,6 +69,7 @@ pub fn indentation(name: &str, measured: &[f64]) -> Measured {
         mat: None,
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }

@@ -78,7 +78,7 @@ pub fn decide<'a>(
 }
 
 /// Nothing is named: what is left over may still be more than any listed effect takes up.
-fn unnamed<'a>(
+pub(crate) fn unnamed<'a>(
     ready: &PreparedStudy,
     rungs: &'a Rungs,
     measured: &[Measured],

@@ -172,6 +172,7 @@ fn measured(hold: &Hold, samples: Vec<Sample>) -> Measured {
         }),
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }

@@ -74,6 +74,12 @@ pub fn noise(
         .enumerate()
         .map(|(recording, one)| sigma(one, recording, &scatter, noise_n))
         .unzip();
+    let mut sigma: Vec<Vec<f64>> = sigma;
+    let is_off = |(_, one): &(usize, &Measured)| one.depth_error_mm > 0.0;
+    for (recording, one) in measured.iter().enumerate().filter(is_off) {
+        let found = (&simulated[recording][..], &slopes[recording][..]);
+        add_depth_error(&mut sigma[recording], one, found);
+    }
     Noise {
         sigma,
         profile,
@@ -116,6 +122,22 @@ impl Noise {
             number(1000.0 * wander),
             number(1000.0 * size * correlation.white.sqrt())
         ))
+    }
+}
+
+/// Adds to the forces' noise what an error of the depth does through their slope (per mm), as large as the forces were.
+fn add_depth_error(sigma: &mut [f64], one: &Measured, (simulated, slopes): (&[f64], &[f64])) {
+    let is_force = |k: &usize| one.samples[*k].quantity == Quantity::Force;
+    let most = |of: &dyn Fn(usize) -> f64| {
+        let each = (0..sigma.len()).filter(is_force);
+        each.map(of).fold(0.0, f64::max)
+    };
+    let (is, was) = (most(&|k| simulated[k]), most(&|k| one.samples[k].value));
+    if is <= 0.0 {
+        return;
+    }
+    for k in (0..sigma.len()).filter(is_force) {
+        sigma[k] = sigma[k].hypot(slopes[k] * was / is * one.depth_error_mm);
     }
 }
 

@@ -72,6 +72,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
         mat: None,
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }
@@ -147,6 +148,38 @@ fn identical_repeats_have_no_between_repeat_variance() {
         told.zero_mm
     );
     assert_eq!(told.correlation[0].memory_s, 0.0);
+}
+
+/// An error of the depth shakes the force by its own slope, whatever the modulus that slopes were simulated with.
+#[test]
+fn error_of_the_depth_is_noise_through_the_slope_of_the_force() {
+    let planted = Planted {
+        noise: 0.001,
+        memory_s: 0.0,
+        gain: 0.0,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let (mut measured, simulated, slopes) = study(3, 3, &planted);
+    let found =
+        |measured: &[Measured]| noise(measured, (&simulated, &slopes), &[true; 9], None).sigma;
+    let known = found(&measured);
+    measured[4].depth_error_mm = 0.02;
+    let rounded = found(&measured);
+    let mut largest = 0.0f64;
+    for (k, moment) in measured[4].moments.iter().enumerate() {
+        let slope = (force(moment.depth_mm + 1e-4) - force(moment.depth_mm)) / 1e-4;
+        let added = (rounded[4][k].powi(2) - known[4][k].powi(2))
+            .max(0.0)
+            .sqrt();
+        assert!(
+            (added - 0.02 * slope).abs() < 0.01 * 0.02 * slope.max(1.0),
+            "{k}: {added}"
+        );
+        largest = largest.max(added);
+    }
+    assert!(largest > 2.0 * known[4][0]);
+    assert_eq!((&known[3], &known[5]), (&rounded[3], &rounded[5]));
 }
 
 #[test]

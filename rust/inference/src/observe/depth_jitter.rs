@@ -22,6 +22,9 @@ const LINES_LEAVE: f64 = 1.5;
 /// the depth is believed.
 const BELIEVED: f64 = 2.0;
 
+/// What lines through rounded readings are off by, over the step: root mean square of motions between any two steps, as tested below.
+const LINES_ARE_OFF: f64 = 0.12;
+
 /// Depths without their jitter.
 pub(crate) struct Depths {
     /// mm.
@@ -32,6 +35,13 @@ pub(crate) struct Depths {
     pub reliability: f64,
     /// Step to which readings are rounded, mm, where that is all that parts them from the motion; else 0.
     pub step_mm: f64,
+}
+
+impl Depths {
+    /// Standard deviation of what rounding still leaves, mm; 0 where readings are not rounded.
+    pub(crate) fn left_mm(&self) -> f64 {
+        LINES_ARE_OFF * self.step_mm
+    }
 }
 
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.

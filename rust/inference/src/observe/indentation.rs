@@ -24,6 +24,8 @@ pub struct Observation {
     pub unknown: Vec<String>,
     /// How it was thinned.
     pub division: Division,
+    /// As [`crate::observe::measured::Measured::depth_error_mm`].
+    pub depth_error_mm: f64,
 }
 
 /// Phases of a recording and the bins whose means are compared. Repeats share those of the first: bins that follow each one's own noise
@@ -165,6 +167,7 @@ pub fn observe(
         }
     }
     Observation {
+        depth_error_mm: steady.as_ref().map_or(0.0, |found| found.left_mm()),
         moments,
         samples,
         is_touch_known,

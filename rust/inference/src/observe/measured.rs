@@ -157,6 +157,8 @@ pub struct Measured {
     pub scan: Option<Scan>,
     /// False if values are counts: then only shape and relative size count.
     pub is_calibrated: bool,
+    /// Standard deviation of what depths are still off by where rounded readings were taken as the lines of a motion, mm; 0 of others.
+    pub depth_error_mm: f64,
     /// What cannot be known from this recording, a sentence each.
     pub unknown: Vec<String>,
 }

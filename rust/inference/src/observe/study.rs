@@ -99,6 +99,7 @@ fn unread(recording: &StudyRecording) -> Measured {
         mat: None,
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }
@@ -131,6 +132,7 @@ impl<'a> Said<'a> {
         let key = [&measured.protocol, &measured.indenter, &measured.site].map(String::clone);
         let how = (across(self.direction), divisions.get(&key));
         let seen = crate::observe::indentation::observe(curve, how, MOST_MOMENTS);
+        measured.depth_error_mm = seen.depth_error_mm;
         divisions.entry(key).or_insert(seen.division);
         measured.moments = seen.moments;
         measured.samples = seen.samples;

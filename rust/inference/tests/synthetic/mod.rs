@@ -236,6 +236,7 @@ fn recording(name: String, moments: &[Moment], samples: Vec<Sample>, mat: Option
         mat,
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }

@@ -171,6 +171,7 @@ fn measured(readings: &[Reading]) -> Measured {
         mat: None,
         scan: None,
         is_calibrated: true,
+        depth_error_mm: 0.0,
         unknown: Vec::new(),
     }
 }

@@ -71,6 +71,7 @@ mod tests {
             mat: None,
             scan: None,
             is_calibrated: true,
+            depth_error_mm: 0.0,
             unknown: Vec::new(),
         };
         // What a fit of one number to readings weighted by 1 / sigma^2 finds, sigma in proportion to what it is judged by.
