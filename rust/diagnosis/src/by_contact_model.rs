@@ -87,8 +87,9 @@ pub fn check<'a>(
     }
 }
 
-/// Whether the contact model speaks against a name: on skin whose form is known from measurements alone, with numbers that were sought in it, it predicts
-/// held-out recordings clearly worse than without. Laws that differ between fit and contact model, and effects of two, are not judged by it.
+/// Whether the contact model speaks against a name: on skin whose form is known from measurements alone, it predicts held-out recordings clearly worse
+/// with it than without, be it with the numbers that were sought in it or, where none were found, with the fit's. Effects whose laws differ
+/// between fit and contact model, and two effects together, are not judged by it.
 fn is_refuted(ready: &PreparedStudy, named: &Scored, gain: &Gain) -> bool {
     let [one] = &named.mechanisms[..] else {
         return false;

@@ -128,16 +128,17 @@ impl Noise {
 /// Adds to the forces' noise what an error of the depth does through their slope (per mm), as large as the forces were.
 fn add_depth_error(sigma: &mut [f64], one: &Measured, (simulated, slopes): (&[f64], &[f64])) {
     let is_force = |k: &usize| one.samples[*k].quantity == Quantity::Force;
-    let most = |of: &dyn Fn(usize) -> f64| {
-        let each = (0..sigma.len()).filter(is_force);
-        each.map(of).fold(0.0, f64::max)
-    };
-    let (is, was) = (most(&|k| simulated[k]), most(&|k| one.samples[k].value));
-    if is <= 0.0 {
+    let forces = || (0..sigma.len()).filter(is_force);
+    let over = |k: usize| one.samples[k].value / simulated[k];
+    let most = forces().map(|k| simulated[k]).fold(0.0, f64::max);
+    let pressed = forces().filter(|k| simulated[*k] > 0.5 * most);
+    let mut ratios: Vec<f64> = pressed.map(over).collect();
+    if most <= 0.0 || ratios.is_empty() {
         return;
     }
+    let scale = median(&mut ratios);
     for k in (0..sigma.len()).filter(is_force) {
-        sigma[k] = sigma[k].hypot(slopes[k] * was / is * one.depth_error_mm);
+        sigma[k] = sigma[k].hypot(slopes[k] * scale * one.depth_error_mm);
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
-use crate::observe::motion::rounding::{is_followed, is_rounding, level_stands, step_mm};
+use crate::observe::motion::rounding::{is_refused, is_rounding, level_stands, step_mm};
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
@@ -24,6 +24,8 @@ const BELIEVED: f64 = 2.0;
 
 /// What lines through rounded readings are off by, over the step: root mean square of motions between any two steps, as tested below.
 const LINES_ARE_OFF: f64 = 0.12;
+/// The same where a stand is left where it was read: all of its readings are off by one error of rounding.
+const STANDS_ARE_OFF: f64 = 0.29;
 
 /// Depths without their jitter.
 pub(crate) struct Depths {
@@ -35,13 +37,8 @@ pub(crate) struct Depths {
     pub reliability: f64,
     /// Step to which readings are rounded, mm, where that is all that parts them from the motion; else 0.
     pub step_mm: f64,
-}
-
-impl Depths {
-    /// Standard deviation of what rounding still leaves, mm; 0 where readings are not rounded.
-    pub(crate) fn left_mm(&self) -> f64 {
-        LINES_ARE_OFF * self.step_mm
-    }
+    /// Standard deviation of what rounding still leaves, mm; else 0.
+    pub left_mm: f64,
 }
 
 /// Takes the jitter off the depths of a course; None where it does not matter, or where the force follows it.
@@ -72,20 +69,29 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let pressed = slope.iter().filter(|s| **s != 0.0).count();
     let step_mm = step_mm(courses.depth_mm, stretches);
-    let mut lines = by_lines((courses.time_s, courses.depth_mm), (&depth, step_mm));
-    if is_rounding((courses.depth_mm, &lines), step_mm) {
-        let rounding_mm = step_mm / 12f64.sqrt();
-        let squares: f64 = slope.iter().map(|s| s * s).sum();
-        let does = (squares / pressed.max(1) as f64).sqrt() * rounding_mm;
-        let is_noise =
-            does > LEAST * noise_n && !is_followed(courses, (&lines, &slope), (step_mm, noise_n));
-        level_stands(courses, (stretches, &mut lines), (step_mm, noise_n));
-        return is_noise.then_some(Depths {
-            depth_mm: lines,
-            jitter_mm: rounding_mm,
-            reliability: 0.0,
-            step_mm,
-        });
+    let lines = || by_lines((courses.time_s, courses.depth_mm), (&depth, step_mm));
+    let squares: f64 = slope.iter().map(|s| s * s).sum();
+    let does = (squares / pressed.max(1) as f64).sqrt() * step_mm / 12f64.sqrt();
+    if does > LEAST * noise_n {
+        let mut motion = lines();
+        let known = (&motion.depth_mm[..], &slope[..]);
+        if motion.is_straight
+            && is_rounding((courses.depth_mm, known.0), step_mm)
+            && is_refused(courses, known, (step_mm, noise_n))
+        {
+            let found = (stretches, &mut motion.depth_mm[..]);
+            let left = match level_stands(courses, found, (step_mm, noise_n)) {
+                true => LINES_ARE_OFF,
+                false => STANDS_ARE_OFF,
+            };
+            return Some(Depths {
+                depth_mm: motion.depth_mm,
+                jitter_mm: step_mm / 12f64.sqrt(),
+                reliability: 0.0,
+                step_mm,
+                left_mm: left * step_mm,
+            });
+        }
     }
     let matters =
         jitter_mm > 0.0 && pressed > 0 && (under / pressed as f64).sqrt() > LEAST * noise_n;
@@ -94,6 +100,7 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
+    let lines = lines().depth_mm;
     let is_motion = deviation(&off(courses.depth_mm, &lines)) <= LINES_LEAVE * jitter_mm;
     let mut course = if is_motion { lines } else { depth };
     let read = off(courses.depth_mm, &course);
@@ -109,6 +116,7 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         jitter_mm,
         reliability,
         step_mm: 0.0,
+        left_mm: 0.0,
     })
 }
 
@@ -278,10 +286,12 @@ mod tests {
         move |t: f64| (SPEED_MM_S * t.min(2.0 * ramp + 3.0 - t) - 0.1).clamp(-0.1, deepest)
     }
 
-    /// What is found of a stage that rounds where it goes (or not), read every 0.08 s in steps of 10 um, so that rounding is a wave of 1.7 s; and
-    /// where it went, mm.
-    fn rounded(deepest: f64, goes_in_steps: bool, seed: u64) -> (Option<Depths>, Vec<f64>) {
-        let mut random = Random::new(seed);
+    /// What is found of a stage that rounds where it goes (or not), read every 0.08 s (rounding is a wave of 1.7 s), and where it went, mm.
+    fn rounded(
+        deepest: f64,
+        (goes_in_steps, fades): (bool, f64),
+        seed: u64,
+    ) -> (Option<Depths>, Vec<f64>) {
         let (path, time) = (stood(deepest), moments(130, 0.08));
         let round = |d: f64| STEP_MM * (d / STEP_MM).round();
         let read: Vec<f64> = time.iter().map(|t| round(path(*t))).collect();
@@ -289,15 +299,9 @@ mod tests {
             true => read.clone(),
             false => time.iter().map(|t| path(*t)).collect(),
         };
-        let push = |d: &f64| 1.5 * d.max(0.0).powf(1.5) + 0.002 * random.normal();
-        let force: Vec<f64> = truth.iter().map(push).collect();
-        let courses = Courses {
-            time_s: &time,
-            depth_mm: &read,
-            force_n: &force,
-            slide_mm: &[],
-        };
-        (without_jitter(courses, &stretches(courses)), truth)
+        let begins = (deepest + 0.1) / SPEED_MM_S;
+        let left = |t: f64| 1.0 - fades * (1.0 - libm::exp(-(t - begins).max(0.0) / 0.4));
+        (read_at(&time, (&read, &truth), (&left, seed)), truth)
     }
 
     /// Rounding is off by 2.9 um (root mean square), and by the same all along a stand.
@@ -307,8 +311,9 @@ mod tests {
         for seed in 1..13 {
             // A stand between two steps, each time elsewhere.
             let deepest = 1.3 + STEP_MM * (seed as f64 / 12.0);
-            let (found, truth) = rounded(deepest, false, seed);
+            let (found, truth) = rounded(deepest, (false, 0.0), seed);
             let found = found.expect("its steps matter");
+            assert!(found.left_mm < 0.2 * STEP_MM);
             assert!((found.step_mm / STEP_MM - 1.0).abs() < 1e-6);
             for (is, was) in found.depth_mm.iter().zip(&truth) {
                 match *was == deepest {
@@ -321,21 +326,75 @@ mod tests {
         assert!(rms(&stands) < 0.0015, "{}", rms(&stands));
     }
 
-    /// A stage that goes in steps, an exact table in even ones, and steps that do little are left as they were read.
+    /// Force that fades in a stand says nothing of its depth: it stays where it was read, and counts as known to a step's rounding.
     #[test]
-    fn steps_of_the_stage_stay() {
-        for seed in 1..7 {
-            assert!(rounded(1.3, true, seed).0.is_none(), "{seed}");
+    fn stand_in_which_the_force_fades_is_not_moved() {
+        let mut stands = Vec::new();
+        for seed in 1..13 {
+            let deepest = 1.3 + STEP_MM * (seed as f64 / 12.0);
+            let (found, truth) = rounded(deepest, (false, 0.2), seed);
+            let found = found.expect("its steps matter");
+            assert!(found.left_mm > 0.25 * STEP_MM);
+            let held = found.depth_mm.iter().zip(&truth);
+            stands.extend(
+                held.filter(|(_, was)| **was == deepest)
+                    .map(|(is, was)| is - was),
+            );
         }
-        let exact: Vec<f64> = (0..60).map(|k| 0.05 * f64::from(k.min(119 - k))).collect();
-        let time = moments(60, 0.1);
-        let force: Vec<f64> = exact.iter().map(|d| 1.5 * d.powf(1.5)).collect();
+        assert!(mean(&stands).abs() < 0.001, "{}", mean(&stands));
+        assert!(rms(&stands) < 0.0032, "{}", rms(&stands));
+    }
+
+    /// What is found of readings at these times with a force that follows `truth`, of which `left` is left.
+    fn read_at(
+        time: &[f64],
+        (read, truth): (&[f64], &[f64]),
+        (left, seed): (&dyn Fn(f64) -> f64, u64),
+    ) -> Option<Depths> {
+        let mut random = Random::new(seed);
+        let push =
+            |(d, t): (&f64, &f64)| 1.5 * d.max(0.0).powf(1.5) * left(*t) + 0.002 * random.normal();
+        let force: Vec<f64> = truth.iter().zip(time).map(push).collect();
         let courses = Courses {
-            time_s: &time,
-            depth_mm: &exact,
+            time_s: time,
+            depth_mm: read,
             force_n: &force,
             slide_mm: &[],
         };
-        assert!(without_jitter(courses, &stretches(courses)).is_none());
+        without_jitter(courses, &stretches(courses))
+    }
+
+    /// A stage that goes in steps is left as it was read; so is a micrometer that a hand turned by one mark in and by two out, when it came to it.
+    #[test]
+    fn steps_of_the_stage_stay() {
+        for seed in 1..7 {
+            assert!(rounded(1.3, (true, 0.0), seed).0.is_none(), "{seed}");
+        }
+        let marks = |k: i32| if k <= 20 { k } else { 20 - 2 * (k - 20) };
+        let depth: Vec<f64> = (0..31).map(|k| 0.1 * f64::from(marks(k))).collect();
+        let mut random = Random::new(5);
+        let pause = |time: &mut f64, _| {
+            *time += 1.0 + 0.3 * random.uniform();
+            Some(*time)
+        };
+        let time: Vec<f64> = (0..31).scan(0.0, pause).collect();
+        let found = read_at(&time, (&depth, &depth), (&|_| 1.0, 3));
+        let found = found.map_or(depth.clone(), |found| found.depth_mm);
+        let off: Vec<f64> = found.iter().zip(&depth).map(|(a, b)| a - b).collect();
+        assert!(rms(&off) < 0.02, "{off:?}");
+    }
+
+    /// A sine is no straight line, whatever the step of its readings.
+    #[test]
+    fn rounded_sine_is_not_called_straight() {
+        let time = moments(250, 0.08);
+        let sine = |t: &f64| 0.5 - 0.6 * libm::cos(0.2 * std::f64::consts::PI * t);
+        let truth: Vec<f64> = time.iter().map(sine).collect();
+        let read: Vec<f64> = truth
+            .iter()
+            .map(|d| STEP_MM * (d / STEP_MM).round())
+            .collect();
+        let found = read_at(&time, (&read, &truth), (&|_| 1.0, 3));
+        assert!(found.is_none_or(|found| found.step_mm == 0.0));
     }
 }

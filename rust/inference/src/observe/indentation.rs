@@ -167,7 +167,7 @@ pub fn observe(
         }
     }
     Observation {
-        depth_error_mm: steady.as_ref().map_or(0.0, |found| found.left_mm()),
+        depth_error_mm: steady.as_ref().map_or(0.0, |found| found.left_mm),
         moments,
         samples,
         is_touch_known,

@@ -36,14 +36,25 @@ enum Course {
 
 type Part = (Leg, Course);
 
+/// A motion as it is read.
+pub(crate) struct Motion {
+    /// At every reading, mm.
+    pub(crate) depth_mm: Vec<f64>,
+    /// Whether no part of it is a smooth course.
+    pub(crate) is_straight: bool,
+}
+
 /// Depths of the motion at every reading, mm; `smooth` are those of smooth courses between turning points, `step` is the step to which
 /// readings are rounded, mm.
-pub(crate) fn by_lines((time, depth): (&[f64], &[f64]), (smooth, step): (&[f64], f64)) -> Vec<f64> {
+pub(crate) fn by_lines((time, depth): (&[f64], &[f64]), (smooth, step): (&[f64], f64)) -> Motion {
     let mut found = depth.to_vec();
     let joined = legs((time, depth), EndStands::Joined);
     // A step of few readings is no line: its recording is smoothed.
     if joined.iter().any(|leg| leg.end - leg.start < FEWEST) {
-        return smooth.to_vec();
+        return Motion {
+            depth_mm: smooth.to_vec(),
+            is_straight: false,
+        };
     }
     let of = Readings::new((time, depth), (&joined, step));
     let parts = parts(joined, of);
@@ -63,7 +74,10 @@ pub(crate) fn by_lines((time, depth): (&[f64], &[f64]), (smooth, step): (&[f64],
             }
         }
     }
-    found
+    Motion {
+        depth_mm: found,
+        is_straight: parts.iter().all(|part| part.1 != Course::Smooth),
+    }
 }
 
 /// One smooth course of legs that BIC does not want parted where they turn: noise moves a turning point to its own extreme.
@@ -266,7 +280,7 @@ mod tests {
         let time = moments();
         let of = |seed: u64| {
             let read = jittering(truth, &time, seed);
-            let found = by_lines((&time, &read), (&read, 0.0));
+            let found = by_lines((&time, &read), (&read, 0.0)).depth_mm;
             let off = time.iter().zip(found).filter(|(t, _)| is_counted(**t));
             let squares: Vec<f64> = off.map(|(t, d)| (d - truth(*t)).powi(2)).collect();
             (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
@@ -348,7 +362,7 @@ mod tests {
         let (mut squares, mut count) = (0.0, 0.0);
         for seed in 1..41 {
             let read = jittering(&stood, &time, seed);
-            let found = by_lines((&time, &read), (&read, 0.0));
+            let found = by_lines((&time, &read), (&read, 0.0)).depth_mm;
             for (t, d) in time.iter().zip(found).filter(|(t, _)| held(**t)) {
                 squares += (d - stood(*t)).powi(2);
                 count += 1.0;
