@@ -122,7 +122,7 @@ pub(crate) fn level_stands(
         let leg = n.checked_sub(1).map(|before| stretches[before]);
         let moved = leg
             .filter(|leg| leg.phase == Phase::Load)
-            .and_then(|leg| shift((courses, lines), (leg, *stand), (step, noise_n)));
+            .and_then(|leg| shift((courses, lines), [leg, *stand], (step, noise_n)));
         match moved {
             Some((own, off)) => lines[own].iter_mut().for_each(|depth| *depth += off),
             None => are_level = false,
@@ -131,10 +131,10 @@ pub(crate) fn level_stands(
     are_level
 }
 
-/// Readings of a stand, and by how much it is off; None where that cannot be told.
+/// Readings of a stand after a leg, and by how much it is off; None where that cannot be told.
 fn shift(
     (courses, lines): (Courses<'_>, &[f64]),
-    (leg, stand): (Stretch, Stretch),
+    [leg, stand]: [Stretch; 2],
     (step, noise_n): (f64, f64),
 ) -> Option<(Range<usize>, f64)> {
     let mut sorted = lines[stand.start..stand.end].to_vec();
