@@ -65,11 +65,13 @@ pub fn check<'a>(
     match asked.check(gain.held_out_by) {
         Ok(found) => {
             gain.contact_model = found;
-            if is_refuted(judging.ready, named, gain) {
+            if let Some(check) = refuting(judging.ready, named, gain) {
                 let reason = format!(
                     "suspected is {}, which explains more than noise would, but with it the contact model predicts held-out recordings worse than \
-                     without",
-                    effect_in_words(named.names()[0])
+                     without: its error is {:.2} instead of {:.2} standard deviations of the noise",
+                    effect_in_words(named.names()[0]),
+                    check.after.rms,
+                    check.before.rms
                 );
                 let nothing = unnamed(judging.ready, judging.rungs, &measured, &reason);
                 *sized = Sized {
@@ -87,16 +89,22 @@ pub fn check<'a>(
     }
 }
 
-/// Whether the contact model speaks against a name: on skin whose form is known from measurements alone, it predicts held-out recordings clearly worse
-/// with it than without, be it with the numbers that were sought in it or, where none were found, with the fit's. Effects whose laws differ
-/// between fit and contact model, and two effects together, are not judged by it.
-fn is_refuted(ready: &PreparedStudy, named: &Scored, gain: &Gain) -> bool {
-    let [one] = &named.mechanisms[..] else {
-        return false;
-    };
-    let is_judged = matches!(one.effect, Effect::Bone | Effect::Compressibility);
-    let is_worse = |check: &ContactModelCheck| check.after.rms > check.before.rms + CLEARLY;
-    is_judged && !is_form_known(&ready.elastic) && gain.contact_model.as_ref().is_some_and(is_worse)
+/// The check that speaks against a name: on skin whose form is known from measurements alone, the contact model predicts held-out recordings clearly
+/// worse with it than without, be it with the numbers that were sought in it or, where none were found, with the fit's. Effects whose laws
+/// differ between fit and contact model, and two effects together, are not judged by it.
+fn refuting<'a>(
+    ready: &PreparedStudy,
+    named: &Scored,
+    gain: &'a Gain,
+) -> Option<&'a ContactModelCheck> {
+    let is_judged = |effect| matches!(effect, Effect::Bone | Effect::Compressibility);
+    if is_form_known(&ready.elastic)
+        || !matches!(&named.mechanisms[..], [one] if is_judged(one.effect))
+    {
+        return None;
+    }
+    let check = gain.contact_model.as_ref()?;
+    (check.after.rms > check.before.rms + CLEARLY).then_some(check)
 }
 
 /// Gives what is switched on the numbers with which the contact model was checked, and says what that came to.

@@ -102,19 +102,22 @@ fn relaxation_of_the_contact_model_is_named_and_predicts_what_was_held_out() {
     let mut fitting = Fitting::new(&study, &Control::none()).unwrap();
     let forces = fitting.simulate(&[effect], &Control::none()).unwrap();
     let study = measured(&(study, forces), &USUAL, 11);
-    let told = std::sync::Mutex::new(Vec::new());
+    let shares = std::sync::Mutex::new(Vec::new());
     let watched = Control {
         cancelled: &|| false,
         progress: &|stage, share| {
             if stage == "asking the contact model" {
-                told.lock().unwrap().push(share);
+                shares.lock().unwrap().push(share);
             }
         },
     };
     let found = diagnose(&study, &DiagnoseOptions::default(), &watched).unwrap();
-    let told = told.into_inner().unwrap();
+    let shares = shares.into_inner().unwrap();
     let is_within = |share: &f64| (0.8..1.0).contains(share);
-    assert!(told.len() > 2 && told.iter().all(is_within), "{told:?}");
+    assert!(
+        shares.len() > 2 && shares.iter().all(is_within),
+        "{shares:?}"
+    );
     let names: Vec<&str> = found.findings.iter().map(|f| f.effect).collect();
     assert_eq!(names, ["relaxation"], "{}", found.sentence);
     assert_eq!(found.verdict, Verdict::MissingPhysics);

@@ -6,7 +6,7 @@
 
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
-use crate::observe::motion::rounding::{is_refused, is_rounding, level_stands, step_mm};
+use crate::observe::motion::rounding::{Rounded, step_mm};
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
@@ -21,11 +21,6 @@ const LINES_LEAVE: f64 = 1.5;
 /// Readings that follow the force by assumption, in samples whose jitter does as much as the noise of the force: where nothing can be said
 /// the depth is believed.
 const BELIEVED: f64 = 2.0;
-
-/// What lines through rounded readings are off by, over the step: root mean square of motions between any two steps, as tested below.
-const LINES_ARE_OFF: f64 = 0.12;
-/// The same where a stand is left where it was read: all of its readings are off by one error of rounding.
-const STANDS_ARE_OFF: f64 = 0.29;
 
 /// Depths without their jitter.
 pub(crate) struct Depths {
@@ -68,39 +63,36 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         under += expected * expected;
     }
     let pressed = slope.iter().filter(|s| **s != 0.0).count();
-    let step_mm = step_mm(courses.depth_mm, stretches);
-    let lines = || by_lines((courses.time_s, courses.depth_mm), (&depth, step_mm));
-    let squares: f64 = slope.iter().map(|s| s * s).sum();
-    let does = (squares / pressed.max(1) as f64).sqrt() * step_mm / 12f64.sqrt();
-    if does > LEAST * noise_n {
-        let mut motion = lines();
-        let known = (&motion.depth_mm[..], &slope[..]);
-        if motion.is_straight
-            && is_rounding((courses.depth_mm, known.0), step_mm)
-            && is_refused(courses, known, (step_mm, noise_n))
-        {
-            let found = (stretches, &mut motion.depth_mm[..]);
-            let left = match level_stands(courses, found, (step_mm, noise_n)) {
-                true => LINES_ARE_OFF,
-                false => STANDS_ARE_OFF,
-            };
-            return Some(Depths {
-                depth_mm: motion.depth_mm,
-                jitter_mm: step_mm / 12f64.sqrt(),
-                reliability: 0.0,
-                step_mm,
-                left_mm: left * step_mm,
-            });
-        }
-    }
     let matters =
         jitter_mm > 0.0 && pressed > 0 && (under / pressed as f64).sqrt() > LEAST * noise_n;
+    let rounded = Rounded {
+        courses,
+        stretches,
+        slope: &slope,
+        step_mm: step_mm(courses.depth_mm),
+        noise_n,
+    };
+    let does = rounded.does_n() > LEAST * noise_n;
+    if !matters && !does {
+        return None;
+    }
+    let read = (courses.time_s, courses.depth_mm);
+    let motion = by_lines(read, (&depth, rounded.step_mm));
+    if let Some((depth_mm, left_mm)) = does.then(|| rounded.unrounded(&motion)).flatten() {
+        return Some(Depths {
+            depth_mm,
+            jitter_mm: rounded.step_mm / 12f64.sqrt(),
+            reliability: 0.0,
+            step_mm: rounded.step_mm,
+            left_mm,
+        });
+    }
     if !matters {
         return None;
     }
     let prior = BELIEVED * noise_n * noise_n;
     let reliability = ((over + prior) / (under + prior)).clamp(0.0, 1.0);
-    let lines = lines().depth_mm;
+    let lines = motion.depth_mm;
     let is_motion = deviation(&off(courses.depth_mm, &lines)) <= LINES_LEAVE * jitter_mm;
     let mut course = if is_motion { lines } else { depth };
     let read = off(courses.depth_mm, &course);
@@ -329,20 +321,20 @@ mod tests {
     /// Force that fades in a stand says nothing of its depth: it stays where it was read, and counts as known to a step's rounding.
     #[test]
     fn stand_in_which_the_force_fades_is_not_moved() {
-        let mut stands = Vec::new();
-        for seed in 1..13 {
-            let deepest = 1.3 + STEP_MM * (seed as f64 / 12.0);
-            let (found, truth) = rounded(deepest, (false, 0.2), seed);
-            let found = found.expect("its steps matter");
-            assert!(found.left_mm > 0.25 * STEP_MM);
-            let held = found.depth_mm.iter().zip(&truth);
-            stands.extend(
-                held.filter(|(_, was)| **was == deepest)
-                    .map(|(is, was)| is - was),
-            );
+        for fades in [0.2, 0.02] {
+            let mut stands = Vec::new();
+            for seed in 1..13 {
+                let deepest = 1.3 + STEP_MM * (seed as f64 / 12.0);
+                let (found, truth) = rounded(deepest, (false, fades), seed);
+                let found = found.expect("its steps matter");
+                assert!(found.left_mm > 0.25 * STEP_MM);
+                let held = found.depth_mm.iter().zip(&truth);
+                let held = held.filter(|(_, was)| **was == deepest);
+                stands.extend(held.map(|(is, was)| is - was));
+            }
+            assert!(mean(&stands).abs() < 0.001, "{}", mean(&stands));
+            assert!(rms(&stands) < 0.0032, "{}", rms(&stands));
         }
-        assert!(mean(&stands).abs() < 0.001, "{}", mean(&stands));
-        assert!(rms(&stands) < 0.0032, "{}", rms(&stands));
     }
 
     /// What is found of readings at these times with a force that follows `truth`, of which `left` is left.

@@ -9,15 +9,15 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::observe::measured::Phase;
+use crate::observe::motion::by_lines::Motion;
 use crate::observe::motion::line::ROUNDED;
 use crate::observe::protocol_phases::{Courses, Stretch};
+use crate::observe::robust_scale::median;
 
 /// Part of the range by which readings differ that are the same.
 const SAME: f64 = 1e-7;
 /// Smallest step, as a part of the range: what has no step seems to have one far below.
 const FINEST: f64 = 1e-5;
-/// Part of a step by which a multiple of it may be off.
-const WHOLE: f64 = 1e-2;
 /// Fewest different readings in which a step is sought.
 const FEWEST: usize = 8;
 /// Least that rounding leaves about lines, in steps: less is a motion in even steps that was read as it is.
@@ -29,8 +29,23 @@ const STRAIGHT: f64 = 1e-2;
 /// Standard deviations from which a stand's force falls.
 const SURE: f64 = 3.0;
 
-/// The step of which all readings are multiples, from one of them on, mm; 0 where there is none, or where a motion goes on by one step at a time.
-pub(crate) fn step_mm(depth: &[f64], stretches: &[Stretch]) -> f64 {
+/// Steps that a leg goes, and fewest and most readings, from which its force is continued.
+const BEFORE: (f64, usize, usize) = (6.0, 6, 40);
+/// Readings of a stand at whose beginning the force is taken; it has twice as many at least.
+const AFTER: usize = 3;
+/// Steps by which depths of one level differ at most.
+const SAME_LEVEL: f64 = 1e-3;
+/// Steps beyond which a force says something else than where in its step a stand is.
+const FARTHEST: f64 = 0.75;
+/// Part of a stand that is level.
+const LEVEL: f64 = 0.8;
+/// What lines through rounded readings are off by, over the step: root mean square of motions between any two steps (tests of `depth_jitter`).
+const LINES_ARE_OFF: f64 = 0.12;
+/// The same where a stand is left where it was read: all of its readings are off by one error of rounding.
+const STANDS_ARE_OFF: f64 = 0.29;
+
+/// The step of which all readings are multiples, from one of them on, mm; 0 where there is none.
+pub(crate) fn step_mm(depth: &[f64]) -> f64 {
     let mut sorted = depth.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else {
@@ -48,126 +63,142 @@ pub(crate) fn step_mm(depth: &[f64], stretches: &[Stretch]) -> f64 {
         }
         large
     });
-    if gaps.len() + 1 < FEWEST || step < FINEST * range {
-        return 0.0;
-    }
-    let is_leg = |stretch: &&Stretch| matches!(stretch.phase, Phase::Load | Phase::Unload);
-    let mut ways = stretches.iter().filter(is_leg).flat_map(|stretch| {
-        let own = &depth[stretch.start..stretch.end];
-        own.windows(2).map(|two| ((two[1] - two[0]) / step).abs())
-    });
-    match ways.any(|way| (way - 1.0).abs() > WHOLE) {
-        true => step,
-        false => 0.0,
+    match gaps.len() + 1 < FEWEST || step < FINEST * range {
+        true => 0.0,
+        false => step,
     }
 }
 
-/// Whether rounding to this step is what parts readings from the lines of a motion, and not less.
-pub(crate) fn is_rounding((read, lines): (&[f64], &[f64]), step: f64) -> bool {
-    let off = || read.iter().zip(lines).map(|(r, l)| r - l);
-    let squares: f64 = off().map(|d| d * d).sum();
-    let rms = (squares / read.len().max(1) as f64).sqrt();
-    step > 0.0 && rms > LEAST * step && off().all(|d| d.abs() < ROUNDED * step)
+/// Readings that are rounded to a step, and what the force does with it.
+pub(crate) struct Rounded<'a> {
+    /// The readings.
+    pub(crate) courses: Courses<'a>,
+    /// Their stretches.
+    pub(crate) stretches: &'a [Stretch],
+    /// Stiffness by reading, N/mm.
+    pub(crate) slope: &'a [f64],
+    /// The step, mm; 0 where there is none.
+    pub(crate) step_mm: f64,
+    /// Standard deviation of the force's noise, N.
+    pub(crate) noise_n: f64,
 }
 
-/// Whether the force does not follow what rounding seems to leave of the lines of a motion, as it would if the stage went in such steps and were
-/// read as it is. Where nothing can be said, false: then the depth is believed.
-///
-/// By each reading less the line through its neighbors, in which a wave has its jumps and a straight motion nothing: with all of them the force is
-/// not clearly likelier than with none. `slope` is the stiffness by reading (N/mm), `noise_n` the standard deviation of the force's noise.
-pub(crate) fn is_refused(
-    courses: Courses<'_>,
-    (lines, slope): (&[f64], &[f64]),
-    (step, noise_n): (f64, f64),
-) -> bool {
-    let (time, depth, force) = (courses.time_s, courses.depth_mm, courses.force_n);
-    let (mut over, mut under) = (0.0, 0.0);
-    for k in 1..time.len().saturating_sub(1) {
-        let part = (time[k] - time[k - 1]) / (time[k + 1] - time[k - 1]);
-        let bend = |of: &[f64]| of[k] - (1.0 - part) * of[k - 1] - part * of[k + 1];
-        let is_leg = bend(lines).abs() < STRAIGHT * step;
-        if is_leg && slope[k - 1..=k + 1].iter().all(|s| *s > 0.0) {
-            let variance = 1.0 + (1.0 - part).powi(2) + part * part;
-            let expected = slope[k] * bend(depth);
-            over += expected * bend(force) / variance;
-            under += expected * expected / variance;
+impl Rounded<'_> {
+    /// What rounding does to the force, N, root mean square where the tool touches.
+    pub(crate) fn does_n(&self) -> f64 {
+        let squares: f64 = self.slope.iter().map(|s| s * s).sum();
+        let pressed = self.slope.iter().filter(|s| **s != 0.0).count();
+        (squares / pressed.max(1) as f64).sqrt() * self.step_mm / 12f64.sqrt()
+    }
+
+    /// Depths of the motion, and the standard deviation of what they are still off by, mm; None where it is not straight, where not rounding alone
+    /// parts the readings from it, or where the force follows them.
+    pub(crate) fn unrounded(&self, motion: &Motion) -> Option<(Vec<f64>, f64)> {
+        let lines = &motion.depth_mm;
+        if !motion.is_straight || !self.is_rounding(lines) || !self.is_refused(lines) {
+            return None;
         }
+        let mut depth = lines.clone();
+        let left = match self.level_stands(&mut depth) {
+            true => LINES_ARE_OFF,
+            false => STANDS_ARE_OFF,
+        };
+        Some((depth, left * self.step_mm))
     }
-    under > 0.0 && over - 0.5 * under <= CLEARLY * noise_n * noise_n
-}
 
-/// Steps that a leg goes, and readings, from which its force is continued.
-const BEFORE: (f64, usize, usize) = (6.0, 6, 40);
-/// Readings of a stand at whose beginning, and half as many more at whose end, the force is taken.
-const AFTER: usize = 3;
-/// Steps beyond which a force says something else than where in its step a stand is.
-const FARTHEST: f64 = 0.75;
-/// Part of a stand that is level.
-const LEVEL: f64 = 0.8;
+    /// Whether rounding is what parts readings from these lines, and not less.
+    fn is_rounding(&self, lines: &[f64]) -> bool {
+        let read = self.courses.depth_mm;
+        let off = || read.iter().zip(lines).map(|(r, l)| r - l);
+        let squares: f64 = off().map(|d| d * d).sum();
+        let rms = (squares / read.len().max(1) as f64).sqrt();
+        self.step_mm > 0.0
+            && rms > LEAST * self.step_mm
+            && off().all(|d| d.abs() < ROUNDED * self.step_mm)
+    }
 
-/// Moves stands to where, within half a step, the force of the leg before them comes to: all readings of a stand are off by the same. False if
-/// one stays as it was read: its force falls (then it is not of the depth alone), or it does not follow a leg, or says otherwise than half a step.
-pub(crate) fn level_stands(
-    courses: Courses<'_>,
-    (stretches, lines): (&[Stretch], &mut [f64]),
-    (step, noise_n): (f64, f64),
-) -> bool {
-    let mut are_level = true;
-    for (n, stand) in stretches.iter().enumerate() {
-        let is_stand = stand.phase == Phase::Hold && stand.end - stand.start > 2 * AFTER;
-        are_level &= stand.phase != Phase::Slide;
-        if !is_stand {
-            continue;
+    /// Whether the force does not follow what rounding seems to leave of these lines, as it would if the stage went in such steps and were read as
+    /// it is. Where nothing can be said, false: then the depth is believed.
+    ///
+    /// By each reading less the line through its neighbors, in which a wave has its jumps and a straight motion nothing: with all of them the force
+    /// is not clearly likelier than with none.
+    fn is_refused(&self, lines: &[f64]) -> bool {
+        let Courses {
+            time_s: time,
+            depth_mm: depth,
+            force_n: force,
+            ..
+        } = self.courses;
+        let (mut over, mut under) = (0.0, 0.0);
+        for k in 1..time.len().saturating_sub(1) {
+            let part = (time[k] - time[k - 1]) / (time[k + 1] - time[k - 1]);
+            let bend = |of: &[f64]| of[k] - (1.0 - part) * of[k - 1] - part * of[k + 1];
+            let is_leg = bend(lines).abs() < STRAIGHT * self.step_mm;
+            if is_leg && self.slope[k - 1..=k + 1].iter().all(|s| *s > 0.0) {
+                let variance = 1.0 + (1.0 - part).powi(2) + part * part;
+                let expected = self.slope[k] * bend(depth);
+                over += expected * bend(force) / variance;
+                under += expected * expected / variance;
+            }
         }
-        let leg = n.checked_sub(1).map(|before| stretches[before]);
-        let moved = leg
-            .filter(|leg| leg.phase == Phase::Load)
-            .and_then(|leg| shift((courses, lines), [leg, *stand], (step, noise_n)));
-        match moved {
-            Some((own, off)) => lines[own].iter_mut().for_each(|depth| *depth += off),
-            None => are_level = false,
-        }
+        under > 0.0 && over - 0.5 * under <= CLEARLY * self.noise_n * self.noise_n
     }
-    are_level
-}
 
-/// Readings of a stand after a leg, and by how much it is off; None where that cannot be told.
-fn shift(
-    (courses, lines): (Courses<'_>, &[f64]),
-    [leg, stand]: [Stretch; 2],
-    (step, noise_n): (f64, f64),
-) -> Option<(Range<usize>, f64)> {
-    let mut sorted = lines[stand.start..stand.end].to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let level = sorted[sorted.len() / 2];
-    let is_level = |k: &usize| (lines[*k] - level).abs() < 1e-3 * step;
-    let start = (leg.start..stand.end).find(is_level)?;
-    let end = (start..lines.len())
-        .find(|k| !is_level(k))
-        .unwrap_or(lines.len());
-    if ((end - start) as f64) < LEVEL * (stand.end - stand.start) as f64 || end - start < 2 * AFTER
-    {
-        return None;
+    /// Moves stands to where, within half a step, the force of the leg before them comes to: all readings of a stand are off by the same. False if
+    /// one stays as it was read: its force falls (then it is not of the depth alone), it does not follow a leg, or it says more than half a step.
+    fn level_stands(&self, lines: &mut [f64]) -> bool {
+        let mut are_level = true;
+        for (n, stand) in self.stretches.iter().enumerate() {
+            are_level &= stand.phase != Phase::Slide;
+            if stand.phase != Phase::Hold || stand.end - stand.start <= 2 * AFTER {
+                continue;
+            }
+            let leg = n.checked_sub(1).map(|before| self.stretches[before]);
+            let moved = leg
+                .filter(|leg| leg.phase == Phase::Load)
+                .and_then(|leg| self.shift(lines, leg, *stand));
+            match moved {
+                Some((own, off)) => lines[own].iter_mut().for_each(|depth| *depth += off),
+                None => are_level = false,
+            }
+        }
+        are_level
     }
-    let mean = |of: Range<usize>| courses.force_n[of.clone()].iter().sum::<f64>() / of.len() as f64;
-    let here = mean(start..start + AFTER);
-    let late = mean(start + (end - start) / 2..end);
-    let one = noise_n * noise_n / AFTER as f64;
-    if here - late > SURE * (2.0 * one).sqrt() {
-        return None;
+
+    /// Readings of a stand after a leg, and by how much it is off, mm; None where the force does not say.
+    fn shift(&self, lines: &[f64], leg: Stretch, stand: Stretch) -> Option<(Range<usize>, f64)> {
+        let (force, step) = (self.courses.force_n, self.step_mm);
+        let level = median(&mut lines[stand.start..stand.end].to_vec());
+        let is_level = |k: &usize| (lines[*k] - level).abs() < SAME_LEVEL * step;
+        let start = (leg.start..stand.end).find(is_level)?;
+        let end = (start..lines.len()).find(|k| !is_level(k));
+        let own = start..end.unwrap_or(lines.len());
+        let least = LEVEL * (stand.end - stand.start) as f64;
+        if (own.len() as f64) < least || own.len() < 2 * AFTER {
+            return None;
+        }
+        let mean = |of: Range<usize>| force[of.clone()].iter().sum::<f64>() / of.len() as f64;
+        let here = mean(start..start + AFTER);
+        let late = mean(start + own.len() / 2..own.end);
+        let noise = self.noise_n * self.noise_n;
+        let known = noise / AFTER as f64;
+        if here - late > SURE * (2.0 * known).sqrt() {
+            return None;
+        }
+        let (way, fewest, most) = BEFORE;
+        let goes = |k: &usize| level - lines[*k] < way * step || start - k <= fewest;
+        let near = (leg.start..start).rev().take(most).take_while(goes);
+        let points: Vec<(f64, f64)> = near.map(|k| (lines[k] - level, force[k])).collect();
+        if points.len() < fewest {
+            return None;
+        }
+        let (there, slope, variance) = continued(&points)?;
+        let rounded = slope * slope * step * step / 12.0;
+        let part = rounded / (rounded + noise * variance + known);
+        let off = (here - there) / slope * part;
+        let is_within = off.abs() <= FARTHEST * step;
+        is_within.then_some((own, off.clamp(-0.5 * step, 0.5 * step)))
     }
-    let (way, least, most) = BEFORE;
-    let goes = |k: &usize| level - lines[*k] < way * step || start - k <= least;
-    let near = (leg.start..start).rev().take(most).take_while(goes);
-    let points: Vec<(f64, f64)> = near
-        .map(|k| (lines[k] - level, courses.force_n[k]))
-        .collect();
-    let (there, slope, variance) = (points.len() >= least).then(|| continued(&points))??;
-    let known = noise_n * noise_n * variance + one;
-    let rounded = slope * slope * step * step / 12.0;
-    let off = (here - there) / slope * rounded / (rounded + known);
-    let is_within = off.abs() <= FARTHEST * step;
-    is_within.then_some((start..end, off.clamp(-0.5 * step, 0.5 * step)))
 }
 
 /// A force at depth 0, its slope there and the force's variance over that of a reading, by a parabola through (depth, force); None unless
