@@ -1,7 +1,5 @@
 """Makers' files in Python: the arrays are those that a second reader, written here with numpy alone, finds."""
 
-import time
-
 import numpy as np
 import pytest
 import thenar
@@ -39,16 +37,6 @@ def test_what_cannot_be_known_is_said(shared):
     for name, expected in sources.items():
         file = thenar.read_recording(shared / name)
         assert any(expected in text for each in [*file.maps, *file.curves] for text in each.unknown), name
-
-
-def test_a_finger_recording_is_read_at_once(shared):
-    times = []
-    for _ in range(7):
-        start = time.perf_counter()
-        thenar.read_recording(shared / ISCAN)
-        times.append(time.perf_counter() - start)
-    print(f"309 frames of 28 x 28 cells read in {1e3 * min(times):.1f} ms")
-    assert min(times) < 0.5
 
 
 def test_faults_are_recording_errors(tmp_path):

@@ -68,14 +68,18 @@ def test_the_window_keys_what_a_script_keys(tmp_path):
     assert rows() == first and len(first) > 30
 
 
-def test_what_changes_the_hand_is_short_for_a_minute_of_motion_capture(tmp_path):
+def test_a_minute_of_motion_capture_is_keyed_whole(tmp_path):
+    """What changes the hand, in the window's thread; its processor time is printed (`pytest -s`), never asserted."""
     steps, work = begun(tmp_path, 1800)
     prepared = work(None, None)
+    assert state()[2] is None, "the hand changed before its keys were prepared"
     begin = time.process_time()
-    with pytest.raises(StopIteration):
+    with pytest.raises(StopIteration) as end:
         steps.send(prepared)
     print(f"1800 frames keyed in {time.process_time() - begin:.2f} s of CPU")
-    assert time.process_time() - begin < 2.0
+    curves = keying.curves(bpy.context.scene.thenar.hand.parent)
+    assert end.value.value.keyed == 1800 and len(curves) > 30
+    assert all(len(curve.keyframe_points) == 1800 for curve in curves)
 
 
 def rows():

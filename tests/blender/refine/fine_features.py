@@ -5,6 +5,7 @@ from math import cos, pi, sin
 import bpy
 import numpy as np
 import stage
+from mathutils import Euler
 
 RADIUS = 8.0
 """Of the ball, mm; its edges are about 2.4 mm long."""
@@ -139,3 +140,36 @@ def refine(times=1, **options):
     """Press Refine Skin so many times."""
     for _ in range(times):
         assert bpy.ops.thenar.refine_skin(**options) == {"FINISHED"}
+
+
+def crossed_finger():
+    """A hand of 9,600 vertices whose index finger is bent, a wire across the pad of it between vertices."""
+    bpy.ops.thenar.make_hand()
+    hand = bpy.context.scene.thenar.hand
+    rig = hand.parent
+    for name in ("index_proximal", "index_middle"):
+        rig.pose.bones[name].rotation_euler = Euler((0.4, 0.0, 0.0))
+    shown, triangles = stage.evaluated(hand), triangles_of(hand)
+    pad = hand.vertex_groups["index_distal_pad"].index
+    on_pad = np.array([any(group.group == pad for group in vertex.groups) for vertex in hand.data.vertices])
+    rows = np.flatnonzero(on_pad[triangles].all(axis=1))
+    middle = shown[on_pad].mean(axis=0)
+    corners = shown[triangles[rows]]
+    outward = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    facing = outward.mean(axis=0)
+    best = np.argmax((corners.mean(axis=1) - middle) @ facing)
+    out, foot = outward[best], corners[best].mean(axis=0)
+    side = np.cross(out, [0.0, 0.3, 1.0])
+    side /= np.linalg.norm(side)
+    turns = [np.cos(turn) * side + np.sin(turn) * np.cross(out, side) for turn in np.linspace(0.0, np.pi, 60)]
+
+    def clear(way):
+        off = shown[on_pad] - foot
+        return np.linalg.norm(off - np.outer(off @ way, way) + 0.05 * out, axis=1).min()
+
+    way = max(turns, key=clear)
+    crossing, (centre, _) = wire((foot, way, out), radius=0.35, sunk=0.25, half=9.0)
+    off = shown - centre
+    assert np.linalg.norm(off - np.outer(off @ way, way), axis=1).min() > 0.35  # no vertex lies in it
+    return hand, crossing

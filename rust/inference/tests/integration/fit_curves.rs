@@ -153,22 +153,3 @@ fn the_same_seed_gives_the_same_bits() {
         (b.projected, b.lack_of_fit_p)
     );
 }
-
-#[test]
-fn thirteen_recordings_of_ninety_samples_take_seconds() {
-    let started = std::time::Instant::now();
-    let study = measured(&clean(), &USUAL, 3);
-    let built = started.elapsed().as_secs_f64();
-    let started = std::time::Instant::now();
-    let fit = fit_study(&study, &Options::default(), &Control::none()).unwrap();
-    println!(
-        "{} recordings fitted in {:.2} s ({built:.2} s to make them)",
-        fit.measured.len(),
-        started.elapsed().as_secs_f64()
-    );
-    for e in &fit.estimates {
-        println!("{e:?}");
-    }
-    println!("p {:?} {:?}", fit.lack_of_fit_p, fit.notes);
-    assert!(started.elapsed().as_secs_f64() < 30.0);
-}
