@@ -183,3 +183,4 @@ def test_rounded_depths_accuse_nobody(seed, truth, tmp_path):
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     names = [found["effect"] for found in said["findings"]]
     assert world.judged(truth, case.pad.stiffening, said["verdict"], names) == "right", said["sentence"]
+    assert not any("the zero of the force wanders" in note for note in said["notes"]), "no zero wanders in this world"

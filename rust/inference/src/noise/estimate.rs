@@ -41,6 +41,8 @@ pub struct Noise {
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
     /// The clearest rhythm in which the forces of repeats differ.
     pub rhythm: Option<Rhythm>,
+    /// Whether depths are known with an error, which acts on the forces through their slope.
+    pub has_depth_error: bool,
     /// What a reader should be told.
     pub notes: Vec<String>,
 }
@@ -98,12 +100,15 @@ pub fn noise(
                 .map_or_else(Vec::new, |s| s.drawn_from.clone())
         }),
         rhythm: forces.and_then(|s| s.rhythm),
+        has_depth_error: measured.iter().any(|one| one.depth_error_mm > 0.0),
         notes,
     }
 }
 
 impl Noise {
-    /// That the force's zero wanders, by how much, and how noisy each reading is besides; None where repeats do not show it.
+    /// How far repeats drift apart, as where the force's zero wanders, and how noisy each reading is; None where they do not.
+    ///
+    /// What rounded depths leave drifts apart too, so where depths have an error the zero is not said to wander.
     /// `forces` are samples of the force, each by its recording and its number there.
     pub fn wander_note(&self, forces: impl Iterator<Item = (usize, usize)>) -> Option<String> {
         let correlation = self.correlation[Channel::Force as usize];
@@ -116,12 +121,21 @@ impl Noise {
         let size = median(&mut sizes);
         let left = forgotten(WANDER_S, correlation.memory_s);
         let wander = size * (2.0 * (1.0 - correlation.white) * (1.0 - left)).sqrt();
-        Some(format!(
-            "the zero of the force wanders, in repeats of one protocol by {} mN in {WANDER_S} s, in addition to {} mN of noise in each reading; \
-             what wanders no further is not taken for an effect",
+        let (wander, white) = (
             number(1000.0 * wander),
-            number(1000.0 * size * correlation.white.sqrt())
-        ))
+            number(1000.0 * size * correlation.white.sqrt()),
+        );
+        Some(if self.has_depth_error {
+            format!(
+                "repeats of one protocol drift apart by {wander} mN in {WANDER_S} s, in addition to {white} mN of noise in each reading: a zero of \
+                 the force that wanders, or what depths read in steps leave; what drifts no further is not taken for an effect"
+            )
+        } else {
+            format!(
+                "the zero of the force wanders, in repeats of one protocol by {wander} mN in {WANDER_S} s, in addition to {white} mN of noise in \
+                 each reading; what wanders no further is not taken for an effect"
+            )
+        })
     }
 }
 
