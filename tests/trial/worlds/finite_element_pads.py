@@ -21,8 +21,9 @@ Truths, and the right answers, written down before anything was run (`judged`):
 - `relaxation`: two terms of a Prony series convolved with the elastic force (quasi-linear; Fung 1993).
 - `cycle_softening`: damage by work, with four cycles first and no rest between recordings.
 - `saturation`: a load cell that clips.
+- `bone`: nothing else, but the study states a tissue 0.55 or 1.8 times as thick as it is (written down 2026-11-29).
 
-Of the last three, which are drawn with b = 0 and b = 1, right is that name, with b = 1 also next to a stiffening law.
+Of the last four, which are drawn with b = 0 and b = 1, right is that name, with b = 1 also next to a stiffening law.
 No name, *unlisted*, too little data and *cannot tell* that holds the truth are misses; every other name is wrong.
 
 A convolution of the force is exact only while contact does not shrink and shape and time separate (Lee and Radok 1960),
@@ -38,8 +39,8 @@ read with 3 % + 0.2 mm2 where it is read.
 - `stepper`: depth in steps of 10 um, force in steps of 2 mN; 3 mN white.
 
 Habits, drawn too: depths of 15 to 40 % of the tissue; one tool or two of plate, 24 mm cylinder and 12 mm sphere (times
-s); one speed or two; a hold or none; 2 to 4 repeats; area read or not. The thickness is stated as it is, the width of
-the bone is not; moduli are stated as `../shared/studies` do.
+s); one speed or two; a hold or none; 2 to 4 repeats; area read or not. Except in `bone` the thickness is stated as it
+is; the width of the bone is not stated; moduli are stated as `../shared/studies` do.
 """
 
 import json
@@ -52,11 +53,12 @@ from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 
 NOISES = ("laboratory", "slow", "remounted", "stepper")
-TRUTHS = ("nothing", "exponential", "relaxation", "cycle_softening", "saturation")
+TRUTHS = ("nothing", "exponential", "relaxation", "cycle_softening", "saturation", "bone")
 TABLE = json.loads((Path(__file__).parents[2] / "proof/by_finite_elements/deep_pads.json").read_text())
 SIZE = (0.85, 1.15)
 MODULUS_MPA = (0.006, 0.02)
 SHARE = (0.15, 0.4)  # largest depth over thickness
+MISSTATED = (0.55, 1.8)  # thickness stated over the true one, of `bone`
 LIFT_MM = 0.1
 SMOOTH = 4  # degree
 STIFFENING = "stiffening_law"
@@ -114,11 +116,14 @@ class Recording:
 
 @dataclass(frozen=True)
 class Case:
-    """A study: the pad, what was recorded, in order, and the rest between recordings (s; None: not stated)."""
+    """A study: the pad, what was recorded, in order, the rest between recordings (s; None: not stated), and the
+    thickness that it states over the true one.
+    """
 
     pad: Pad
     recordings: list
     rest_s: float | None
+    stated: float = 1.0
 
     def write(self, folder):
         """Writes `study.toml`, `skin.ply` and the recordings."""
@@ -126,7 +131,8 @@ class Case:
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "skin.ply").write_text(ply(*half_ellipsoid(self.pad.semi_axes_mm, 0.17 * self.pad.thickness_mm)))
         text = f'[study]\ntitle = "Pad of {self.pad.name}"\n[skin]\nmesh = "skin.ply"\n[skin.materials.default]\n'
-        text += f"g0_mpa = 0.006\ng_lim_mpa = 0.05\nd_lim_mm = 4.0\nthickness_mm = {self.pad.thickness_mm:.2f}\n"
+        thickness_mm = self.stated * self.pad.thickness_mm
+        text += f"g0_mpa = 0.006\ng_lim_mpa = 0.05\nd_lim_mm = 4.0\nthickness_mm = {thickness_mm:.2f}\n"
         for tool in sorted({one.tool for one in self.recordings}):
             text += f"[indenters.{tool}]\n" + _shape(tool, self.pad.size)
         text += f"[sites.apex]\npoint_mm = [0.0, 0.0, {self.pad.semi_axes_mm[2]:.5f}]\ndirection = [0.0, 0.0, -1.0]\n"
@@ -186,7 +192,8 @@ def draw(seed, truth, noise):
                 force = mechanism.force_n(tool, time, depth)
                 table = reader.read(time, depth, force, pad.area_mm2(tool, depth))
                 recordings.append(Recording(protocol, tool, table))
-    return Case(pad, recordings, None if truth == "cycle_softening" else 120.0)
+    stated = float(random.choice(MISSTATED)) if truth == "bone" else 1.0
+    return Case(pad, recordings, None if truth == "cycle_softening" else 120.0, stated)
 
 
 def _protocols(truth, random):

@@ -120,6 +120,18 @@ def test_draws_repeat_and_stay_within_their_habits(truth):
         world.draw(1, truth, "magic")
 
 
+def test_thickness_is_stated_as_it_is_but_for_bone(tmp_path):
+    stated = set()
+    for seed in range(8):
+        for truth in ("nothing", "bone"):
+            case = world.draw(seed, truth, "laboratory")
+            case.write(tmp_path / truth)
+            text = (tmp_path / truth / "study.toml").read_text()
+            ratio = float(text.split("thickness_mm = ")[1].split()[0]) / case.pad.thickness_mm
+            stated.add((truth, round(ratio, 2)))
+    assert stated == {("nothing", 1.0), ("bone", 0.55), ("bone", 1.8)}
+
+
 @pytest.mark.parametrize("name", list(world.TABLE["pads"]))
 def test_skin_is_one_surface_with_an_open_rim(name, tmp_path):
     pad = world.Pad(name, 1.0, 0.01, 0.0)

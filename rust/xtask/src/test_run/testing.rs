@@ -216,7 +216,7 @@ pub fn pytest(places: &Places, folder: &str, environment: &str) -> Step {
     let mut command = Command::new(places.python(environment));
     command
         .current_dir(&places.root)
-        .args(["-m", "pytest", "--quiet", "--durations=3"])
+        .args(["-m", "pytest", "--quiet", "--durations=12"])
         .arg(Path::new("tests").join(folder))
         // Keeps the preferences of the person who runs this out of the tests, and the tests out of theirs.
         .env(
