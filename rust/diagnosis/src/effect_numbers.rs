@@ -83,6 +83,8 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
             };
             vec![("law", growth.law()), ("measure", measure)]
         }
+        // The surrogate's skin clings where it has touched.
+        Law::Adhesion { .. } => vec![("bonds", "touched")],
         _ if mechanism.is_instrument() => vec![("channel", "force")],
         _ => Vec::new(),
     };
@@ -91,6 +93,8 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
     choices
 }
 
+/// Part of the largest depth at which a tool's radius is read from its contact.
+const SHALLOW: f64 = 0.05;
 type Named = (&'static str, f64, f64, f64);
 /// Amplitude of an effect whose other numbers say how much.
 const WHOLE: Three = (1.0, 1.0, 1.0);
@@ -303,17 +307,18 @@ fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
 }
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits
-/// of JKR and DMT, with `R = a^2 / d`.
+/// of JKR and DMT, with `R = a^2 / d` where the contact is still small; at depth a thin layer's contact is up to twice as large.
 fn work_of(ready: &PreparedStudy, share: f64) -> f64 {
-    let deepest = ready.scales.deepest;
-    let radii = ready.elastic.places.iter().map(|p| radius(p, deepest));
-    let tool = radii.fold(1e-3, f64::max).powi(2) / deepest;
+    let shallow = SHALLOW * ready.scales.deepest;
+    let radii = ready.elastic.places.iter().map(|p| radius(p, shallow));
+    let tool = radii.fold(1e-3, f64::max).powi(2) / shallow;
     share * ready.scales.forces.1 / (1.75 * std::f64::consts::PI * tool) * 1e3
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use thenar_contact::ActiveEffect;
 
     /// By a sum of a million steps.
     #[test]
@@ -335,6 +340,24 @@ mod tests {
         for (mean, wanted) in means.iter().zip([-OUTER, 0.0, OUTER]) {
             assert!((mean - wanted).abs() < 1e-4, "{means:?}");
         }
+    }
+
+    /// What the surrogate's skin does, which clings where it has touched, is what the contact model is told to do.
+    #[test]
+    fn adhesion_is_switched_on_with_bonds_that_touch_made() {
+        let found = choices(&Mechanism {
+            effect: Effect::Adhesion,
+            law: Law::Adhesion { lets_go: -0.2 },
+        });
+        let mut effect = ActiveEffect::named("adhesion", 1.0).unwrap();
+        for (name, option) in found {
+            effect = effect.choose(name, option).unwrap();
+        }
+        let bonds = effect.entry().choices[0];
+        assert_eq!(
+            (bonds.name, bonds.options[effect.chosen[0]]),
+            ("bonds", "touched")
+        );
     }
 
     #[test]

@@ -2,10 +2,11 @@
 //!
 //! Attraction falls linearly with the gap and ends at `range_mm`; its area is the work of adhesion, as in Maugis (1992) with
 //! a ramp for his step. A wide range gives DMT's pull-off `2 pi w R`, a short one JKR's `1.5 pi w R`. It pulls where skin is
-//! nearer than the range, so the skin leaps into contact and lets go later than it came.
+//! nearer than the range, so the skin leaps into contact and lets go later than it came. Bonds that form on touch alone, as those of
+//! sweat or glue, pull nothing on the way in: skin is pulled from when it touches until its gap exceeds the range.
 
 use super::definition::active::ActiveEffect;
-use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const WORK: usize = 0;
 const RANGE: usize = 1;
@@ -39,7 +40,11 @@ pub const ENTRY: Entry = Entry {
             source: "ours: about the roughness between skin ridges; no measurement known",
         },
     ],
-    choices: &[],
+    choices: &[Choice {
+        name: "bonds",
+        options: &["reversible", "touched"],
+        meaning: "which skin is pulled: all within the range (reversible), or only what has touched and has not let go since",
+    }],
     painted: None,
     check: None,
     consequences: &[
@@ -67,4 +72,9 @@ pub fn work(adhesion: &ActiveEffect) -> f64 {
 /// Gap at which the attraction ends, mm.
 pub fn range(adhesion: &ActiveEffect) -> f64 {
     adhesion.shape[RANGE]
+}
+
+/// Whether bonds form on touch alone.
+pub fn is_on_touch(adhesion: &ActiveEffect) -> bool {
+    adhesion.chosen[0] == 1
 }

@@ -36,14 +36,16 @@ pub const MOST_SOLVES: usize = 400;
 pub(crate) struct AdhesionLaw {
     /// Largest attraction, N, and gap at which it ends, mm; by site, zero where there is none.
     law: Vec<(f64, f64)>,
+    /// Sites that are pulled without being pressed: their bonds are reversible, or held in the step before.
+    is_bonded: Vec<bool>,
     most: f64,
     farthest: f64,
 }
 
 impl AdhesionLaw {
     /// The law of the skin by its response weights in rest, so that it stays the same whatever is pressed: attraction that
-    /// changed with the posture would do work of its own. None without adhesion.
-    pub fn new(skin: &Skin) -> Option<AdhesionLaw> {
+    /// changed with the posture would do work of its own. `before` is the attraction of the step before. None without adhesion.
+    pub fn new(skin: &Skin, before: &[Pull]) -> Option<AdhesionLaw> {
         let active: Vec<&ActiveEffect> = skin
             .effects()
             .iter()
@@ -61,22 +63,30 @@ impl AdhesionLaw {
                 .iter()
                 .filter(|e| skin.sites.is_skin(site) && e.acts_on(region));
             let strongest = here
-                .map(|e| (e.amplitude * adhesion::work(e), adhesion::range(e)))
+                .map(|e| {
+                    let work = e.amplitude * adhesion::work(e);
+                    (work, adhesion::range(e), adhesion::is_on_touch(e))
+                })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((work, range)) = strongest else {
-                return (0.0, 0.0);
+            let Some((work, range, on_touch)) = strongest else {
+                return ((0.0, 0.0), false);
             };
+            let known = |pull: &Pull| pull.site.cmp(&(site as u32));
+            let is_bonded = !on_touch || before.binary_search_by(known).is_ok();
             let energy = work * skin.sites.area[site];
             let own = weight[site].powi(2) * skin.response.own(site, &skin.sites);
             let steady = STEADY * (2.0 * energy / own).sqrt();
-            if 2.0 * energy / range <= steady {
+            let law = if 2.0 * energy / range <= steady {
                 (2.0 * energy / range, range)
             } else {
                 (steady, (MESH_SHARE * 2.0 * energy / steady).max(range))
-            }
+            };
+            (law, is_bonded)
         };
-        let law: Vec<(f64, f64)> = (0..skin.sites.len()).map(law_at).collect();
+        let (law, is_bonded): (Vec<(f64, f64)>, Vec<bool>) =
+            (0..skin.sites.len()).map(law_at).unzip();
         Some(AdhesionLaw {
+            is_bonded,
             most: law.iter().fold(0.0, |most, l| f64::max(most, l.0)),
             farthest: law.iter().fold(0.0, |most, l| f64::max(most, l.1)),
             law,
@@ -85,6 +95,7 @@ impl AdhesionLaw {
 
     /// Attraction of the skin as a solve left it, from the true posture of `detection`.
     ///
+    /// Where bonds form on touch, skin is pulled that is pressed now or was pulled in the step before.
     /// It falls with the distance from where the skin now lies and pulls along the normal there, the distance's gradient: so it
     /// has a potential.
     pub fn pulls(
@@ -105,7 +116,11 @@ impl AdhesionLaw {
                 continue;
             }
             match solved.zone.binary_search(&(site as u32)) {
-                Ok(k) => pulls.extend(self.pull(site, &solved.touch[k], solved.slack[k])),
+                Ok(k) if solved.force[k] > 0.0 || self.is_bonded[site] => {
+                    pulls.extend(self.pull(site, &solved.touch[k], solved.slack[k]));
+                }
+                Ok(_) => {}
+                Err(_) if !self.is_bonded[site] => {}
                 Err(_) => {
                     apart.push((site, gap));
                     points.push(detection.positions[vertex] + moved);

@@ -62,7 +62,7 @@ pub(crate) fn press_at(
         recall.soften(&mut shear_modulus);
     }
     let mut response = site_response(skin, &shear_modulus, borne);
-    let attraction = AdhesionLaw::new(skin);
+    let attraction = AdhesionLaw::new(skin, &pressing.workspace.warm_start.pulls);
     add_time(seconds, "response", started);
     // Stages 2 to 4: active zone, coupling, solve; with adhesion until it settles.
     let started = Instant::now();

@@ -109,6 +109,40 @@ fn a_wide_range_gives_the_pull_off_of_dmt() {
     assert!((pull / 2.0 - 1.0).abs() < 0.03);
 }
 
+/// Of skin that hardly moves: traction `2 w / range (1 - gap / range)` over the disc that Hertz's contact covered, `a^2 = R d`, at the
+/// gaps `r^2 / 2 R + h` of a paraboloid at the height h.
+#[test]
+fn bonds_on_touch_pull_the_skin_that_touched_and_no_other() {
+    let (work, range, depth, height) = (0.01 * work(), 0.3, 0.225, 0.05);
+    let offsets = [-height, depth, -height, -0.4, -height];
+    let forces = |effects: Vec<ActiveEffect>| -> Vec<f64> {
+        let mut skin = skin(0.15, 2.4, effects);
+        let course = follow(
+            &mut skin,
+            &paraboloid(RADIUS, 0.0, 3.0),
+            offsets.into_iter(),
+        );
+        course.steps.iter().map(|step| step.force).collect()
+    };
+    let on_touch = adhesion(work, range).choose("bonds", "touched").unwrap();
+    let (found, base) = (forces(vec![on_touch]), forces(Vec::new()));
+    let reversible = forces(vec![adhesion(work, range)]);
+    assert!(reversible[0] < 0.0 && (reversible[4] / reversible[0] - 1.0).abs() < 0.01);
+    assert_eq!((found[0], found[3], found[4]), (0.0, 0.0, 0.0), "{found:?}");
+    let touched = RADIUS * depth;
+    let open = 1.0 - height / range - touched / (4.0 * RADIUS * range);
+    let wanted = -2.0 * work / range * std::f64::consts::PI * touched * open;
+    println!(
+        "pull of what touched {} N, {wanted} by the formula",
+        found[2]
+    );
+    assert!((found[2] / wanted - 1.0).abs() < 0.05, "{found:?} {wanted}");
+    assert!(
+        (found[1] - base[1]).abs() < 0.1 * wanted.abs(),
+        "{found:?} {base:?}"
+    );
+}
+
 #[test]
 fn skin_lets_go_later_than_it_came_and_the_loop_costs_energy() {
     let mut skin = skin(1.0 / 6.0, 1.5, vec![adhesion(work(), 1e-5)]);
