@@ -6,7 +6,7 @@ from bpy.app.handlers import persistent
 from . import cache, native, status, workflow
 from .hand_shape import thumb_range
 from .operators import running
-from .properties import material_settings
+from .properties import effect_settings, material_settings
 from .scene import baked
 from .terminal import command_line
 
@@ -38,6 +38,8 @@ def _file_loaded(*_):
 def _objects_came(*_):
     for hand in bpy.data.objects:
         material_settings.bring_up_to_date(hand)
+        if hand.library is None:
+            effect_settings.bring_up_to_date(hand)
         if thumb_range.bring_up_to_date(hand):
             print(f"Thenar: the thumb of '{hand.name}' may now turn inward as far as in a new hand")
 

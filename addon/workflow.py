@@ -300,7 +300,7 @@ def _left_out(job: Job) -> Iterator[str]:
 
 
 def _waits(used: effects.UsedEffect) -> bool:
-    return used.amplitude > 0.0 and effect_settings.acts_over_time(used.name)
+    return used.amplitude > 0.0 and effect_settings.acts_over_time(used.name, used.numbers)
 
 
 def state_hash(context: Context) -> str:

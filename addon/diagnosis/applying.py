@@ -62,9 +62,8 @@ def apply(context, index):
     _to_model(state, finding)
     where = f"for '{sentences.region_title(effect.region)}'" if effect.region else "for all skin"
     where = "at its location" if "center_x_mm" in wanted.numbers else where
-    waits = (
-        "; it acts over time: bake to see it" if effect_settings.acts_over_time(effect.name) else "; solve to see it"
-    )
+    is_over_time = effect_settings.acts_over_time(effect.name, effect_settings.chosen(effect))
+    waits = "; it acts over time: bake to see it" if is_over_time else "; solve to see it"
     return Taken(f"{title} is on {where}{waits}", doubt)
 
 

@@ -55,7 +55,7 @@ class THENAR_PT_effects(OfHand, bpy.types.Panel):
 
 def _draw_effect(layout, effect, hand):
     column = layout.column(align=True)
-    if effect_settings.acts_over_time(effect.name):
+    if effect_settings.acts_over_time(effect.name, effect_settings.chosen(effect)):
         column.label(text="Time-dependent: needs a bake", icon="TIME")
     if hand.thenar.materials:
         column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")

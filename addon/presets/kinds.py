@@ -192,6 +192,8 @@ def _check_effect(content, place):
     shapes = {shape["name"]: shape for shape in offered[name]["shape"]}
     options = {option["name"]: option["options"] for option in offered[name]["choices"]}
     found = _same_keys(numbers, shapes, place.at("numbers"))
+    if isinstance(choices, dict):  # an older preset lacks choices that have come since
+        choices = {key: words[0] for key, words in options.items()} | choices
     chosen = _same_keys(choices, options, place.at("choices"))
     checked = fields.check(row, effect_settings.ThenarEffect, _EFFECT, place)
     fields.number(checked["amplitude"], 0.0, offered[name]["most"], place.at("amplitude"))

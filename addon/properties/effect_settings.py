@@ -1,5 +1,7 @@
 """Blender properties of the effects that are switched on for a hand; what each effect is stands in the library."""
 
+from collections.abc import Iterable
+
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, FloatProperty, StringProperty
 
@@ -7,6 +9,8 @@ from .. import languages, names, native
 
 _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
+_BONDS_OF_TOUCH = ("bonds", "touched")
+"""The choice of adhesion with which a contact depends on what was touched before."""
 _OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
 """Stages that act on the skin; instruments act on readings, and have no place on a hand."""
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
@@ -31,9 +35,25 @@ def meaning(name):
     return next((row["meaning"] for row in native.effects() if row["name"] == name), "")
 
 
-def acts_over_time(name: str) -> bool:
-    """Whether the effect needs time: a press of one frame knows nothing of it, a bake follows it."""
-    return offered().get(name, {}).get("stage") == _OVER_TIME
+def acts_over_time(name: str, numbers: Iterable[tuple[str, float | str]] = ()) -> bool:
+    """Whether the effect needs time: a press of one frame knows nothing of it, a bake follows it.
+
+    `numbers` are pairs of name and value, with the choices, of which one may need time (bonds that touch made).
+    """
+    return offered().get(name, {}).get("stage") == _OVER_TIME or _BONDS_OF_TOUCH in numbers
+
+
+def chosen(effect: bpy.types.PropertyGroup) -> list[tuple[str, str]]:
+    """Pairs of name and value of an effect's choices."""
+    return [(choice.name, choice.value) for choice in effect.choices]
+
+
+def bring_up_to_date(hand: bpy.types.Object) -> None:
+    """Give effects of an older version the choices that have come since; the first option is what was done then."""
+    for effect in hand.thenar.effects:
+        for choice in offered().get(effect.name, {}).get("choices", ()):
+            if choice["name"] not in effect.choices:
+                _add_choice(effect, choice)
 
 
 def can_be_painted(name):
@@ -43,8 +63,8 @@ def can_be_painted(name):
 
 def needs_history(hand):
     """Whether a bake of the hand follows its history: friction, or an effect that acts over time, is switched on."""
-    acting = [effect.name for effect in hand.thenar.effects if effect.is_on and effect.amplitude > 0.0]
-    return any(name == names.FRICTION or acts_over_time(name) for name in acting)
+    acting = [effect for effect in hand.thenar.effects if effect.is_on and effect.amplitude > 0.0]
+    return any(each.name == names.FRICTION or acts_over_time(each.name, chosen(each)) for each in acting)
 
 
 def is_on(hand, name):
@@ -107,9 +127,13 @@ def fill(effect, row):
         number = effect.numbers.add()
         number.name, number.value, number.unit = shape["name"], shape["default"], shape["unit"]
     for choice in row["choices"]:
-        made = effect.choices.add()
-        made.name, made.options = choice["name"], " ".join(choice["options"])
-        made.value = choice["options"][0]
+        _add_choice(effect, choice)
+
+
+def _add_choice(effect, choice):
+    made = effect.choices.add()
+    made.name, made.options = choice["name"], " ".join(choice["options"])
+    made.value = choice["options"][0]
 
 
 CLASSES = (ThenarEffectNumber, ThenarEffectChoice, ThenarEffect)

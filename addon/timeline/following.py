@@ -17,8 +17,10 @@ _FREE_SHARE = 1e-4
 
 def is_needed(job):
     """Whether a contact depends on what was before: friction, or an effect that acts over time."""
-    acting = [used.name for used in job.effects if used.amplitude > 0.0]
-    return any(name == names.FRICTION or effect_settings.acts_over_time(name) for name in acting)
+    acting = [used for used in job.effects if used.amplitude > 0.0]
+    return any(
+        used.name == names.FRICTION or effect_settings.acts_over_time(used.name, used.numbers) for used in acting
+    )
 
 
 @dataclass

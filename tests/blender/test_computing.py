@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from thenar_blender import status, steps
-from thenar_blender.operators import computing
+from thenar_blender.operators import computing, running
 
 
 class Operator(computing.Computing):
@@ -106,6 +106,7 @@ def test_work_that_does_not_listen_is_left_alone_and_says_no_more(context):
     operator = started(Operator([deaf]), context)
     assert turn(operator, context, "ESC") == {"CANCELLED"}
     assert not ended.is_set(), "the window waited for work that does not listen"
+    assert running.STOP_S <= 0.5, "as long as the window may stand still"
     late.set()
     assert ended.wait(60.0) and not status.run.stage, "a stage here would disable every button for good"
 

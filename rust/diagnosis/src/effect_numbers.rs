@@ -10,7 +10,7 @@ use thenar_inference::forward::surrogate::mechanism::{
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
 use thenar_inference::forward::surrogate::relaxation_spectrum::{OUTER, Spectrum};
 use thenar_inference::forward::surrogate::tissue_laws::RAMP;
-use thenar_inference::forward::tables::elastic_table::radius;
+use thenar_inference::forward::tables::elastic_table::{SHALLOW, radius, round_radius};
 use thenar_inference::forward::tables::stiff_skin::{THICKNESSES_MM, ratio};
 use thenar_inference::selection::candidates::SOFTENING_TRAVELS;
 use thenar_inference::selection::profile_interval::Profiled;
@@ -93,8 +93,6 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
     choices
 }
 
-/// Part of the largest depth at which a tool's radius is read from its contact.
-const SHALLOW: f64 = 0.05;
 type Named = (&'static str, f64, f64, f64);
 /// Amplitude of an effect whose other numbers say how much.
 const WHOLE: Three = (1.0, 1.0, 1.0);
@@ -307,11 +305,14 @@ fn travelling(lengths: &[f64], free: &Free) -> (Three, Vec<Named>) {
 }
 
 /// Work of adhesion, J/m2, that pulls the largest contact with this part of the largest force: `F = 1.75 pi w R`, between the limits
-/// of JKR and DMT, with `R = a^2 / d` where the contact is still small; at depth a thin layer's contact is up to twice as large.
+/// of JKR and DMT, with the `R` of [`round_radius`].
 fn work_of(ready: &PreparedStudy, share: f64) -> f64 {
-    let shallow = SHALLOW * ready.scales.deepest;
-    let radii = ready.elastic.places.iter().map(|p| radius(p, shallow));
-    let tool = radii.fold(1e-3, f64::max).powi(2) / shallow;
+    let deepest = ready.scales.deepest;
+    let at = |depth: f64| {
+        let radii = ready.elastic.places.iter().map(|p| radius(p, depth));
+        radii.fold(0.0, f64::max)
+    };
+    let tool = round_radius((at(SHALLOW * deepest), at(deepest)), deepest);
     share * ready.scales.forces.1 / (1.75 * std::f64::consts::PI * tool) * 1e3
 }
 

@@ -143,6 +143,17 @@ def test_effects_come_back_with_numbers_and_laws():
     assert not hand.thenar.effects[0].is_on, "an effect of a region that is not there does not act on all skin"
 
 
+def test_an_older_preset_takes_the_choices_that_have_come_since():
+    hand, _ = new_scene()
+    bpy.ops.thenar.effect_add(kind="adhesion")
+    content = saved("EFFECTS")
+    content["effects"][0]["choices"] = {}
+    files.path_of("EFFECTS", "Mine").write_text(json.dumps(content))
+    hand.thenar.effects.clear()
+    put("EFFECTS")
+    assert hand.thenar.effects[0].choices["bonds"].value == "reversible"
+
+
 @pytest.mark.parametrize("kind", [item[0] for item in kinds.ITEMS])
 def test_every_number_says_its_unit_or_has_none(kind):
     hand, _ = new_scene(["palm skin"])

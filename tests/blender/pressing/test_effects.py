@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 import stage
-from thenar_blender import workflow
+from thenar_blender import handlers, workflow
 from thenar_blender.properties import effect_settings
 
 
@@ -132,6 +132,20 @@ def test_what_acts_over_time_is_said_after_a_press():
     stage.solve()
     told = [text.name for text in bpy.context.scene.thenar.result.warnings]
     assert "relaxation and drainage act over time: bake to see it" in told
+
+
+def test_bonds_of_touch_need_a_bake_and_old_effects_get_the_choice():
+    hand, _ = stage.scene()
+    adhesion = add("adhesion")
+    assert not effect_settings.needs_history(hand)
+    adhesion.choices["bonds"].value = "touched"
+    assert effect_settings.needs_history(hand)
+    stage.solve()
+    told = [text.name for text in bpy.context.scene.thenar.result.warnings]
+    assert "adhesion acts over time: bake to see it" in told
+    adhesion.choices.clear()  # as saved before there was a choice
+    handlers._objects_came()
+    assert effect_settings.chosen(adhesion) == [("bonds", "reversible")]
 
 
 def test_two_jobs_of_one_hand_keep_their_own_effects():

@@ -44,3 +44,37 @@ pub fn rung(table: &Tabulated, depth: f64) -> (usize, f64) {
 pub fn radius(table: &Tabulated, depth: f64) -> f64 {
     mixed(&table.radius, rung(table, depth))
 }
+
+/// Part of the largest depth at which a tool's radius is read from its contact.
+pub const SHALLOW: f64 = 0.05;
+
+/// Radius of a round tool by those of its contact, where it is still small and at the largest depth, mm: `R = a^2 / d`.
+///
+/// At depth a thin layer's contact is up to twice as large as a half space's, so it is read where the contact is small; not where
+/// it is not that of a round tool there, as a punch's, which is as wide from the first touch on.
+pub fn round_radius((small, large): (f64, f64), deepest: f64) -> f64 {
+    let by_large = large.max(1e-3).powi(2) / deepest;
+    let by_small = small.powi(2) / (SHALLOW * deepest);
+    match (0.4..1.3).contains(&(by_small / by_large)) {
+        true => by_small,
+        false => by_large,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball of 28 mm on a half space and on a layer whose contact is wider at depth; a punch of 3 mm, and a contact not yet seen.
+    #[test]
+    fn radius_is_read_where_a_round_tool_is_shallow() {
+        let (deepest, ball) = (0.8, 28.0f64);
+        let small = (ball * SHALLOW * deepest).sqrt();
+        for large in [(ball * deepest).sqrt(), (1.9 * ball * deepest).sqrt()] {
+            assert!((round_radius((small, large), deepest) - ball).abs() < 1e-9);
+        }
+        for small in [3.0, 0.0] {
+            assert_eq!(round_radius((small, 3.0), deepest), 9.0 / deepest);
+        }
+    }
+}
