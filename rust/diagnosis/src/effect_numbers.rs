@@ -343,7 +343,7 @@ mod tests {
         }
     }
 
-    /// What the surrogate's skin does, which clings where it has touched, is what the contact model is told to do.
+    /// What the surrogate's skin does, which clings where it has touched, is what the contact model does.
     #[test]
     fn adhesion_is_switched_on_with_bonds_that_touch_made() {
         let found = choices(&Mechanism {

@@ -4,29 +4,23 @@ The ratio is to numpy's reading of the same numbers as one table; of several run
 """
 
 import io
-import time
+import sys
 from pathlib import Path
 
-import numpy as np
-import thenar
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import numpy as np  # noqa: E402
+import thenar  # noqa: E402
+import timing  # noqa: E402
 
 EXPORT = Path(__file__).resolve().parents[4] / "shared/recordings/finger_pressure_iscan/iscan_test.csv"
 RUNS = 7
 
 
-def cheapest(action):
-    """Processor time (s) of the cheapest of several calls."""
-    times = []
-    for _ in range(RUNS):
-        began = time.process_time()
-        action()
-        times.append(time.process_time() - began)
-    return min(times)
-
-
 if __name__ == "__main__":
-    read = cheapest(lambda: thenar.read_recording(EXPORT))
+    read = min(timing.once_ms(lambda: thenar.read_recording(EXPORT))[0] for _ in range(RUNS))
     text = io.StringIO()
     np.savetxt(text, thenar.read_recording(EXPORT).maps[0].counts, "%g", delimiter=",")
-    table = cheapest(lambda: np.loadtxt(io.StringIO(text.getvalue()), delimiter=","))
-    print(f"{1e3 * read:.0f} ms, numpy {1e3 * table:.0f} ms: {read / table:.2f}")
+    loads = (timing.once_ms(lambda: np.loadtxt(io.StringIO(text.getvalue()), delimiter=",")) for _ in range(RUNS))
+    table = min(spent for spent, _ in loads)
+    print(f"{read:.0f} ms, numpy {table:.0f} ms: {read / table:.2f}")

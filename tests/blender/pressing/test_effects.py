@@ -141,8 +141,8 @@ def test_bonds_of_touch_need_a_bake_and_old_effects_get_the_choice():
     adhesion.choices["bonds"].value = "touched"
     assert effect_settings.needs_history(hand)
     stage.solve()
-    told = [text.name for text in bpy.context.scene.thenar.result.warnings]
-    assert "adhesion acts over time: bake to see it" in told
+    said = [text.name for text in bpy.context.scene.thenar.result.warnings]
+    assert "adhesion acts over time: bake to see it" in said
     adhesion.choices.clear()  # as saved before there was a choice
     handlers._objects_came()
     assert effect_settings.chosen(adhesion) == [("bonds", "reversible")]
