@@ -110,7 +110,7 @@ def publish(context, bake):
 
 def _sums(bake):
     """What the frames of a bake have together, by the names of `hand.thenar.bake`."""
-    found = following.cycles(bake.course.force_n, bake.course.work_mj) if bake.follows else []
+    found = following.known_cycles(bake.course) if bake.follows else []
     loss, work = (float(total) for total in np.sum(found, axis=0)) if found else (0.0, 0.0)
     return {
         "frame_start": bake.first,

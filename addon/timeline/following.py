@@ -100,6 +100,12 @@ def cycles(force_n, work_mj):
     return [(work_mj[b] - work_mj[a], max(work_mj[a : b + 1]) - work_mj[a]) for a, b in between]
 
 
+def known_cycles(course):
+    """`cycles` of a course; none where skin clings, since the forces of vertices leave attraction out."""
+    clings = any(used.name == "adhesion" and used.amplitude > 0.0 for used in course.first.effects)
+    return [] if clings else cycles(course.force_n, course.work_mj)
+
+
 def _motion(first, job):
     """The product's motion (4, 4) since the first frame, about the first frame's hand. Raises `Refusal`."""
     if _fixed(first) != _fixed(job):

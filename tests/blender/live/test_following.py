@@ -211,6 +211,22 @@ def test_relaxing_skin_loses_energy_in_a_cycle(tmp_path):
     assert 0.02 * tables["work_mj"].max() < told.cycle_loss_mj < 0.5 * tables["work_mj"].max()
 
 
+@pytest.mark.parametrize("bonds", ["reversible", "touched"])
+def test_bonds_that_touch_made_hold_on_in_later_frames(tmp_path, bonds):
+    """Skin clings within 0.5 mm. Forces are those that press, also against what clings: more on the way out."""
+    _, product = made(tmp_path, depth=-0.2, adhesion={"work_j_per_m2": 0.2, "range_mm": 0.5})
+    hand = bpy.context.scene.thenar.hand
+    hand.thenar.effects[0].choices["bonds"].value = bonds
+    keyed(product, "location", {1: moved(product), 9: moved(product, z=1.2), 17: moved(product)})
+    force = baked(tmp_path, 17)["force_n"]
+    there, back = force[2:6], force[14:10:-1]
+    if bonds == "reversible":
+        assert not hand.thenar.bake.follows and there == pytest.approx(back, rel=1e-6)
+    else:
+        assert hand.thenar.bake.follows and (back > 1.02 * there).all()
+    assert hand.thenar.bake.cycles == 0, "attraction is in no vertex's force, so what a cycle loses is not known"
+
+
 def test_what_cannot_be_followed_is_told_and_leaves_nothing(tmp_path):
     hand, product = made(tmp_path, friction={"coefficient": 0.4})
     keyed(product, "scale", {1: (1, 1, 1), 3: (1, 1.1, 1)})
