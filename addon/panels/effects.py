@@ -61,7 +61,7 @@ def _draw_effect(layout, effect, hand):
         column.prop_search(effect, "region", hand.thenar, "materials", icon="GROUP_VERTEX")
     for choice in effect.choices:
         column.prop(choice, "value", text=effect_settings.title(choice.name))
-    for number in effect.numbers:
+    for number in effect_settings.shown_numbers(effect):
         unit = "" if number.unit == "1" else f" ({number.unit})"
         column.prop(number, "value", text=iface(effect_settings.title(number.name)) + unit)
     if effect_settings.can_be_painted(effect.name):

@@ -191,8 +191,11 @@ def _check_effect(content, place):
         place.at("region").refuse("is no name of a region", 'write a name, or "" for all of the skin')
     shapes = {shape["name"]: shape for shape in offered[name]["shape"]}
     options = {option["name"]: option["options"] for option in offered[name]["choices"]}
+    if isinstance(numbers, dict):  # an older preset lacks numbers and choices that have come since
+        late = [key for key in shapes if key in effect_settings.OF_A_CHOICE]
+        numbers = {key: shapes[key]["default"] for key in late} | numbers
     found = _same_keys(numbers, shapes, place.at("numbers"))
-    if isinstance(choices, dict):  # an older preset lacks choices that have come since
+    if isinstance(choices, dict):
         choices = {key: words[0] for key, words in options.items()} | choices
     chosen = _same_keys(choices, options, place.at("choices"))
     checked = fields.check(row, effect_settings.ThenarEffect, _EFFECT, place)

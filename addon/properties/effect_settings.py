@@ -11,6 +11,8 @@ _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
 _BONDS_OF_TOUCH = ("bonds", "touched")
 """The choice of adhesion with which a contact depends on what was touched before."""
+OF_A_CHOICE = {"spread": ("curve", "layer"), "radius_mm": ("curve", "layer")}
+"""Numbers that count with one choice alone, and that choice."""
 _OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
 """Stages that act on the skin; instruments act on readings, and have no place on a hand."""
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
@@ -48,12 +50,22 @@ def chosen(effect: bpy.types.PropertyGroup) -> list[tuple[str, str]]:
     return [(choice.name, choice.value) for choice in effect.choices]
 
 
+def shown_numbers(effect: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
+    """The effect's numbers that count with what is chosen."""
+    made = chosen(effect)
+    return [number for number in effect.numbers if OF_A_CHOICE.get(number.name) in (None, *made)]
+
+
 def bring_up_to_date(hand: bpy.types.Object) -> None:
-    """Give effects of an older version the choices that have come since; the first option is what was done then."""
+    """Give effects of an older version the choices (the first option is what was done) and numbers that have come since."""
     for effect in hand.thenar.effects:
-        for choice in offered().get(effect.name, {}).get("choices", ()):
+        row = offered().get(effect.name, {})
+        for choice in row.get("choices", ()):
             if choice["name"] not in effect.choices:
                 _add_choice(effect, choice)
+        for shape in row.get("shape", ()):
+            if shape["name"] not in effect.numbers:
+                _add_number(effect, shape)
 
 
 def can_be_painted(name):
@@ -124,10 +136,14 @@ def fill(effect, row):
     """Set an effect to a row of the catalogue, with its default numbers."""
     effect.name, effect.amplitude = row["name"], _STARTS.get(row["name"], row["most"])
     for shape in row["shape"]:
-        number = effect.numbers.add()
-        number.name, number.value, number.unit = shape["name"], shape["default"], shape["unit"]
+        _add_number(effect, shape)
     for choice in row["choices"]:
         _add_choice(effect, choice)
+
+
+def _add_number(effect, shape):
+    number = effect.numbers.add()
+    number.name, number.value, number.unit = shape["name"], shape["default"], shape["unit"]
 
 
 def _add_choice(effect, choice):

@@ -1,6 +1,7 @@
 //! Estimates of a fitted effect in the catalogue's terms and units, with intervals.
 
 use thenar_contact::effects::Effect;
+use thenar_contact::effects::layer_drainage::drop_of_layer;
 
 use crate::findings::{Number, Switched};
 use crate::free_numbers::{Free, HALF, Three, interval, of_number, tried_interval};
@@ -85,6 +86,8 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
         }
         // The surrogate's skin clings where it has touched.
         Law::Adhesion { .. } => vec![("bonds", "touched")],
+        // And drains as a layer.
+        Law::Relaxation { .. } => vec![("curve", "layer")],
         _ if mechanism.is_instrument() => vec![("channel", "force")],
         _ => Vec::new(),
     };
@@ -247,8 +250,18 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
         let end = |of: f64, open: f64| if of.is_finite() { over / of } else { open };
         let ends = (end(high, f64::NEG_INFINITY), end(low, f64::INFINITY));
         let diffusivity = (name, over / middle, ends.0, ends.1);
-        let share = interval(free, &|x| (x / DROP).clamp(0.0, 0.99));
-        return (share, vec![diffusivity]);
+        let drop = mean_drop(ready);
+        let share = interval(free, &|x| (x / drop).clamp(0.0, 0.99));
+        let spread = of_number(free, 2, &|x| x.max(0.0));
+        let reference = ready.scales.radius;
+        return (
+            share,
+            vec![
+                diffusivity,
+                ("spread", spread.0, spread.1, spread.2),
+                ("radius_mm", reference, reference, reference),
+            ],
+        );
     }
     let names = ["time_1_s", "time_2_s", "time_3_s"];
     let times = names.into_iter().zip([-OUTER, 0.0, OUTER]);
@@ -260,6 +273,17 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
     let weights = ["weight_1", "weight_2", "weight_3"].map(|name| (name, third, third, third));
     let numbers = times.chain(weights).collect();
     (interval(free, &|x| x.clamp(0.0, 0.99)), numbers)
+}
+
+/// Share of the force that the catalogue's drainage loses, over the places of a study.
+fn mean_drop(ready: &PreparedStudy) -> f64 {
+    let places = &ready.elastic.places[..ready.elastic.studied];
+    let thickness = ready.base_material.thickness_mm;
+    if !thickness.is_finite() {
+        return DROP;
+    }
+    let of = |p| drop_of_layer(0.3, (radius(p, ready.scales.deepest), thickness));
+    places.iter().map(of).sum::<f64>() / places.len() as f64
 }
 
 /// Shortest and longest period that recordings can show, s: the least time between readings, and the longest recording.
@@ -320,6 +344,7 @@ fn work_of(ready: &PreparedStudy, share: f64) -> f64 {
 mod tests {
     use super::*;
     use thenar_contact::ActiveEffect;
+    use thenar_inference::forward::surrogate::mechanism::Clock;
 
     /// By a sum of a million steps.
     #[test]
@@ -359,6 +384,24 @@ mod tests {
             (bonds.name, bonds.options[effect.chosen[0]]),
             ("bonds", "touched")
         );
+    }
+
+    /// And its layer drains as the contact model's does; what relaxes has no such choice.
+    #[test]
+    fn drainage_is_switched_on_as_that_of_a_layer() {
+        let of = |effect: Effect| {
+            choices(&Mechanism {
+                effect,
+                law: Law::Relaxation {
+                    clock: Clock::Area { reference_mm: 3.0 },
+                    spectrum: Spectrum::Smooth { widths: (0.1, 1.0) },
+                },
+            })
+        };
+        assert_eq!(of(Effect::Drainage), [("curve", "layer")]);
+        assert_eq!(of(Effect::Relaxation), []);
+        let effect = ActiveEffect::named("drainage", 1.0).unwrap();
+        assert!(effect.choose("curve", "layer").is_ok());
     }
 
     #[test]

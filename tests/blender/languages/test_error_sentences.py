@@ -50,6 +50,7 @@ def test_there_are_hundreds_of_errors_from_both_languages():
     assert not {kind: text for kind, text in kinds.items() if text not in found}
 
 
+@pytest.mark.skipif(bpy.app.version < (5, 0), reason="asks nothing of Blender: once, in the newest")
 def test_every_sentence_is_found_again_and_no_other_is_taken_for_it(language):
     held = languages.table(language)
     for template in {**error_templates.everything(), **finding_templates.everything()}:

@@ -6,6 +6,7 @@ import bpy
 import pytest
 import stage
 from thenar_blender.presets import files, kinds
+from thenar_blender.properties import effect_settings
 
 
 @pytest.fixture(autouse=True)
@@ -143,15 +144,22 @@ def test_effects_come_back_with_numbers_and_laws():
     assert not hand.thenar.effects[0].is_on, "an effect of a region that is not there does not act on all skin"
 
 
-def test_an_older_preset_takes_the_choices_that_have_come_since():
+@pytest.mark.parametrize(("effect", "since"), [("adhesion", "reversible"), ("drainage", "halfspace")])
+def test_an_older_preset_takes_what_has_come_since(effect, since):
     hand, _ = new_scene()
-    bpy.ops.thenar.effect_add(kind="adhesion")
+    bpy.ops.thenar.effect_add(kind=effect)
     content = saved("EFFECTS")
     content["effects"][0]["choices"] = {}
+    for name in ("spread", "radius_mm"):
+        content["effects"][0]["numbers"].pop(name, None)
     files.path_of("EFFECTS", "Mine").write_text(json.dumps(content))
     hand.thenar.effects.clear()
     put("EFFECTS")
-    assert hand.thenar.effects[0].choices["bonds"].value == "reversible"
+    came = hand.thenar.effects[0]
+    assert effect_settings.chosen(came)[0][1] == since
+    assert [number.name for number in came.numbers] == [
+        shape["name"] for shape in effect_settings.offered()[effect]["shape"]
+    ]
 
 
 @pytest.mark.parametrize("kind", [item[0] for item in kinds.ITEMS])

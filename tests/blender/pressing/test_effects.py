@@ -148,6 +148,21 @@ def test_bonds_of_touch_need_a_bake_and_old_effects_get_the_choice():
     assert effect_settings.chosen(adhesion) == [("bonds", "reversible")]
 
 
+def test_numbers_of_a_layer_stand_where_it_is_chosen_and_old_drainage_gets_them():
+    hand, _ = stage.scene()
+    drainage = add("drainage")
+    plain = ["diffusivity_mm2_per_s", "drained_poisson_ratio"]
+    assert [number.name for number in effect_settings.shown_numbers(drainage)] == plain
+    drainage.choices["curve"].value = "layer"
+    assert [number.name for number in effect_settings.shown_numbers(drainage)] == [*plain, "spread", "radius_mm"]
+    drainage.choices.clear()
+    for _name in ("spread", "radius_mm"):  # as saved before there was a layer
+        drainage.numbers.remove(len(drainage.numbers) - 1)
+    handlers._objects_came()
+    assert effect_settings.chosen(drainage) == [("curve", "halfspace")]
+    assert drainage.numbers["spread"].value == pytest.approx(1.2)
+
+
 def test_two_jobs_of_one_hand_keep_their_own_effects():
     """A job may be computed in its thread while another one is prepared."""
     hand, product = stage.scene()

@@ -99,6 +99,26 @@ def test_drainage_follows_the_master_curve_in_time_over_area(depth):
     np.testing.assert_allclose(course.force_n / course.force_n[0], expected, rtol=0.01)
 
 
+@pytest.mark.parametrize("radius", [3.0, 12.0, 40.0])
+def test_a_drained_layer_bears_what_compressible_tissue_bears(radius):
+    """Fast, the undrained force; in the end, within 4 % of it, that of compressible tissue."""
+    depth, thickness, drained = 0.6, 5.0, 0.3
+    contact = np.sqrt(radius * depth)
+    skin, _ = pressing.sphere_on_flat(radius, depth, contact / 12.0)
+    softer = thenar.Effect("compressibility", 1.0, poisson_ratio=drained)
+    drains = thenar.Effect("drainage", 1.0, drained_poisson_ratio=drained, curve="layer", radius_mm=contact)
+    times = np.concatenate([np.linspace(0.0, 1e-4, 13), np.geomspace(1e-2, 1e5, 30)])
+    depths = np.minimum(times / 1e-4, 1.0) * depth
+    prepared = thenar.Skin(*skin, materials=[pressing.material(thickness=thickness)])
+
+    def forces(*effects):
+        return run(prepared, times, depths, *effects, sphere=touching_sphere(radius, depth)).force_n
+
+    elastic, with_fluid = forces(), forces(drains)
+    assert with_fluid[12] == pytest.approx(elastic[12], rel=0.02), "fast, nothing drains"
+    assert with_fluid[-1] == pytest.approx(forces(softer)[-1], abs=0.04 * elastic[12])
+
+
 def test_cycles_soften_by_their_law_and_rest_restores():
     """Peaks fall as 1 - alpha (1 - exp(-travel / c)); 5 s of rest restore little, 5 min nearly all."""
     alpha, travel, recovery, depth = 0.4, 3.0, 60.0, 1.0

@@ -3,15 +3,19 @@
 //! At held depth the force falls from F0 to `F0 / (2 (1 - nu_drained))` along the master curve of a sphere,
 //! `0.491 exp(-0.908 sqrt(tau)) + 0.509 exp(-1.679 tau)` with tau = D t / a^2 (Hu, Zhao, Vlassak & Suo 2010). The curve is
 //! represented by exponentials of tau within 6e-4; the radius a of the contact is sqrt(area / pi) of the
-//! region's contact at the step before. The curve is that of a half space, so of contacts small against the thickness; layers
-//! have curves of their own (Hu, Chan, Vlassak & Suo 2011, J Appl Phys 110:086103), which are left out. The bulge beside the
-//! contact stays that of the undrained tissue.
+//! region's contact at the step before. That is the curve of a half space, so of contacts small against the thickness; the curve of a
+//! layer over bone is the sibling `layer_drainage`. The bulge beside the contact stays that of the undrained tissue.
 
 use super::definition::active::ActiveEffect;
-use super::definition::entry::{Consequence, Entry, ShapeNumber, Sign, Stage};
+use super::definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
 
-const DIFFUSIVITY: usize = 0;
-const DRAINED: usize = 1;
+pub(super) const DIFFUSIVITY: usize = 0;
+pub(super) const DRAINED: usize = 1;
+pub(super) const SPREAD: usize = 2;
+pub(super) const RADIUS: usize = 3;
+/// The choice `curve`, and its option `layer`.
+pub(super) const CURVE: usize = 0;
+pub(super) const LAYER: usize = 1;
 
 pub const ENTRY: Entry = Entry {
     name: "drainage",
@@ -38,8 +42,31 @@ pub const ENTRY: Entry = Entry {
             meaning: "Poisson's ratio once fluid has left",
             source: "range of hydrated soft tissues and gels; with 0.3 the force falls by 29 % (Hu et al. 2010), palms: 33 to 36 % (Shojaeizadeh 2022)",
         },
+        ShapeNumber {
+            name: "spread",
+            unit: "1",
+            default: 1.2,
+            admissible: [0.0, 4.0],
+            physiological: [0.05, 3.0],
+            meaning: "standard deviation of the logarithm of a layer's times, under a contact of radius_mm",
+            source: "1.2 is the half space's curve (Hu et al. 2010) within 2.5 % of the drop; finite elements of pads: 0.8 to 1.5",
+        },
+        ShapeNumber {
+            name: "radius_mm",
+            unit: "mm",
+            default: 4.0,
+            admissible: [1e-3, 1e3],
+            physiological: [0.5, 15.0],
+            meaning: "radius of the contact under which a layer has that diffusivity and spread",
+            source: "ours: a fingertip's contact at some newtons",
+        },
     ],
-    choices: &[],
+    choices: &[Choice {
+        name: "curve",
+        options: &["halfspace", "layer"],
+        meaning: "whose curve the force falls by: a half space's, for contacts that are small against the thickness, or that of a layer over bone, \
+                  which loses more, in times that grow less than as the area",
+    }],
     painted: None,
     check: None,
     consequences: &[

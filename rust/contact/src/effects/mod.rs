@@ -14,6 +14,7 @@ pub(crate) mod inclusion;
 pub(crate) mod stiffening_law;
 pub(crate) mod relaxation;
 pub(crate) mod drainage;
+pub mod layer_drainage;
 pub(crate) mod cycle_softening;
 pub(crate) mod rate_independent_loss;
 pub(crate) mod friction;

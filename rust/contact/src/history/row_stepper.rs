@@ -77,7 +77,7 @@ impl Walk {
             posed: None,
             history: TissueMemory::new(
                 skin.effects(),
-                skin.tissue.materials.len(),
+                &skin.tissue.thicknesses(),
                 skin.sites.len(),
             ),
             friction_memory: FrictionMemory::default(),

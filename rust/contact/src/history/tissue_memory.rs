@@ -80,9 +80,10 @@ impl MemoryStep {
 }
 
 impl TissueMemory {
-    /// Tissue that was never pressed. None if no effect has memory.
-    pub fn new(effects: &[ActiveEffect], regions: usize, sites: usize) -> Option<TissueMemory> {
-        let (branches, lasting) = branches(effects, regions);
+    /// Tissue of that thickness by region (mm) that was never pressed. None if no effect has memory.
+    pub fn new(effects: &[ActiveEffect], thickness: &[f64], sites: usize) -> Option<TissueMemory> {
+        let regions = thickness.len();
+        let (branches, lasting) = branches(effects, thickness);
         let softening: Vec<Softening> = in_order(effects)
             .into_iter()
             .filter(|e| e.effect == Effect::CycleSoftening)
@@ -119,7 +120,7 @@ impl TissueMemory {
                     .collect()
             })
             .collect();
-        let mut instantaneous = self.lasting.clone();
+        let mut instantaneous = self.lasting();
         for of_region in &fade {
             instantaneous
                 .iter_mut()
@@ -238,12 +239,34 @@ impl TissueMemory {
         false
     }
 
+    /// Share of the load that never fades, by region: what its branches have not of it.
+    fn lasting(&self) -> Vec<f64> {
+        let mut lasting = self.lasting.clone();
+        for branch in &self.branches {
+            for (region, left) in lasting.iter_mut().enumerate() {
+                *left += branch.share[region] * (1.0 - self.shares(branch, region).0);
+            }
+        }
+        lasting
+    }
+
+    /// Shares that a branch has of all load and of load that is new, over its own.
+    fn shares(&self, branch: &Branch, region: usize) -> (f64, f64) {
+        match &branch.clock {
+            Clock::Layer(layer, _) => layer.shares(region, self.radius[region]),
+            _ => (1.0, 1.0),
+        }
+    }
+
     /// Decay of a branch in `region` over the step, and its share of a load that is new.
     fn fade(&self, branch: &Branch, region: usize, depth: f64) -> (f64, f64) {
         let passed = match &branch.clock {
             Clock::Time => self.seconds,
             Clock::Drainage(effect) => {
                 drainage::progress(effect, self.seconds, self.radius[region])
+            }
+            Clock::Layer(layer, z) => {
+                layer.progress((region, *z), self.seconds, self.radius[region])
             }
             Clock::Travel => (depth - self.depth[region]).abs(),
         };
@@ -253,7 +276,10 @@ impl TissueMemory {
         } else {
             -(-x).exp_m1() / x
         };
-        ((-x).exp(), branch.share[region] * mean)
+        (
+            (-x).exp(),
+            branch.share[region] * self.shares(branch, region).1 * mean,
+        )
     }
 
     fn use_up(&self, softening: &Softening, depth: &[f64]) -> Vec<f64> {

@@ -125,6 +125,11 @@ impl Tissue {
         }
     }
 
+    /// Thickness by region, mm.
+    pub fn thicknesses(&self) -> Vec<f64> {
+        self.materials.iter().map(|m| m.thickness_mm).collect()
+    }
+
     /// One over the thickness at every site, blended over creases, 1/mm.
     pub fn curvature(&self, sites: &Sites) -> Vec<f64> {
         let of_region = || self.materials.iter().map(|m| 1.0 / m.thickness_mm);

@@ -57,3 +57,46 @@ impl Ball {
         Some(depths_mm.iter().map(force).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::layer_drainage::drop_of_layer;
+
+    /// What a drained layer bears less than an undrained one, by contact radius over thickness: the closed form that the effect `drainage`
+    /// takes against this model of rings.
+    #[test]
+    fn drained_layers_bear_what_the_closed_form_says() {
+        let thickness = 5.0;
+        for share in [0.1, 0.5, 1.0, 2.0] {
+            // So flat a ball that its contact is much wider than it is deep.
+            let (contact, radius) = (share * thickness, 20.0 * share * thickness);
+            let deepest = contact * contact / radius;
+            let pressed = |poisson_ratio: f64, depth: f64| {
+                let ball = Ball::new((thickness, poisson_ratio), radius, deepest);
+                let bare = |k: f64| wave_response::bare(ball.layer, k);
+                let compliance = ball.rings.sunk(&ball.rings.under_pressure(bare));
+                let pressure = touch(&compliance, &ball.rings.gaps(radius, depth));
+                let touching = pressure.iter().filter(|p| **p > 0.0).count();
+                (ball.rings.force(&pressure), ball.rings.edges[touching])
+            };
+            let (mut low, mut high) = (0.05 * deepest, deepest);
+            for _ in 0..14 {
+                let middle = 0.5 * (low + high);
+                match pressed(0.5, middle).1 > contact {
+                    true => high = middle,
+                    false => low = middle,
+                }
+            }
+            let undrained = pressed(0.5, low).0;
+            for drained in [0.1, 0.3, 0.4] {
+                let found = 1.0 - pressed(drained, low).0 / undrained;
+                let wanted = drop_of_layer(drained, (contact, thickness));
+                assert!(
+                    (found - wanted).abs() < 0.02,
+                    "{share} {drained}: {found} {wanted}"
+                );
+            }
+        }
+    }
+}

@@ -69,7 +69,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 /// Options made on a machine of another kind than the table's: frozen where `THENAR_FREEZE=1` runs on that kind.
-const NOT_FROZEN: [&str; 1] = ["touched"];
+const NOT_FROZEN: [&str; 2] = ["touched", "layer"];
 
 /// Presses with a slide on two regions, in and out twice.
 fn followed(effects: Vec<ActiveEffect>, keep: Keep) -> Course {

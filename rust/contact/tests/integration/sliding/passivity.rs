@@ -35,7 +35,11 @@ fn draw(dice: &mut Dice) -> Vec<ActiveEffect> {
     let mut drawn: Vec<ActiveEffect> = Vec::new();
     for name in MEMORY {
         if dice.roll() < 0.4 {
-            drawn.push(ActiveEffect::named(name, 0.9 * dice.roll()).unwrap());
+            let effect = ActiveEffect::named(name, 0.9 * dice.roll()).unwrap();
+            drawn.push(match name {
+                "drainage" if dice.roll() < 0.5 => effect.choose("curve", "layer").unwrap(),
+                _ => effect,
+            });
         }
     }
     let which = dice.roll();

@@ -1,5 +1,7 @@
 //! Relaxation spectra: periods and shares of their branches.
 
+use thenar_contact::effects::layer_drainage::NODES;
+
 /// Branches of a load that fades, and what of them is free. Periods in s, or in s at the contact radius `reference_mm`, or in mm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Spectrum {
@@ -101,21 +103,6 @@ impl Spectrum {
 
 /// Mean of the outer thirds of a normal law, in widths from its middle: the shortest and the longest of three time constants.
 pub const OUTER: f64 = 1.090_8;
-
-/// A normal law of mean 0 and variance 1 at even steps: places, and weights that do not sum to 1.
-const NODES: [(f64, f64); 7] = [
-    (-3.0 * STEP, TAILS[2]),
-    (-2.0 * STEP, TAILS[1]),
-    (-STEP, TAILS[0]),
-    (0.0, 1.0),
-    (STEP, TAILS[0]),
-    (2.0 * STEP, TAILS[1]),
-    (3.0 * STEP, TAILS[2]),
-];
-/// Step between them: 3/4, widened by what the cut tails take from the variance.
-const STEP: f64 = 0.773_9;
-/// `exp(-z^2 / 2)` at z = 3/4, 3/2 and 9/4.
-const TAILS: [f64; 3] = [0.754_84, 0.324_65, 0.079_56];
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,7 @@
 //! Laws of tissue effects in the surrogate: relaxation and drainage, adhesion, softening by use.
 
+use thenar_contact::effects::layer_drainage::{NARROWS, growth};
+
 use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::surrogate::mechanism::{Clock, Law};
@@ -8,16 +10,6 @@ use crate::forward::surrogate::relaxing_springs::branch_decay;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic_table::radius;
 
-/// Power of the contact's radius with which the time of drainage grows: for small shares, and less by this for a share of 1; its bounds.
-///
-/// On a half-space it is 2 (Hu et al. 2010). Over bone a wider contact also gives up more of its load, as compressibility tells, and the
-/// more is given up, the less the time grows. Beside finite elements of pads that the trial does not use this leaves 0.04 to 0.11 % of
-/// the load, a power of 1.5 at every share 0.07 to 0.32 %, and a clock that does not ask for the contact's size 0.28 to 0.72 %
-/// (`python -m trial.finite_elements.against_drainage`).
-const GROWS: (f64, f64) = (1.6, 1.4);
-const MOST_GROWS: (f64, f64) = (1.0, 2.0);
-/// What the width of drainage's spectrum loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
-const NARROWS: f64 = 0.3;
 /// Way over which skin lets go, over the largest depth.
 const RELEASE: f64 = 0.08;
 
@@ -25,7 +17,10 @@ impl Surrogate<'_> {
     /// Every branch of every mechanism that fades: its decay over each row's step, and its share.
     ///
     /// What drains leaves tissue that gives up volume, and that matters the more, the larger the contact is against the thickness: the
-    /// share of drainage is in proportion to what compressibility takes from the tool's force.
+    /// share of drainage is in proportion to what compressibility takes from the tool's force. How its times go with the contact's size is
+    /// the contact model's own law (`layer_drainage`); beside finite elements of pads that the trial does not use the whole leaves 0.04 to
+    /// 0.11 % of the load, a power of 1.5 at every share 0.07 to 0.32 %, and a clock that does not ask for the contact's size 0.28 to 0.72 %
+    /// (`python -m trial.finite_elements.against_drainage`).
     pub(crate) fn relaxation_branches(
         &self,
         model: &Model<'_>,
@@ -162,11 +157,6 @@ impl Surrogate<'_> {
     }
 }
 
-/// Power of the contact's radius with which the time of drainage grows where it takes a share of the load.
-fn growth(share: f64) -> f64 {
-    (GROWS.0 - GROWS.1 * share).clamp(MOST_GROWS.0, MOST_GROWS.1)
-}
-
 /// Width of drainage's spectrum under a contact, from that under one smaller by the factor `size`.
 fn narrowed(width: f64, size: f64) -> f64 {
     width - NARROWS * libm::log(size.max(1e-3))
@@ -237,7 +227,6 @@ mod tests {
             assert!((2.9 * size.powf(growth(0.14)) / time_s - 1.0).abs() < 0.1);
             assert!((narrowed(1.51, size) - width).abs() < 0.1);
         }
-        assert_eq!([growth(-1.0), growth(0.0), growth(0.9)], [2.0, 1.6, 1.0]);
     }
 
     /// Its work is the area under a triangle, summed.

@@ -1,0 +1,191 @@
+//! Drainage of a layer over bone: how much drains, how fast, and over how wide a range of times, by contact radius over thickness.
+//!
+//! A sphere's contact on a bonded layer loses more of its force than on a half space, since what keeps its volume can hardly give way there:
+//! of the undrained force `(1 - drop) exp(-m a / h)` stays, with `m = 0.55 (1 - 2 nu)^0.43` for a drained Poisson's ratio nu (within 0.02 of the
+//! force of `sphere_indentation` for a up to 2 h). Fluid gets out to the sides alone, past what drains there as well: the times grow less than as
+//! a^2, the less the more is given up, and lie the closer together the wider the contact. Both laws are fits to finite elements of
+//! pads (`python -m trial.finite_elements.against_drainage` in `tests`); Hu, Chan, Vlassak & Suo 2011 (J Appl Phys 110:086103) give the curves of layers
+//! that slide on their base.
+
+use super::definition::active::ActiveEffect;
+use super::definition::entry::Effect;
+use super::drainage::{CURVE, DIFFUSIVITY, DRAINED, LAYER, RADIUS, SPREAD, drop};
+
+/// Power of the contact's radius with which times grow: for small shares, and less by this for a share of 1; its bounds.
+const GROWS: (f64, f64) = (1.6, 1.4);
+const MOST_GROWS: (f64, f64) = (1.0, 2.0);
+/// What the spread loses as the contact grows by a factor e: the wider it is, the more alike are the ways out.
+pub const NARROWS: f64 = 0.3;
+/// Time, in a^2 / D, of the half space's main exponential: that of the middle of a layer's times.
+pub const MIDDLE: f64 = 0.605;
+/// m of a layer that gives up all volume, and the power of 1 - 2 nu.
+const THINS: (f64, f64) = (0.55, 0.43);
+/// Power of the contact's radius with which a sphere's force grows (Hertz).
+const HERTZ: f64 = 3.0;
+/// Least radius of a contact, over the reference: one vertex has none.
+const LEAST: f64 = 0.1;
+
+/// Power of the contact's radius with which the time of drainage grows where it takes a share of the load.
+pub fn growth(share: f64) -> f64 {
+    (GROWS.0 - GROWS.1 * share).clamp(MOST_GROWS.0, MOST_GROWS.1)
+}
+
+/// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both), from that on a half space.
+pub fn drop_of_layer(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
+    let bare = 0.5 / (1.0 - drained_poisson_ratio);
+    1.0 - bare * libm::exp(-thins(drained_poisson_ratio, (radius, thickness)))
+}
+
+/// `m a / h`.
+fn thins(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
+    THINS.0 * libm::pow(1.0 - 2.0 * drained_poisson_ratio, THINS.1) * radius / thickness
+}
+
+/// The law in a region whose tissue is a layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerDrainage {
+    effect: ActiveEffect,
+    /// By region, mm.
+    thickness: Vec<f64>,
+}
+
+impl LayerDrainage {
+    /// None where the effect's curve is that of a half space.
+    pub fn of(effect: &ActiveEffect, thickness: &[f64]) -> Option<LayerDrainage> {
+        let is_it = effect.effect == Effect::Drainage && effect.chosen[CURVE] == LAYER;
+        is_it.then(|| LayerDrainage {
+            effect: effect.clone(),
+            thickness: thickness.to_vec(),
+        })
+    }
+
+    /// Share of the force that drains in the end under the contact of reference.
+    pub fn drop(&self, region: usize) -> f64 {
+        match self.thickness[region].is_finite() {
+            true => drop_of_layer(
+                self.effect.shape[DRAINED],
+                (self.effect.shape[RADIUS], self.thickness[region]),
+            ),
+            false => drop(&self.effect),
+        }
+    }
+
+    /// Share of the force that drains in the end under a contact of that radius, over that under the contact of reference: of all load, and
+    /// of load that is added there.
+    ///
+    /// Where all load up to there loses `s`, what is added to it loses `s + F ds/dF`, with the force as the third power of the radius: then what
+    /// is pressed fast bears the undrained force, and what stands for long that of the drained layer.
+    pub fn shares(&self, region: usize, radius: f64) -> (f64, f64) {
+        let thickness = self.thickness[region];
+        if !thickness.is_finite() {
+            return (1.0, 1.0);
+        }
+        let at = (radius, thickness);
+        let nu = self.effect.shape[DRAINED];
+        let all = drop_of_layer(nu, at);
+        let added = (all + (1.0 - all) * thins(nu, at) / HERTZ).min(1.0);
+        (all / self.drop(region), added / self.drop(region))
+    }
+
+    /// Weight, and place in standard deviations, of each of a layer's times.
+    pub fn branches(&self) -> Vec<(f64, f64)> {
+        let all: f64 = NODES.iter().map(|(_, weight)| weight).sum();
+        NODES.iter().map(|(z, w)| (w / all, *z)).collect()
+    }
+
+    /// By how much `seconds` under a contact of that radius (mm) take the time at `z` standard deviations on, in its own units.
+    pub fn progress(&self, (region, z): (usize, f64), seconds: f64, radius: f64) -> f64 {
+        let [diffusivity, spread, reference] =
+            [DIFFUSIVITY, SPREAD, RADIUS].map(|n| self.effect.shape[n]);
+        if radius <= 0.0 {
+            return 0.0;
+        }
+        let time = MIDDLE * reference * reference / diffusivity * libm::exp(spread * z);
+        let size = (radius / reference).max(LEAST);
+        let grows = match self.thickness[region].is_finite() {
+            true => {
+                growth(self.effect.amplitude_on(region as u32) * self.drop(region)) - NARROWS * z
+            }
+            false => MOST_GROWS.1,
+        };
+        seconds / (time * libm::pow(size, grows))
+    }
+}
+
+/// A normal law of mean 0 and variance 1 at even steps: places, and weights that do not sum to 1.
+pub const NODES: [(f64, f64); 7] = [
+    (-3.0 * STEP, TAILS[2]),
+    (-2.0 * STEP, TAILS[1]),
+    (-STEP, TAILS[0]),
+    (0.0, 1.0),
+    (STEP, TAILS[0]),
+    (2.0 * STEP, TAILS[1]),
+    (3.0 * STEP, TAILS[2]),
+];
+/// Step between them: 3/4, widened by what the cut tails take from the variance.
+const STEP: f64 = 0.773_9;
+/// `exp(-z^2 / 2)` at z = 3/4, 3/2 and 9/4.
+const TAILS: [f64; 3] = [0.754_84, 0.324_65, 0.079_56];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(thickness: f64, reference: f64) -> LayerDrainage {
+        let effect = ActiveEffect::named("drainage", 0.6).unwrap();
+        let effect = effect.with("radius_mm", reference).unwrap();
+        let layer = effect.choose("curve", "layer").unwrap();
+        LayerDrainage::of(&layer, &[thickness]).unwrap()
+    }
+
+    #[test]
+    fn only_drainage_of_a_layer_is_one() {
+        for name in ["drainage", "relaxation"] {
+            let effect = ActiveEffect::named(name, 1.0).unwrap();
+            assert_eq!(LayerDrainage::of(&effect, &[5.0]), None);
+        }
+    }
+
+    /// Load that is added under contacts that grow loses, all together, what all load loses: F grows as the third power of the radius.
+    #[test]
+    fn added_shares_integrate_to_the_share_of_all_load() {
+        let layer = of(5.0, 3.0);
+        let steps = 4000;
+        for most in [1.0, 3.0, 7.0] {
+            let at = |k: i32| most * f64::from(k) / f64::from(steps);
+            let part = |k: i32| {
+                let force = at(k).powi(3) - at(k - 1).powi(3);
+                layer.shares(0, 0.5 * (at(k) + at(k - 1))).1 * force
+            };
+            let lost = (1..=steps).map(part).sum::<f64>() / most.powi(3);
+            let all = layer.shares(0, most).0;
+            assert!((lost - all).abs() < 1e-3, "{most}: {lost} {all}");
+        }
+        assert!((layer.shares(0, 3.0).0 - 1.0).abs() < 1e-12);
+    }
+
+    /// The middle time grows as the radius to the power of the share; the slow times grow less, the fast ones more. On a half space all grow as
+    /// its square.
+    #[test]
+    fn times_grow_with_the_contact_and_come_closer_together() {
+        let time =
+            |layer: &LayerDrainage, z: f64, radius: f64| 1.0 / layer.progress((0, z), 1.0, radius);
+        let layer = of(5.0, 3.0);
+        let share = 0.6 * layer.drop(0);
+        assert!((time(&layer, 0.0, 3.0) - MIDDLE * 9.0 / 0.5).abs() < 1e-12);
+        let grown = |z: f64| libm::log2(time(&layer, z, 6.0) / time(&layer, z, 3.0));
+        assert!((grown(0.0) - (1.6 - 1.4 * share)).abs() < 1e-12);
+        assert!((grown(0.0) - grown(1.0) - 0.3).abs() < 1e-12);
+        let wide = libm::log(time(&layer, 1.0, 3.0) / time(&layer, 0.0, 3.0));
+        assert!((wide - 1.2).abs() < 1e-12);
+        let half_space = of(f64::INFINITY, 3.0);
+        let grown = time(&half_space, 1.0, 6.0) / time(&half_space, 1.0, 3.0);
+        assert!((grown - 4.0).abs() < 1e-12 && half_space.shares(0, 6.0) == (1.0, 1.0));
+        assert_eq!(layer.progress((0, 0.0), 1.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_larger_the_share_the_less_times_grow() {
+        assert_eq!([growth(-1.0), growth(0.0), growth(0.9)], [2.0, 1.6, 1.0]);
+    }
+}
