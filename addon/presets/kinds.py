@@ -192,7 +192,7 @@ def _check_effect(content, place):
     shapes = {shape["name"]: shape for shape in offered[name]["shape"]}
     options = {option["name"]: option["options"] for option in offered[name]["choices"]}
     if isinstance(numbers, dict):  # an older preset lacks numbers and choices that have come since
-        late = [key for key in shapes if key in effect_settings.OF_A_CHOICE]
+        late = [key for key in shapes if (name, key) in effect_settings.OF_A_CHOICE]
         numbers = {key: shapes[key]["default"] for key in late} | numbers
     found = _same_keys(numbers, shapes, place.at("numbers"))
     if isinstance(choices, dict):

@@ -11,8 +11,9 @@ _OVER_TIME = "history"
 """The catalogue's stage of effects that need time, and so a bake; the others act in a single press."""
 _BONDS_OF_TOUCH = ("bonds", "touched")
 """The choice of adhesion with which a contact depends on what was touched before."""
-OF_A_CHOICE = {"spread": ("curve", "layer"), "radius_mm": ("curve", "layer")}
-"""Numbers that count with one choice alone, and that choice."""
+_LAYER = ("curve", "layer")
+OF_A_CHOICE = {("drainage", "spread"): _LAYER, ("drainage", "radius_mm"): _LAYER}
+"""By effect and number: numbers that count with one choice alone, and that choice."""
 _OF_THE_SKIN = ("geometry", "stiffening", _OVER_TIME, "interface")
 """Stages that act on the skin; instruments act on readings, and have no place on a hand."""
 _STARTS = {"relaxation": 0.35, "cycle_softening": 0.3, "rate_independent_loss": 0.5}
@@ -53,11 +54,11 @@ def chosen(effect: bpy.types.PropertyGroup) -> list[tuple[str, str]]:
 def shown_numbers(effect: bpy.types.PropertyGroup) -> list[bpy.types.PropertyGroup]:
     """The effect's numbers that count with what is chosen."""
     made = chosen(effect)
-    return [number for number in effect.numbers if OF_A_CHOICE.get(number.name) in (None, *made)]
+    return [number for number in effect.numbers if OF_A_CHOICE.get((effect.name, number.name)) in (None, *made)]
 
 
 def bring_up_to_date(hand: bpy.types.Object) -> None:
-    """Give effects of an older version the choices (the first option is what was done) and numbers that have come since."""
+    """Give effects of an older version the choices (first option: what was done) and numbers that have come since."""
     for effect in hand.thenar.effects:
         row = offered().get(effect.name, {})
         for choice in row.get("choices", ()):

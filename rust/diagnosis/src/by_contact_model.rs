@@ -203,6 +203,11 @@ fn active(switched: &Switched) -> Option<ActiveEffect> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect_numbers::choices;
+    use thenar_contact::effects::Effect;
+    use thenar_contact::instrument::{Signals, observe};
+    use thenar_inference::forward::surrogate::mechanism::{Clock, Law, Mechanism};
+    use thenar_inference::forward::surrogate::relaxation_spectrum::Spectrum;
 
     #[test]
     fn switched_numbers_and_choices_reach_the_contact_model() {
@@ -222,5 +227,70 @@ mod tests {
             ..switched
         };
         assert!(active(&unknown).is_none());
+    }
+
+    /// What the surrogate's skin does, which clings where it has touched, is what the contact model does.
+    #[test]
+    fn adhesion_is_switched_on_with_bonds_that_touch_made() {
+        let found = choices(&Mechanism {
+            effect: Effect::Adhesion,
+            law: Law::Adhesion { lets_go: -0.2 },
+        });
+        let mut effect = ActiveEffect::named("adhesion", 1.0).unwrap();
+        for (name, option) in found {
+            effect = effect.choose(name, option).unwrap();
+        }
+        let bonds = effect.entry().choices[0];
+        assert_eq!(
+            (bonds.name, bonds.options[effect.chosen[0]]),
+            ("bonds", "touched")
+        );
+    }
+
+    /// And its layer drains as the contact model's does; what relaxes has no such choice.
+    #[test]
+    fn drainage_is_switched_on_as_that_of_a_layer() {
+        let of = |effect: Effect| {
+            choices(&Mechanism {
+                effect,
+                law: Law::Relaxation {
+                    clock: Clock::Area { reference_mm: 3.0 },
+                    spectrum: Spectrum::Smooth { widths: (0.1, 1.0) },
+                },
+            })
+        };
+        assert_eq!(of(Effect::Drainage), [("curve", "layer")]);
+        assert_eq!(of(Effect::Relaxation), []);
+        let effect = ActiveEffect::named("drainage", 1.0).unwrap();
+        assert!(effect.choose("curve", "layer").is_ok());
+    }
+
+    /// The fit's drift is `x ln(1 + t / tau)` newtons; what is switched on reads as much, at every time.
+    #[test]
+    fn drift_is_switched_on_as_the_fit_has_it() {
+        let (x, time_s) = (0.03, 6.0);
+        let rate = x * libm::log1p(10.0) / (10.0 * time_s) * 60.0;
+        let mechanism = Mechanism {
+            effect: Effect::Drift,
+            law: Law::Drift { time_s },
+        };
+        let mut effect = ActiveEffect::named("drift", 1.0).unwrap();
+        for (name, value) in [("rate_n_per_min", rate), ("time_s", time_s)] {
+            effect = effect.with(name, value).unwrap();
+        }
+        for (name, option) in choices(&mechanism) {
+            effect = effect.choose(name, option).unwrap();
+        }
+        let times: Vec<f64> = (0..40).map(|k| 0.7 * f64::from(k)).collect();
+        let signals = Signals {
+            force_n: vec![2.0; times.len()],
+            time_s: times.clone(),
+            ..Signals::default()
+        };
+        let shown = observe(&signals, None, &[effect]).unwrap().force_n;
+        for (force, time) in shown.iter().zip(&times) {
+            let wanted = 2.0 + x * libm::log1p((time - times[0]) / time_s);
+            assert!((force - wanted).abs() < 1e-12, "{time}: {force} {wanted}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Estimates of a fitted effect in the catalogue's terms and units, with intervals.
 
 use thenar_contact::effects::Effect;
-use thenar_contact::effects::layer_drainage::drop_of_layer;
+use thenar_contact::effects::layer_drainage::MIDDLE;
 
 use crate::findings::{Number, Switched};
 use crate::free_numbers::{Free, HALF, Three, interval, of_number, tried_interval};
@@ -16,11 +16,6 @@ use thenar_inference::forward::tables::stiff_skin::{THICKNESSES_MM, ratio};
 use thenar_inference::selection::candidates::SOFTENING_TRAVELS;
 use thenar_inference::selection::profile_interval::Profiled;
 use thenar_inference::selection::scored::Scored;
-
-/// Share of the force that the catalogue's drainage loses, with its own drained Poisson's ratio of 0.3.
-const DROP: f64 = 0.285_714;
-/// Time, in a^2 / D, of the main branch of the catalogue's drainage.
-const MAIN_BRANCH: f64 = 0.605;
 
 /// The mechanism as the catalogue has it: what a finding tells, and what the model is switched to.
 pub fn numbers_of_effect(
@@ -75,7 +70,7 @@ pub fn use_note(named: &Scored) -> Option<String> {
 }
 
 /// Choices that the catalogue leaves, by name.
-fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
+pub(crate) fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
     let mut choices = match &mechanism.law {
         Law::Stiffening(measure, growth) => {
             let measure = match measure {
@@ -88,6 +83,7 @@ fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)> {
         Law::Adhesion { .. } => vec![("bonds", "touched")],
         // And drains as a layer.
         Law::Relaxation { .. } => vec![("curve", "layer")],
+        Law::Drift { .. } => vec![("channel", "force"), ("form", "slowing")],
         _ if mechanism.is_instrument() => vec![("channel", "force")],
         _ => Vec::new(),
     };
@@ -142,7 +138,11 @@ fn values(ready: &PreparedStudy, mechanism: &Mechanism, free: &Free) -> (Three, 
                 let three = interval(free, &*scale);
                 (name, three.0, three.1, three.2)
             });
-            (WHOLE, listed.into_iter().collect())
+            let own_time = match *law {
+                Law::Drift { time_s } => Some(("time_s", time_s, time_s, time_s)),
+                _ => None,
+            };
+            (WHOLE, listed.into_iter().chain(own_time).collect())
         }
     }
 }
@@ -215,7 +215,7 @@ fn one<'a>(
 
 /// Amplitude and times of a load that fades by a smooth spectrum.
 fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Named>) {
-    let seen = seen_periods(ready);
+    let seen = ready.seen_periods();
     // A period so many widths from the median, and its interval: open beyond what the recordings last, and shorter than their steps. The
     // median is a number of the fit with a profile of its own, and the outer ones are profiled in its place.
     let period = |widths: f64| {
@@ -244,22 +244,24 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
         )
     };
     if effect == Effect::Drainage {
-        let over = MAIN_BRANCH * ready.scales.radius.powi(2);
+        let over = MIDDLE * ready.scales.radius.powi(2);
         let (middle, low, high) = period(0.0);
         let name = "diffusivity_mm2_per_s";
         let end = |of: f64, open: f64| if of.is_finite() { over / of } else { open };
         let ends = (end(high, f64::NEG_INFINITY), end(low, f64::INFINITY));
         let diffusivity = (name, over / middle, ends.0, ends.1);
-        let drop = mean_drop(ready);
+        let drop = ready.mean_drop();
         let share = interval(free, &|x| (x / drop).clamp(0.0, 0.99));
         let spread = of_number(free, 2, &|x| x.max(0.0));
-        let reference = ready.scales.radius;
+        let (reference, drained) = (ready.scales.radius, ready.drained_poisson_ratio());
+        let fixed = |name, value| (name, value, value, value);
         return (
             share,
             vec![
                 diffusivity,
                 ("spread", spread.0, spread.1, spread.2),
-                ("radius_mm", reference, reference, reference),
+                fixed("radius_mm", reference),
+                fixed("drained_poisson_ratio", drained),
             ],
         );
     }
@@ -273,33 +275,6 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
     let weights = ["weight_1", "weight_2", "weight_3"].map(|name| (name, third, third, third));
     let numbers = times.chain(weights).collect();
     (interval(free, &|x| x.clamp(0.0, 0.99)), numbers)
-}
-
-/// Share of the force that the catalogue's drainage loses, over the places of a study.
-fn mean_drop(ready: &PreparedStudy) -> f64 {
-    let places = &ready.elastic.places[..ready.elastic.studied];
-    let thickness = ready.base_material.thickness_mm;
-    if !thickness.is_finite() {
-        return DROP;
-    }
-    let of = |p| drop_of_layer(0.3, (radius(p, ready.scales.deepest), thickness));
-    places.iter().map(of).sum::<f64>() / places.len() as f64
-}
-
-/// Shortest and longest period that recordings can show, s: the least time between readings, and the longest recording.
-fn seen_periods(ready: &PreparedStudy) -> (f64, f64) {
-    let mut seen = (f64::INFINITY, 0.0);
-    for course in &ready.courses {
-        let steps = course
-            .rows
-            .windows(2)
-            .map(|two| two[1].time_s - two[0].time_s);
-        seen.0 = steps.filter(|s| *s > 0.0).fold(seen.0, f64::min);
-        if let (Some(first), Some(last)) = (course.rows.first(), course.rows.last()) {
-            seen.1 = f64::max(seen.1, last.time_s - first.time_s);
-        }
-    }
-    seen
 }
 
 /// Largest factor on a number that is stated as its interval; beyond it the number is open on both sides.
@@ -343,8 +318,6 @@ fn work_of(ready: &PreparedStudy, share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use thenar_contact::ActiveEffect;
-    use thenar_inference::forward::surrogate::mechanism::Clock;
 
     /// By a sum of a million steps.
     #[test]
@@ -366,42 +339,6 @@ mod tests {
         for (mean, wanted) in means.iter().zip([-OUTER, 0.0, OUTER]) {
             assert!((mean - wanted).abs() < 1e-4, "{means:?}");
         }
-    }
-
-    /// What the surrogate's skin does, which clings where it has touched, is what the contact model does.
-    #[test]
-    fn adhesion_is_switched_on_with_bonds_that_touch_made() {
-        let found = choices(&Mechanism {
-            effect: Effect::Adhesion,
-            law: Law::Adhesion { lets_go: -0.2 },
-        });
-        let mut effect = ActiveEffect::named("adhesion", 1.0).unwrap();
-        for (name, option) in found {
-            effect = effect.choose(name, option).unwrap();
-        }
-        let bonds = effect.entry().choices[0];
-        assert_eq!(
-            (bonds.name, bonds.options[effect.chosen[0]]),
-            ("bonds", "touched")
-        );
-    }
-
-    /// And its layer drains as the contact model's does; what relaxes has no such choice.
-    #[test]
-    fn drainage_is_switched_on_as_that_of_a_layer() {
-        let of = |effect: Effect| {
-            choices(&Mechanism {
-                effect,
-                law: Law::Relaxation {
-                    clock: Clock::Area { reference_mm: 3.0 },
-                    spectrum: Spectrum::Smooth { widths: (0.1, 1.0) },
-                },
-            })
-        };
-        assert_eq!(of(Effect::Drainage), [("curve", "layer")]);
-        assert_eq!(of(Effect::Relaxation), []);
-        let effect = ActiveEffect::named("drainage", 1.0).unwrap();
-        assert!(effect.choose("curve", "layer").is_ok());
     }
 
     #[test]

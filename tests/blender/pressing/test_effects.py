@@ -161,6 +161,8 @@ def test_numbers_of_a_layer_stand_where_it_is_chosen_and_old_drainage_gets_them(
     handlers._objects_came()
     assert effect_settings.chosen(drainage) == [("curve", "halfspace")]
     assert drainage.numbers["spread"].value == pytest.approx(1.2)
+    inclusion = add("inclusion")
+    assert "radius_mm" in [number.name for number in effect_settings.shown_numbers(inclusion)]
 
 
 def test_two_jobs_of_one_hand_keep_their_own_effects():

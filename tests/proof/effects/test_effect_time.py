@@ -106,7 +106,7 @@ def test_a_drained_layer_bears_what_compressible_tissue_bears(radius):
     contact = np.sqrt(radius * depth)
     skin, _ = pressing.sphere_on_flat(radius, depth, contact / 12.0)
     softer = thenar.Effect("compressibility", 1.0, poisson_ratio=drained)
-    drains = thenar.Effect("drainage", 1.0, drained_poisson_ratio=drained, curve="layer", radius_mm=contact)
+    drains = thenar.Effect("drainage", 1.0, drained_poisson_ratio=drained, curve="layer", radius_mm=3.0)
     times = np.concatenate([np.linspace(0.0, 1e-4, 13), np.geomspace(1e-2, 1e5, 30)])
     depths = np.minimum(times / 1e-4, 1.0) * depth
     prepared = thenar.Skin(*skin, materials=[pressing.material(thickness=thickness)])
@@ -117,6 +117,15 @@ def test_a_drained_layer_bears_what_compressible_tissue_bears(radius):
     elastic, with_fluid = forces(), forces(drains)
     assert with_fluid[12] == pytest.approx(elastic[12], rel=0.02), "fast, nothing drains"
     assert with_fluid[-1] == pytest.approx(forces(softer)[-1], abs=0.04 * elastic[12])
+
+
+def test_a_layer_drains_with_time_alone_whatever_the_steps():
+    """Pressed in one row, out, and less deep again, all fast: the elastic forces, though shares follow the contact."""
+    prepared = thenar.Skin(*meshes.disc_patch(8.0, 0.4), materials=[pressing.material(thickness=4.0)])
+    drains = thenar.Effect("drainage", 1.0, curve="layer", radius_mm=1.0)
+    times, depths = np.arange(8) * 1e-6, np.array([1.0, 1.0, 1.0, -0.1, -0.1, 0.2, 0.2, 0.8])
+    elastic, with_fluid = run(prepared, times, depths).force_n, run(prepared, times, depths, drains).force_n
+    np.testing.assert_allclose(with_fluid, elastic, rtol=1e-3, atol=1e-6)
 
 
 def test_cycles_soften_by_their_law_and_rest_restores():

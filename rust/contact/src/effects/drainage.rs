@@ -20,7 +20,7 @@ pub(super) const LAYER: usize = 1;
 pub const ENTRY: Entry = Entry {
     name: "drainage",
     stage: Stage::History,
-    meaning: "fluid that leaves the pressed tissue: relaxation whose time grows with the contact's area",
+    meaning: "fluid that leaves the pressed tissue: relaxation whose time grows with the contact",
     amplitude: "share of the drop from undrained to drained force",
     most: 1.0,
     shape: &[
@@ -72,11 +72,11 @@ pub const ENTRY: Entry = Entry {
     consequences: &[
         Consequence {
             sign: Sign::ForceFallsInHold,
-            sentence: "force at held depth falls with time and comes to rest above half its first value",
+            sentence: "force at held depth falls with time and comes to rest, on a half space above half its first value",
         },
         Consequence {
             sign: Sign::ClockGrowsWithArea,
-            sentence: "a contact of twice the radius takes four times as long",
+            sentence: "a larger contact takes longer: one of twice the radius four times as long on a half space, less on a layer",
         },
         Consequence {
             sign: Sign::VolumeIsLost,

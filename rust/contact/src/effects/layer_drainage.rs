@@ -20,8 +20,10 @@ pub const NARROWS: f64 = 0.3;
 pub const MIDDLE: f64 = 0.605;
 /// m of a layer that gives up all volume, and the power of 1 - 2 nu.
 const THINS: (f64, f64) = (0.55, 0.43);
-/// Power of the contact's radius with which a sphere's force grows (Hertz).
-const HERTZ: f64 = 3.0;
+/// Widest contact, over the thickness, to which the share is known.
+const WIDEST: f64 = 2.0;
+/// Spread below which times come no closer together.
+const LEAST_SPREAD: f64 = 0.05;
 /// Least radius of a contact, over the reference: one vertex has none.
 const LEAST: f64 = 0.1;
 
@@ -30,7 +32,7 @@ pub fn growth(share: f64) -> f64 {
     (GROWS.0 - GROWS.1 * share).clamp(MOST_GROWS.0, MOST_GROWS.1)
 }
 
-/// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both), from that on a half space.
+/// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both; of infinite thickness a half space).
 pub fn drop_of_layer(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
     let bare = 0.5 / (1.0 - drained_poisson_ratio);
     1.0 - bare * libm::exp(-thins(drained_poisson_ratio, (radius, thickness)))
@@ -59,32 +61,16 @@ impl LayerDrainage {
         })
     }
 
-    /// Share of the force that drains in the end under the contact of reference.
-    pub fn drop(&self, region: usize) -> f64 {
-        match self.thickness[region].is_finite() {
+    /// Share of the force that drains in the end under a contact of that radius, mm.
+    pub fn drop(&self, region: usize, radius: f64) -> f64 {
+        let thickness = self.thickness[region];
+        match thickness.is_finite() {
             true => drop_of_layer(
                 self.effect.shape[DRAINED],
-                (self.effect.shape[RADIUS], self.thickness[region]),
+                (radius.min(WIDEST * thickness), thickness),
             ),
             false => drop(&self.effect),
         }
-    }
-
-    /// Share of the force that drains in the end under a contact of that radius, over that under the contact of reference: of all load, and
-    /// of load that is added there.
-    ///
-    /// Where all load up to there loses `s`, what is added to it loses `s + F ds/dF`, with the force as the third power of the radius: then what
-    /// is pressed fast bears the undrained force, and what stands for long that of the drained layer.
-    pub fn shares(&self, region: usize, radius: f64) -> (f64, f64) {
-        let thickness = self.thickness[region];
-        if !thickness.is_finite() {
-            return (1.0, 1.0);
-        }
-        let at = (radius, thickness);
-        let nu = self.effect.shape[DRAINED];
-        let all = drop_of_layer(nu, at);
-        let added = (all + (1.0 - all) * thins(nu, at) / HERTZ).min(1.0);
-        (all / self.drop(region), added / self.drop(region))
     }
 
     /// Weight, and place in standard deviations, of each of a layer's times.
@@ -100,15 +86,17 @@ impl LayerDrainage {
         if radius <= 0.0 {
             return 0.0;
         }
-        let time = MIDDLE * reference * reference / diffusivity * libm::exp(spread * z);
         let size = (radius / reference).max(LEAST);
-        let grows = match self.thickness[region].is_finite() {
+        let (grows, spread) = match self.thickness[region].is_finite() {
             true => {
-                growth(self.effect.amplitude_on(region as u32) * self.drop(region)) - NARROWS * z
+                let share = self.effect.amplitude_on(region as u32) * self.drop(region, reference);
+                let narrowed = spread - NARROWS * libm::log(size);
+                (growth(share), narrowed.max(LEAST_SPREAD.min(spread)))
             }
-            false => MOST_GROWS.1,
+            false => (MOST_GROWS.1, spread),
         };
-        seconds / (time * libm::pow(size, grows))
+        let time = MIDDLE * reference * reference / diffusivity * libm::pow(size, grows);
+        seconds / (time * libm::exp(spread * z))
     }
 }
 
@@ -146,24 +134,6 @@ mod tests {
         }
     }
 
-    /// Load that is added under contacts that grow loses, all together, what all load loses: F grows as the third power of the radius.
-    #[test]
-    fn added_shares_integrate_to_the_share_of_all_load() {
-        let layer = of(5.0, 3.0);
-        let steps = 4000;
-        for most in [1.0, 3.0, 7.0] {
-            let at = |k: i32| most * f64::from(k) / f64::from(steps);
-            let part = |k: i32| {
-                let force = at(k).powi(3) - at(k - 1).powi(3);
-                layer.shares(0, 0.5 * (at(k) + at(k - 1))).1 * force
-            };
-            let lost = (1..=steps).map(part).sum::<f64>() / most.powi(3);
-            let all = layer.shares(0, most).0;
-            assert!((lost - all).abs() < 1e-3, "{most}: {lost} {all}");
-        }
-        assert!((layer.shares(0, 3.0).0 - 1.0).abs() < 1e-12);
-    }
-
     /// The middle time grows as the radius to the power of the share; the slow times grow less, the fast ones more. On a half space all grow as
     /// its square.
     #[test]
@@ -171,7 +141,7 @@ mod tests {
         let time =
             |layer: &LayerDrainage, z: f64, radius: f64| 1.0 / layer.progress((0, z), 1.0, radius);
         let layer = of(5.0, 3.0);
-        let share = 0.6 * layer.drop(0);
+        let share = 0.6 * layer.drop(0, 3.0);
         assert!((time(&layer, 0.0, 3.0) - MIDDLE * 9.0 / 0.5).abs() < 1e-12);
         let grown = |z: f64| libm::log2(time(&layer, z, 6.0) / time(&layer, z, 3.0));
         assert!((grown(0.0) - (1.6 - 1.4 * share)).abs() < 1e-12);
@@ -180,8 +150,20 @@ mod tests {
         assert!((wide - 1.2).abs() < 1e-12);
         let half_space = of(f64::INFINITY, 3.0);
         let grown = time(&half_space, 1.0, 6.0) / time(&half_space, 1.0, 3.0);
-        assert!((grown - 4.0).abs() < 1e-12 && half_space.shares(0, 6.0) == (1.0, 1.0));
+        assert!((grown - 4.0).abs() < 1e-12);
+        assert_eq!(half_space.drop(0, 6.0), drop(&half_space.effect));
         assert_eq!(layer.progress((0, 0.0), 1.0, 0.0), 0.0);
+        // They meet, and do not trade places.
+        let widest = libm::log(time(&layer, 1.0, 300.0) / time(&layer, 0.0, 300.0));
+        assert!((widest - 0.05).abs() < 1e-12, "{widest}");
+    }
+
+    #[test]
+    fn the_share_grows_to_the_widest_contact_that_is_known() {
+        let layer = of(5.0, 3.0);
+        assert!(layer.drop(0, 8.0) > layer.drop(0, 2.0) && layer.drop(0, 2.0) > layer.drop(0, 0.0));
+        assert!((layer.drop(0, 0.0) - drop(&layer.effect)).abs() < 1e-12);
+        assert_eq!(layer.drop(0, 10.0), layer.drop(0, 50.0));
     }
 
     #[test]

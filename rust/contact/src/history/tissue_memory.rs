@@ -3,7 +3,7 @@
 use nalgebra::Rotation3;
 use thenar_surface::Vec3;
 
-use super::memory_branches::{Branch, Clock, branches};
+use super::memory_branches::{Branch, Branches, Clock, Shares};
 use crate::effects::definition::active::in_order;
 use crate::effects::{ActiveEffect, Effect, cycle_softening, drainage};
 use crate::skin::sites::Sites;
@@ -17,9 +17,9 @@ const FAINT: f64 = 1e-10;
 /// Internal variables of the tissue.
 #[derive(Debug, Clone)]
 pub struct TissueMemory {
-    branches: Vec<Branch>,
-    /// Share that never fades, by region.
-    lasting: Vec<f64>,
+    branches: Branches,
+    /// What fades and lasts of the load of the last step.
+    shares: Shares,
     softening: Vec<Softening>,
     /// Sites with a memory, ascending.
     touched: Vec<u32>,
@@ -44,6 +44,33 @@ struct Softening {
     used: Vec<f64>,
 }
 
+/// A branch over a step.
+#[derive(Debug, Clone, Copy)]
+struct Fade {
+    decay: f64,
+    new: f64,
+    old: f64,
+}
+
+impl Fade {
+    /// Over a step of so many periods, with the branch's share of the load at its end and before it.
+    ///
+    /// The branch takes up what its share of the load grows by, and that is all that it holds: load that is put on fast is borne whole,
+    /// whatever becomes of the shares meanwhile.
+    fn over(x: f64, (now, before): (f64, f64)) -> Fade {
+        let mean = if x < SHORT_STEP {
+            1.0 - 0.5 * x
+        } else {
+            -(-x).exp_m1() / x
+        };
+        Fade {
+            decay: (-x).exp(),
+            new: now * mean,
+            old: before * mean,
+        }
+    }
+}
+
 /// What the memory means for the step being taken.
 #[derive(Debug, Clone)]
 pub struct MemoryStep {
@@ -55,8 +82,10 @@ pub struct MemoryStep {
     pub loads: Vec<(u32, Vec3)>,
     /// True where the product leaves, by region.
     pub is_left: Vec<bool>,
-    /// Decay over the step and share of a load that is new, by branch and region.
-    fade: Vec<Vec<(f64, f64)>>,
+    /// Decay over the step, and parts of the load at its end and of that before it which a branch takes up and gives off, by branch
+    /// and region.
+    fade: Vec<Vec<Fade>>,
+    shares: Shares,
     used: Vec<Vec<f64>>,
     depth: Vec<f64>,
 }
@@ -83,7 +112,7 @@ impl TissueMemory {
     /// Tissue of that thickness by region (mm) that was never pressed. None if no effect has memory.
     pub fn new(effects: &[ActiveEffect], thickness: &[f64], sites: usize) -> Option<TissueMemory> {
         let regions = thickness.len();
-        let (branches, lasting) = branches(effects, thickness);
+        let branches = Branches::new(effects, thickness);
         let softening: Vec<Softening> = in_order(effects)
             .into_iter()
             .filter(|e| e.effect == Effect::CycleSoftening)
@@ -92,13 +121,13 @@ impl TissueMemory {
                 used: vec![0.0; regions],
             })
             .collect();
-        if branches.is_empty() && softening.is_empty() {
+        if branches.all.is_empty() && softening.is_empty() {
             return None;
         }
         Some(TissueMemory {
-            fading: vec![vec![Vec3::zeros(); sites]; branches.len()],
+            fading: vec![vec![Vec3::zeros(); sites]; branches.all.len()],
+            shares: branches.shares(&vec![0.0; regions]),
             branches,
-            lasting,
             softening,
             touched: Vec::new(),
             elastic: vec![Vec3::zeros(); sites],
@@ -111,28 +140,29 @@ impl TissueMemory {
 
     /// What the memory means for a step that brings the regions to `depth` (mm).
     pub fn recall(&self, depth: &[f64], sites: &Sites) -> MemoryStep {
-        let fade: Vec<Vec<(f64, f64)>> = self
-            .branches
-            .iter()
-            .map(|branch| {
-                (0..depth.len())
-                    .map(|r| self.fade(branch, r, depth[r]))
-                    .collect()
-            })
-            .collect();
-        let mut instantaneous = self.lasting();
+        let shares = match self.branches.is_sized() {
+            true => self.branches.shares(&self.radius),
+            false => self.shares.clone(),
+        };
+        let fade = |(number, branch): (usize, &Branch)| -> Vec<Fade> {
+            let (now, before) = (&shares.fading[number], &self.shares.fading[number]);
+            let one = |r: usize| Fade::over(self.passed(branch, r, depth[r]), (now[r], before[r]));
+            (0..depth.len()).map(one).collect()
+        };
+        let fade: Vec<Vec<Fade>> = self.branches.all.iter().enumerate().map(fade).collect();
+        let mut instantaneous = shares.lasting.clone();
         for of_region in &fade {
             instantaneous
                 .iter_mut()
                 .zip(of_region)
-                .for_each(|(a, (_, new))| *a += new);
+                .for_each(|(a, fade)| *a += fade.new);
         }
         let load = |&site: &u32| {
             let (region, i) = (sites.home_region(site as usize) as usize, site as usize);
             let mut rest = Vec3::zeros();
             for (branch, of_region) in self.fading.iter().zip(&fade) {
-                let (decay, new) = of_region[region];
-                rest += branch[i] * decay - self.elastic[i] * new;
+                let fade = of_region[region];
+                rest += branch[i] * fade.decay - self.elastic[i] * fade.old;
             }
             (site, -rest / instantaneous[region])
         };
@@ -160,6 +190,7 @@ impl TissueMemory {
             instantaneous,
             softness,
             fade,
+            shares,
             used,
             depth: depth.to_vec(),
         }
@@ -193,8 +224,13 @@ impl TissueMemory {
             let (i, region) = (site as usize, sites.home_region(site as usize) as usize);
             let change = elastic - self.elastic[i];
             for (branch, of_region) in self.fading.iter_mut().zip(&recall.fade) {
-                let (decay, new) = of_region[region];
-                branch[i] = branch[i] * decay + change * new;
+                let fade = of_region[region];
+                branch[i] = match fade.new == fade.old {
+                    true => branch[i] * fade.decay + change * fade.new,
+                    false => {
+                        branch[i] * fade.decay + elastic * fade.new - self.elastic[i] * fade.old
+                    }
+                };
             }
             self.elastic[i] = elastic;
         }
@@ -204,6 +240,7 @@ impl TissueMemory {
             softening.used.clone_from(used);
         }
         self.depth.clone_from(&recall.depth);
+        self.shares.clone_from(&recall.shares);
         self.clings.copy_from_slice(clings);
         for (radius, area) in self
             .radius
@@ -239,27 +276,8 @@ impl TissueMemory {
         false
     }
 
-    /// Share of the load that never fades, by region: what its branches have not of it.
-    fn lasting(&self) -> Vec<f64> {
-        let mut lasting = self.lasting.clone();
-        for branch in &self.branches {
-            for (region, left) in lasting.iter_mut().enumerate() {
-                *left += branch.share[region] * (1.0 - self.shares(branch, region).0);
-            }
-        }
-        lasting
-    }
-
-    /// Shares that a branch has of all load and of load that is new, over its own.
-    fn shares(&self, branch: &Branch, region: usize) -> (f64, f64) {
-        match &branch.clock {
-            Clock::Layer(layer, _) => layer.shares(region, self.radius[region]),
-            _ => (1.0, 1.0),
-        }
-    }
-
-    /// Decay of a branch in `region` over the step, and its share of a load that is new.
-    fn fade(&self, branch: &Branch, region: usize, depth: f64) -> (f64, f64) {
+    /// How far a branch's clock goes in a step that brings its region to a depth, in its periods.
+    fn passed(&self, branch: &Branch, region: usize, depth: f64) -> f64 {
         let passed = match &branch.clock {
             Clock::Time => self.seconds,
             Clock::Drainage(effect) => {
@@ -270,16 +288,7 @@ impl TissueMemory {
             }
             Clock::Travel => (depth - self.depth[region]).abs(),
         };
-        let x = passed / branch.period;
-        let mean = if x < SHORT_STEP {
-            1.0 - 0.5 * x
-        } else {
-            -(-x).exp_m1() / x
-        };
-        (
-            (-x).exp(),
-            branch.share[region] * self.shares(branch, region).1 * mean,
-        )
+        passed / branch.period
     }
 
     fn use_up(&self, softening: &Softening, depth: &[f64]) -> Vec<f64> {

@@ -1,7 +1,8 @@
 //! Effect `drift`: zero drift, or creep of the sensitivity, with time.
 //!
-//! zero: `y' = y + amplitude * rate * t`; sensitivity: `y' = y (1 + amplitude * creep * log10(1 + t / 1 s))`, both with t from
-//! the first instant. Neither needs contact to go on.
+//! zero: `y' = y + amplitude * rate * t`; sensitivity: `y' = y (1 + amplitude * creep * log10(1 + t / 1 s))`; slowing, a zero whose
+//! drift slows: `y' = y + amplitude * rate * 10 tau * ln(1 + t / tau) / ln(11)`, with the rate as the mean over the first 10 tau; all with t
+//! from the first instant. None needs contact to go on.
 
 use super::channel;
 use super::channel::CHANNEL;
@@ -9,6 +10,12 @@ use super::signals::Signals;
 use crate::effects::{ActiveEffect, Choice, Consequence, Entry, ShapeNumber, Sign, Stage};
 
 const CREEP: usize = 2;
+const TIME: usize = 3;
+/// Options of the choice of form.
+const ZERO: usize = 0;
+const SENSITIVITY: usize = 1;
+/// Times tau over which a drift that slows has its rate in the mean.
+const TAUS: f64 = 10.0;
 /// Minutes in a second.
 const MINUTE: f64 = 1.0 / 60.0;
 
@@ -46,13 +53,22 @@ pub const ENTRY: Entry = Entry {
             meaning: "growth of the sensitivity in each decade of time",
             source: "2.9 % in 30 s on a hand-handle sensor (Yao 2019, Measurement 145:525), so 2 % a decade",
         },
+        ShapeNumber {
+            name: "time_s",
+            unit: "s",
+            default: 1.0,
+            admissible: [1e-3, 1e6],
+            physiological: [0.1, 100.0],
+            meaning: "time tau of a drift that slows; its rate is the mean over the first ten of them",
+            source: "creep of film sensors is logarithmic from about a second on (Yao 2019, Measurement 145:525)",
+        },
     ],
     choices: &[
         CHANNEL,
         Choice {
             name: "form",
-            options: &["zero", "sensitivity"],
-            meaning: "what wanders: the zero, or the factor",
+            options: &["zero", "sensitivity", "slowing"],
+            meaning: "what wanders: the zero evenly, the factor, or the zero ever more slowly",
         },
     ],
     painted: None,
@@ -70,18 +86,22 @@ pub const ENTRY: Entry = Entry {
     source: "zero drift; logarithmic creep of film sensors",
 };
 
+/// What a drift that slows has come to after `seconds`, over its rate, s.
+fn slowing(seconds: f64, time_s: f64) -> f64 {
+    TAUS * time_s * (seconds / time_s).ln_1p() / TAUS.ln_1p()
+}
+
 /// Applies it.
 pub fn apply(effect: &ActiveEffect, signals: &mut Signals) {
     let times = signals.time_s.clone();
     let since = |instant: usize| times[instant] - times[0];
     let rate = effect.amplitude * effect.shape[effect.chosen[0]] * MINUTE;
     let creep = effect.amplitude * effect.shape[CREEP];
-    let is_zero = effect.chosen[1] == 0;
     channel::change(effect, signals, |reading, instant, _| {
-        if is_zero {
-            reading + rate * since(instant)
-        } else {
-            reading * (1.0 + creep * (1.0 + since(instant)).log10())
+        match effect.chosen[1] {
+            ZERO => reading + rate * since(instant),
+            SENSITIVITY => reading * (1.0 + creep * (1.0 + since(instant)).log10()),
+            _ => reading + rate * slowing(since(instant), effect.shape[TIME]),
         }
     });
 }

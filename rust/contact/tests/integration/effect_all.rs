@@ -201,7 +201,10 @@ fn draw(dice: &mut Dice) -> Vec<ActiveEffect> {
         if dice.roll() < 0.5 {
             let effect = ActiveEffect::named(name, 0.9 * dice.roll()).unwrap();
             drawn.push(match name {
-                "drainage" if dice.roll() < 0.5 => effect.choose("curve", "layer").unwrap(),
+                "drainage" if dice.roll() < 0.6 => {
+                    let layer = effect.choose("curve", "layer").unwrap();
+                    layer.with("radius_mm", 0.5 + 3.0 * dice.roll()).unwrap()
+                }
                 _ => effect,
             });
         }
@@ -209,11 +212,13 @@ fn draw(dice: &mut Dice) -> Vec<ActiveEffect> {
     drawn
 }
 
-/// Work gained in `runs` random closed cycles of a material that stiffens and one that does not.
+/// Work gained in `runs` random closed cycles of a material that stiffens, one that does not, and a thin layer of it.
 fn check_passivity(runs: usize) {
-    for g_lim_mpa in [0.01, 0.03] {
+    let thick = material().thickness_mm;
+    for (g_lim_mpa, thickness_mm) in [(0.01, thick), (0.03, thick), (0.01, 2.0)] {
         let material = Material {
             g_lim_mpa,
+            thickness_mm,
             ..material()
         };
         let mut skin = flat_skin(4.5, 1.5, material, Model::Layer);

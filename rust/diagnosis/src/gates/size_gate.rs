@@ -122,7 +122,8 @@ fn open(named: &Scored, kept: &[Effect]) -> String {
 
 /// What is said of a finding's numbers that recordings do not bound on both sides, and what would bound them; None where all are bounded.
 pub fn open_note(finding: &Finding) -> Option<String> {
-    let is_open = |n: &&Number| !n.is_bounded();
+    // The spread of a layer's times ends at the half space's, whatever is recorded.
+    let is_open = |n: &&Number| !n.is_bounded() && n.name != "spread";
     let open: Vec<String> = finding
         .numbers
         .iter()

@@ -2,7 +2,9 @@
 
 use crate::forward::mesh::replay::Replay;
 use nalgebra::Vector3;
-use thenar_contact::{Control, Material};
+use thenar_contact::effects::Effect;
+use thenar_contact::effects::layer_drainage::drop_of_layer;
+use thenar_contact::{ActiveEffect, Control, Material};
 use thenar_recordings::Study;
 use thenar_recordings::study::Shape;
 
@@ -129,6 +131,36 @@ fn judged(
 }
 
 impl PreparedStudy {
+    /// Poisson's ratio of drained tissue with which drainage is switched on: the catalogue's, as none is fitted.
+    pub fn drained_poisson_ratio(&self) -> f64 {
+        ActiveEffect::new(Effect::Drainage, 1.0).number("drained_poisson_ratio")
+    }
+
+    /// Share of the force that tissue of that Poisson's ratio loses in the end as it drains, over the places of the study.
+    pub fn mean_drop(&self) -> f64 {
+        let drained = self.drained_poisson_ratio();
+        let thickness = self.base_material.thickness_mm;
+        let places = &self.elastic.places[..self.elastic.studied];
+        let of = |p| drop_of_layer(drained, (radius(p, self.scales.deepest), thickness));
+        places.iter().map(of).sum::<f64>() / places.len() as f64
+    }
+
+    /// Shortest and longest period that recordings can show, s: the least time between readings, and the longest recording.
+    pub fn seen_periods(&self) -> (f64, f64) {
+        let mut seen = (f64::INFINITY, 0.0);
+        for course in &self.courses {
+            let steps = course
+                .rows
+                .windows(2)
+                .map(|two| two[1].time_s - two[0].time_s);
+            seen.0 = steps.filter(|s| *s > 0.0).fold(seen.0, f64::min);
+            if let (Some(first), Some(last)) = (course.rows.first(), course.rows.last()) {
+                seen.1 = f64::max(seen.1, last.time_s - first.time_s);
+            }
+        }
+        seen
+    }
+
     /// Noise over the largest force of its recording, the median of all samples.
     pub fn noise_share(&self) -> f64 {
         let share = |c: &ForceRecording| {
