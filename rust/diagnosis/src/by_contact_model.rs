@@ -203,7 +203,7 @@ fn active(switched: &Switched) -> Option<ActiveEffect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect_numbers::choices;
+    use crate::effect_numbers::{choices, drift_rate};
     use thenar_contact::effects::Effect;
     use thenar_contact::instrument::{Signals, observe};
     use thenar_inference::forward::surrogate::mechanism::{Clock, Law, Mechanism};
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn drift_is_switched_on_as_the_fit_has_it() {
         let (x, time_s) = (0.03, 6.0);
-        let rate = x * libm::log1p(10.0) / (10.0 * time_s) * 60.0;
+        let rate = drift_rate(x, time_s);
         let mechanism = Mechanism {
             effect: Effect::Drift,
             law: Law::Drift { time_s },

@@ -93,6 +93,8 @@ pub(crate) fn choices(mechanism: &Mechanism) -> Vec<(&'static str, &'static str)
 }
 
 type Named = (&'static str, f64, f64, f64);
+/// Largest amplitude with which what drains is switched on.
+const MOST_SHARE: f64 = 0.99;
 /// Amplitude of an effect whose other numbers say how much.
 const WHOLE: Three = (1.0, 1.0, 1.0);
 
@@ -199,11 +201,7 @@ fn one<'a>(
         }
         Law::GainStep { .. } => ("error", Box::new(|x| libm::exp(x) - 1.0)),
         Law::Offset => ("offset_n", Box::new(|x| x)),
-        // Mean rate over the first ten times the creep's own time.
-        Law::Drift { time_s } => (
-            "rate_n_per_min",
-            Box::new(move |x| x * libm::log1p(10.0) / (10.0 * time_s) * 60.0),
-        ),
+        Law::Drift { time_s } => ("rate_n_per_min", Box::new(move |x| drift_rate(x, time_s))),
         Law::Saturation(_) => ("ceiling_n", Box::new(move |x| most * libm::exp(x))),
         Law::Floor(_) => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
         Law::Compliance => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
@@ -211,6 +209,11 @@ fn one<'a>(
         Law::Relaxation { .. } | Law::Softening { .. } | Law::Adhesion { .. } => return None,
     };
     Some((name, scale))
+}
+
+/// N/min, of a drift of `x ln(1 + t / time_s)` newtons: its mean over the first ten times `time_s`.
+pub(crate) fn drift_rate(x: f64, time_s: f64) -> f64 {
+    x * libm::log1p(10.0) / (10.0 * time_s) * 60.0
 }
 
 /// Amplitude and times of a load that fades by a smooth spectrum.
@@ -251,7 +254,7 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
         let ends = (end(high, f64::NEG_INFINITY), end(low, f64::INFINITY));
         let diffusivity = (name, over / middle, ends.0, ends.1);
         let drop = ready.mean_drop();
-        let share = interval(free, &|x| (x / drop).clamp(0.0, 0.99));
+        let share = at_most(interval(free, &|x| (x / drop).max(0.0)), MOST_SHARE);
         let spread = of_number(free, 2, &|x| x.max(0.0));
         let (reference, drained) = (ready.scales.radius, ready.drained_poisson_ratio());
         let fixed = |name, value| (name, value, value, value);
@@ -275,6 +278,12 @@ fn fading(ready: &PreparedStudy, effect: Effect, free: &Free) -> (Three, Vec<Nam
     let weights = ["weight_1", "weight_2", "weight_3"].map(|name| (name, third, third, third));
     let numbers = times.chain(weights).collect();
     (interval(free, &|x| x.clamp(0.0, 0.99)), numbers)
+}
+
+/// A value and its interval up to the most that it may be: open above where the interval ends beyond.
+fn at_most((value, low, high): Three, most: f64) -> Three {
+    let end = if high > most { f64::INFINITY } else { high };
+    (value.min(most), low.min(most), end)
 }
 
 /// Largest factor on a number that is stated as its interval; beyond it the number is open on both sides.
@@ -339,6 +348,13 @@ mod tests {
         for (mean, wanted) in means.iter().zip([-OUTER, 0.0, OUTER]) {
             assert!((mean - wanted).abs() < 1e-4, "{means:?}");
         }
+    }
+
+    #[test]
+    fn a_share_beyond_the_most_is_open_above() {
+        assert_eq!(at_most((0.4, 0.3, 0.6), 0.9), (0.4, 0.3, 0.6));
+        assert_eq!(at_most((0.8, 0.7, 1.2), 0.9), (0.8, 0.7, f64::INFINITY));
+        assert_eq!(at_most((1.3, 1.1, 1.5), 0.9), (0.9, 0.9, f64::INFINITY));
     }
 
     #[test]

@@ -20,6 +20,8 @@ pub const NARROWS: f64 = 0.3;
 pub const MIDDLE: f64 = 0.605;
 /// m of a layer that gives up all volume, and the power of 1 - 2 nu.
 const THINS: (f64, f64) = (0.55, 0.43);
+/// Contact of reference over the thickness from which times are wholly a layer's: the smallest to which the law was fitted.
+const FROM: f64 = 0.3;
 /// Widest contact, over the thickness, to which the share is known.
 const WIDEST: f64 = 2.0;
 /// Spread below which times come no closer together.
@@ -32,7 +34,8 @@ pub fn growth(share: f64) -> f64 {
     (GROWS.0 - GROWS.1 * share).clamp(MOST_GROWS.0, MOST_GROWS.1)
 }
 
-/// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both; of infinite thickness a half space).
+/// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both; of infinite thickness a half space). A
+/// wider contact than [`WIDEST`] counts as one of that width.
 pub fn drop_of_layer(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
     let bare = 0.5 / (1.0 - drained_poisson_ratio);
     1.0 - bare * libm::exp(-thins(drained_poisson_ratio, (radius, thickness)))
@@ -40,7 +43,8 @@ pub fn drop_of_layer(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)
 
 /// `m a / h`.
 fn thins(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
-    THINS.0 * libm::pow(1.0 - 2.0 * drained_poisson_ratio, THINS.1) * radius / thickness
+    let share = (radius / thickness).min(WIDEST);
+    THINS.0 * libm::pow(1.0 - 2.0 * drained_poisson_ratio, THINS.1) * share
 }
 
 /// The law in a region whose tissue is a layer.
@@ -65,10 +69,7 @@ impl LayerDrainage {
     pub fn drop(&self, region: usize, radius: f64) -> f64 {
         let thickness = self.thickness[region];
         match thickness.is_finite() {
-            true => drop_of_layer(
-                self.effect.shape[DRAINED],
-                (radius.min(WIDEST * thickness), thickness),
-            ),
+            true => drop_of_layer(self.effect.shape[DRAINED], (radius, thickness)),
             false => drop(&self.effect),
         }
     }
@@ -87,14 +88,12 @@ impl LayerDrainage {
             return 0.0;
         }
         let size = (radius / reference).max(LEAST);
-        let (grows, spread) = match self.thickness[region].is_finite() {
-            true => {
-                let share = self.effect.amplitude_on(region as u32) * self.drop(region, reference);
-                let narrowed = spread - NARROWS * libm::log(size);
-                (growth(share), narrowed.max(LEAST_SPREAD.min(spread)))
-            }
-            false => (MOST_GROWS.1, spread),
-        };
+        // Of a layer, from a half space's: by how wide the contact of reference is against the thickness.
+        let layer = (reference / (FROM * self.thickness[region])).min(1.0);
+        let share = self.effect.amplitude_on(region as u32) * self.drop(region, reference);
+        let grows = MOST_GROWS.1 + layer * (growth(share) - MOST_GROWS.1);
+        let narrowed = spread - layer * NARROWS * libm::log(size);
+        let spread = narrowed.max(LEAST_SPREAD.min(spread));
         let time = MIDDLE * reference * reference / diffusivity * libm::pow(size, grows);
         seconds / (time * libm::exp(spread * z))
     }
@@ -152,6 +151,11 @@ mod tests {
         let grown = time(&half_space, 1.0, 6.0) / time(&half_space, 1.0, 3.0);
         assert!((grown - 4.0).abs() < 1e-12);
         assert_eq!(half_space.drop(0, 6.0), drop(&half_space.effect));
+        let thick = of(3e6, 3.0);
+        let grown = time(&thick, 1.0, 6.0) / time(&thick, 1.0, 3.0);
+        assert!(
+            (grown - 4.0).abs() < 1e-5 && (thick.drop(0, 6.0) - drop(&thick.effect)).abs() < 1e-5
+        );
         assert_eq!(layer.progress((0, 0.0), 1.0, 0.0), 0.0);
         // They meet, and do not trade places.
         let widest = libm::log(time(&layer, 1.0, 300.0) / time(&layer, 0.0, 300.0));

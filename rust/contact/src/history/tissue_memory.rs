@@ -29,8 +29,10 @@ pub struct TissueMemory {
     fading: Vec<Vec<Vec3>>,
     /// Largest depth at the last step, by region, mm.
     depth: Vec<f64>,
-    /// Last contact radius, by region, mm.
+    /// Last contact radius, by region, mm: clocks go by it where nothing touches, too.
     radius: Vec<f64>,
+    /// Contact radius at the last step, by region, mm; none where nothing touched. Shares go by it.
+    touching: Vec<f64>,
     /// True where skin clung to the product at the last step, by region.
     clings: Vec<bool>,
     /// Length of the step being taken, s.
@@ -133,6 +135,7 @@ impl TissueMemory {
             elastic: vec![Vec3::zeros(); sites],
             depth: vec![0.0; regions],
             radius: vec![0.0; regions],
+            touching: vec![0.0; regions],
             clings: vec![false; regions],
             seconds: 0.0,
         })
@@ -141,7 +144,7 @@ impl TissueMemory {
     /// What the memory means for a step that brings the regions to `depth` (mm).
     pub fn recall(&self, depth: &[f64], sites: &Sites) -> MemoryStep {
         let shares = match self.branches.is_sized() {
-            true => self.branches.shares(&self.radius),
+            true => self.branches.shares(&self.touching),
             false => self.shares.clone(),
         };
         let fade = |(number, branch): (usize, &Branch)| -> Vec<Fade> {
@@ -242,13 +245,11 @@ impl TissueMemory {
         self.depth.clone_from(&recall.depth);
         self.shares.clone_from(&recall.shares);
         self.clings.copy_from_slice(clings);
-        for (radius, area) in self
-            .radius
-            .iter_mut()
-            .zip(area)
-            .filter(|(_, area)| **area > 0.0)
-        {
-            *radius = (area / std::f64::consts::PI).sqrt();
+        for (region, area) in area.iter().enumerate() {
+            self.touching[region] = (area.max(0.0) / std::f64::consts::PI).sqrt();
+            if *area > 0.0 {
+                self.radius[region] = self.touching[region];
+            }
         }
     }
 

@@ -105,3 +105,30 @@ pub fn apply(effect: &ActiveEffect, signals: &mut Signals) {
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a map: the mean rate over the first ten times tau is the rate, and what comes then is slower.
+    #[test]
+    fn a_drift_that_slows_has_its_rate_in_the_mean_of_ten_times() {
+        let mut effect = ActiveEffect::named("drift", 0.5).unwrap();
+        for (name, value) in [("rate_kpa_per_min", 6.0), ("time_s", 2.0)] {
+            effect = effect.with(name, value).unwrap();
+        }
+        let effect = effect.choose("form", "slowing").unwrap();
+        let mut signals = Signals {
+            time_s: vec![3.0, 23.0, 43.0],
+            frames: vec![vec![1.0; 2]; 3],
+            ..Signals::default()
+        };
+        apply(&effect, &mut signals);
+        let [first, tenth, twentieth] = [0, 1, 2].map(|k| signals.frames[k][1]);
+        assert!((first - 1.0).abs() < 1e-12);
+        // Half of 6 kPa a minute, for 20 s.
+        assert!((tenth - 2.0).abs() < 1e-12, "{tenth}");
+        let wanted = 1.0 + (1.0f64 + 20.0).ln() / (1.0f64 + 10.0).ln();
+        assert!((twentieth - wanted).abs() < 1e-12, "{twentieth} {wanted}");
+    }
+}

@@ -245,11 +245,43 @@ fn closed_cycles_of_a_skin_that_remembers_in_one_region_only_never_give_energy()
     assert!(worst <= 1e-6, "{worst}");
 }
 
+/// After a deep row and a row off the skin, a slow light press ends where a first contact does, and force never rises in the hold: the share
+/// that drains is not the deep contact's.
+#[test]
+fn a_layer_that_was_left_at_once_drains_as_one_that_was_never_pressed() {
+    let even = Material {
+        g_lim_mpa: 0.01,
+        thickness_mm: 4.0,
+        ..material()
+    };
+    let mut skin = flat_skin(6.0, 1.0, even, Model::Layer);
+    let drainage = ActiveEffect::named("drainage", 1.0).unwrap();
+    let layer = drainage.choose("curve", "layer").unwrap();
+    set(&mut skin, vec![layer.with("radius_mm", 1.0).unwrap()]);
+    let tool = paraboloid(8.0, 0.0, 8.0);
+    let mut forces = |rows: &[(f64, f64)]| -> Vec<f64> {
+        let (times, depths): (Vec<f64>, Vec<f64>) = rows.iter().copied().unzip();
+        let course = follow(&mut skin, &tool, &Protocol::of_depth(&times, &depths));
+        course.steps.iter().map(|step| step.force).collect()
+    };
+    let light = [(1e5, 0.3), (2e5, 0.3), (3e5, 0.3)];
+    let first = forces(&[&[(0.0, -0.1)][..], &light].concat());
+    let again = forces(&[&[(0.0, -0.1), (1e-6, 1.2), (2e-6, -0.1)][..], &light].concat());
+    assert!(again[1] > 3.0 * again[3] && again[2] == 0.0, "{again:?}");
+    // Once both have drained; a first row has no radius to drain by.
+    let (ends, wanted) = (again[5], first[3]);
+    assert!((ends / wanted - 1.0).abs() < 0.01, "{ends} {wanted}");
+    assert!(
+        again[3..].is_sorted_by(|a, b| *b <= a * (1.0 + 1e-6)),
+        "{again:?}"
+    );
+}
+
 /// As many as `PASSIVITY_CYCLES` says, or ten thousand.
 #[test]
 #[ignore = "ten minutes: run it when memory or its effects change"]
 fn ten_thousand_closed_cycles_never_give_energy() {
     let cycles = std::env::var("PASSIVITY_CYCLES");
     let cycles: usize = cycles.map_or(10_000, |count| count.parse().unwrap());
-    check_passivity(cycles.div_ceil(2));
+    check_passivity(cycles.div_ceil(3));
 }
