@@ -88,9 +88,9 @@ def main():
         for form in FORMS:
             for curve in NUMBERS:
                 fit, foreseen, numbers = left(pad, form, 1.0, curve)
-                told = ", ".join(f"{one:.2f} %" for one in foreseen)
+                errors = ", ".join(f"{one:.2f} %" for one in foreseen)
                 about = f"{pad:13s} form {form} {curve:9s} fitted {fit:.2f} %"
-                print(f"{about}, foreseen {told}  {np.round(numbers, 2)}", flush=True)
+                print(f"{about}, foreseen {errors}  {np.round(numbers, 2)}", flush=True)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 //! `0.491 exp(-0.908 sqrt(tau)) + 0.509 exp(-1.679 tau)` with tau = D t / a^2 (Hu, Zhao, Vlassak & Suo 2010). The curve is
 //! represented by exponentials of tau within 6e-4; the radius a of the contact is sqrt(area / pi) of the
 //! region's contact at the step before. That is the curve of a half space, so of contacts small against the thickness; the curve of a
-//! layer over bone is the sibling `layer_drainage`. The bulge beside the contact stays that of the undrained tissue.
+//! layer over bone is the sibling `layer_drainage`. The bulge around the contact stays that of the undrained tissue.
 
 use super::definition::active::ActiveEffect;
 use super::definition::entry::{Choice, Consequence, Entry, ShapeNumber, Sign, Stage};

@@ -9,7 +9,7 @@
 
 use super::definition::active::ActiveEffect;
 use super::definition::entry::Effect;
-use super::drainage::{CURVE, DIFFUSIVITY, DRAINED, LAYER, RADIUS, SPREAD, drop};
+use super::drainage::{CURVE, DIFFUSIVITY, DRAINED, LAYER, RADIUS, SPREAD};
 
 /// Power of the contact's radius with which times grow: for small shares, and less by this for a share of 1; its bounds.
 const GROWS: (f64, f64) = (1.6, 1.4);
@@ -20,7 +20,7 @@ pub const NARROWS: f64 = 0.3;
 pub const MIDDLE: f64 = 0.605;
 /// m of a layer that gives up all volume, and the power of 1 - 2 nu.
 const THINS: (f64, f64) = (0.55, 0.43);
-/// Contact of reference over the thickness from which times are wholly a layer's: the smallest to which the law was fitted.
+/// Contact of reference over the thickness from which times are wholly a layer's: about the smallest to which the law was fitted (0.28).
 const FROM: f64 = 0.3;
 /// Widest contact, over the thickness, to which the share is known.
 const WIDEST: f64 = 2.0;
@@ -67,11 +67,7 @@ impl LayerDrainage {
 
     /// Share of the force that drains in the end under a contact of that radius, mm.
     pub fn drop(&self, region: usize, radius: f64) -> f64 {
-        let thickness = self.thickness[region];
-        match thickness.is_finite() {
-            true => drop_of_layer(self.effect.shape[DRAINED], (radius, thickness)),
-            false => drop(&self.effect),
-        }
+        drop_of_layer(self.effect.shape[DRAINED], (radius, self.thickness[region]))
     }
 
     /// Weight, and place in standard deviations, of each of a layer's times.
@@ -117,6 +113,7 @@ const TAILS: [f64; 3] = [0.754_84, 0.324_65, 0.079_56];
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::drainage::drop;
 
     fn of(thickness: f64, reference: f64) -> LayerDrainage {
         let effect = ActiveEffect::named("drainage", 0.6).unwrap();

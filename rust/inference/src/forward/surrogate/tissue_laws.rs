@@ -18,7 +18,7 @@ impl Surrogate<'_> {
     ///
     /// What drains leaves tissue that gives up volume, and that matters the more, the larger the contact is against the thickness: the
     /// share of drainage is in proportion to what compressibility takes from the tool's force. How its times go with the contact's size is
-    /// the contact model's own law (`layer_drainage`); beside finite elements of pads that the trial does not use the whole leaves 0.04 to
+    /// the contact model's own law (`layer_drainage`); against finite elements of pads that the trial does not use the whole leaves 0.04 to
     /// 0.11 % of the load, a power of 1.5 at every share 0.07 to 0.32 %, and a clock that does not ask for the contact's size 0.28 to 0.72 %
     /// (`python -m trial.finite_elements.against_drainage`).
     pub(crate) fn relaxation_branches(
