@@ -35,10 +35,13 @@ def test_another_name_is_another_verdict():
     assert frozen.names(verdict | {"sentence": "y"}) == frozen.names(verdict)
 
 
-def test_contact_model_removes_what_the_fit_does_once_its_numbers_are_sought():
-    """A law that grows with the tool's depth in the fit and with the region's own in the contact model: -3.3 before."""
-    said = frozen.said("case_228")
-    assert [one["effect"] for one in said["findings"]] == ["stiffening_law"]
+@pytest.mark.parametrize(
+    ("case", "effect"), [("case_228", "stiffening_law"), ("case_291", "drainage"), ("case_051", "drift")]
+)
+def test_contact_model_removes_what_the_fit_does(case, effect):
+    """Before: -3.3 of 0.5 (no numbers sought), 0.58 of 1.00 (a half space's drainage), 0.13 of 0.99 (an even drift)."""
+    said = frozen.said(case)
+    assert [one["effect"] for one in said["findings"]] == [effect]
     tried = said["fit"]["by_contact_model"]
     assert tried["reducible_error_removed"]["value"] > 0.8 * tried["removed_by_the_fit"] > 0.0
     assert not tried["is_behind_the_fit"]
