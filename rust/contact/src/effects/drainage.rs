@@ -72,7 +72,7 @@ pub const ENTRY: Entry = Entry {
     consequences: &[
         Consequence {
             sign: Sign::ForceFallsInHold,
-            sentence: "force at held depth falls with time and comes to rest, on a half space above half its first value",
+            sentence: "force at held depth falls with time and comes to rest",
         },
         Consequence {
             sign: Sign::ClockGrowsWithArea,
