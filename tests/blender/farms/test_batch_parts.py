@@ -78,7 +78,9 @@ def test_a_process_starts_on_one_processor_where_it_is_to():
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="processors are set on Linux")
-def test_workers_keep_a_processor_each_and_leave_one_that_is_shared(monkeypatch):
+def test_workers_keep_a_processor_each_and_leave_one_that_is_shared(monkeypatch, tmp_path):
+    # Workers of another run of the tests, in the other Blender, claim processors on the same machine.
+    monkeypatch.setattr(processors.tempfile, "tempdir", str(tmp_path))
     allowed, owners, kept = os.sched_getaffinity(0), [], []
     try:
         for _ in range(len(allowed) + 1):

@@ -35,7 +35,7 @@ pub fn growth(share: f64) -> f64 {
 }
 
 /// Part of the force that a sphere's contact on a layer of a thickness loses in the end (mm both; of infinite thickness a half space). A
-/// wider contact than [`WIDEST`] counts as one of that width.
+/// contact wider than two thicknesses counts as one of that width.
 pub fn drop_of_layer(drained_poisson_ratio: f64, (radius, thickness): (f64, f64)) -> f64 {
     let bare = 0.5 / (1.0 - drained_poisson_ratio);
     1.0 - bare * libm::exp(-thins(drained_poisson_ratio, (radius, thickness)))
