@@ -56,6 +56,7 @@ def apply(context, index):
     if row["kind"] == "instrument":
         _to_model(state, finding)
         return Taken(f"{title} is the instrument's: nothing on the skin is changed; it is in the study's model", doubt)
+    _refuse_worse(found, finding)
     hand = _hand(context)
     wanted = _wanted(context, found, finding, row)
     effect = _switch_on(hand, wanted)
@@ -82,6 +83,19 @@ def _shows_less(found, finding):
         "simulations show less than was found",
         share=wording.share(tried),
         fit=wording.share(check.get("removed_by_the_fit")),
+    )
+
+
+def _refuse_worse(found, finding):
+    """Refuse what makes the contact model worse, beyond noise: simulations with it would be wrong."""
+    check = (found.get("fit") or {}).get("by_contact_model") or {}
+    if not check.get("is_worse_than_without") or not _was_tried(found, finding):
+        return
+    after, before = (wording.number((check.get(name) or {}).get("rms")) for name in ("after", "before"))
+    raise Refusal(
+        f"with {wording.name(finding['effect'])} the contact model predicts held-out recordings worse than without: "
+        f"its error is {after} instead of {before} standard deviations of the noise. What was found holds; simulations "
+        "with it are wrong for these tools. To try it all the same, add it under Effects"
     )
 
 

@@ -252,8 +252,11 @@ def _gain(fit):
             yield "The share of the reducible error that is removed cannot be given: noise is larger than the effect."
         else:
             yield f"{wording.share(removed['value'])}{between} of the reducible error is removed."
-    tried = (fit.get("by_contact_model") or {}).get("reducible_error_removed") or {}
-    if tried.get("high") is not None and tried["high"] <= 0.0:
+    check = fit.get("by_contact_model") or {}
+    tried = check.get("reducible_error_removed") or {}
+    if check.get("is_worse_than_without"):
+        yield "The contact model with what is named predicts them worse than without: do not simulate with it."
+    elif tried.get("high") is not None and tried["high"] <= 0.0:
         yield "The contact model with what is switched on predicts them no better than without."
     elif tried.get("low") is not None and tried["low"] >= 0.0:
         yield f"With what is switched on the contact model itself removes {wording.share(tried['value'])}."

@@ -104,7 +104,12 @@ fn refuting<'a>(
         return None;
     }
     let check = gain.contact_model.as_ref()?;
-    (check.after.rms > check.before.rms + CLEARLY).then_some(check)
+    is_worse_than_without(check).then_some(check)
+}
+
+/// Whether with what is named the contact model predicts held-out recordings worse than without, by more than noise decides.
+pub fn is_worse_than_without(check: &ContactModelCheck) -> bool {
+    check.removed < 0.0 && check.after.rms > check.before.rms + CLEARLY
 }
 
 /// Gives what is switched on the numbers with which the contact model was checked, and says what that came to.
@@ -145,7 +150,13 @@ pub fn switch_on(found: &mut Diagnosis) {
              with which it answers as the fit does"
         ));
     }
-    if is_behind(gain) {
+    if is_worse_than_without(check) {
+        found.notes.push(format!(
+            "with what is named the contact model predicts held-out recordings worse than without: its error is {:.2} instead of {:.2} standard \
+             deviations of the noise; what was found holds, but simulations with it are wrong for these tools",
+            check.after.rms, check.before.rms
+        ));
+    } else if is_behind(gain) {
         found.notes.push(match check.removed > 0.0 {
             true => format!(
                 "the contact model with what is named removes {:.0} % of the error of held-out recordings beyond noise, the fit {:.0} %: \
@@ -208,6 +219,7 @@ mod tests {
     use thenar_contact::instrument::{Signals, observe};
     use thenar_inference::forward::surrogate::mechanism::{Clock, Law, Mechanism};
     use thenar_inference::forward::surrogate::relaxation_spectrum::Spectrum;
+    use thenar_inference::selection::cross_validation::Spread;
 
     #[test]
     fn switched_numbers_and_choices_reach_the_contact_model() {
@@ -227,6 +239,28 @@ mod tests {
             ..switched
         };
         assert!(active(&unknown).is_none());
+    }
+
+    /// Worse by more than noise decides, and worse at all: an effect smaller than the noise is not refused for a hundredth.
+    #[test]
+    fn worse_than_without_is_more_than_noise_decides() {
+        let of = |after: f64, removed: f64| {
+            let spread = |rms| Spread {
+                rms,
+                interval: (rms, rms),
+            };
+            is_worse_than_without(&ContactModelCheck {
+                by_fit: (0.5, 1.0),
+                before: spread(1.07),
+                after: spread(after),
+                removed,
+                interval: (removed, removed),
+                moduli: [1.0; 2],
+                effects: Vec::new(),
+            })
+        };
+        assert!(of(2.87, -25.0));
+        assert!(!of(1.08, -0.9) && !of(1.04, 0.3) && !of(2.0, 0.1));
     }
 
     /// What the surrogate's skin does, which clings where it has touched, is what the contact model does.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::by_contact_model::is_behind;
+use crate::by_contact_model::{is_behind, is_worse_than_without};
 use crate::findings::{Diagnosis, Finding, Rival, Suggestion, Switched};
 use crate::track_record::Confidence;
 use crate::unlisted_finding::{Correction, Unlisted};
@@ -172,6 +172,7 @@ fn fit(gain: Option<&Gain>) -> Value {
                 "before": spread(by.before),
                 "after": spread(by.after),
                 "is_behind_the_fit": is_behind(gain),
+                "is_worse_than_without": is_worse_than_without(by),
                 "removed_by_the_fit": rounded(by.by_fit.0),
                 "moduli_over_the_fits": by.moduli.map(rounded),
                 "reducible_error_removed": {

@@ -23,6 +23,7 @@ mod diagnose;
 #[path = "../../inference/tests/synthetic_rungs/mod.rs"]
 mod synthetic_rungs;
 
+pub use by_contact_model::is_worse_than_without;
 pub use diagnose::{DiagnoseOptions, diagnose};
 pub use findings::{
     Curve, Diagnosis, Finding, Number, Rival, Suggestion, Switched, Verdict, When, Where,

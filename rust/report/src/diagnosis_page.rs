@@ -5,9 +5,9 @@ use std::fmt::Write;
 use crate::comparison_page::page;
 use crate::plots::before_after_plot::plot;
 use crate::svg::escaped;
-use thenar_diagnosis::variable_in_words;
 use thenar_diagnosis::{Correction, Unlisted};
 use thenar_diagnosis::{Diagnosis, Number, Rival, Verdict};
+use thenar_diagnosis::{is_worse_than_without, variable_in_words};
 use thenar_inference::number_format::{self, capital};
 use thenar_inference::selection::cross_validation::{ContactModelCheck, Gain, HeldOutBy};
 
@@ -198,6 +198,9 @@ moments it rises by {:.1} at most (99 of 100 draws).</p>\n",
 /// What the contact model itself makes of them.
 fn by_contact_model(check: &ContactModelCheck) -> String {
     let share = match check.interval {
+        _ if is_worse_than_without(check) => {
+            "worse than without, so that simulations with them are wrong for these tools".to_owned()
+        }
         (_, high) if high <= 0.0 => "no better than without".to_owned(),
         (low, _) if low < 0.0 => {
             "noise decides how much of the reducible error that removes".to_owned()
@@ -211,7 +214,7 @@ fn by_contact_model(check: &ContactModelCheck) -> String {
         ),
     };
     format!(
-        "<p>The contact model on the study's mesh, with the effects that <i>Switch On</i> switches on, predicts them to {:.2} standard deviations \
+        "<p>The contact model on the study's mesh, with the effects that are named, predicts them to {:.2} standard deviations \
 ({:.2} before): {share}. Of repeats the first was followed; first touch, gain and the error of the base's form are the fit's.</p>\n",
         check.after.rms, check.before.rms
     )

@@ -7,6 +7,7 @@ import letters
 import pytest
 import stage
 from thenar_blender.diagnosis import applying
+from thenar_blender.scene.checks import Refusal
 
 
 def tried(removed):
@@ -56,3 +57,21 @@ def test_what_the_contact_model_was_not_asked_about_bears_no_doubt_of_it():
     found["model"]["effects"] = [{"name": "relaxation", "amplitude": 0.2}]
     bpy.context.scene.thenar_diagnosis.findings = json.dumps(found)
     assert "contact model" not in applying.apply(bpy.context, 1).doubt
+
+
+def test_what_the_contact_model_answers_worse_with_than_without_is_refused_and_the_scene_stays():
+    hand, _ = stage.scene()
+    found = tried(-25.4)
+    found["fit"]["by_contact_model"] |= {
+        "is_worse_than_without": True,
+        "after": {"rms": 2.866},
+        "before": {"rms": 1.07},
+    }
+    bpy.context.scene.thenar_diagnosis.findings = json.dumps(found)
+    with pytest.raises(Refusal, match="its error is 2.87 instead of 1.07 standard deviations of the noise"):
+        applying.apply(bpy.context, 1)
+    assert not len(hand.thenar.effects) and "bone" not in bpy.context.scene.thenar_diagnosis.model
+    # Of another effect nothing was asked.
+    found["model"]["effects"] = [{"name": "relaxation", "amplitude": 0.2}]
+    bpy.context.scene.thenar_diagnosis.findings = json.dumps(found)
+    assert applying.apply(bpy.context, 1).sentence

@@ -260,24 +260,39 @@ def _spots(local):
 def _gains(severe):
     """Reducible held-out error removed: where the right name was given, and wherever a gain is told."""
 
-    def shares(group, of=lambda fit: fit):
-        removed = [(of(verdict.get("fit") or {}) or {}).get("reducible_error_removed") for _, verdict in group]
-        return [one["value"] for one in removed if one and one.get("value") is not None]
+    def share(of):
+        return (of.get("reducible_error_removed") or {}).get("value")
 
-    exact = [pair for pair in severe if is_exact(*pair)]
-    right, simulated = shares(exact), shares(exact, lambda fit: fit.get("by_contact_model"))
-    worse = [({}, share) for share in right]
+    def told(group):
+        return [fit for _, verdict in group if share(fit := verdict.get("fit") or {}) is not None]
+
+    def is_worse(_, of):
+        return share(of) < 0.0
+
+    named = told([pair for pair in severe if is_exact(*pair)])
+    asked = [by for by in (fit.get("by_contact_model") or {} for fit in named) if share(by) is not None]
+    most_worse = (0.03, 0.01, True)
     return [
-        _median(("removed", "named: reducible error removed, median"), right, (0.75, 0.9, False)),
-        _share(("worse", "named: held-out error made worse"), worse, lambda _, share: share < 0.0, (0.03, 0.01, True)),
-        _median(("removed by contact", "the same by the contact model"), simulated, (0.7, 0.9, False)),
+        _median(("removed", "named: reducible error removed, median"), list(map(share, named)), (0.75, 0.9, False)),
+        _share(("worse", "named: held-out error made worse"), [({}, fit) for fit in named], is_worse, most_worse),
+        _median(("removed by contact", "the same by the contact model"), list(map(share, asked)), (0.7, 0.9, False)),
         _share(
             ("worse by contact", "held-out error made worse by the contact model"),
-            [({}, share) for share in simulated],
-            lambda _, share: share < 0.0,
-            (0.03, 0.01, True),
+            [({}, by) for by in asked],
+            is_worse,
+            most_worse,
         ),
-        _median(("removed by any", "kappa >= 1: removed, named or not, median"), shares(severe), (None, None, False)),
+        _share(
+            ("worse switched on", "the same, where Switch On takes the finding"),
+            [({}, by) for by in asked if not by.get("is_worse_than_without")],
+            is_worse,
+            most_worse,
+        ),
+        _median(
+            ("removed by any", "kappa >= 1: removed, named or not, median"),
+            list(map(share, told(severe))),
+            (None, None, False),
+        ),
     ]
 
 

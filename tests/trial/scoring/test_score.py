@@ -54,6 +54,18 @@ def test_right_verdicts_meet_every_row(sealed):
     assert found["severe"].value == 1.0
 
 
+def test_what_the_contact_model_makes_worse_counts_and_what_is_refused_is_counted_apart(sealed):
+    said = {name: right(label) for name, label in sealed.items()}
+    exact = [name for name, label in sealed.items() if label["stratum"] == "single" and label["kappa"] >= 1.0]
+    for name, share, is_refused in zip(exact[:4], (0.9, 0.4, -0.3, -5.0), (False, False, False, True), strict=True):
+        by = {"reducible_error_removed": {"value": share}, "is_worse_than_without": is_refused}
+        said[name]["fit"]["by_contact_model"] = by
+    found = rows(sealed, said)
+    assert found["removed by contact"].value == pytest.approx(0.05)
+    assert (found["worse by contact"].value, found["worse by contact"].of) == (0.5, 4)
+    assert (found["worse switched on"].value, found["worse switched on"].of) == (pytest.approx(1 / 3), 3)
+
+
 def test_shuffled_labels_collapse(sealed):
     names = list(sealed)
     turned = np.random.default_rng(1).permutation(len(names))
