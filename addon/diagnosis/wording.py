@@ -88,10 +88,14 @@ def value(told):
 
 
 def estimate(stated):
-    """A finding's number: `value`, or the bound where recordings bound it from one side alone: `at least 0.2 MPa`."""
+    """A finding's number: `value`, or the bound where recordings bound it from one side alone: `at least 0.2 MPa`.
+
+    One without a width was taken as known: `3.88 mm (not fitted)`.
+    """
     low, high = stated.get("low", 0.0), stated.get("high", 0.0)
     if low is not None and high is not None:
-        return value(stated)
+        is_fixed = "low" in stated and low == high and not isinstance(stated.get("value"), str)
+        return f"{value(stated)} (not fitted)" if is_fixed else value(stated)
     if low is None and high is None:
         return "not determined"
     word, end = ("at most", high) if low is None else ("at least", low)

@@ -69,6 +69,7 @@ _NUMBERS += ("mat's place", "scan's place", "scan's turn")
 MORE = (
     *(
         "In “{name}”",
+        "{value} (not fitted)",
         "{key} of region “{region}”{others}",
         "curves",
         "maps",

@@ -11,6 +11,7 @@ from thenar_blender.diagnosis import wording
         (0.1, None, "at least 0.1 MPa"),
         (None, 0.4, "at most 0.4 MPa"),
         (None, None, "not determined"),
+        (0.2, 0.2, "0.2 MPa (not fitted)"),
     ],
 )
 def test_a_number_without_both_ends_is_a_bound(low, high, said):
