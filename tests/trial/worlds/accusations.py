@@ -32,6 +32,7 @@ WORLDS = {
     "laboratory_fingertips": "trial.fingertips.laboratory_fingertips",
 }
 RAMPS = "ramps"
+STRANGER = "stranger"  # a truth that is on no list of effects
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,7 @@ def is_wrong(truth, verdict, names):
     """Whether something is named that is not there, or, where nothing is missing, something is accused at all."""
     accused = verdict in ("fault", "unlisted", "cannot_tell", "missing_physics", "instrument")
     named = [] if verdict == "cannot_tell" else names
-    return any(name != truth for name in named) or verdict == "fault" or (truth.startswith("nothing") and accused)
+    return bool(set(named) - planted(truth)) or verdict == "fault" or (truth.startswith("nothing") and accused)
 
 
 def judged(asked, verdict, names):
@@ -116,8 +117,15 @@ def judged(asked, verdict, names):
         return world.judged(asked.truth, asked.draw().pad.stiffening, verdict, names)
     if is_wrong(asked.truth, verdict, names):
         return "wrong"
-    is_right = verdict != "cannot_tell" and (asked.truth.startswith("nothing") or asked.truth in names)
+    if asked.truth == STRANGER:
+        return "right" if verdict == "unlisted" else "missed"
+    is_right = verdict != "cannot_tell" and (asked.truth.startswith("nothing") or planted(asked.truth) == set(names))
     return "right" if is_right else "missed"
+
+
+def planted(truth):
+    """Names that are right: of two together both, of what is on no list none."""
+    return set() if truth == STRANGER else set(truth.split("_and_"))
 
 
 def noises(world):

@@ -15,6 +15,11 @@ clips at 75 to 92 % of the largest force of the tool that needs least). A sessio
 the order of its recordings and no rest. Either each recording takes up the tissue as the last one left it, or each
 repeat begins as the first of its protocol did.
 
+Two together: `relaxation_and_saturation`, and `relaxation_and_cycle_softening` (presses that end with their hold, each
+on the tissue as the last one left it; what fades has come back by then). `stranger` is one of three that are on no list
+of effects: a pocket that collapses at a depth and takes 8 to 15 % of the force, a pulse of 6 to 12 % at 0.9 to 1.6 Hz,
+or a joint that sticks and slips, 5 to 10 % every 0.12 to 0.25 mm.
+
 Noise families (`NOISES`): what is recorded is the truth at the true depth, read with errors.
 
 - `white`: 5 mN.
@@ -54,7 +59,10 @@ NOISES = (
     "stray",
     "mixture",
 )
-TRUTHS = ("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation")
+TRUTHS = (
+    *("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation"),
+    *("relaxation_and_saturation", "relaxation_and_cycle_softening", "stranger"),
+)
 MOTIONS = ("ramps", *motions.MOTIONS)
 MOVED = ("nothing", "saturation")  # truths with motions besides ramps
 CEILING = (0.75, 0.92)
@@ -113,11 +121,12 @@ def draw(seed, truth, noise, motion="ramps"):
     deepest = random.uniform(*DEEPEST_MM)
     first = random.uniform(*RADIUS_MM)
     radii = {"ball": first} | ({"large_ball": 2.2 * first} if random.random() < 0.5 else {})
-    speeds = [0.5, 4.0] if truth == "relaxation" or random.random() < 0.6 else [1.0]
-    has_hold = truth == "relaxation" or random.random() < 0.6
+    fades = truth.startswith("relaxation")
+    speeds = [0.5, 4.0] if fades or random.random() < 0.6 else [1.0]
+    has_hold = fades or random.random() < 0.6
     repeats, samples = random.integers(2, 5), random.choice([25, 100])
     fading = None
-    if truth == "relaxation":
+    if fades:
         fading = [
             (random.uniform(0.12, 0.25), random.uniform(0.2, 0.6)),
             (random.uniform(0.1, 0.2), random.uniform(2.0, 5.0)),
@@ -129,20 +138,64 @@ def draw(seed, truth, noise, motion="ramps"):
         return Case(radii, session.recordings((radii, deepest), protocols, (reader, repeats, samples)), deepest, None)
     if truth == "saturation":
         reader.ceiling_n = random.uniform(*CEILING) * modulus * pressed(np.array([deepest]), first)[0]
+    tissue = _Tissue(truth, (modulus, deepest), fading, random)
     if motion == "ramps":
         unloads = fading is None
         protocols = [(f"{v:g} mm/s", *_motion(deepest, v, has_hold, samples, unloads)) for v in speeds]
     else:
         protocols = motions.drawn(motion, deepest, np.random.default_rng([seed, *motion.encode()]))
         reader.jitter = motions.JITTER_MM if noise == "depth_jitter" else reader.jitter
+    if truth == "relaxation_and_saturation":
+        reader.ceiling_n = random.uniform(*CEILING) * max(tissue.force(*each[1:], first).max() for each in protocols)
     recordings = []
     for tool, radius in radii.items():
         for protocol, time, depth in protocols:
             for _ in range(repeats):
                 at, true = reader.clocked(time, depth)
-                force = modulus * _faded(at, true, radius, fading)
-                recordings.append(Recording(protocol, tool, reader.read(at, true, force)))
-    return Case(radii, recordings, deepest)
+                recordings.append(Recording(protocol, tool, reader.read(at, true, tissue.force(at, true, radius))))
+    return Case(radii, recordings, deepest, None if truth.endswith("cycle_softening") else 120.0)
+
+
+class _Tissue:
+    """What presses that end with their hold, or lift, meet, one after the other."""
+
+    def __init__(self, truth, size, fading, random):
+        self.modulus, deepest = size
+        self.fading, self.damage = fading, 0.0
+        self.session = _Session(truth, self.modulus, random) if truth.endswith("cycle_softening") else None
+        self.stranger = _Stranger(deepest, random) if truth == "stranger" else None
+
+    def force(self, time, depth, radius):
+        """N, of the next press: at times (s) and true depths (mm) of a sphere."""
+        force = self.modulus * _faded(time, depth, radius, self.fading)
+        if self.session is not None:
+            course = self.session.damage(depth, self.modulus * pressed(depth, radius), self.damage)
+            force, self.damage = force * (1.0 - self.session.share * course), course[-1]
+        return force if self.stranger is None else force * self.stranger.factor(time, depth)
+
+
+class _Stranger:
+    """What is on no list of effects, as a factor on the force."""
+
+    def __init__(self, deepest, random):
+        self.kind = random.choice(["pocket", "pulse", "stick_slip"])
+        self.random = random
+        self.at_mm = random.uniform(0.4, 0.7) * deepest
+        self.width_mm = 0.04 * deepest
+        self.share = random.uniform(*{"pocket": (0.08, 0.15), "pulse": (0.06, 0.12)}.get(self.kind, (0.05, 0.1)))
+        self.rate_hz = random.uniform(0.9, 1.6)
+        self.period_mm = random.uniform(0.12, 0.25)
+
+    def factor(self, time, depth):
+        """Of one recording: times (s) and true depths (mm)."""
+        if self.kind == "pocket":
+            return 1.0 - self.share / (1.0 + np.exp(-(depth - self.at_mm) / self.width_mm))
+        if self.kind == "pulse":
+            return 1.0 + self.share * np.sin(2.0 * np.pi * (self.rate_hz * time + self.random.random()))
+        # It sticks while the way goes on, in either direction, and lets go all at once.
+        way = np.cumsum(np.abs(np.diff(depth, prepend=depth[0])))
+        side = np.sign(np.gradient(depth, time))
+        return 1.0 + side * self.share * (way / self.period_mm % 1.0 - 0.5)
 
 
 class _Session:

@@ -110,3 +110,48 @@ def test_a_ceiling_of_other_motions_clips_their_presses():
     case = closed_forms.draw(3, "saturation", "white", "kinked")
     most = max(recording.table[:, 2].max() for recording in case.recordings)
     assert all((one.table[:, 2] == most).sum() > 1 for one in case.recordings)
+
+
+def test_two_together_are_the_product_of_both():
+    """What has faded by the end of a hold, and what use has taken from press to press."""
+    case = closed_forms.draw(2, "relaxation_and_cycle_softening", "white")
+    firsts = {}
+    for one in case.recordings:
+        firsts.setdefault((one.protocol, one.tool), []).append(one.table[:, 2].max())
+    slow, fast = (firsts[name, "ball"] for name in ("0.5 mm/s", "4 mm/s"))
+    assert case.rest_s is None and len(slow) == len(fast)
+    assert slow[0] > slow[-1] and all(one.table[-1, 1] > 0.7 * case.deepest_mm for one in case.recordings)
+    held = [one.table[:, 2] for one in case.recordings if one.tool == "ball"]
+    assert all(force[-1] < 0.9 * force.max() for force in held)
+
+
+def test_a_clipped_cell_reads_its_ceiling_where_tissue_fades_too():
+    case = closed_forms.draw(3, "relaxation_and_saturation", "white")
+    most = max(one.table[:, 2].max() for one in case.recordings)
+    clipped = [one for one in case.recordings if (one.table[:, 2] == most).sum() > 1]
+    assert {one.protocol for one in clipped} >= {"4 mm/s"}
+    # What has faded lies below the ceiling again.
+    assert all(one.table[-1, 2] < most for one in clipped if one.tool == "ball")
+
+
+def test_strangers_are_what_their_names_say():
+    depth = np.concatenate([np.linspace(-0.1, 1.2, 300), np.linspace(1.2, -0.1, 300)])
+    time = np.linspace(0.0, 4.0, 600)
+    seen = set()
+    for seed in range(12):
+        strange = closed_forms._Stranger(1.2, np.random.default_rng(seed))
+        factor = strange.factor(time, depth)
+        seen.add(strange.kind)
+        if strange.kind == "pocket":
+            np.testing.assert_allclose(factor[:300], factor[:299:-1], atol=5e-3)
+            assert factor[0] == pytest.approx(1.0, abs=1e-3) and factor[300] == pytest.approx(
+                1 - strange.share, abs=1e-2
+            )
+        if strange.kind == "pulse":
+            power = np.abs(np.fft.rfft(factor - factor.mean()))
+            assert np.fft.rfftfreq(600, time[1])[power.argmax()] == pytest.approx(strange.rate_hz, abs=0.25)
+        if strange.kind == "stick_slip":
+            slips = (np.abs(np.diff(factor)) > 0.5 * strange.share).sum()
+            assert slips == pytest.approx(2.6 / strange.period_mm, abs=2)
+        assert 0.05 <= strange.share <= 0.15 and np.abs(factor - 1.0).max() <= strange.share + 1e-9
+    assert seen == {"pocket", "pulse", "stick_slip"}
