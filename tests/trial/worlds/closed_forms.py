@@ -163,7 +163,7 @@ class _Tissue:
         self.modulus, deepest = size
         self.fading, self.damage = fading, 0.0
         self.session = _Session(truth, self.modulus, random) if truth.endswith("cycle_softening") else None
-        self.stranger = _Stranger(deepest, random) if truth == "stranger" else None
+        self.stranger = Stranger(deepest, random) if truth == "stranger" else None
 
     def force(self, time, depth, radius):
         """N, of the next press: at times (s) and true depths (mm) of a sphere."""
@@ -174,7 +174,7 @@ class _Tissue:
         return force if self.stranger is None else force * self.stranger.factor(time, depth)
 
 
-class _Stranger:
+class Stranger:
     """What is on no list of effects, as a factor on the force."""
 
     def __init__(self, deepest, random):

@@ -22,8 +22,10 @@ Truths, and the right answers, written down before anything was run (`judged`):
 - `cycle_softening`: damage by work, with four cycles first and no rest between recordings.
 - `saturation`: a load cell that clips.
 - `bone`: nothing else, but the study states a tissue 0.55 or 1.8 times as thick as it is (written down 2026-11-29).
+- `relaxation_and_saturation`: both (written down 2026-11-29, as the next).
+- `stranger`: what is on no list of effects, of closed forms (`Stranger`). Right: *unlisted*, without a name.
 
-Of the last four, which are drawn with b = 0 and b = 1, right is that name, with b = 1 also next to a stiffening law.
+Of all but the first two, drawn with b = 0 and b = 1, right is that name, with b = 1 also next to a stiffening law.
 No name, *unlisted*, too little data and *cannot tell* that holds the truth are misses; every other name is wrong.
 
 A convolution of the force is exact only while contact does not shrink and shape and time separate (Lee and Radok 1960),
@@ -51,9 +53,13 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
+from trial.worlds.closed_forms import Stranger
 
 NOISES = ("laboratory", "slow", "remounted", "stepper")
-TRUTHS = ("nothing", "exponential", "relaxation", "cycle_softening", "saturation", "bone")
+TRUTHS = (
+    *("nothing", "exponential", "relaxation", "cycle_softening", "saturation", "bone"),
+    *("relaxation_and_saturation", "stranger"),
+)
 TABLE = json.loads((Path(__file__).parents[2] / "proof/by_finite_elements/deep_pads.json").read_text())
 SIZE = (0.85, 1.15)
 MODULUS_MPA = (0.006, 0.02)
@@ -160,11 +166,14 @@ def judged(truth, stiffening, verdict, names):
         is_silent = verdict in ("nothing_missing", "parameters")
         is_law = verdict in ("missing_physics", "cannot_tell") and bool(names) and set(names) <= allowed
         return "right" if is_silent or is_law else "wrong"
+    wanted = set() if truth == "stranger" else set(truth.split("_and_"))
     if verdict == "cannot_tell":
-        return "missed" if truth in names else "wrong"
-    if set(names) - allowed - {truth}:
+        return "missed" if truth == "stranger" or wanted & set(names) else "wrong"
+    if set(names) - allowed - wanted:
         return "wrong"
-    return "right" if truth in names else "missed"
+    if truth == "stranger":
+        return "right" if verdict == "unlisted" and not names else "missed"
+    return "right" if wanted <= set(names) else "missed"
 
 
 def draw(seed, truth, noise):
@@ -181,9 +190,13 @@ def draw(seed, truth, noise):
     protocols = _protocols(truth, random)
     repeats = int(random.integers(2, 5))
     reader = _Reader(noise, random.random() < 0.5, random)
-    mechanism = _Mechanism(truth, pad, random)
+    mechanism = _Mechanism(truth, (pad, deepest), random)
     if truth == "saturation":
         reader.ceiling_n = random.uniform(0.75, 0.92) * min(pad.force_n(tool, deepest).max() for tool in tools)
+    elif truth.endswith("saturation"):
+        motions = [_motion(deepest, *protocol[1:], truth) for protocol in protocols]
+        most = [max(mechanism.force_n(tool, *motion).max() for motion in motions) for tool in tools]
+        reader.ceiling_n = random.uniform(0.75, 0.92) * min(most)
     recordings = []
     for tool in tools:
         for protocol, speed, hold_s, cycles in protocols:
@@ -198,8 +211,9 @@ def draw(seed, truth, noise):
 
 def _protocols(truth, random):
     """(name, speed mm/s, hold s, cycles) of each."""
-    speeds = [0.5, 4.0] if truth == "relaxation" or random.random() < 0.6 else [1.0]
-    hold_s = random.uniform(2.0, 4.0) if truth == "relaxation" or random.random() < 0.6 else 0.0
+    fades = truth.startswith("relaxation")
+    speeds = [0.5, 4.0] if fades or random.random() < 0.6 else [1.0]
+    hold_s = random.uniform(2.0, 4.0) if fades or random.random() < 0.6 else 0.0
     protocols = [(f"press {speed:g} mm per s", speed, hold_s, 1) for speed in speeds]
     if truth == "cycle_softening":
         protocols.insert(0, ("four cycles", 1.0, 0.0, 4))
@@ -214,7 +228,7 @@ def _motion(deepest, speed, hold_s, cycles, truth):
         knots.append((knots[-1][0] + ramp, deepest))
         if hold_s:
             knots.append((knots[-1][0] + hold_s, deepest))
-        if truth != "relaxation":
+        if not truth.startswith("relaxation"):
             knots += [(knots[-1][0] + ramp, -LIFT_MM), (knots[-1][0] + ramp + 0.4, -LIFT_MM)]
     knots = np.array(knots)
     rate = min(200.0, 40.0 / ramp)
@@ -225,18 +239,21 @@ def _motion(deepest, speed, hold_s, cycles, truth):
 class _Mechanism:
     """The truth's force of each recording, in the order of the session."""
 
-    def __init__(self, truth, pad, random):
-        self.truth, self.pad = truth, pad
+    def __init__(self, truth, skin, random):
+        self.truth, (self.pad, deepest) = truth, skin
         self.terms = [
             (random.uniform(0.12, 0.25), random.uniform(0.2, 0.6)),
             (random.uniform(0.1, 0.2), random.uniform(2.0, 5.0)),
         ]
         self.share, self.presses = random.uniform(0.15, 0.4), random.uniform(1.0, 5.0)
         self.damage = 0.0
+        self.stranger = Stranger(deepest, random) if truth == "stranger" else None
 
     def force_n(self, tool, time, depth):
         elastic = self.pad.force_n(tool, depth)
-        if self.truth == "relaxation":
+        if self.stranger is not None:
+            return elastic * self.stranger.factor(time, depth)
+        if self.truth.startswith("relaxation"):
             return faded(time, elastic, self.terms)
         if self.truth == "cycle_softening":
             return elastic * (1.0 - self.share * self._damaged(depth, elastic))

@@ -139,7 +139,7 @@ def test_strangers_are_what_their_names_say():
     time = np.linspace(0.0, 4.0, 600)
     seen = set()
     for seed in range(12):
-        strange = closed_forms._Stranger(1.2, np.random.default_rng(seed))
+        strange = closed_forms.Stranger(1.2, np.random.default_rng(seed))
         factor = strange.factor(time, depth)
         seen.add(strange.kind)
         if strange.kind == "pocket":

@@ -68,7 +68,7 @@ def test_force_fades_as_its_terms_do():
 def test_use_softens_and_does_not_heal():
     random = np.random.default_rng(2)
     pad = world.Pad("index", 1.0, 0.01, 0.0)
-    mechanism = world._Mechanism("cycle_softening", pad, random)
+    mechanism = world._Mechanism("cycle_softening", (pad, 1.0), random)
     time, depth = world._motion(1.5, 1.0, 0.0, 4, "cycle_softening")
     parts = [mechanism.force_n("plate", time, depth) / np.maximum(pad.force_n("plate", depth), 1e-9) for _ in range(2)]
     course = np.concatenate([part[depth > 0.1] for part in parts])
