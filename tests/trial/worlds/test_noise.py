@@ -53,6 +53,16 @@ def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
 
 
+@pytest.mark.parametrize(("noise", "seed"), [("encoder", 3002), ("in_proportion", 3002)])
+def test_a_pocket_under_flat_skin_is_unlisted_also_on_a_half_space(noise, seed, tmp_path):
+    """Nothing was missing, while a half space's flat skin was taken for a finger whose bone is not stated."""
+    closed_forms.draw(seed, "stranger", noise).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] == "unlisted" and said["findings"] == []
+    assert any("a ball on flat skin is known to 0.6 %" in note for note in said["notes"])
+    assert not any("bone" in note for note in said["notes"])
+
+
 @pytest.mark.parametrize("seed", [1003, 1007])
 def test_a_press_after_a_faster_approach_is_accused_of_nothing(seed, tmp_path):
     """A ceiling was named in both while a leg with a kink was smoothed."""
@@ -90,8 +100,8 @@ def test_relaxation_is_named_through_jitter(tmp_path):
 
 
 def test_a_large_effect_whose_law_only_resembles_its_name_is_named(tmp_path):
-    """Damage by work, read as softening by travel: less of its evidence is confirmed; the error falls by 37 %."""
-    closed_forms.draw(3, "cycle_softening", "stray").write(tmp_path)
+    """Damage by work, read as softening by travel: less of its evidence is confirmed; the error falls by 70 %."""
+    closed_forms.draw(102, "cycle_softening", "depth_jitter").write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["cycle_softening"]
     fit = said["fit"]

@@ -156,7 +156,7 @@ pub fn form_note(elastic: &Elastic) -> String {
         100.0 * FORM_ERROR[0][0]
     );
     match (balls, places.len() - balls) {
-        (0, _) if !elastic.is_flat && !elastic.is_bone_stated => format!(
+        (0, _) if !is_form_known(elastic) && !elastic.is_bone_stated => format!(
             "the width of the bone is not stated: over a narrow bone the simulated forces may be off by {meshed} %. State it \
              (bone_half_width_mm in [skin.materials]) to have smaller effects named: then it is {} %",
             off(SHARED_FORM[0])

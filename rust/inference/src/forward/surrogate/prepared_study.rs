@@ -22,6 +22,8 @@ use crate::parameters::surrogate_priors::{form_error, of_course, of_place, share
 
 /// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
 const FLAT: (f64, f64) = (0.03, 1.5);
+/// Part of the way to the rim of a half space within which its skin has to be flat.
+const RIM: f64 = 0.9;
 /// Standard deviations of the noise below which a floor under readings is none.
 const FLOOR: f64 = 4.0;
 
@@ -252,18 +254,19 @@ fn scales(study: &Study, courses: &[ForceRecording], elastic: &Elastic) -> Scale
     }
 }
 
-/// True if the skin is a plane about every site, and goes on beyond what a press moves.
+/// True if the skin is a plane about every site, and goes on beyond what a press moves; that of a half space as far as its mesh goes.
 fn is_flat(study: &Study) -> bool {
     let thickness = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
     let thickness = thickness.fold(f64::INFINITY, f64::min);
-    if !thickness.is_finite() {
-        return false;
-    }
     study.sites.iter().all(|site| {
         let (point, along): (Vector3<f64>, Vector3<f64>) =
             (site.point_mm.into(), site.direction.into());
-        let reach = FLAT.1 * thickness;
         let positions = || study.skin.mesh.positions.iter().map(|p| p - point);
+        let thickness = match thickness.is_finite() {
+            true => thickness,
+            false => positions().fold(0.0, |far: f64, off| far.max(off.norm())) * RIM / FLAT.1,
+        };
+        let reach = FLAT.1 * thickness;
         positions().any(|off| off.norm() > reach)
             && positions()
                 .all(|off| off.norm() > reach || off.dot(&along).abs() < FLAT.0 * thickness)
@@ -276,6 +279,58 @@ mod tests {
     use crate::forward::surrogate::synthetic::{ready, tool};
     use crate::forward::tables::form_ways::WAYS;
     use crate::parameters::surrogate_priors::with_measured_form;
+    use std::path::PathBuf;
+    use thenar_recordings::meshes::MeshFile;
+    use thenar_recordings::study::{Site, StudyMaterial, StudySkin};
+
+    /// A lattice of 20 mm whose rim lies `rise` mm higher than its middle, over tissue of a thickness.
+    fn skin(thickness_mm: f64, rise: f64) -> Study {
+        let along = |k: i32| 2.0 * f64::from(k);
+        let one = |(i, j): (i32, i32)| {
+            let (x, y) = (along(i), along(j));
+            Vector3::new(x, y, rise * (x * x + y * y) / 200.0)
+        };
+        let places = (-5..=5).flat_map(|i| (-5..=5).map(move |j| (i, j)));
+        let mesh = MeshFile {
+            positions: places.map(one).collect(),
+            triangles: Vec::new(),
+            notes: Vec::new(),
+        };
+        let material = StudyMaterial {
+            thickness_mm: Some(thickness_mm),
+            ..StudyMaterial::default()
+        };
+        Study {
+            folder: PathBuf::new(),
+            title: String::new(),
+            skin: StudySkin {
+                mesh,
+                materials: vec![material],
+                ..StudySkin::default()
+            },
+            indenters: Vec::new(),
+            sites: vec![Site {
+                name: "pad".into(),
+                point_mm: [0.0; 3],
+                direction: [0.0, 0.0, -1.0],
+                distance_mm: 0.0,
+            }],
+            recordings: Vec::new(),
+            instrument: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// A half space is the layer without bone: its skin is no rounder for that.
+    #[test]
+    fn skin_is_flat_on_a_half_space_as_on_a_layer() {
+        for thickness_mm in [4.0, f64::INFINITY] {
+            assert!(is_flat(&skin(thickness_mm, 0.0)), "{thickness_mm}");
+            assert!(!is_flat(&skin(thickness_mm, 2.0)), "{thickness_mm}");
+        }
+        // A layer's skin ends within what a press moves.
+        assert!(!is_flat(&skin(20.0, 0.0)));
+    }
 
     #[test]
     fn form_prior_widens_from_sphere_to_mesh_to_round_skin() {
