@@ -92,10 +92,11 @@ def _refuse_worse(found, finding):
     if not check.get("is_worse_than_without") or not _was_tried(found, finding):
         return
     after, before = (wording.number((check.get(name) or {}).get("rms")) for name in ("after", "before"))
+    named = wording.listed(wording.name(each["name"]) for each in found["model"]["effects"])
     raise Refusal(
-        f"with {wording.name(finding['effect'])} the contact model predicts held-out recordings worse than without: "
-        f"its error is {after} instead of {before} standard deviations of the noise. What was found holds; simulations "
-        "with it are wrong for these tools. To try it all the same, add it under Effects"
+        f"with {named} the contact model predicts held-out recordings worse than without: its error is {after} instead "
+        f"of {before} standard deviations of the noise. What was found holds; simulations with it are wrong for these "
+        "tools. To try it all the same, add it under Effects with the numbers of the letter"
     )
 
 

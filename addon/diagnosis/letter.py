@@ -155,7 +155,8 @@ def _entry(found, index):
     finding = found["findings"][index]
     where, when = finding.get("where") or {}, finding.get("when") or {}
     numbers = finding.get("parameters") or {}
-    rows = [Row(wording.number_title(key, numbers), wording.estimate(number)) for key, number in numbers.items()]
+    is_fitted = finding.get("channel") in (None, "force")  # a mat's ceiling and its dead cells are read
+    rows = [Row(wording.number_title(key, numbers), wording.estimate(each, is_fitted)) for key, each in numbers.items()]
     _, _, choices = reading.switched(found, finding["effect"])
     rows += [Row(wording.title(name), wording.title(option)) for name, option in choices.items()]
     record = finding.get("track_record") or {}
@@ -255,7 +256,7 @@ def _gain(fit):
     check = fit.get("by_contact_model") or {}
     tried = check.get("reducible_error_removed") or {}
     if check.get("is_worse_than_without"):
-        yield "The contact model with what is named predicts them worse than without: do not simulate with it."
+        yield "The contact model with what is named predicts held-out recordings worse than without."
     elif tried.get("high") is not None and tried["high"] <= 0.0:
         yield "The contact model with what is switched on predicts them no better than without."
     elif tried.get("low") is not None and tried["low"] >= 0.0:

@@ -87,14 +87,14 @@ def value(told):
     return f"{text} ({between})" if between else text
 
 
-def estimate(stated):
+def estimate(stated, is_fitted=True):
     """A finding's number: `value`, or the bound where recordings bound it from one side alone: `at least 0.2 MPa`.
 
-    One without a width was taken as known: `3.88 mm (not fitted)`.
+    One without a width, among those that are fitted, was taken as known: `3.88 mm (not fitted)`.
     """
     low, high = stated.get("low", 0.0), stated.get("high", 0.0)
     if low is not None and high is not None:
-        is_fixed = "low" in stated and low == high and not isinstance(stated.get("value"), str)
+        is_fixed = is_fitted and "low" in stated and low == high and not isinstance(stated.get("value"), str)
         return f"{value(stated)} (not fitted)" if is_fixed else value(stated)
     if low is None and high is None:
         return "not determined"

@@ -104,12 +104,13 @@ fn refuting<'a>(
         return None;
     }
     let check = gain.contact_model.as_ref()?;
-    is_worse_than_without(check).then_some(check)
+    (check.after.rms > check.before.rms + CLEARLY).then_some(check)
 }
 
-/// Whether with what is named the contact model predicts held-out recordings worse than without, by more than noise decides.
+/// Whether with what is named the contact model predicts held-out recordings worse than without: all of the interval of what it removes is below 0,
+/// and its error is larger by at least a tenth of the noise.
 pub fn is_worse_than_without(check: &ContactModelCheck) -> bool {
-    check.removed < 0.0 && check.after.rms > check.before.rms + CLEARLY
+    check.interval.1 < 0.0 && check.after.rms > check.before.rms + CLEARLY
 }
 
 /// Gives what is switched on the numbers with which the contact model was checked, and says what that came to.
@@ -140,7 +141,8 @@ pub fn switch_on(found: &mut Diagnosis) {
         .moduli
         .iter()
         .any(|factor| (factor - 1.0).abs() > 0.05);
-    if is_moved || !changed.is_empty() {
+    let is_worse = is_worse_than_without(check);
+    if !is_worse && (is_moved || !changed.is_empty()) {
         let what = match changed.is_empty() {
             true => "the tissue".to_owned(),
             false => changed.join(" and "),
@@ -150,7 +152,7 @@ pub fn switch_on(found: &mut Diagnosis) {
              with which it answers as the fit does"
         ));
     }
-    if is_worse_than_without(check) {
+    if is_worse {
         found.notes.push(format!(
             "with what is named the contact model predicts held-out recordings worse than without: its error is {:.2} instead of {:.2} standard \
              deviations of the noise; what was found holds, but simulations with it are wrong for these tools",
@@ -241,10 +243,10 @@ mod tests {
         assert!(active(&unknown).is_none());
     }
 
-    /// Worse by more than noise decides, and worse at all: an effect smaller than the noise is not refused for a hundredth.
+    /// An effect smaller than the noise is not refused for a hundredth, and none where noise decides what is removed.
     #[test]
     fn worse_than_without_is_more_than_noise_decides() {
-        let of = |after: f64, removed: f64| {
+        let of = |after: f64, interval: (f64, f64)| {
             let spread = |rms| Spread {
                 rms,
                 interval: (rms, rms),
@@ -253,14 +255,14 @@ mod tests {
                 by_fit: (0.5, 1.0),
                 before: spread(1.07),
                 after: spread(after),
-                removed,
-                interval: (removed, removed),
+                removed: 0.5 * (interval.0 + interval.1),
+                interval,
                 moduli: [1.0; 2],
                 effects: Vec::new(),
             })
         };
-        assert!(of(2.87, -25.0));
-        assert!(!of(1.08, -0.9) && !of(1.04, 0.3) && !of(2.0, 0.1));
+        assert!(of(2.87, (-136.0, -4.4)));
+        assert!(!of(1.08, (-13.0, -0.1)) && !of(1.3, (-3.0, 0.5)) && !of(1.04, (0.1, 0.5)));
     }
 
     /// What the surrogate's skin does, which clings where it has touched, is what the contact model does.

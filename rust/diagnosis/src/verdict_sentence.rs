@@ -1,5 +1,6 @@
 //! The verdict in one sentence.
 
+use crate::by_contact_model::is_worse_than_without;
 use crate::findings::{Finding, Suggestion, Verdict};
 use crate::wording::{effect_in_words, phase_in_words};
 use thenar_inference::selection::cross_validation::Gain;
@@ -106,6 +107,14 @@ const TELLING: f64 = 0.3;
 
 /// How much better held-out recordings are predicted.
 fn predicted(gain: &Gain) -> String {
+    if gain
+        .contact_model
+        .as_ref()
+        .is_some_and(is_worse_than_without)
+    {
+        return " With it, the fit predicts recordings that were not used for it better, but the contact model predicts them worse: do not simulate with it."
+            .to_owned();
+    }
     if gain.removed < TELLING || gain.interval.0 < 0.0 {
         return " It is small against the noise, but recordings that were not used for the fit are predicted better with it."
             .to_owned();

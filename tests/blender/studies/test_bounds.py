@@ -16,3 +16,9 @@ from thenar_blender.diagnosis import wording
 )
 def test_a_number_without_both_ends_is_a_bound(low, high, said):
     assert wording.estimate({"value": 0.2, "low": low, "high": high, "unit": "MPa"}) == said
+
+
+def test_what_is_read_and_not_fitted_has_no_such_words():
+    ceiling = {"value": 20.0, "low": 20.0, "high": 20.0, "unit": "kPa"}
+    assert wording.estimate(ceiling, is_fitted=False) == "20 kPa"
+    assert wording.estimate({"value": 3.0, "unit": "1"}) == wording.value({"value": 3.0, "unit": "1"})

@@ -269,8 +269,10 @@ def _gains(severe):
     def is_worse(_, of):
         return share(of) < 0.0
 
-    named = told([pair for pair in severe if is_exact(*pair)])
-    asked = [by for by in (fit.get("by_contact_model") or {} for fit in named) if share(by) is not None]
+    exact = [pair for pair in severe if is_exact(*pair)]
+    named = told(exact)
+    checks = [(verdict.get("fit") or {}).get("by_contact_model") or {} for _, verdict in exact]
+    asked = [by for by in checks if share(by) is not None]
     most_worse = (0.03, 0.01, True)
     return [
         _median(("removed", "named: reducible error removed, median"), list(map(share, named)), (0.75, 0.9, False)),

@@ -23,7 +23,8 @@ Truths, and the right answers, written down before anything was run (`judged`):
 - `saturation`: a load cell that clips.
 - `bone`: nothing else, but the study states a tissue 0.55 or 1.8 times as thick as it is (written down 2026-11-29).
 - `relaxation_and_saturation`: both (written down 2026-11-29, as the next).
-- `stranger`: what is on no list of effects, of closed forms (`Stranger`). Right: *unlisted*, without a name.
+- `stranger`: what is on no list of effects, of closed forms (`Stranger`). Right: *unlisted*, without a name; every
+  *cannot tell* is a miss.
 
 Of all but the first two, drawn with b = 0 and b = 1, right is that name, with b = 1 also next to a stiffening law.
 No name, *unlisted*, too little data and *cannot tell* that holds the truth are misses; every other name is wrong.

@@ -22,8 +22,6 @@ use crate::parameters::surrogate_priors::{form_error, of_course, of_place, share
 
 /// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
 const FLAT: (f64, f64) = (0.03, 1.5);
-/// Part of the way to the rim of a half space within which its skin has to be flat.
-const RIM: f64 = 0.9;
 /// Standard deviations of the noise below which a floor under readings is none.
 const FLOOR: f64 = 4.0;
 
@@ -254,18 +252,22 @@ fn scales(study: &Study, courses: &[ForceRecording], elastic: &Elastic) -> Scale
     }
 }
 
-/// True if the skin is a plane about every site, and goes on beyond what a press moves; that of a half space as far as its mesh goes.
+/// True if the skin is a plane about every site, and goes on beyond what a press moves; that of a half space, as a layer of the default
+/// thickness would have to. Of tissue whose thickness is not stated nothing is known.
 fn is_flat(study: &Study) -> bool {
-    let thickness = study.skin.materials.iter().filter_map(|m| m.thickness_mm);
-    let thickness = thickness.fold(f64::INFINITY, f64::min);
+    let materials = &study.skin.materials;
+    let stated = materials.iter().filter_map(|m| m.thickness_mm);
+    let mut thickness = stated.fold(f64::INFINITY, f64::min);
+    if !thickness.is_finite() {
+        if materials.is_empty() || materials.iter().any(|m| m.thickness_mm.is_none()) {
+            return false;
+        }
+        thickness = Material::default().thickness_mm;
+    }
     study.sites.iter().all(|site| {
         let (point, along): (Vector3<f64>, Vector3<f64>) =
             (site.point_mm.into(), site.direction.into());
         let positions = || study.skin.mesh.positions.iter().map(|p| p - point);
-        let thickness = match thickness.is_finite() {
-            true => thickness,
-            false => positions().fold(0.0, |far: f64, off| far.max(off.norm())) * RIM / FLAT.1,
-        };
         let reach = FLAT.1 * thickness;
         positions().any(|off| off.norm() > reach)
             && positions()
@@ -284,7 +286,7 @@ mod tests {
     use thenar_recordings::study::{Site, StudyMaterial, StudySkin};
 
     /// A lattice of 20 mm whose rim lies `rise` mm higher than its middle, over tissue of a thickness.
-    fn skin(thickness_mm: f64, rise: f64) -> Study {
+    fn skin(thickness_mm: Option<f64>, rise: f64) -> Study {
         let along = |k: i32| 2.0 * f64::from(k);
         let one = |(i, j): (i32, i32)| {
             let (x, y) = (along(i), along(j));
@@ -297,7 +299,7 @@ mod tests {
             notes: Vec::new(),
         };
         let material = StudyMaterial {
-            thickness_mm: Some(thickness_mm),
+            thickness_mm,
             ..StudyMaterial::default()
         };
         Study {
@@ -324,12 +326,15 @@ mod tests {
     /// A half space is the layer without bone: its skin is no rounder for that.
     #[test]
     fn skin_is_flat_on_a_half_space_as_on_a_layer() {
-        for thickness_mm in [4.0, f64::INFINITY] {
-            assert!(is_flat(&skin(thickness_mm, 0.0)), "{thickness_mm}");
-            assert!(!is_flat(&skin(thickness_mm, 2.0)), "{thickness_mm}");
+        for thickness_mm in [Some(4.0), Some(f64::INFINITY)] {
+            assert!(is_flat(&skin(thickness_mm, 0.0)), "{thickness_mm:?}");
+            assert!(!is_flat(&skin(thickness_mm, 1.0)), "{thickness_mm:?}");
         }
-        // A layer's skin ends within what a press moves.
-        assert!(!is_flat(&skin(20.0, 0.0)));
+        // A layer's skin ends within what a press moves; and nobody knows how thick the other tissue is.
+        assert!(!is_flat(&skin(Some(20.0), 0.0)) && !is_flat(&skin(None, 0.0)));
+        let mut both = skin(Some(f64::INFINITY), 0.0);
+        both.skin.materials.push(StudyMaterial::default());
+        assert!(!is_flat(&both));
     }
 
     #[test]
