@@ -107,16 +107,20 @@ const TELLING: f64 = 0.3;
 
 /// How much better held-out recordings are predicted.
 fn predicted(gain: &Gain) -> String {
-    if gain
+    let is_worse = gain
         .contact_model
         .as_ref()
-        .is_some_and(is_worse_than_without)
-    {
-        return " With it, the fit predicts recordings that were not used for it better, but the contact model predicts them worse: do not simulate with it."
-            .to_owned();
-    }
+        .is_some_and(is_worse_than_without);
     if gain.removed < TELLING || gain.interval.0 < 0.0 {
-        return " It is small against the noise, but recordings that were not used for the fit are predicted better with it."
+        let mut text = " It is small against the noise, but recordings that were not used for the fit are predicted better with it."
+            .to_owned();
+        if is_worse {
+            text += " Do not simulate with it: the contact model predicts them worse.";
+        }
+        return text;
+    }
+    if is_worse {
+        return " With it, the fit predicts recordings that were not used for it better, but the contact model predicts them worse: do not simulate with it."
             .to_owned();
     }
     format!(

@@ -55,6 +55,8 @@ def test_an_effect_below_the_noise_is_named_if_held_out_recordings_confirm_it(ca
     said = found(case, tmp_path)
     assert [one["effect"] for one in said["findings"]] == [WEAK[case]]
     assert "100 %" not in said["sentence"] and "small against the noise" in said["sentence"]
+    worse = said["fit"]["by_contact_model"]["is_worse_than_without"]
+    assert worse == ("Do not simulate with it" in said["sentence"])
     score = said["fit"]["log_score"]
     assert score["value"] > max(4.0, 2.0 * score["placebo"])
 
