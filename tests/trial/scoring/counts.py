@@ -263,14 +263,14 @@ def _gains(severe):
     def share(of):
         return (of.get("reducible_error_removed") or {}).get("value")
 
-    def told(group):
+    def with_share(group):
         return [fit for _, verdict in group if share(fit := verdict.get("fit") or {}) is not None]
 
     def is_worse(_, of):
         return share(of) < 0.0
 
     exact = [pair for pair in severe if is_exact(*pair)]
-    named = told(exact)
+    named = with_share(exact)
     checks = [(verdict.get("fit") or {}).get("by_contact_model") or {} for _, verdict in exact]
     asked = [by for by in checks if share(by) is not None]
     most_worse = (0.03, 0.01, True)
@@ -292,7 +292,7 @@ def _gains(severe):
         ),
         _median(
             ("removed by any", "kappa >= 1: removed, named or not, median"),
-            list(map(share, told(severe))),
+            list(map(share, with_share(severe))),
             (None, None, False),
         ),
     ]
