@@ -164,7 +164,7 @@ pub fn rivals(
             probability: p.map_or(0.0, |p| p.1),
             effects: names,
             evidence: scored.qaic_gain,
-            left: scored.lack_of_fit / rungs.base.lack_of_fit.max(1e-9),
+            left: scored.lack_of_fit.all / rungs.base.lack_of_fit.all.max(1e-9),
             ledger: ledger(ready, rungs, scored),
         }
     };
@@ -239,7 +239,11 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
     let mut all = vec![
         ("samples", n),
         ("deviance_per_sample", rungs.base.refit.deviance / n),
-        ("coherent_misfit_per_sample", rungs.base.lack_of_fit / n),
+        ("coherent_misfit_per_sample", rungs.base.lack_of_fit.all / n),
+        (
+            "coherent_misfit_less_largest_part",
+            rungs.base.lack_of_fit.less_largest / n,
+        ),
         ("noise_share", ready.noise_share()),
         ("noise_step", ready.noise.step[0]),
         ("temper", rungs.overdispersion),
@@ -251,6 +255,10 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
     if let Some(heteroscedasticity) = rungs.heteroscedasticity {
         all.push(("noise_under_load_over_without", heteroscedasticity.ratio));
         all.push(("noise_of_one_size_up_to", heteroscedasticity.least));
+    }
+    if let Some(waves) = rungs.short_waves {
+        all.push(("shared_short_waves_standard_errors", waves.standard_errors));
+        all.push(("shared_short_waves_rms_n", waves.rms_n));
     }
     if let Some(rhythm) = ready.noise.rhythm {
         all.push(("rhythm_hz", rhythm.hz));

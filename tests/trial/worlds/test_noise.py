@@ -9,7 +9,8 @@ from trial.worlds import closed_forms
 
 # Something was accused in each before depth noise, noise in proportion, shared bins and wandering zeros were modeled;
 # in mixture 103 it would be, if held-out recordings did not have to confirm it. In depth_jitter 831
-# and 851 a ceiling was, before turning points were where straight legs meet.
+# and 851 a ceiling was, before turning points were where straight legs meet. In stray 4013 readings of both repeats
+# are astray at one moment, in 4007 they draw gain and touch along: the largest part of the misfit is left out.
 NULLS = [
     ("depth_jitter", 101),
     ("depth_jitter", 105),
@@ -19,6 +20,8 @@ NULLS = [
     ("mixture", 103),
     ("mixture", 108),
     ("mixture", 110),
+    ("stray", 4007),
+    ("stray", 4013),
     ("wander", 25),
     ("wander", 36),
     ("wander", 38),
@@ -51,6 +54,15 @@ def test_noise_of_a_laboratory_is_accused_of_nothing(noise, seed, tmp_path):
     closed_forms.draw(seed, "nothing", noise).write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+
+
+@pytest.mark.parametrize(("noise", "seed"), [("stray", 3001), ("in_proportion", 3003), ("mixture", 3002)])
+def test_a_joint_that_sticks_and_slips_is_unlisted(noise, seed, tmp_path):
+    """Nothing was missing, while waves were looked for in sums over parts of a phase, which hold several of them."""
+    closed_forms.draw(seed, "stranger", noise).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] == "unlisted" and said["findings"] == []
+    assert any("repeats share short waves" in note for note in said["notes"]), said["notes"]
 
 
 @pytest.mark.parametrize(("noise", "seed"), [("encoder", 3002), ("in_proportion", 3002)])

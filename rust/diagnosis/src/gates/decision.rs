@@ -4,6 +4,7 @@ use thenar_contact::effects::Effect;
 
 use crate::findings::Verdict;
 use crate::gates::pair_gates::{CLOCKS, are_apart, is_adequate, is_pair, is_static};
+use crate::gates::waves_gate::shared_waves;
 use crate::wording::effect_in_words;
 use thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
@@ -142,12 +143,15 @@ fn suspicion(suspected: &[&'static str]) -> String {
 
 /// Nothing listed is there: nothing at all, or something unlisted.
 pub fn undetected<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
-    let left = rungs.base.lack_of_fit / rungs.samples as f64;
+    let left = rungs.base.lack_of_fit.less_largest / rungs.samples as f64;
     if left > UNLISTED {
         return silent(
             Verdict::Unlisted,
             "repeats agree on a misfit that parameters leave and no listed effect takes up",
         );
+    }
+    if let Some(reason) = shared_waves(rungs) {
+        return silent(Verdict::Unlisted, &reason);
     }
     silent(
         nothing(ready, rungs),

@@ -8,6 +8,7 @@ use crate::gates::decision::{
     self, Decision, UNLISTED, needed, opponents, silent, unsettled_misfit,
 };
 use crate::gates::held_out_gate::{self, predicted_by_protocols};
+use crate::gates::waves_gate::shared_waves;
 use crate::wording::effect_in_words;
 use thenar_inference::checks::heteroscedasticity::unmodeled_repeat_noise;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
@@ -182,6 +183,9 @@ impl<'a> Gate<'a, '_> {
             in_words(feigned),
             self.form()
         );
+        if let Some(waves) = shared_waves(self.beyond.rungs) {
+            return silent(Verdict::Unlisted, &format!("{waves}; {reason}")).suspecting(feigned);
+        }
         if self.left > UNLISTED {
             return silent(
                 Verdict::Unlisted,
@@ -193,12 +197,14 @@ impl<'a> Gate<'a, '_> {
             .suspecting(feigned)
     }
 
-    /// A misfit without a name may be one of form; what differs between repeats is none.
+    /// A misfit without a name may be one of form; what differs between repeats is none, and no form makes short waves.
     fn of_misfit(&self, decision: Decision<'a>) -> Decision<'a> {
         let of_repeats =
             unmodeled_repeat_noise(&self.ready.noise, self.beyond.rungs.heteroscedasticity);
         let is_of_repeats = of_repeats.is_some_and(|reason| reason == decision.reason);
-        if decision.verdict != Verdict::Unlisted || is_of_repeats || self.left > UNLISTED {
+        let is_beyond =
+            is_of_repeats || self.left > UNLISTED || shared_waves(self.beyond.rungs).is_some();
+        if decision.verdict != Verdict::Unlisted || is_beyond {
             return decision;
         }
         let reason = format!(

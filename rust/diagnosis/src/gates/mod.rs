@@ -5,4 +5,5 @@ pub mod pair_gates;
 pub mod held_out_gate;
 pub mod form_gate;
 pub mod size_gate;
+mod waves_gate;
 pub mod detection_limits;

@@ -41,7 +41,7 @@ pub(crate) fn are_apart(best: &Scored, rival: &Scored) -> bool {
 
 pub(crate) fn is_adequate(best: &Scored, rungs: &Rungs) -> bool {
     let quiet = QUIET * rungs.samples as f64;
-    best.lack_of_fit <= quiet || best.lack_of_fit <= LEFT * rungs.base.lack_of_fit
+    best.lack_of_fit.all <= quiet || best.lack_of_fit.all <= LEFT * rungs.base.lack_of_fit.all
 }
 
 /// True if both of a pair are needed, and together they suffice.

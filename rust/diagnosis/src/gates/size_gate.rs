@@ -7,6 +7,7 @@ use crate::findings::{Finding, Number, Verdict};
 use crate::gates::decision::{self, Decision, UNLISTED, needed, silent, unsettled_misfit};
 use crate::gates::form_gate;
 use crate::gates::held_out_gate::predicted_by_protocols;
+use crate::gates::waves_gate::shared_waves;
 use crate::wording::effect_in_words;
 use thenar_contact::effects::Effect;
 use thenar_inference::forward::surrogate::prepared_study::PreparedStudy;
@@ -84,8 +85,11 @@ pub(crate) fn unnamed<'a>(
     measured: &[Measured],
     reason: &str,
 ) -> Decision<'a> {
-    let without_form = || rungs.base.lack_of_fit / rungs.samples.max(1) as f64;
+    let without_form = || rungs.base.lack_of_fit.less_largest / rungs.samples.max(1) as f64;
     let left = FormCheck::new(ready, measured, rungs).map_or_else(without_form, |it| it.left());
+    if let Some(waves) = shared_waves(rungs) {
+        return silent(Verdict::Unlisted, &format!("{waves}; {reason}"));
+    }
     match left > UNLISTED {
         true => silent(
             Verdict::Unlisted,

@@ -1,6 +1,7 @@
-//! Checks of recordings and residuals: lack of fit, signatures of effects, heteroscedasticity, change points of the gain.
+//! Checks of recordings and residuals: lack of fit, short waves that repeats share, signatures of effects, heteroscedasticity, change points of the gain.
 
 pub(crate) mod lack_of_fit;
 pub mod signatures;
 pub mod heteroscedasticity;
+pub mod short_waves;
 pub(crate) mod gain_step;

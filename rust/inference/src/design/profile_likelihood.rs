@@ -50,6 +50,7 @@ pub fn profile(surrogate: &Surrogate<'_>, of: &Scored, overdispersion: f64) -> V
 
 #[cfg(test)]
 mod tests {
+    use crate::selection::scored::LackOfFit;
     use thenar_contact::effects::Effect;
 
     use super::*;
@@ -80,7 +81,7 @@ mod tests {
             refit: refit(&surrogate, &Model::new(&surrogate, &mechanisms), &[]),
             mechanisms,
             qaic_gain: 0.0,
-            lack_of_fit: 0.0,
+            lack_of_fit: LackOfFit::default(),
         };
         let all = profile(&surrogate, &of, overdispersion);
         (of, all)

@@ -8,7 +8,7 @@ use crate::forward::surrogate::mechanism::Mechanism;
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::least_squares::surrogate_fit::refit;
-use crate::selection::scored::Scored;
+use crate::selection::scored::{LackOfFit, Scored};
 
 /// Tries hypotheses on one study.
 pub struct Trial<'a> {
@@ -93,8 +93,13 @@ fn lower(one: Scored, other: Scored) -> Scored {
     }
 }
 
-/// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give.
-pub(crate) fn lack_of_fit(surrogate: &Surrogate<'_>, residual: &[f64], blocks: &[usize]) -> f64 {
+/// Sum over blocks of the squared sum of residuals over their number, less what residuals that know nothing of each other give; and the same
+/// without the block that adds most.
+pub(crate) fn lack_of_fit(
+    surrogate: &Surrogate<'_>,
+    residual: &[f64],
+    blocks: &[usize],
+) -> LackOfFit {
     let count = blocks.iter().fold(0, |most, b| most.max(b + 1));
     let mut sums = vec![(0.0, 0.0f64, 0.0); count];
     for (sample, _, _) in surrogate.phases() {
@@ -109,8 +114,12 @@ pub(crate) fn lack_of_fit(surrogate: &Surrogate<'_>, residual: &[f64], blocks: &
         .sum();
     let degrees: f64 = used.iter().map(|s| s.1 - 1.0).sum();
     let variance = if degrees > 0.0 { own / degrees } else { 1.0 };
-    let between: f64 = used.iter().map(|(sum, n, _)| sum * sum / n).sum();
-    (between - variance * used.len() as f64).max(0.0)
+    let each = || used.iter().map(|(sum, n, _)| sum * sum / n - variance);
+    let (all, most) = (each().sum::<f64>(), each().fold(0.0, f64::max));
+    LackOfFit {
+        all: all.max(0.0),
+        less_largest: (all - most).max(0.0),
+    }
 }
 
 #[cfg(test)]

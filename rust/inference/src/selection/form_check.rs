@@ -10,7 +10,7 @@ use crate::observe::measured::Measured;
 use crate::parameters::surrogate_priors::with_measured_form;
 use crate::selection::candidate_fits::lack_of_fit;
 use crate::selection::ladder::PENALTY;
-use crate::selection::scored::{Rungs, Scored};
+use crate::selection::scored::{LackOfFit, Rungs, Scored};
 
 /// The base of a study, fitted again with the form of the model free.
 pub struct FormCheck<'a> {
@@ -19,7 +19,7 @@ pub struct FormCheck<'a> {
     shared: usize,
     samples: f64,
     base: Refit,
-    lack_of_fit: f64,
+    lack_of_fit: LackOfFit,
 }
 
 impl<'a> FormCheck<'a> {
@@ -71,9 +71,9 @@ impl<'a> FormCheck<'a> {
         &self.surrogate
     }
 
-    /// Coherent misfit per sample that parameters and form leave, in variances of the noise.
+    /// Coherent misfit per sample that parameters and form leave, without the largest part, in variances of the noise.
     pub fn left(&self) -> f64 {
-        self.lack_of_fit / self.samples
+        self.lack_of_fit.less_largest / self.samples
     }
 }
 
@@ -143,6 +143,7 @@ mod tests {
             singles: Vec::new(),
             pairs: Vec::new(),
             heteroscedasticity: None,
+            short_waves: None,
             gain_step: None,
             samples: made.values.len(),
             overdispersion: 1.0,

@@ -9,6 +9,7 @@ use thenar_contact::effects::Effect;
 use crate::checks::gain_step::{GainStep, gain_step};
 use crate::checks::heteroscedasticity::{heteroscedasticity, pulls};
 use crate::checks::lack_of_fit::blocks;
+use crate::checks::short_waves::short_waves;
 use crate::errors::InferenceError;
 use crate::forward::surrogate::force_recording::{changes_speed, goes_on};
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
@@ -76,6 +77,7 @@ pub fn climb(
             sizes,
             ready.noise.correlation[0].memory_s,
         ),
+        short_waves: short_waves(&ready.courses, &base.refit.simulated),
         base,
         singles,
         pairs,

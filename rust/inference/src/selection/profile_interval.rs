@@ -188,6 +188,7 @@ fn variants(of: &[Mechanism], (number, scales): (usize, Scales)) -> Vec<Vec<Mech
 mod tests {
     use super::*;
     use crate::selection::profile_ends::NEAR;
+    use crate::selection::scored::LackOfFit;
     use thenar_contact::effects::Effect;
 
     use crate::forward::surrogate::synthetic::{Reading, ready, tool};
@@ -270,13 +271,14 @@ mod tests {
             mechanisms: mechanisms.to_vec(),
             refit: refit(&surrogate, &Model::new(&surrogate, mechanisms), &[]),
             qaic_gain: 0.0,
-            lack_of_fit: 0.0,
+            lack_of_fit: LackOfFit::default(),
         };
         let rungs = Rungs {
             base: scored(&[]),
             singles: Vec::new(),
             pairs: Vec::new(),
             heteroscedasticity: None,
+            short_waves: None,
             gain_step: None,
             samples: ready.values.len(),
             overdispersion: 1.0,

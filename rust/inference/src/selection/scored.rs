@@ -4,6 +4,7 @@ use thenar_contact::effects::Effect;
 
 use crate::checks::gain_step::GainStep;
 use crate::checks::heteroscedasticity::Heteroscedasticity;
+use crate::checks::short_waves::ShortWaves;
 use crate::forward::surrogate::mechanism::Mechanism;
 use crate::least_squares::surrogate_fit::Refit;
 
@@ -16,8 +17,17 @@ pub struct Scored {
     pub refit: Refit,
     /// Minus half the QAIC difference to the base, nats: half the fall of the deviance over the overdispersion, less 1 per parameter.
     pub qaic_gain: f64,
-    /// Lack of fit: sum of squares common to repeats, beyond pure error.
-    pub lack_of_fit: f64,
+    /// Lack of fit.
+    pub lack_of_fit: LackOfFit,
+}
+
+/// Sum of squares common to repeats, beyond pure error, in variances of the noise.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LackOfFit {
+    /// Over all parts of all phases.
+    pub all: f64,
+    /// Without the part that adds most: readings that are astray in two repeats may meet in one.
+    pub less_largest: f64,
 }
 
 impl Scored {
@@ -40,6 +50,8 @@ pub struct Rungs {
     pub pairs: Vec<Scored>,
     /// How repeats deviate under load and without.
     pub heteroscedasticity: Option<Heteroscedasticity>,
+    /// Short waves that repeats share; None where too little was recorded twice.
+    pub short_waves: Option<ShortWaves>,
     /// The clearest step of the session's gain.
     pub gain_step: Option<GainStep>,
     /// Number of screened samples.

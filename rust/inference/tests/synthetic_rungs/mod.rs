@@ -6,7 +6,7 @@ use thenar_contact::effects::Effect;
 use thenar_inference::forward::surrogate::mechanism::{Mechanism, Scales};
 use thenar_inference::least_squares::surrogate_fit::Refit;
 use thenar_inference::selection::candidates::singles;
-use thenar_inference::selection::scored::{Rungs, Scored};
+use thenar_inference::selection::scored::{LackOfFit, Rungs, Scored};
 
 /// A candidate with these effects.
 pub fn scored(effects: &[Effect], qaic_gain: f64) -> Scored {
@@ -31,7 +31,7 @@ pub fn scored(effects: &[Effect], qaic_gain: f64) -> Scored {
             covariance: DMatrix::zeros(0, 0),
         },
         qaic_gain,
-        lack_of_fit: 0.0,
+        lack_of_fit: LackOfFit::default(),
     }
 }
 
@@ -42,6 +42,7 @@ pub fn rungs_beside(first: (Effect, f64), second: Effect, more: f64) -> Rungs {
         singles: vec![scored(&[first.0], first.1), scored(&[second], 0.0)],
         pairs: vec![scored(&[first.0, second], first.1 + more)],
         heteroscedasticity: None,
+        short_waves: None,
         gain_step: None,
         samples: 100,
         overdispersion: 1.0,
