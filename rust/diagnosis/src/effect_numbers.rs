@@ -206,7 +206,10 @@ fn one<'a>(
         Law::Floor(_) => ("floor_n", Box::new(move |x| x.max(0.0) * least)),
         Law::Compliance => ("compliance_mm_per_n", Box::new(|x| x.max(0.0))),
         Law::Delay => ("delay_s", Box::new(|x| x)),
-        Law::Relaxation { .. } | Law::Softening { .. } | Law::Adhesion { .. } => return None,
+        Law::Relaxation { .. }
+        | Law::Softening { .. }
+        | Law::Adhesion { .. }
+        | Law::DepthCurve { .. } => return None,
     };
     Some((name, scale))
 }

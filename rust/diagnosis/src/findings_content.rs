@@ -256,6 +256,9 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
         all.push(("noise_under_load_over_without", heteroscedasticity.ratio));
         all.push(("noise_of_one_size_up_to", heteroscedasticity.least));
     }
+    if let Some(curve) = &rungs.depth_curve {
+        all.push(("depth_curve_nats", curve.qaic_gain));
+    }
     if let Some(waves) = rungs.short_waves {
         all.push(("shared_short_waves_standard_errors", waves.standard_errors));
         all.push(("shared_short_waves_rms_n", waves.rms_n));

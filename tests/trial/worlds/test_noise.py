@@ -65,6 +65,15 @@ def test_a_joint_that_sticks_and_slips_is_unlisted(noise, seed, tmp_path):
     assert any("repeats share short waves" in note for note in said["notes"]), said["notes"]
 
 
+@pytest.mark.parametrize(("noise", "seed"), [("white", 3004), ("gain_scatter", 3005)])
+def test_a_pocket_that_passes_for_a_stiff_skin_or_a_stiffening_law_is_unlisted(noise, seed, tmp_path):
+    """These explain a fifth of what a free curve over depth does, and were named while nothing else was asked."""
+    closed_forms.draw(seed, "stranger", noise).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] == "unlisted" and said["findings"] == []
+    assert any("follow one curve over depth" in note for note in said["notes"]), said["notes"]
+
+
 @pytest.mark.parametrize(("noise", "seed"), [("encoder", 3002), ("in_proportion", 3002)])
 def test_a_pocket_under_flat_skin_is_unlisted_also_on_a_half_space(noise, seed, tmp_path):
     """Nothing was missing, while a half space's flat skin was taken for a finger whose bone is not stated."""

@@ -121,9 +121,10 @@ fn in_words(ready: &PreparedStudy, scored: &Scored, size: f64) -> (f64, &'static
             }
         },
         Law::Stiffening(_, Growth::Square) => (size, "share of the force", 1.0),
-        Law::Stiffening(..) | Law::Saturation(_) | Law::GainStep { .. } => {
-            (libm::exp(size) - 1.0, "share of the force", 1.0)
-        }
+        Law::Stiffening(..)
+        | Law::Saturation(_)
+        | Law::GainStep { .. }
+        | Law::DepthCurve { .. } => (libm::exp(size) - 1.0, "share of the force", 1.0),
         Law::Offset | Law::Drift { .. } => (size, "N", most),
         Law::Floor(_) => (size * least, "N", most),
         Law::Compliance => (size, "mm/N", deepest / most.max(1e-12)),

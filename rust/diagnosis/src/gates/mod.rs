@@ -6,4 +6,5 @@ pub mod held_out_gate;
 pub mod form_gate;
 pub mod size_gate;
 mod waves_gate;
+mod curve_gate;
 pub mod detection_limits;

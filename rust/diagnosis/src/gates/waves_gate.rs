@@ -10,10 +10,13 @@ const WAVES: f64 = 4.0;
 pub(crate) fn shared_waves(rungs: &Rungs) -> Option<String> {
     let waves = rungs.short_waves?;
     (waves.standard_errors > WAVES).then(|| {
+        let size = match waves.rms_n < 1e-4 {
+            true => format!("{:.2} uN", 1e6 * waves.rms_n),
+            false => format!("{:.2} mN", 1e3 * waves.rms_n),
+        };
         format!(
-            "repeats share short waves of {:.2} mN in the force ({:.1} standard errors of independent noise), which no listed effect makes; a \
-             motor or a sensor that repeats itself can",
-            1e3 * waves.rms_n,
+            "repeats share short waves of about {size} in the force ({:.1} standard errors of independent noise), which is no form of what was \
+             fitted; the skin can make them, and so can a motor, a sensor or a baseline that was taken off all repeats",
             waves.standard_errors
         )
     })

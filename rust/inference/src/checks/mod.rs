@@ -3,5 +3,6 @@
 pub(crate) mod lack_of_fit;
 pub mod signatures;
 pub mod heteroscedasticity;
+pub mod depth_curve;
 pub mod short_waves;
 pub(crate) mod gain_step;

@@ -6,7 +6,6 @@
 
 use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::observe::measured::Phase;
-use crate::observe::motion::rounding::step_mm;
 use crate::observe::robust_scale::median_deviation;
 
 /// Part of a recording's depth above which it counts as loaded: where the skin is first touched is not known to a sample.
@@ -19,6 +18,13 @@ const FEWEST_IN_MEAN: usize = 5;
 const SMOOTHED: [f64; 2] = [0.0, 0.25];
 /// Deviations beyond which a sample counts no more: single ones that are astray do not decide.
 const MOST: f64 = 3.0;
+/// Part of the range of forces to which they are written; part of a step by which a gap is off a multiple of it; and part of all gaps that are
+/// such, where forces are read in steps.
+const WRITTEN: f64 = 1e-4;
+const MULTIPLE: f64 = 0.03;
+const IN_STEPS: f64 = 0.9;
+/// Standard errors of all pairs of repeats over those that are left without the one that shares most, at most.
+const OF_ONE: f64 = 2.0;
 /// Fewest products of two repeats' samples.
 const FEWEST: usize = 30;
 /// Part of a sample's time by which moments of two repeats differ at most.
@@ -45,7 +51,9 @@ struct Waves {
 /// steps shows in the force, and a depth that is read in steps in the rest. None where too few moments were recorded twice. `simulated`
 /// holds predictions by sample, N.
 ///
-/// Forces that are read in steps share waves of that size, which are none.
+/// Forces that are read in steps share waves of that size, which are none. Repeats are held against each other by the time since their first
+/// rows: what repeats by the way alone, at another speed, is not seen. Recordings are thinned before, to a hundred moments or so, so that the
+/// shortest wave is of two of these.
 pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<ShortWaves> {
     let clearer = |a: ShortWaves, b: ShortWaves| match b.standard_errors > a.standard_errors {
         true => b,
@@ -56,14 +64,9 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
         .flat_map(|window| SMOOTHED.map(|smoothed| (*window, smoothed)));
     let each = bands.filter_map(|band| in_both(courses, simulated, band));
     let found = each.reduce(clearer)?;
-    let forces: Vec<f64> = courses
-        .iter()
-        .flat_map(|c| &c.rows)
-        .filter(|row| row.sample.is_some())
-        .map(|row| row.force_n)
-        .collect();
+    let step_n = courses.iter().map(step_n).fold(0.0, f64::max);
     // Half a step each way is the most that rounding leaves.
-    let is_rounding = found.rms_n < 0.5 * step_mm(&forces);
+    let is_rounding = found.rms_n < 0.5 * step_n;
     Some(match is_rounding {
         true => ShortWaves {
             standard_errors: found.standard_errors.min(0.0),
@@ -71,6 +74,23 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
         },
         false => found,
     })
+}
+
+/// The step of which the forces of a recording are multiples, from one of them on, N, as far as they are written; 0 where there is none. Each
+/// recording by itself: a zero that was set anew shifts all steps.
+fn step_n(course: &ForceRecording) -> f64 {
+    let read = course.rows.iter().filter(|row| row.sample.is_some());
+    let mut forces: Vec<f64> = read.map(|row| row.force_n).collect();
+    forces.sort_by(f64::total_cmp);
+    let range = forces.last().unwrap_or(&0.0) - forces.first().unwrap_or(&0.0);
+    let gaps = forces.windows(2).map(|two| two[1] - two[0]);
+    let gaps: Vec<f64> = gaps.filter(|gap| *gap > WRITTEN * range).collect();
+    let step = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let is_multiple = |gap: &&f64| (**gap / step - (**gap / step).round()).abs() < MULTIPLE;
+    match gaps.iter().filter(is_multiple).count() as f64 >= IN_STEPS * gaps.len() as f64 {
+        true if gaps.len() > 1 => step,
+        _ => 0.0,
+    }
 }
 
 /// What is shared in the force or in what the model leaves of it, whichever is less, in a band: a window and how much of it is
@@ -88,11 +108,13 @@ fn in_both(
     })
 }
 
-/// Sums over pairs of repeats.
-#[derive(Default)]
-struct Sums {
+/// Sums of one pair of repeats.
+struct Pair {
     products: f64,
-    squares: f64,
+    /// Variance of that sum where noise knows nothing of each other.
+    variance: f64,
+    /// The same if what waves do of themselves is noise that remembers.
+    variance_alone: f64,
     newtons: f64,
     count: usize,
 }
@@ -103,44 +125,72 @@ fn shared(
     of: &dyn Fn(&Row, usize) -> f64,
 ) -> Option<ShortWaves> {
     let all: Vec<Option<Waves>> = courses.iter().map(|c| waves(c, band, of)).collect();
-    let mut sums = Sums::default();
+    let mut pairs = Vec::new();
     for (i, one) in courses.iter().enumerate() {
         for (j, other) in courses.iter().enumerate().skip(i + 1) {
             if one.protocol != other.protocol || one.place != other.place {
                 continue;
             }
             if let (Some(a), Some(b)) = (&all[i], &all[j]) {
-                sums.add((a, b));
+                pairs.push(Pair::of(a, b));
             }
         }
     }
-    (sums.count >= FEWEST && sums.squares > 0.0).then(|| ShortWaves {
-        standard_errors: sums.products / sums.squares.sqrt(),
-        rms_n: (sums.newtons / sums.count as f64).max(0.0).sqrt(),
+    let count: usize = pairs.iter().map(|pair| pair.count).sum();
+    let newtons: f64 = pairs.iter().map(|pair| pair.newtons).sum();
+    (count >= FEWEST).then(|| ShortWaves {
+        standard_errors: standard_errors(&pairs),
+        rms_n: (newtons / count as f64).max(0.0).sqrt(),
     })
 }
 
-impl Sums {
-    fn add(&mut self, (a, b): (&Waves, &Waves)) {
+/// Of the sum over all pairs. What hums by itself may be in step in one pair by chance: one alone is held against its own memory, and of
+/// several no single one decides.
+fn standard_errors(pairs: &[Pair]) -> f64 {
+    let over = |products: f64, variance: f64| products / variance.max(f64::MIN_POSITIVE).sqrt();
+    if let [one] = pairs {
+        return over(one.products, one.variance.max(one.variance_alone));
+    }
+    let of = |pair: &Pair| over(pair.products, pair.variance);
+    let Some(most) = pairs.iter().max_by(|a, b| of(a).total_cmp(&of(b))) else {
+        return 0.0;
+    };
+    let products: f64 = pairs.iter().map(|pair| pair.products).sum();
+    let variance: f64 = pairs.iter().map(|pair| pair.variance).sum();
+    let left = over(products - most.products, variance - most.variance);
+    over(products, variance).min(OF_ONE * left.max(0.0))
+}
+
+impl Pair {
+    fn of(a: &Waves, b: &Waves) -> Pair {
         let pairs = same_moments(a, b);
         let products: Vec<f64> = pairs.iter().map(|(x, y)| x * y).collect();
         // What two repeats do not share is noise, and tells how far noise remembers.
         let off: Vec<f64> = pairs.iter().map(|(x, y)| x - y).collect();
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
         let squares: f64 = products.iter().map(|p| p * p).sum();
         let sum: f64 = products.iter().sum();
-        self.products += sum;
-        self.squares += squares * memory(&off);
-        self.newtons += sum * a.deviation_n * b.deviation_n;
-        self.count += products.len();
+        Pair {
+            products: sum,
+            variance: squares * memory(&off, &off),
+            variance_alone: squares * memory(&x, &y),
+            newtons: sum * a.deviation_n * b.deviation_n,
+            count: products.len(),
+        }
     }
 }
 
-/// How many neighbors count as one in a sum of products: 1 and twice the squares of the correlations at all lags of a running mean.
-fn memory(off: &[f64]) -> f64 {
-    let lags = FEWEST_IN_MEAN.max(off.len() / WINDOWS[1]).min(off.len());
-    let at = |lag: usize| -> f64 { off[lag..].iter().zip(off).map(|(a, b)| a * b).sum() };
-    let all = at(0).max(f64::MIN_POSITIVE);
-    1.0 + 2.0 * (1..lags).map(|lag| (at(lag) / all).powi(2)).sum::<f64>()
+/// How many neighbors count as one in a sum of products of two series: 1 and twice the products of their correlations at all lags of a running
+/// mean.
+fn memory(one: &[f64], other: &[f64]) -> f64 {
+    let lags = FEWEST_IN_MEAN.max(one.len() / WINDOWS[1]).min(one.len());
+    let at = |series: &[f64], lag: usize| -> f64 {
+        let pairs = series[lag..].iter().zip(series);
+        pairs.map(|(a, b)| a * b).sum()
+    };
+    let of = |series: &[f64], lag| at(series, lag) / at(series, 0).max(f64::MIN_POSITIVE);
+    let shared = (1..lags).map(|lag| of(one, lag) * of(other, lag));
+    1.0 + 2.0 * shared.sum::<f64>().max(0.0)
 }
 
 /// Both repeats' waves at moments of the first at which the second was read too.
@@ -211,171 +261,4 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::forward::surrogate::synthetic::{Reading, ready, tool};
-    use crate::random::Random;
-
-    /// Two repeats of a press of a flat punch of 10 N/mm to 1 mm at 1 mm/s and back, read 100 times a way.
-    #[derive(Default, Clone)]
-    struct Presses {
-        /// Standard deviation of noise, N; part of it that the next sample keeps.
-        noise: (f64, f64),
-        /// Teeth in the force, N from top to bottom, over 0.15 mm of way; and by how much of one those of the second repeat begin later.
-        teeth: (f64, f64),
-        /// The stage goes in steps, of which ten make a tooth's way.
-        goes_in_steps: bool,
-        /// Step in which the depth is read, mm, and the force, N.
-        read_in: (f64, f64),
-        /// Readings (by number) that are off by 2 N in each repeat.
-        astray: [Option<usize>; 2],
-        /// Seconds by which the second repeat's samples come later, but for its first.
-        later_s: f64,
-    }
-
-    impl Presses {
-        fn reading(&self, repeat: usize, k: usize, noise: f64) -> Reading {
-            let time = 0.01 * k as f64 + self.later_s * (repeat * k.min(1)) as f64;
-            let way = match self.goes_in_steps {
-                true => (time / 0.06).floor() * 0.06,
-                false => time,
-            };
-            let depth = if way < 1.0 { way } else { 2.0 - way };
-            let side = if way < 1.0 { 1.0 } else { -1.0 };
-            let phase = if time < 1.0 {
-                Phase::Load
-            } else {
-                Phase::Unload
-            };
-            let (most, later) = self.teeth;
-            let tooth = (way / 0.15 + later * repeat as f64).fract() - 0.5;
-            let astray = if self.astray[repeat] == Some(k) {
-                2.0
-            } else {
-                0.0
-            };
-            let rounded = |x: f64, step: f64| {
-                if step > 0.0 {
-                    (x / step).round() * step
-                } else {
-                    x
-                }
-            };
-            let force = 10.0 * depth + side * most * tooth + noise + astray;
-            (
-                time,
-                rounded(depth, self.read_in.0),
-                phase,
-                rounded(force, self.read_in.1),
-            )
-        }
-
-        fn found(&self, seed: u64) -> ShortWaves {
-            let mut random = Random::new(seed);
-            let (sigma, keeps) = self.noise;
-            let mut recordings = Vec::new();
-            for repeat in 0..2 {
-                let mut noise = sigma * random.normal();
-                let mut all = Vec::new();
-                for k in 0..200 {
-                    noise = keeps * noise + (1.0 - keeps * keeps).sqrt() * sigma * random.normal();
-                    all.push(self.reading(repeat, k, noise));
-                }
-                recordings.push((0, all));
-            }
-            let (made, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &recordings, sigma);
-            let depths = made.courses.iter().flat_map(|c| &c.rows);
-            let simulated: Vec<f64> = depths.map(|row| 10.0 * row.depth_mm).collect();
-            short_waves(&made.courses, &simulated).expect("two repeats")
-        }
-
-        /// The most that ten seeds show.
-        fn most(&self) -> f64 {
-            let each = (1..11).map(|seed| self.found(seed).standard_errors);
-            each.fold(f64::NEG_INFINITY, f64::max)
-        }
-
-        /// The least that ten seeds show.
-        fn least(&self) -> f64 {
-            let each = (1..11).map(|seed| self.found(seed).standard_errors);
-            each.fold(f64::INFINITY, f64::min)
-        }
-    }
-
-    const NOISE: (f64, f64) = (0.05, 0.0);
-
-    #[test]
-    fn noise_shares_no_waves_however_long_it_remembers() {
-        for keeps in [0.0, 0.5, 0.9, 0.99] {
-            let quiet = Presses {
-                noise: (0.05, keeps),
-                ..Presses::default()
-            };
-            assert!(quiet.most() < 4.0, "{keeps}: {}", quiet.most());
-        }
-    }
-
-    /// Teeth of four times the noise from top to bottom: their root mean square is that over the root of 12.
-    #[test]
-    fn teeth_at_the_same_way_are_shared_and_measured() {
-        let teeth = Presses {
-            noise: NOISE,
-            teeth: (0.2, 0.0),
-            ..Presses::default()
-        };
-        assert!(teeth.least() > 4.0, "{}", teeth.least());
-        let larger = Presses {
-            teeth: (0.3, 0.0),
-            ..teeth.clone()
-        };
-        let rms = larger.found(1).rms_n * 12f64.sqrt();
-        assert!((0.2..0.4).contains(&rms), "{rms}");
-        // Samples of the second repeat fall between those of the first, or half a tooth on.
-        let between = Presses {
-            later_s: 0.004,
-            ..teeth.clone()
-        };
-        assert!(between.least() > 4.0, "{}", between.least());
-        let one_astray = Presses {
-            astray: [Some(60), None],
-            ..teeth.clone()
-        };
-        assert!(one_astray.least() > 4.0, "{}", one_astray.least());
-        let apart = Presses {
-            teeth: (0.2, 0.5),
-            ..teeth
-        };
-        assert!(apart.most() < 4.0, "{}", apart.most());
-    }
-
-    /// Each shares waves in the force or in the rest, and neither in both; a force that is read in steps shares them in both.
-    #[test]
-    fn steps_of_the_stage_and_of_the_readings_are_no_waves_of_the_skin() {
-        let quiet = Presses {
-            noise: (0.005, 0.0),
-            ..Presses::default()
-        };
-        let stage = Presses {
-            goes_in_steps: true,
-            ..quiet.clone()
-        };
-        assert!(stage.most() < 4.0, "{}", stage.most());
-        let read_in = |read_in: (f64, f64)| Presses {
-            read_in,
-            ..quiet.clone()
-        };
-        let (encoder, converter) = (read_in((0.03, 0.0)), read_in((0.0, 0.3)));
-        assert!(encoder.most() < 4.0, "{}", encoder.most());
-        assert!(converter.most() < 4.0, "{}", converter.most());
-    }
-
-    #[test]
-    fn readings_that_are_astray_decide_nothing() {
-        let far = Presses {
-            noise: NOISE,
-            astray: [Some(60), Some(60)],
-            ..Presses::default()
-        };
-        assert!(far.most() < 4.0, "{}", far.most());
-    }
-}
+mod tests;

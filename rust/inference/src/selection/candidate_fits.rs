@@ -322,6 +322,25 @@ mod tests {
         assert!((made.least_seen() * 8.0 - 0.3).abs() < 1e-9);
     }
 
+    /// Of six parts of a press, two misfit alike or one alone: readings that are astray at one moment of two repeats are no misfit over the press.
+    #[test]
+    fn misfit_of_one_part_is_the_largest_that_is_left_out() {
+        let left = |misfits: &[usize]| {
+            LOW.on_trial(|trial| {
+                let parts: Vec<usize> = (0..trial.ready.values.len()).map(|k| k / 17).collect();
+                let residual = |(k, part): (usize, &usize)| match misfits.contains(part) {
+                    true => 2.0,
+                    false => 1.0 - 2.0 * (k % 2) as f64,
+                };
+                let residual: Vec<f64> = parts.iter().enumerate().map(residual).collect();
+                lack_of_fit(trial.surrogate, &residual, &parts)
+            })
+        };
+        let (one, two) = (left(&[2]), left(&[2, 4]));
+        assert!(one.all > 50.0 && one.less_largest < 2.0, "{one:?}");
+        assert!(two.all > 100.0 && two.less_largest > 50.0, "{two:?}");
+    }
+
     /// What begins with nothing answers as what it is added to, and so ends no worse.
     #[test]
     fn null_parameter_of_a_mechanism_leaves_predictions_unchanged() {

@@ -144,6 +144,7 @@ mod tests {
             pairs: Vec::new(),
             heteroscedasticity: None,
             short_waves: None,
+            depth_curve: None,
             gain_step: None,
             samples: made.values.len(),
             overdispersion: 1.0,

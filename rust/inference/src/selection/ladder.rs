@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use thenar_contact::Control;
 use thenar_contact::effects::Effect;
 
+use crate::checks::depth_curve::depth_curve;
 use crate::checks::gain_step::{GainStep, gain_step};
 use crate::checks::heteroscedasticity::{heteroscedasticity, pulls};
 use crate::checks::lack_of_fit::blocks;
@@ -68,6 +69,8 @@ pub fn climb(
         // The scatter of gains was judged with the step in it: what the step explains is told by the repeats' gains alone.
         scored.qaic_gain = scored.qaic_gain.max(clear_step.map_or(0.0, |f| f.evidence));
     }
+    let mut curve = depth_curve(&trial);
+    curve.iter_mut().for_each(|curve| scale.judge(curve));
     let singles = best_of_each(ready, singles);
     let pairs = trial.pairs(&singles, &scale)?;
     let sizes = (&base.refit.simulated[..], &ready.sigma[..]);
@@ -77,6 +80,7 @@ pub fn climb(
             sizes,
             ready.noise.correlation[0].memory_s,
         ),
+        depth_curve: curve,
         short_waves: short_waves(&ready.courses, &base.refit.simulated),
         base,
         singles,

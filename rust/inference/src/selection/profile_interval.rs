@@ -279,6 +279,7 @@ mod tests {
             pairs: Vec::new(),
             heteroscedasticity: None,
             short_waves: None,
+            depth_curve: None,
             gain_step: None,
             samples: ready.values.len(),
             overdispersion: 1.0,

@@ -52,6 +52,8 @@ pub struct Rungs {
     pub heteroscedasticity: Option<Heteroscedasticity>,
     /// Short waves that repeats share; None where too little was recorded twice.
     pub short_waves: Option<ShortWaves>,
+    /// What one free curve over depth explains; None where the form of the model is not known.
+    pub depth_curve: Option<Scored>,
     /// The clearest step of the session's gain.
     pub gain_step: Option<GainStep>,
     /// Number of screened samples.

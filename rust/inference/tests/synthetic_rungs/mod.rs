@@ -43,6 +43,7 @@ pub fn rungs_beside(first: (Effect, f64), second: Effect, more: f64) -> Rungs {
         pairs: vec![scored(&[first.0, second], first.1 + more)],
         heteroscedasticity: None,
         short_waves: None,
+        depth_curve: None,
         gain_step: None,
         samples: 100,
         overdispersion: 1.0,

@@ -137,7 +137,7 @@ fn range(surrogate: &Surrogate<'_>, mechanism: &Mechanism, number: usize) -> (f6
             None => (0.0, 0.0, 0.0),
         },
         Law::Stiffening(..) => (0.1, 0.0, 4.0),
-        Law::GainStep { .. } => (0.0, -0.7, 0.7),
+        Law::GainStep { .. } | Law::DepthCurve { .. } => (0.0, -0.7, 0.7),
         Law::Offset => (0.0, -0.3 * force, 0.3 * force),
         Law::Drift { .. } => (0.0, -0.3 * force, 0.3 * force),
         Law::Saturation(_) => (-0.1, -2.0, HIGHEST),

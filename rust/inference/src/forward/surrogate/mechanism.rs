@@ -43,6 +43,11 @@ pub enum Law {
     Tabulated(usize),
     /// The modulus grows with this measure by this law; its rate is free.
     Stiffening(DeformationMeasure, Growth),
+    /// A free curve over depth: the logarithm of the stiffness at one of its knots; no candidate, but what candidates are held against.
+    DepthCurve {
+        /// From 0, at even depths as far as the study's largest.
+        knot: usize,
+    },
     /// Later recordings of the session read more or less by a factor; its logarithm is free.
     GainStep {
         /// First recording of the session that reads otherwise.
@@ -108,6 +113,9 @@ pub enum UseAtStart {
     /// The loading travel of all recordings before.
     AfterRecordings,
 }
+
+/// Knots of a free curve over depth; neither first touch nor the largest depth is one, which parameters take up.
+pub(crate) const KNOTS: usize = 7;
 
 /// With what a modulus grows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

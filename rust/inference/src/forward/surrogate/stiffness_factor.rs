@@ -3,7 +3,7 @@
 use thenar_contact::effects::Effect;
 
 use crate::forward::surrogate::candidate_model::{Model, Setting};
-use crate::forward::surrogate::mechanism::{DeformationMeasure, Law};
+use crate::forward::surrogate::mechanism::{DeformationMeasure, KNOTS, Law};
 use crate::forward::surrogate::surrogate_data::Surrogate;
 use crate::forward::tables::elastic_table::{radius, rung};
 use crate::forward::tables::form_ways::{WAYS, ways};
@@ -44,6 +44,10 @@ impl Surrogate<'_> {
                 Law::Stiffening(measure, growth) => {
                     let (rate, x) = (set.of[number][0], self.measure(*measure, (place, depth)));
                     log += growth.log(rate, x);
+                }
+                Law::DepthCurve { knot } => {
+                    let x = (KNOTS + 1) as f64 * depth / self.most.1;
+                    log += set.of[number][0] * (1.0 - (x - (knot + 1) as f64).abs()).max(0.0);
                 }
                 _ => {}
             }

@@ -1,0 +1,194 @@
+//! Presses that hum, stick, are read in steps, or only scatter: what of them counts as waves that repeats share.
+
+use super::*;
+use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+use crate::random::Random;
+
+/// Repeats of a press of a flat punch of 10 N/mm to 1 mm at 1 mm/s and back, read 100 times a way.
+#[derive(Default, Clone)]
+struct Presses {
+    /// All but the first two, which there always are.
+    more_repeats: usize,
+    /// Size of a hum of 8 Hz, N, whose phase in each repeat is another.
+    hum: f64,
+    /// Standard deviation of noise, N; part of it that the next sample keeps.
+    noise: (f64, f64),
+    /// Teeth in the force, N from top to bottom, over 0.15 mm of way; and by how much of one those of each repeat begin later.
+    teeth: (f64, f64),
+    /// The stage goes in steps, of which ten make a tooth's way.
+    goes_in_steps: bool,
+    /// Step in which the depth is read, mm, and the force, N.
+    read_in: (f64, f64),
+    /// Readings (by number) that are off by 2 N in the first two repeats.
+    astray: [Option<usize>; 2],
+    /// Seconds by which each repeat's samples come later, but for its first.
+    later_s: f64,
+}
+
+impl Presses {
+    fn reading(&self, repeat: usize, k: usize, noise: f64) -> Reading {
+        let time = 0.01 * k as f64 + self.later_s * (repeat * k.min(1)) as f64;
+        let way = match self.goes_in_steps {
+            true => (time / 0.06).floor() * 0.06,
+            false => time,
+        };
+        let depth = if way < 1.0 { way } else { 2.0 - way };
+        let side = if way < 1.0 { 1.0 } else { -1.0 };
+        let phase = if time < 1.0 {
+            Phase::Load
+        } else {
+            Phase::Unload
+        };
+        let (most, later) = self.teeth;
+        let tooth = (way / 0.15 + later * repeat as f64).fract() - 0.5;
+        let astray = if self.astray.get(repeat) == Some(&Some(k)) {
+            2.0
+        } else {
+            0.0
+        };
+        let rounded = |x: f64, step: f64| {
+            if step > 0.0 {
+                (x / step).round() * step
+            } else {
+                x
+            }
+        };
+        let force = 10.0 * depth + side * most * tooth + noise + astray;
+        (
+            time,
+            rounded(depth, self.read_in.0),
+            phase,
+            (1e3 * rounded(force, self.read_in.1)).round() / 1e3,
+        )
+    }
+
+    fn found(&self, seed: u64) -> ShortWaves {
+        let mut random = Random::new(seed);
+        let (sigma, keeps) = self.noise;
+        let mut recordings = Vec::new();
+        for repeat in 0..2 + self.more_repeats {
+            let phase = std::f64::consts::TAU * random.uniform();
+            let mut noise = sigma * random.normal();
+            let mut all = Vec::new();
+            for k in 0..200 {
+                noise = keeps * noise + (1.0 - keeps * keeps).sqrt() * sigma * random.normal();
+                let turn = std::f64::consts::TAU * 0.08 * k as f64 + phase;
+                all.push(self.reading(repeat, k, noise + self.hum * libm::sin(turn)));
+            }
+            recordings.push((0, all));
+        }
+        let (made, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &recordings, sigma);
+        let depths = made.courses.iter().flat_map(|c| &c.rows);
+        let simulated: Vec<f64> = depths.map(|row| 10.0 * row.depth_mm).collect();
+        short_waves(&made.courses, &simulated).expect("repeats")
+    }
+
+    /// The most that ten seeds show.
+    fn most(&self) -> f64 {
+        let each = (1..11).map(|seed| self.found(seed).standard_errors);
+        each.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The least that ten seeds show.
+    fn least(&self) -> f64 {
+        let each = (1..11).map(|seed| self.found(seed).standard_errors);
+        each.fold(f64::INFINITY, f64::min)
+    }
+}
+
+const NOISE: (f64, f64) = (0.05, 0.0);
+
+#[test]
+fn noise_shares_no_waves_however_long_it_remembers() {
+    let all = [0, 1]
+        .into_iter()
+        .flat_map(|more| [0.0, 0.5, 0.9, 0.99].map(|keeps| (more, keeps)));
+    for (more_repeats, keeps) in all {
+        let quiet = Presses {
+            more_repeats,
+            noise: (0.05, keeps),
+            ..Presses::default()
+        };
+        assert!(quiet.most() < 4.0, "{keeps}: {}", quiet.most());
+    }
+}
+
+/// Teeth of four times the noise from top to bottom: their root mean square is that over the root of 12.
+#[test]
+fn teeth_at_the_same_way_are_shared_and_measured() {
+    let teeth = Presses {
+        more_repeats: 1,
+        noise: NOISE,
+        teeth: (0.2, 0.0),
+        ..Presses::default()
+    };
+    assert!(teeth.least() > 4.0, "{}", teeth.least());
+    let larger = Presses {
+        teeth: (0.3, 0.0),
+        ..teeth.clone()
+    };
+    let rms = larger.found(1).rms_n * 12f64.sqrt();
+    assert!((0.2..0.4).contains(&rms), "{rms}");
+    // Samples of the second repeat fall between those of the first, or half a tooth on.
+    let between = Presses {
+        later_s: 0.004,
+        ..teeth.clone()
+    };
+    assert!(between.least() > 4.0, "{}", between.least());
+    let one_astray = Presses {
+        astray: [Some(60), None],
+        ..teeth.clone()
+    };
+    assert!(one_astray.least() > 4.0, "{}", one_astray.least());
+    let apart = Presses {
+        teeth: (0.2, 0.5),
+        ..teeth
+    };
+    assert!(apart.most() < 4.0, "{}", apart.most());
+}
+
+/// Each shares waves in the force or in the rest, and neither in both; a force that is read in steps shares them in both.
+#[test]
+fn steps_of_the_stage_and_of_the_readings_are_no_waves_of_the_skin() {
+    let quiet = Presses {
+        noise: (0.005, 0.0),
+        ..Presses::default()
+    };
+    let stage = Presses {
+        goes_in_steps: true,
+        ..quiet.clone()
+    };
+    assert!(stage.most() < 4.0, "{}", stage.most());
+    let read_in = |read_in: (f64, f64)| Presses {
+        read_in,
+        ..quiet.clone()
+    };
+    let (encoder, converter) = (read_in((0.03, 0.0)), read_in((0.0, 0.3)));
+    // A step of 12 bits over 1200 N, as a file of three decimals has it.
+    let as_written = read_in((0.0, 1200.0 / 4096.0));
+    assert!(as_written.most() < 4.0, "{}", as_written.most());
+    assert!(encoder.most() < 4.0, "{}", encoder.most());
+    assert!(converter.most() < 4.0, "{}", converter.most());
+}
+
+/// Phases of two repeats are alike by chance: held against what differs between them alone, a fifth of these would be above 4.
+#[test]
+fn hum_that_is_in_step_by_chance_is_not_shared_by_two_repeats() {
+    let hum = Presses {
+        noise: NOISE,
+        hum: 0.07,
+        ..Presses::default()
+    };
+    let often = (1..201).filter(|seed| hum.found(*seed).standard_errors > 4.0);
+    assert!(often.count() <= 2);
+}
+
+#[test]
+fn readings_that_are_astray_decide_nothing() {
+    let far = Presses {
+        noise: NOISE,
+        astray: [Some(60), Some(60)],
+        ..Presses::default()
+    };
+    assert!(far.most() < 4.0, "{}", far.most());
+}
