@@ -6,8 +6,8 @@ use thenar_inference::selection::scored::Rungs;
 /// Evidence of a free curve, nats, from which it is believed: where nothing is missing it reaches 6.7.
 const BELIEVED: f64 = 10.0;
 /// Part of it that a listed effect must reach to be what the curve shows: a true stiffening law reaches 0.79 and more, a stiff skin more than
-/// all of it; a pocket that passes for one of these at most 0.34.
-const REACHED: f64 = 0.6;
+/// all of it; a pocket that passes for one of these 0.64 at most, or all of a small one.
+const REACHED: f64 = 0.7;
 /// Smallest departure that is believed, as a logarithm: the model's own is 0.006 on flat skin.
 const SMALLEST: f64 = 0.02;
 
@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn curve_that_an_effect_nearly_explains_is_left_to_it() {
-        assert_eq!(said(30.0, 0.1), None);
+        assert_eq!(said(27.0, 0.1), None);
         let words = said(60.0, 0.1).unwrap();
         assert!(
             words.contains("8 % softer than elsewhere at 1.00 mm"),
