@@ -78,8 +78,8 @@ pub fn decide<'a>(ready: &PreparedStudy, rungs: &'a Rungs) -> Decision<'a> {
     {
         return silent(Verdict::Unlisted, &reason);
     }
-    if let Some(reason) = free_curve(rungs, ready.scales.deepest) {
-        return silent(Verdict::Unlisted, &reason);
+    if let Some((reason, nearest)) = free_curve(rungs) {
+        return silent(Verdict::Unlisted, &reason).suspecting(&nearest);
     }
     match best.filter(|b| b.qaic_gain >= needed(&b.mechanisms[0])) {
         None => undetected(ready, rungs),

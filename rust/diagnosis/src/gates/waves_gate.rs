@@ -2,8 +2,8 @@
 
 use thenar_inference::selection::scored::Rungs;
 
-/// Standard errors from which repeats share short waves: where nothing is missing they reach 2.3 in the calibration (58 studies) and 2.7 in
-/// closed forms; under three of the calibration's nine unlisted effects 6.2 to 7.7.
+/// Standard errors from which repeats share short waves: where nothing is missing they reach 2.3 in the calibration (58 studies) and 3.2 in
+/// closed forms and pads; under three of the calibration's nine unlisted effects 6.2 to 7.7.
 const WAVES: f64 = 4.0;
 
 /// That repeats share short waves, which sums over parts of a phase cancel out, in words; None where they do not.
@@ -11,12 +11,12 @@ pub(crate) fn shared_waves(rungs: &Rungs) -> Option<String> {
     let waves = rungs.short_waves?;
     (waves.standard_errors > WAVES).then(|| {
         let size = match waves.rms_n < 1e-4 {
-            true => format!("{:.2} uN", 1e6 * waves.rms_n),
-            false => format!("{:.2} mN", 1e3 * waves.rms_n),
+            true => format!("{:.1} uN", 1e6 * waves.rms_n),
+            false => format!("{:.1} mN", 1e3 * waves.rms_n),
         };
         format!(
-            "repeats share short waves of about {size} in the force ({:.1} standard errors of independent noise), which is no form of what was \
-             fitted; the skin can make them, and so can a motor, a sensor or a baseline that was taken off all repeats",
+            "repeats share short waves of about {size} in the force ({:.1} standard errors of independent noise), which nothing that was \
+             fitted makes; the skin can, and so can a motor, a sensor or a baseline that was taken off all repeats",
             waves.standard_errors
         )
     })
@@ -39,12 +39,12 @@ mod tests {
         };
         let of = |standard_errors| ShortWaves {
             standard_errors,
-            rms_n: 0.00213,
+            rms_n: 0.00214,
         };
         assert_eq!((words_of(None), words_of(Some(of(3.0)))), (None, None));
         let words = words_of(Some(of(5.0))).unwrap();
         assert!(
-            words.contains("2.13 mN in the force (5.0 standard"),
+            words.contains("2.1 mN in the force (5.0 standard"),
             "{words}"
         );
     }

@@ -77,7 +77,7 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
 }
 
 /// The step of which the forces of a recording are multiples, from one of them on, N, as far as they are written; 0 where there is none. Each
-/// recording by itself: a zero that was set anew shifts all steps.
+/// recording by itself: another zero shifts all steps.
 fn step_n(course: &ForceRecording) -> f64 {
     let read = course.rows.iter().filter(|row| row.sample.is_some());
     let mut forces: Vec<f64> = read.map(|row| row.force_n).collect();
