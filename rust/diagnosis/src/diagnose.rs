@@ -233,6 +233,13 @@ fn told(
     found
         .notes
         .extend(decision.named.and_then(crate::effect_numbers::use_note));
+    found
+        .notes
+        .extend(crate::channels::depth_zero::depth_zero_notes(
+            study,
+            (ready, rungs),
+            decision,
+        ));
     let open: Vec<String> = found.findings.iter().filter_map(open_note).collect();
     found.notes.extend(open);
     add_notes(study, &mut found, ready);
@@ -289,6 +296,7 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     });
     found.notes.extend(ready.noise.wander_note(forces));
     found.notes.extend(untested(&ready.courses));
+    found.notes.extend(ready.copies.clone());
 }
 
 #[cfg(test)]

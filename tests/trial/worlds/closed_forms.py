@@ -32,6 +32,8 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `gain_scatter`: repeats differ by 4 % in force and 20 um in first touch; 5 mN.
 - `stray`: 5 mN and one sample a recording that is off by a fifth of the peak.
 - `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
+- `trigger`: depth counts from where the force passes 5 to 20 mN, so that all recordings begin late alike; 3 mN.
+- `tool_length`: depth counts from where each tool's tip was measured to be, 40 to 120 um off either way; 3 mN.
 
 Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
 
@@ -58,6 +60,8 @@ NOISES = (
     "gain_scatter",
     "stray",
     "mixture",
+    "trigger",
+    "tool_length",
 )
 TRUTHS = (
     *("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation"),
@@ -70,6 +74,9 @@ MODULUS_MPA = (0.006, 0.02)
 RADIUS_MM = (4.0, 9.0)
 DEEPEST_MM = (0.8, 1.6)
 PATCH_MM = 16.0
+TOOLS = ("ball", "large_ball")
+TRIGGER_N = (0.005, 0.02)
+OFF_MM = (0.04, 0.12)
 
 
 @dataclass(frozen=True)
@@ -152,7 +159,8 @@ def draw(seed, truth, noise, motion="ramps"):
         for protocol, time, depth in protocols:
             for _ in range(repeats):
                 at, true = reader.clocked(time, depth)
-                recordings.append(Recording(protocol, tool, reader.read(at, true, tissue.force(at, true, radius))))
+                read = reader.read(at, true, tissue.force(at, true, radius), tool)
+                recordings.append(Recording(protocol, tool, read))
     return Case(radii, recordings, deepest, None if truth.endswith("cycle_softening") else 120.0)
 
 
@@ -229,7 +237,8 @@ class _Session:
                 course = self.damage(true, elastic, before)
                 damage = course[-1]
                 name = "four cycles" if is_cycled else f"{speed:g} mm/s"
-                found.append(Recording(name, tool, reader.read(at, true, elastic * (1.0 - self.share * course))))
+                force = elastic * (1.0 - self.share * course)
+                found.append(Recording(name, tool, reader.read(at, true, force, tool)))
         return found
 
     def damage(self, depth, elastic, before):
@@ -304,6 +313,10 @@ class _Reader:
         }
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
         self.ceiling_n = np.inf
+        self.trigger_n = random.uniform(*TRIGGER_N) if family == "trigger" else 0.0
+        self.off_mm = {}
+        if family == "tool_length":
+            self.off_mm = {tool: random.uniform(*OFF_MM) * random.choice([-1.0, 1.0]) for tool in TOOLS}
 
     def clocked(self, time, depth):
         """The moments at which samples were taken, and the true depths then."""
@@ -313,8 +326,8 @@ class _Reader:
         kept[[0, -1]] = True
         return time[kept], depth[kept]
 
-    def read(self, time, depth, force):
-        """Columns as they are written."""
+    def read(self, time, depth, force, tool):
+        """Columns as they are written, of a press of a tool."""
         random, n = self.random, len(time)
         noise = random.standard_normal(n)
         if self.memory:
@@ -329,12 +342,21 @@ class _Reader:
         if self.family == "stray":
             read[random.integers(n // 4, n)] += random.choice([-0.2, 0.2]) * force.max()
         stated = depth + self.touch * random.standard_normal() + self.jitter * random.standard_normal(n)
+        stated -= self.off_mm.get(tool, 0.0) + triggered(depth, force, self.trigger_n)
         if self.step:
             stated = self.step * np.round(stated / self.step)
         if self.family == "clock":
             least = 0.1 * np.diff(time).min()
             time = np.sort(time + min(0.004, least) * random.standard_normal(n)) + 0.1 * least * np.arange(n)
         return np.column_stack([time - time[0], stated, np.minimum(read, self.ceiling_n)])
+
+
+def triggered(depth, force, least_n):
+    """Depth (mm) at which the force of a press first passes `least_n`; 0 where that is 0."""
+    if least_n <= 0.0:
+        return 0.0
+    passed = int(np.argmax(force > least_n))
+    return float(np.interp(least_n, force[passed - 1 : passed + 1], depth[passed - 1 : passed + 1]))
 
 
 def _patch(deepest):

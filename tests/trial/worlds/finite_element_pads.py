@@ -40,6 +40,7 @@ read with 3 % + 0.2 mm2 where it is read.
 - `slow`: force 0.5 % white, and 4 mN that forgets itself in 0.25 s; zero of the cell off by 5 mN in each recording.
 - `remounted`: each recording with its own gain (3 %) and first touch (20 um); 3 mN white.
 - `stepper`: depth in steps of 10 um, force in steps of 2 mN; 3 mN white.
+- `judged_late`: first touch judged 50 to 150 um late by eye, alike with each tool, with 10 um of scatter; 1 % and 4 mN.
 
 Habits, drawn too: depths of 15 to 40 % of the tissue; one tool or two of plate, 24 mm cylinder and 12 mm sphere (times
 s); one speed or two; a hold or none; 2 to 4 repeats; area read or not. Except in `bone` the thickness is stated as it
@@ -56,7 +57,8 @@ from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 from trial.worlds.closed_forms import Stranger
 
-NOISES = ("laboratory", "slow", "remounted", "stepper")
+NOISES = ("laboratory", "slow", "remounted", "stepper", "judged_late")
+LATE_MM = (0.05, 0.15)
 TRUTHS = (
     *("nothing", "exponential", "relaxation", "cycle_softening", "saturation", "bone"),
     *("relaxation_and_saturation", "stranger"),
@@ -289,6 +291,7 @@ class _Reader:
     def __init__(self, family, reads_area, random):
         self.family, self.reads_area, self.random = family, reads_area, random
         self.ceiling_n = np.inf
+        self.late_mm = random.uniform(*LATE_MM) if family == "judged_late" else 0.0
 
     def read(self, time, depth, force, area):
         """Columns as they are written."""
@@ -305,6 +308,9 @@ class _Reader:
                 slow.append(keep * slow[-1] + np.sqrt(1.0 - keep**2) * shock)
             read = force * (1.0 + 0.005 * random.standard_normal(n)) + 0.004 * np.array(slow)
             read += 0.005 * random.standard_normal()
+        elif self.family == "judged_late":
+            stated = stated - self.late_mm + 0.01 * random.standard_normal()
+            read = force * (1.0 + 0.01 * random.standard_normal(n)) + 0.004 * white
         elif self.family == "remounted":
             stated = stated + 0.02 * random.standard_normal()
             read = force * (1.0 + 0.03 * random.standard_normal()) + 0.003 * white

@@ -29,6 +29,31 @@ def test_step_fades_as_its_terms_do():
     assert found == pytest.approx(0.7 + 0.2 * np.exp(-3.0 / 0.5) + 0.1 * np.exp(-3.0 / 4.0), rel=3e-3)
 
 
+def test_a_trigger_begins_depth_where_the_force_passes_it():
+    case = closed_forms.draw(3, "nothing", "trigger")
+    at_zero = {}
+    for one in case.recordings:
+        k = int(np.argmax(one.table[:, 1] >= 0.0))
+        part = -one.table[k - 1, 1] / (one.table[k, 1] - one.table[k - 1, 1])
+        force = one.table[k - 1, 2] + part * (one.table[k, 2] - one.table[k - 1, 2])
+        at_zero.setdefault(one.tool, []).append(force)
+    least, most = closed_forms.TRIGGER_N
+    means = [np.mean(forces) for forces in at_zero.values()]
+    assert all(least - 0.003 < mean < most + 0.003 for mean in means) and np.ptp(means) < 0.004
+
+
+def test_a_tool_whose_length_is_off_shifts_all_its_depths_alike():
+    plain, off = (closed_forms.draw(3, "nothing_in_cycles", noise) for noise in ("white", "tool_length"))
+    lift = [one.table[0, 1] for one in off.recordings]
+    by_tool = {
+        one.tool: [a for a, o in zip(lift, off.recordings, strict=True) if o.tool == one.tool] for one in off.recordings
+    }
+    for lifts in by_tool.values():
+        shift = abs(np.mean(lifts) + 0.15)
+        assert 0.03 < shift < 0.13 and np.std(lifts) < 0.01
+    assert all(abs(one.table[0, 1] + 0.15) < 0.02 for one in plain.recordings)
+
+
 def test_a_clipped_cell_reads_one_largest_value_in_all_recordings():
     case = closed_forms.draw(3, "saturation", "white")
     most = {recording.table[:, 2].max() for recording in case.recordings}

@@ -91,6 +91,9 @@ def test_families_of_noise_scatter_as_they_say():
     assert force_sd["stepper"] == pytest.approx(np.hypot(0.003, 0.002 / np.sqrt(12.0)), rel=0.05)
     assert between["remounted"] == pytest.approx(0.015, rel=0.4) and between["laboratory"] < 0.001
     assert read["laboratory"][:, :, 1].std(axis=1).mean() == pytest.approx(0.01, rel=0.02)
+    late = 1.0 - read["judged_late"][:, :, 1].mean(axis=1)
+    assert 0.04 < late.mean() < 0.16 and late.std() == pytest.approx(np.hypot(0.005, 0.01), rel=0.4)
+    assert force_sd["judged_late"] == pytest.approx(np.hypot(0.004, 0.005), rel=0.02)
     assert np.ptp(np.round(read["stepper"][:, :, 1] / 0.01) - read["stepper"][:, :, 1] / 0.01) < 1e-9
     assert read["laboratory"][:, :, 3].std(axis=1).mean() == pytest.approx(np.hypot(1.2, 0.2), rel=0.02)
 
@@ -196,3 +199,14 @@ def test_rounded_depths_accuse_nobody(seed, truth, tmp_path):
     names = [found["effect"] for found in said["findings"]]
     assert world.judged(truth, case.pad.stiffening, said["verdict"], names) == "right", said["sentence"]
     assert not any("the zero of the force wanders" in note for note in said["notes"]), "no zero wanders in this world"
+
+
+@pytest.mark.parametrize("seed", [9302, 9305])
+def test_depths_that_are_judged_late_by_eye_accuse_nobody(seed, tmp_path):
+    """9302 was a stiff skin. In 9305 noise in proportion is a hundred times that without load: "differ under load"."""
+    case = world.draw(seed, "nothing", "judged_late")
+    case.write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+    late = [float(note.split("about ")[1].split(" mm")[0]) for note in said["notes"] if "is late: " in note]
+    assert late and all(0.04 < each < 0.2 for each in late)

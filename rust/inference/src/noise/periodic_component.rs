@@ -14,8 +14,9 @@ use crate::noise::restricted_likelihood::within;
 /// too far apart for faster ones.
 const HZ: (f64, f64) = (0.3, 3.0);
 /// How often noise alone may show a rhythm as clear as one that is told. False ones of the second trial's third and fourth draws show by a
-/// chance of 0.0014 to 0.0046, but so does a weak pulse of the calibration (0.0022).
-const BY_CHANCE: f64 = 0.005;
+/// chance of 0.0014 to 0.0046, of closed forms by 0.0002 to 0.004; pulses of closed forms and pads by 1.4e-5 at most, but a weak one of the
+/// calibration by 0.0022.
+const BY_CHANCE: f64 = 0.001;
 /// Turns by which the longest recording tells two frequencies that are tried apart.
 const TURNS: f64 = 0.25;
 

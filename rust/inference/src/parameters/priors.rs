@@ -20,9 +20,11 @@ pub const THICKNESS: (f64, f64) = (1.0, 40.0);
 pub const LOG_MODULUS: f64 = 3.0;
 
 /// Standard deviation of the depth of first touch as an operator judges it, mm: a sphere-like pad of radius 8 mm and 8 kPa bears
-/// 5 mN, a common trigger, at 0.1 mm (Hertz); half of that is taken. Where repeats show that first touch scatters by less, the surrogate
-/// takes what a tool has in all its recordings for no larger than that.
-pub const TOUCH: f64 = 0.05;
+/// 5 mN, a common trigger, at 0.1 mm (Hertz). A trigger is always late, an operator's eye or a tool's measured length may be early.
+pub const TOUCH: f64 = 0.1;
+
+/// Standard deviations of the noise from which there is a force at depth 0 already, so that first touch was judged late.
+pub const CLEAR_AT_ZERO: f64 = 4.0;
 
 /// Part of a recording's depth that first touch may be off by where it is read from the force.
 pub const UNKNOWN_TOUCH: f64 = 0.15;

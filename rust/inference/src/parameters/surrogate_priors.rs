@@ -7,19 +7,24 @@ use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::form_ways::WAYS;
 use crate::noise::estimate::Noise;
+use crate::observe::first_touch::at_zero;
 use crate::parameters::priors::{
-    DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MEASURED_FORM, MOST, SHARED, SHARED_FORM, TOUCH,
-    UNKNOWN_TOUCH,
+    CLEAR_AT_ZERO, DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MEASURED_FORM, MOST, SHARED,
+    SHARED_FORM, TOUCH, UNKNOWN_TOUCH,
 };
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
 /// Moduli, first touch, gain, and the model's form.
+///
+/// That repeats agree in their first touch says nothing of how far it is off in all of them: a tool whose length was measured wrongly, and a
+/// trigger of the force, are off alike every time.
 pub(crate) fn shared(
     replay: &Replay,
     (courses, elastic): (&[ForceRecording], &Elastic),
     noise: &Noise,
 ) -> Vec<Coordinate> {
     let known = &replay.observed.is_touch_known;
+    let sigma = noise.sigma.concat();
     let mut all = moduli(&replay.tissue.materials[0]).to_vec();
     let has_regions = replay.tissue.regions.len() > 1;
     for place in 0..elastic.places.len() {
@@ -27,9 +32,11 @@ pub(crate) fn shared(
             continue;
         };
         let deep = first.deepest();
+        let at_place = courses.iter().filter(|c| c.place == place);
+        let seen = pressed_before(at_place, &sigma);
         let judged = match known[first.recording] {
-            true => touch(noise.zero_mm).min(DEEPEST_TOUCH * deep),
-            false => UNKNOWN_TOUCH * deep,
+            true => TOUCH.max(seen).min(DEEPEST_TOUCH * deep),
+            false => (UNKNOWN_TOUCH * deep).max(seen),
         };
         let form = form_error(elastic, place);
         all.extend(of_place(place, (judged, deep), (form, has_regions)));
@@ -38,6 +45,16 @@ pub(crate) fn shared(
         all.extend(of_course(c, course.deepest(), noise));
     }
     all
+}
+
+/// About how deep a tool is pressed where its depths begin, mm, as the recordings show in which there is clearly a force already; 0 if none does.
+fn pressed_before<'a>(courses: impl Iterator<Item = &'a ForceRecording>, sigma: &[f64]) -> f64 {
+    let late = courses.filter_map(|course| {
+        let seen = at_zero(&course.rows, |row| (row.depth_mm, row.force_n))?;
+        let noise = sigma[course.rows[seen.reading].sample?];
+        (seen.force_n > CLEAR_AT_ZERO * noise).then(|| seen.late_mm())
+    });
+    late.fold(0.0, f64::max)
 }
 
 /// The modulus at first touch and the one at which it stops growing, about the study's own.
@@ -56,11 +73,6 @@ pub(crate) fn moduli(material: &Material) -> [Coordinate; 2] {
             step: 1e-3,
         }
     })
-}
-
-/// Standard deviation of the first touch that a tool has in all its recordings, mm, from that between repeats.
-pub(crate) fn touch(scatter_mm: Option<f64>) -> f64 {
-    scatter_mm.map_or(TOUCH, |scatter| scatter.min(TOUCH))
 }
 
 /// What a tool at its site may be off by: its first touch as it was judged, against a depth (mm), and the model's form.
@@ -186,4 +198,37 @@ pub(crate) fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coord
         ));
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::synthetic::ready;
+    use crate::observe::measured::Phase;
+
+    /// A tool whose depths begin 0.2 mm late, one whose depths begin with first touch, and one that is recorded from deeper on.
+    #[test]
+    fn a_force_at_depth_zero_frees_the_first_touch_of_its_tool() {
+        let press = |late: f64, from: f64| -> Vec<_> {
+            (0..60)
+                .map(|k| from + 0.025 * f64::from(k))
+                .map(|depth| (depth, (depth + late).max(0.0).powf(1.5)))
+                .enumerate()
+                .map(|(k, (depth, force))| (0.1 * k as f64, depth, Phase::Load, force))
+                .collect()
+        };
+        let tools = [(0.2, -0.3), (0.0, -0.3), (0.2, 0.2)];
+        let presses: Vec<_> = (0..3).map(|t| (t, press(tools[t].0, tools[t].1))).collect();
+        let (made, _) = ready(Vec::new(), &presses, 0.01);
+        let seen = [0, 1, 2].map(|place| {
+            pressed_before(
+                made.courses.iter().filter(|c| c.place == place),
+                &made.sigma,
+            )
+        });
+        assert!(
+            (seen[0] - 0.2).abs() < 0.02 && seen[1..] == [0.0, 0.0],
+            "{seen:?}"
+        );
+    }
 }

@@ -17,11 +17,16 @@ use crate::forward::mesh::press_key::Key;
 use crate::forward::mesh::press_table::Basis;
 use crate::forward::mesh::scan_shapes::{Scanned, Shapes};
 use crate::forward::setup::study_skin::Tissue;
+use crate::observe::first_touch::late_of;
 use crate::observe::measured::Measured;
 use crate::observe::study::Observed;
 
 /// Depth that is added to the deepest of a ladder for a contact zero that moves, mm and share.
 const DEPTH_MARGIN: (f64, f64) = (0.1, 0.05);
+/// The same, at least, over how late depths begin.
+const LATE_MARGIN: f64 = 1.5;
+/// Part of the thinnest tissue, and of a ball's radius, to which that reaches at most.
+const MOST_LATE: (f64, f64) = (0.6, 0.9);
 /// Plates and rods reach this much beyond the skin, at most this far from the site, mm: other fingers are not in the way.
 const REACH: (f64, f64) = (1.2, 60.0);
 
@@ -36,6 +41,8 @@ pub struct Place {
     pub(crate) direction: Vec3,
     /// mm; of all its recordings.
     pub(crate) deepest: f64,
+    /// How late its depths begin, about, mm: so much deeper it is pressed than they say.
+    late: f64,
     pub(crate) kept: Vec<(Key, Arc<Basis>)>,
     pub(crate) shapes: Shapes,
 }
@@ -97,6 +104,7 @@ impl Replay {
             let depths = measured.moments.iter().map(|m| m.depth_mm);
             let deepest = depths.filter(|d| d.is_finite()).fold(0.0, f64::max);
             places[at].deepest = places[at].deepest.max(deepest);
+            places[at].late = places[at].late.max(late_of(measured));
             place_of.push(at);
         }
         let readers = observed
@@ -119,11 +127,9 @@ impl Replay {
         for place in &mut places {
             // Where no depth is known a force is sought; soft tissue yields half its thickness at most.
             if place.deepest == 0.0 {
-                let thickness = tissue.materials.iter().map(|m| m.thickness_mm);
-                place.deepest = 0.5 * thickness.fold(f64::INFINITY, f64::min).min(8.0);
+                place.deepest = 0.5 * thinnest(&tissue.materials).min(8.0);
             }
-            place.deepest =
-                place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
+            place.deepest = reach(place, thinnest(&tissue.materials));
         }
         let mesh = &study.skin.mesh;
         for place in &places {
@@ -316,6 +322,20 @@ fn remembers(effect: &ActiveEffect) -> bool {
     effect.amplitude > 0.0 && matches!(effect.entry().stage, Stage::History | Stage::Interface)
 }
 
+/// Least thickness of these tissues, mm.
+pub(crate) fn thinnest(materials: &[Material]) -> f64 {
+    let all = materials.iter().map(|m| m.thickness_mm);
+    all.fold(f64::INFINITY, f64::min)
+}
+
+/// Depth that the ladder of a place reaches, mm, for the deepest of its recordings.
+fn reach(place: &Place, thinnest: f64) -> f64 {
+    let usual = place.deepest * (1.0 + DEPTH_MARGIN.1) + DEPTH_MARGIN.0 * place.deepest.min(1.0);
+    let late = place.deepest + (LATE_MARGIN * place.late).min(place.deepest);
+    let ball = place.ball.unwrap_or(f64::INFINITY);
+    usual.max(late.min(MOST_LATE.0 * thinnest).min(MOST_LATE.1 * ball))
+}
+
 fn place(study: &Study, measured: &Measured, extent: f64) -> Result<Place, InferenceError> {
     let (name, at) = (&measured.indenter, &measured.site);
     let indenter = study.indenters.iter().find(|i| i.name == *name);
@@ -341,6 +361,7 @@ impl Place {
             ball: crate::forward::setup::indenter::ball(indenter),
             direction: site.direction.into(),
             deepest: 0.0,
+            late: 0.0,
             kept: Vec::new(),
             shapes: Shapes::default(),
         })

@@ -2,6 +2,7 @@
 
 use thenar_recordings::Study;
 
+use crate::checks::copies::copies;
 use crate::forward::surrogate::mechanism::UseAtStart;
 use crate::observe::measured::{Censoring, Measured, Phase, Quantity};
 
@@ -144,7 +145,7 @@ pub(crate) fn force_recordings(
     measured: &[Measured],
     place_of: &[usize],
 ) -> Vec<ForceRecording> {
-    let mut first = 0;
+    let (mut first, copies) = (0, copies(measured));
     let mut found = Vec::new();
     for (recording, one) in measured.iter().enumerate() {
         let start = first;
@@ -155,6 +156,7 @@ pub(crate) fn force_recordings(
             || one.moments.len() < 8
             || !one.is_calibrated
             || !one.moments.iter().all(still)
+            || copies.iter().any(|(copy, _)| *copy == recording)
         {
             continue;
         }

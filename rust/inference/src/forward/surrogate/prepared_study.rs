@@ -8,6 +8,7 @@ use thenar_contact::{ActiveEffect, Control, Material};
 use thenar_recordings::Study;
 use thenar_recordings::study::Shape;
 
+use crate::checks::copies::copies_note;
 use crate::errors::InferenceError;
 use crate::forward::surrogate::force_recording::{ForceRecording, carries_use, force_recordings};
 use crate::forward::surrogate::mechanism::Scales;
@@ -17,8 +18,9 @@ use crate::forward::tables::elastic_table::radius;
 use crate::noise::estimate::{Noise, noise};
 use crate::noise::whitening::Whitening;
 use crate::observe::robust_scale::median;
+use crate::parameters::priors::{DEEPEST_TOUCH, TOUCH};
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
-use crate::parameters::surrogate_priors::{form_error, of_course, of_place, shared, touch};
+use crate::parameters::surrogate_priors::{form_error, of_course, of_place, shared};
 
 /// Skin is flat where it departs from a plane by less than this part of its thickness, as far as this many thicknesses from a site.
 const FLAT: (f64, f64) = (0.03, 1.5);
@@ -41,6 +43,8 @@ pub struct PreparedStudy {
     pub sigma: Vec<f64>,
     /// What is free in every model.
     pub shared: Vec<Coordinate>,
+    /// What is said of recordings that were left out as copies of others.
+    pub copies: Option<String>,
     /// Sizes from which variants are chosen.
     pub scales: Scales,
     /// The study's own material, of the first region.
@@ -63,7 +67,10 @@ pub fn prepare(
     }
     let g0 = replay.tissue.materials[0].g0_mpa;
     let elastic = Elastic::new(replay, (g0, is_flat(study)), control)?;
-    Ok(Some(assemble(study, replay, (found, elastic))))
+    Ok(Some(PreparedStudy {
+        copies: copies_note(&replay.observed.measured),
+        ..assemble(study, replay, (found, elastic))
+    }))
 }
 
 /// What is known without pressing.
@@ -90,6 +97,7 @@ fn assemble(
         values,
         sigma,
         shared,
+        copies: None,
         scales,
         base_material: replay.tissue.materials[0],
     }
@@ -184,7 +192,7 @@ impl PreparedStudy {
             true => Vec::new(),
             false => of_place(
                 place,
-                (touch(self.noise.zero_mm).min(0.25 * deepest), deepest),
+                (TOUCH.min(DEEPEST_TOUCH * deepest), deepest),
                 (form_error(elastic, place), has_regions),
             ),
         };
@@ -378,11 +386,5 @@ mod tests {
         ready.elastic.is_bone_stated = true;
         assert!(bend(&ready.elastic) < 0.6 * most && bend(&ready.elastic) > 0.01);
         assert!(free(&ready.elastic).unwrap().len() < unstated.len());
-    }
-
-    #[test]
-    fn first_touch_prior_is_bounded_by_repeat_scatter() {
-        let all = [None, Some(0.02), Some(0.4)].map(touch);
-        assert_eq!(all, [0.05, 0.02, 0.05]);
     }
 }

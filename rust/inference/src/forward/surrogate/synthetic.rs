@@ -71,6 +71,7 @@ pub fn ready(
         sigma: noise.sigma.concat(),
         noise,
         shared: [Kind::First, Kind::Limit].map(modulus).to_vec(),
+        copies: None,
         scales: scales(&courses),
         elastic: Elastic {
             drained: vec![1.0; tools.len()],

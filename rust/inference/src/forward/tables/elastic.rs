@@ -1,6 +1,6 @@
 //! Elastic tables of every tool at its site, with and without effects that change the response.
 
-use crate::forward::mesh::replay::{Place, Replay};
+use crate::forward::mesh::replay::{Place, Replay, thinnest};
 use nalgebra::{DMatrix, DVector};
 use thenar_contact::effects::Effect;
 use thenar_contact::{ActiveEffect, Control, Material};
@@ -138,12 +138,6 @@ impl Elastic {
         let is_it = |v: &&Variant| v.effect == effect && v.form == form;
         self.variants.iter().find(is_it)
     }
-}
-
-/// Least thickness of these tissues, mm.
-fn thinnest(materials: &[Material]) -> f64 {
-    let all = materials.iter().map(|m| m.thickness_mm);
-    all.fold(f64::INFINITY, f64::min)
 }
 
 /// By place, the number of the first place at the same site.
