@@ -27,17 +27,18 @@ pub(crate) fn copies(measured: &[Measured]) -> Vec<(usize, usize)> {
 pub(crate) fn copies_note(measured: &[Measured]) -> Option<String> {
     let found = copies(measured);
     let name = |k: usize| &measured[k].name;
+    if found.is_empty() {
+        return None;
+    }
     let listed = found.iter().take(LISTED);
-    let listed: Vec<String> = listed
-        .map(|(copy, of)| format!("'{}' (of '{}')", name(*copy), name(*of)))
+    let mut listed: Vec<String> = listed
+        .map(|(copy, of)| format!("'{}' ('{}')", name(*copy), name(*of)))
         .collect();
-    let more = match found.len() {
-        0 => return None,
-        count if count > LISTED => format!(", and {} more", count - LISTED),
-        _ => String::new(),
-    };
+    if found.len() > LISTED {
+        listed.push("\u{2026}".to_owned());
+    }
     Some(format!(
-        "{}{more}: depths and forces are the same, reading by reading. A copy is no repeat, and is left out; give the file of the repeat",
+        "a copy is no repeat: left out is what holds depths and forces of another recording, reading by reading: {}. Give the files of the repeats",
         listed.join(", ")
     ))
 }
@@ -91,7 +92,7 @@ mod tests {
         assert_eq!(copies(&made), [(2, 0), (5, 0)]);
         let said = copies_note(&made).unwrap();
         assert!(
-            said.starts_with("'press 2' (of 'press 0'), 'press 5' (of 'press 0'): depths"),
+            said.contains(": 'press 2' ('press 0'), 'press 5' ('press 0'). Give"),
             "{said}"
         );
         assert_eq!(copies_note(&made[..2]), None);
@@ -105,6 +106,9 @@ mod tests {
     #[test]
     fn only_some_of_many_copies_are_listed() {
         let said = copies_note(&presses(&[("ball", 0.0, 0.01); 6])).unwrap();
-        assert!(said.contains(", and 2 more: "), "{said}");
+        assert!(
+            said.contains(", \u{2026}. Give") && !said.contains("press 4"),
+            "{said}"
+        );
     }
 }
