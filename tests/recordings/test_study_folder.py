@@ -43,6 +43,7 @@ indenter = "rod"
 site = "pad"
 [instrument]
 pitch_mm = 1.27
+first_touch_mm = 0.005
 """
 FILES = {
     "study.toml": STUDY,
@@ -68,6 +69,7 @@ def test_skin_tools_and_sites_are_arrays(folder):
     assert study.indenters.rod.axis.tolist() == [0.0, 1.0, 0.0] and study.indenters.rod.radius_mm == 24.0
     assert study.sites.pad.direction.tolist() == [0.0, 0.0, -1.0]
     assert study.instrument.pitch_mm == 1.27 and study.instrument.noise_n is None
+    assert study.instrument.first_touch_mm == 0.005 and study.instrument.position_mm is None
 
 
 def test_recordings_are_arrays(folder):
@@ -96,6 +98,9 @@ def test_refusals_name_file_line_and_remedy(folder):
     with pytest.raises(
         thenar.RecordingError, match=r"'pich_mm' is no key of \[instrument\]; did you mean 'pitch_mm'\?"
     ):
+        thenar.Study.load(folder)
+    (folder / "study.toml").write_text(STUDY.replace("first_touch_mm = 0.005", "first_touch_mm = -0.005"))
+    with pytest.raises(thenar.RecordingError, match=r"study\.toml, line \d+: .*first_touch_mm"):
         thenar.Study.load(folder)
     with pytest.raises(thenar.RecordingError, match="it is no folder; name the folder that holds study.toml"):
         thenar.Study.load(folder / "elsewhere")

@@ -295,6 +295,7 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
         Some((course.recording, sample - course.samples.0))
     });
     found.notes.extend(ready.noise.wander_note(forces));
+    found.notes.extend(ready.noise.zero_note());
     found.notes.extend(untested(&ready.courses));
     found.notes.extend(ready.copies.clone());
 }

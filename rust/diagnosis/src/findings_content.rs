@@ -249,6 +249,10 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
         ("temper", rungs.overdispersion),
         ("repeat_gain_sd", ready.noise.gain),
         ("repeat_zero_sd_mm", ready.noise.zero_mm.unwrap_or(f64::NAN)),
+        (
+            "repeat_force_zero_sd_n",
+            ready.noise.force_zero_n.unwrap_or(f64::NAN),
+        ),
         ("noise_memory_s", ready.noise.correlation[0].memory_s),
         ("noise_white_share", ready.noise.correlation[0].white),
     ];

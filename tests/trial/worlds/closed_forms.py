@@ -33,6 +33,7 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `stray`: 5 mN and one sample a recording that is off by a fifth of the peak.
 - `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
 - `trigger`: depth counts from where the force passes 5 to 20 mN, so that all recordings begin late alike; 3 mN.
+- `tared`: each recording's zero of the force is off by its own 5 to 20 mN (standard deviation); 3 mN.
 - `tool_length`: depth counts from where each tool's tip was measured to be, 40 to 120 um off either way; 3 mN.
 
 Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
@@ -60,6 +61,7 @@ NOISES = (
     "gain_scatter",
     "stray",
     "mixture",
+    "tared",
     "trigger",
     "tool_length",
 )
@@ -76,6 +78,7 @@ DEEPEST_MM = (0.8, 1.6)
 PATCH_MM = 16.0
 TOOLS = ("ball", "large_ball")
 TRIGGER_N = (0.005, 0.02)
+ZERO_N = (0.005, 0.02)
 OFF_MM = (0.04, 0.12)
 
 
@@ -314,6 +317,7 @@ class _Reader:
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
         self.ceiling_n = np.inf
         self.trigger_n = random.uniform(*TRIGGER_N) if family == "trigger" else 0.0
+        self.zero_n = random.uniform(*ZERO_N) if family == "tared" else 0.0
         self.off_mm = {}
         if family == "tool_length":
             self.off_mm = {tool: random.uniform(*OFF_MM) * random.choice([-1.0, 1.0]) for tool in TOOLS}
@@ -336,6 +340,8 @@ class _Reader:
                 noise[k] = keep * noise[k - 1] + np.sqrt(1.0 - keep**2) * noise[k]
         read = force * (1.0 + self.gain * random.standard_normal()) + self.even.get(self.family, 0.003) * noise
         read += self.share * force * random.standard_normal(n)
+        if self.zero_n:
+            read += self.zero_n * random.standard_normal()
         if self.family == "wander":
             steps = np.sqrt(np.diff(time, prepend=time[0]) / 10.0)
             read += 0.008 * np.cumsum(steps * random.standard_normal(n))

@@ -60,6 +60,18 @@ def test_a_clipped_cell_reads_one_largest_value_in_all_recordings():
     assert len(most) == 1 and all((one.table[:, 2] == max(most)).sum() > 1 for one in case.recordings)
 
 
+def test_zeros_of_recordings_differ_where_cells_are_tared_before_each():
+    """Before the tool touches a recording reads its own zero, off by 5 to 20 mN; elsewhere there is none."""
+    size = {"tared": [], "white": []}
+    for noise, sizes in size.items():
+        for seed in range(40):
+            tables = [one.table for one in closed_forms.draw(seed, "nothing", noise).recordings]
+            zeros = [np.mean(table[table[:, 1] < -0.05, 2]) for table in tables]
+            sizes.append(np.sqrt(np.mean(np.square(zeros))))
+    assert np.sqrt(np.mean(np.square(size["tared"]))) == pytest.approx(0.0132, rel=0.2)
+    assert max(size["white"]) < 0.005
+
+
 @pytest.mark.parametrize("noise", closed_forms.NOISES)
 def test_draws_repeat_and_clocks_go_forward(noise):
     one, other = (closed_forms.draw(4, "nothing", noise) for _ in range(2))

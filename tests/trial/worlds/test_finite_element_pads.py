@@ -201,6 +201,14 @@ def test_rounded_depths_accuse_nobody(seed, truth, tmp_path):
     assert not any("the zero of the force wanders" in note for note in said["notes"]), "no zero wanders in this world"
 
 
+@pytest.mark.parametrize("seed", [5003, 5009, 5021, 5031])
+def test_zeros_that_differ_between_recordings_accuse_nobody(seed, tmp_path):
+    """An offset was named, in 5031 a stiff skin, while repeats that agree were thought to know the zero they share."""
+    world.draw(seed, "nothing", "slow").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+
+
 @pytest.mark.parametrize("seed", [9302, 9305])
 def test_depths_that_are_judged_late_by_eye_accuse_nobody(seed, tmp_path):
     """9302 was a stiff skin. In 9305 noise in proportion is a hundred times that without load: "differ under load"."""

@@ -83,9 +83,9 @@ def test_depths_that_begin_too_late_or_too_early_are_said_to(noise, seed, tmp_pa
         late = np.mean(all_off)
         (note,) = [note for note in said["notes"] if f"depth 0 of {tool} at" in note]
         assert f"is {'late' if late > 0.0 else 'early'}: " in note
-        told = float(note.split("touches the skin ")[1].split(" mm")[0])
+        said_mm = float(note.split("touches the skin ")[1].split(" mm")[0])
         low, high = (float(part) for part in note.split("90 %: ")[1].split(")")[0].split(" to "))
-        assert told == pytest.approx(abs(late), abs=0.015) and low - 0.01 <= abs(late) <= high + 0.01
+        assert said_mm == pytest.approx(abs(late), abs=0.015) and low - 0.01 <= abs(late) <= high + 0.01
 
 
 @pytest.mark.parametrize("seed", [9305, 9310])
@@ -102,7 +102,7 @@ def test_a_trigger_that_starts_the_record_accuses_nobody(seed, tmp_path):
     ("truth", "seed", "off_n"), [("nothing", 22, 0.0), ("relaxation", 22, 0.0), ("nothing", 22, 0.05)]
 )
 def test_depths_that_begin_with_first_touch_are_not_said_to_be_off(truth, seed, off_n, tmp_path):
-    """Nor where relaxation is not told from drainage, or where the zero of the load cell is off by 50 mN."""
+    """Nor where relaxation and drainage explain alike, or where the zero of the load cell is off by 50 mN."""
     case = closed_forms.draw(seed, truth, "white")
     for one in case.recordings:
         one.table[:, 2] += off_n
@@ -121,6 +121,29 @@ def test_a_first_touch_that_is_sought_in_the_force_accuses_nobody_and_is_not_sai
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
     assert not any("depth 0 of" in note for note in said["notes"])
+
+
+@pytest.mark.parametrize("seed", [9503, 9507])
+def test_zeros_that_differ_between_recordings_are_said_to_and_do_not_wander(seed, tmp_path):
+    case = closed_forms.draw(seed, "nothing", "tared")
+    case.write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []
+    tables = [one.table for one in case.recordings]
+    zeros = [np.mean(table[table[:, 1] < -0.05, 2]) for table in tables]
+    (note,) = [note for note in said["notes"] if "zero of the force" in note]
+    said_mn = float(note.split("recording by ")[1].split(" mN")[0])
+    assert said_mn == pytest.approx(1000.0 * np.std(zeros, ddof=1), rel=0.4)
+
+
+@pytest.mark.parametrize(("truth", "seed"), [("saturation", 9511), ("relaxation", 9512)])
+def test_what_is_named_under_zeros_that_differ_explains_the_rest_in_the_contact_model_too(truth, seed, tmp_path):
+    """Without a zero for each recording 0.4 of the reducible error was removed in 9511, and nothing named in 9512."""
+    closed_forms.draw(seed, truth, "tared").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == [truth]
+    fit, simulated = removed(said)
+    assert fit > 0.9 and simulated > 0.9 * fit
 
 
 def test_copies_are_no_repeats(tmp_path):
@@ -198,9 +221,16 @@ def test_relaxation_is_named_through_jitter(tmp_path):
     assert simulated > 0.9 * fit
 
 
-def test_a_large_effect_whose_law_only_resembles_its_name_is_named(tmp_path):
-    """Damage by work, read as softening by travel: less of its evidence is confirmed; the error falls by half."""
-    closed_forms.draw(103, "cycle_softening", "depth_jitter").write(tmp_path)
+@pytest.mark.parametrize(("seed", "first_touch_mm"), [(102, 0.01), (103, None)])
+def test_a_large_effect_whose_law_only_resembles_its_name_is_named(seed, first_touch_mm, tmp_path):
+    """Damage by work, read as softening by travel: less of its evidence is confirmed; the error falls by half or more.
+
+    In 102 it is suspected only, unless it is stated that first touch is judged within 10 um (4 um in this world).
+    """
+    closed_forms.draw(seed, "cycle_softening", "depth_jitter").write(tmp_path)
+    if first_touch_mm:
+        with (tmp_path / "study.toml").open("a") as study:
+            study.write(f"[instrument]\nfirst_touch_mm = {first_touch_mm}\n")
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["cycle_softening"]
     fit = said["fit"]

@@ -62,15 +62,21 @@ pub fn unmodeled_repeat_noise(
 
 /// True if the force pulls where a fit with adhesion says so: a necessary sign, looked for in what was measured.
 ///
-/// `simulated` are the predictions of that fit. Neighbors share their noise, so that so many count as one.
-pub fn pulls(courses: &[ForceRecording], (simulated, sigma): (&[f64], &[f64])) -> bool {
+/// `simulated` are the predictions of that fit, and `zeros` (N) the zero of each recording's force in it: a cell that was not tared pulls all along.
+/// Neighbors share their noise, so that so many count as one.
+pub fn pulls(
+    courses: &[ForceRecording],
+    zeros: &[f64],
+    (simulated, sigma): (&[f64], &[f64]),
+) -> bool {
     let (mut sum, mut count) = (0.0, 0.0);
-    for row in courses.iter().flat_map(|c| &c.rows) {
+    let all = courses.iter().zip(zeros);
+    for (row, zero) in all.flat_map(|(c, zero)| c.rows.iter().map(move |row| (row, *zero))) {
         let Some(sample) = row.sample else {
             continue;
         };
-        if simulated[sample] < -0.5 * sigma[sample] {
-            sum += (row.force_n / sigma[sample]).clamp(-6.0, 6.0);
+        if simulated[sample] - zero < -0.5 * sigma[sample] {
+            sum += ((row.force_n - zero) / sigma[sample]).clamp(-6.0, 6.0);
             count += 1.0;
         }
     }

@@ -8,6 +8,7 @@ use crate::checks::heteroscedasticity::{SHARED, pulls};
 use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::Phase;
+use crate::parameters::surrogate_parameter::{Kind, by_recording};
 use crate::selection::scored::Scored;
 
 /// Standard errors that 1 % of a normal law exceed on one side.
@@ -37,6 +38,11 @@ pub fn looked_for(
             .and_then(|z| clear(Some(z))),
         Sign::ForcePulls => Some(pulls(
             &ready.courses,
+            &by_recording(
+                (&ready.shared, &scored.refit.at),
+                ready.courses.len(),
+                Kind::ForceZero,
+            ),
             (&scored.refit.simulated, &ready.sigma),
         ))
         .filter(|p| *p),
@@ -169,7 +175,9 @@ fn by_speed(ready: &PreparedStudy) -> Option<f64> {
         };
         let (a, b) = (peaks(fast), peaks(slow));
         let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len() as f64;
-        let spread = ready.noise.gain.hypot(ready.noise_share());
+        let least = own.iter().map(|c| c.most()).fold(f64::INFINITY, f64::min);
+        let zero = ready.noise.force_zero_n.unwrap_or(0.0) / least.max(f64::MIN_POSITIVE);
+        let spread = ready.noise.gain.hypot(ready.noise_share()).hypot(zero);
         let error = spread * (1.0 / a.len() as f64 + 1.0 / b.len() as f64).sqrt();
         sum += (mean(&a) - mean(&b)) / error.max(f64::MIN_POSITIVE);
         count += 1.0;

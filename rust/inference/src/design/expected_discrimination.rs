@@ -2,7 +2,7 @@
 //!
 //! Both explanations predict the recording. What keeps one from imitating the other is the difference that is left once it is
 //! refitted to all recordings, the new ones among them: to first order a quadratic form of the predicted difference, with the
-//! information of what was recorded so far (Gauss-Newton) and the recording's own gain and first touch taken out (Schur
+//! information of what was recorded so far (Gauss-Newton) and the recording's own gain, first touch and zero taken out (Schur
 //! complement). If the first explanation is true, the lead of its evidence grows by a normal number of mean `d / 2` and
 //! variance `d`, `d` being that squared difference in units of the noise, tempered, since forms are not true. What the
 //! recordings leave open of the true one's numbers (`profile_likelihood.rs`) is open in what it predicts: then it, too, has to be refitted,

@@ -280,6 +280,7 @@ impl Fitting {
     fn notes(&self, (noise, descent): (&Noise, &Descent), parameters: &[Parameter]) -> Vec<String> {
         let mut notes = self.replay.tissue.notes.clone();
         notes.extend(noise.notes.iter().cloned());
+        notes.extend(noise.zero_note());
         if !descent.has_converged {
             notes
                 .push("the fit did not settle: what it gives is the best that it found".to_owned());

@@ -211,10 +211,18 @@ impl Problem<'_> {
                     Kind::Counts(_) => matches!(q, Quantity::Pressure(_)),
                     _ => !matches!(q, Quantity::Area | Quantity::Scan(_)),
                 };
-                let each = samples.iter().zip(simulated);
-                return Ok(each
-                    .map(|(s, f)| if is_scaled(s.quantity) { *f } else { 0.0 })
-                    .collect());
+                let own_zero = |p: &Parameter| p.kind == Kind::ForceZero(recording);
+                let zero = self.parameters.iter().position(own_zero);
+                let zero = zero.map_or(0.0, |k| point.at[k]);
+                let each = samples
+                    .iter()
+                    .zip(simulated)
+                    .map(|(s, f)| match s.quantity {
+                        quantity if !is_scaled(quantity) => 0.0,
+                        Quantity::Force => f - zero,
+                        _ => *f,
+                    });
+                return Ok(each.collect());
             }
             Kind::ForceZero(_) => {
                 let is_force = |q: Quantity| f64::from(q == Quantity::Force);

@@ -1,6 +1,6 @@
 //! Deviations of repeats from their mean, and their scatter.
 
-use nalgebra::Vector2;
+use nalgebra::Vector3;
 
 use crate::noise::correlation::Correlation;
 use crate::observe::robust_scale::trimmed_deviation;
@@ -10,6 +10,9 @@ pub(crate) const OUTLIER: f64 = 3.5;
 
 /// Variance that values within `OUTLIER` standard deviations of a normal law keep.
 const KEPT_VARIANCE: f64 = 0.9935;
+
+/// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
+pub(crate) const FLOOR: f64 = 2e-4;
 
 /// Fewest samples of a channel from which noise is told.
 pub(crate) const LEAST_SAMPLES: usize = 8;
@@ -58,9 +61,11 @@ pub struct Deviations {
     pub(crate) profile: Vec<f64>,
     /// Deviation by repeat and sample, with what differs as a whole taken out.
     pub(crate) rest: Vec<Vec<f64>>,
-    /// What differs as a whole, by repeat: logarithm of gain, and zero in mm; and what each sample adds to them.
-    pub(crate) whole: Vec<Vector2<f64>>,
-    pub(crate) along: Vec<Vector2<f64>>,
+    /// What differs as a whole, by repeat: logarithm of gain, first touch in mm, and zero of the force in N; and what each sample adds to them.
+    pub(crate) whole: Vec<Vector3<f64>>,
+    pub(crate) along: Vec<Vector3<f64>>,
+    /// Whether each repeat has a zero of the force of its own; else the third of each is 0.
+    pub(crate) has_own_zero: bool,
 }
 
 impl Deviations {
@@ -83,6 +88,7 @@ impl Deviations {
                 .zip(&profile)
                 .map(|(a, p)| a / *p)
                 .collect(),
+            has_own_zero: self.has_own_zero,
             profile,
         }
     }
@@ -113,11 +119,25 @@ impl Deviations {
         }
     }
 
+    /// How many numbers each repeat has of its own.
+    pub(crate) fn own(&self) -> f64 {
+        if self.has_own_zero { 3.0 } else { 2.0 }
+    }
+
+    /// How a rhythm of the gain shows in a sample, up to a factor, in units of the noise's own size there: by what the sample adds to the gain or,
+    /// where a zero is taken out and such a weight is negative without load, by the load.
+    pub(crate) fn grows(&self, k: usize) -> f64 {
+        match self.has_own_zero {
+            true => self.load[k] / self.profile[k],
+            false => self.along[k].x,
+        }
+    }
+
     /// Variance of what differs as a whole, for noise of variance 1 with that correlation.
-    pub(crate) fn unit_variance(&self, correlation: Correlation) -> Vector2<f64> {
-        let mut sum = Vector2::zeros();
-        let square = |(a, p): (&Vector2<f64>, &f64)| a * (p * correlation.deviation(*p));
-        let along: Vec<Vector2<f64>> = self.along.iter().zip(&self.profile).map(square).collect();
+    pub(crate) fn unit_variance(&self, correlation: Correlation) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        let square = |(a, p): (&Vector3<f64>, &f64)| a * (p * correlation.deviation(*p));
+        let along: Vec<Vector3<f64>> = self.along.iter().zip(&self.profile).map(square).collect();
         for (k, a) in along.iter().enumerate() {
             sum += a.component_mul(a);
             // Noise remembers little of what lies many memories back.

@@ -2,7 +2,7 @@
 
 use crate::noise::channel::{CHANNELS, Channel};
 use crate::noise::correlation::{Correlation, forgotten};
-use crate::noise::deviations::NoiseShape;
+use crate::noise::deviations::{FLOOR, NoiseShape};
 use crate::noise::maps::mat_smoothing::smoothed;
 use crate::noise::periodic_component::Rhythm;
 use crate::noise::repeat_scatter::Repeats;
@@ -11,8 +11,6 @@ use crate::number_format::number;
 use crate::observe::measured::{Measured, Quantity, Sample};
 use crate::observe::robust_scale::{median, noise_of};
 
-/// Noise below this part of a channel's largest value is not believed: tables are joined to 1e-4 of their peak.
-const FLOOR: f64 = 2e-4;
 /// Standard deviation taken for a mat whose frames cannot tell it, as a part of the largest reading. A good film's
 /// coefficient of variation is 1.5 % (Yao 2019, Measurement 145:525), a common one's calibration error 2.7 % rms.
 const UNKNOWN_MAT: f64 = 0.03;
@@ -35,6 +33,10 @@ pub struct Noise {
     pub gain: f64,
     /// Standard deviation between repeats of the depth of first touch, mm; None where it cannot be told.
     pub zero_mm: Option<f64>,
+    /// Standard deviation between repeats of the force's zero, N; None where it cannot be judged.
+    pub force_zero_n: Option<f64>,
+    /// Whether the force's zeros differ by clearly more than noise makes them.
+    pub has_clear_zeros: bool,
     /// By [`CHANNELS`]: standard deviation of what noise adds from sample to sample, over what the correlation says.
     pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
@@ -50,7 +52,7 @@ pub struct Noise {
 /// Noise of a study's recordings.
 ///
 /// `simulated` are predictions by recording, and `slopes` their derivatives by depth (per mm): along these the repeats of a protocol may
-/// differ as a whole (gain, contact zero) without being noisy. `is_used` says which recordings may be looked at; `noise_n` is the
+/// differ as a whole (gain, contact zero, zero of the force) without being noisy. `is_used` says which recordings may be looked at; `noise_n` is the
 /// data sheet's noise of a force.
 pub fn noise(
     measured: &[Measured],
@@ -93,6 +95,8 @@ pub fn noise(
         degrees: (degrees > 0.0).then_some(degrees),
         gain: forces.or(scatter[3].as_ref()).map_or(0.0, |s| s.gain),
         zero_mm: forces.and_then(|s| s.zero_mm),
+        force_zero_n: forces.and_then(|s| s.force_zero_n),
+        has_clear_zeros: forces.is_some_and(|s| s.has_clear_zeros),
         step: [0, 1, 2, 3, 4].map(|c| scatter[c].as_ref().map_or(1.0, |s| s.step)),
         drawn_from: [0, 1, 2, 3, 4].map(|c| {
             scatter[c]
@@ -106,6 +110,16 @@ pub fn noise(
 }
 
 impl Noise {
+    /// How far the force's zeros of recordings lie apart; None where noise alone may make them differ so.
+    pub fn zero_note(&self) -> Option<String> {
+        let sd = self.force_zero_n.filter(|_| self.has_clear_zeros)?;
+        let sd = number(1000.0 * sd);
+        Some(format!(
+            "the zero of the force differs from recording to recording by {sd} mN (standard deviation); each has its own in the fit. Tare before each \
+             recording to have smaller effects seen"
+        ))
+    }
+
     /// How far repeats drift apart, as where the force's zero wanders, and how noisy each reading is; None where they do not.
     ///
     /// What rounded depths leave drifts apart too, so where depths have an error the zero is not said to wander.

@@ -143,20 +143,21 @@ fn light_memory(all: &[Deviations]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::restricted_likelihood::tests::{deviations, deviations_of};
+    use crate::noise::restricted_likelihood::tests::{deviations, deviations_of, of_memory};
     use crate::random::Random;
 
-    /// Of studies of five protocols: what taking out gain and touch hides of the noise is not missed, neither in its memory nor in what
+    /// Of studies of five protocols: what taking out gain and touch, or a zero too, hides of the noise is not missed, neither in its memory nor in what
     /// it does to a slow signal, which goes as the variance times the memory.
     #[test]
     fn correlation_time_and_sigma_are_unbiased() {
-        for memory_s in [0.15, 0.6] {
+        for (memory_s, own) in [(0.15, 2), (0.6, 2), (0.15, 3), (0.6, 3)] {
             let mut random = Random::new(5);
             let studies = 60.0;
             let mut logs = [0.0; 2];
             for _ in 0..60 {
-                let mut all: Vec<Deviations> =
-                    (0..5).map(|_| deviations(memory_s, &mut random)).collect();
+                let mut all: Vec<Deviations> = (0..5)
+                    .map(|_| of_memory(own, memory_s, &mut random))
+                    .collect();
                 let found = estimate(&mut all);
                 let variance = found.sizes.iter().map(|s| s.0 * s.0).sum::<f64>() / 5.0;
                 let ratio = found.correlation.memory_s / memory_s;
@@ -165,7 +166,7 @@ mod tests {
             }
             assert!(
                 logs[0].abs() < 0.1 && logs[1].abs() < 0.1,
-                "{memory_s}: {logs:?}"
+                "{memory_s} {own}: {logs:?}"
             );
         }
     }
@@ -264,7 +265,7 @@ mod tests {
                 if !is_wandering {
                     return deviations(memory_s, &mut random);
                 }
-                let mut of = deviations_of(&mut |time| {
+                let mut of = deviations_of(2, &mut |time| {
                     let mut zero = 0.0;
                     let each = (0..time.len()).map(|k| {
                         let step = if k > 0 { time[k] - time[k - 1] } else { 0.0 };

@@ -2,7 +2,7 @@
 //!
 //! What is missing from the model is the same in every repeat of a protocol, and so cancels in their deviations; a pulse is not. It is
 //! sought as a sine that grows with the force, of one frequency in all recordings and of any phase and size in each (Lomb 1976), beside
-//! gain and first touch of each repeat, in noise with memory.
+//! what each repeat has of its own (gain, first touch, zero), in noise with memory.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
@@ -91,7 +91,7 @@ fn exceeded(half: f64, pairs: usize) -> f64 {
     libm::exp(-half) * terms.sum::<f64>()
 }
 
-/// One group's deviations, whitened and free of gain and first touch.
+/// One group's deviations, whitened and free of what each repeat has of its own.
 struct Freed {
     /// s.
     time: Vec<f64>,
@@ -99,7 +99,7 @@ struct Freed {
     load: Vec<f64>,
     /// Makes noise independent.
     filter: Filter,
-    /// Orthonormal: what gain and first touch do.
+    /// Orthonormal: what the numbers do that each repeat has of its own.
     along: DMatrix<f64>,
     series: Vec<DVector<f64>>,
     /// Squares of all series.
@@ -121,7 +121,8 @@ impl Freed {
             DVector::from_vec(filter.whitened(|k| values(kept[k]) * scale[k]))
         };
         let column = |j: usize| white(&|k| of.along[k][j]);
-        let along = DMatrix::from_columns(&[column(0), column(1)]).qr().q();
+        let columns: Vec<DVector<f64>> = (0..of.own() as usize).map(column).collect();
+        let along = DMatrix::from_columns(&columns).qr().q();
         let free = |series: &Vec<f64>| {
             let flat = white(&|k| series[k]);
             &flat - &along * (along.transpose() * &flat)
@@ -132,7 +133,7 @@ impl Freed {
             load: kept
                 .iter()
                 .zip(&scale)
-                .map(|(k, s)| of.along[*k].x * s)
+                .map(|(k, s)| of.grows(*k) * s)
                 .collect(),
             repeats: series.len() as f64 - 1.0,
             time,
@@ -161,7 +162,7 @@ impl Freed {
             pull.dot(&(inverse * pull))
         });
         let part = (taken.sum::<f64>() / self.sum).clamp(0.0, 1.0 - 1e-9);
-        let degrees = self.repeats * (self.time.len() as f64 - 2.0);
+        let degrees = self.repeats * (self.time.len() - self.along.ncols()) as f64;
         -0.5 * degrees * libm::log1p(-part)
     }
 }

@@ -1,11 +1,11 @@
-//! Deviation of each repeat from their mean, with gain and first touch taken out.
+//! Deviation of each repeat from their mean, with gain and first touch, and the zero of the force where it differs, taken out.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::noise::deviations::{Deviations, Group, LEAST_SAMPLES};
 use crate::noise::repeat_alignment::Aligned;
 
-/// The repeats of one group at the same moments, and what gain and zero do to their mean.
+/// The repeats of one group at the same moments, and what gain and first touch do to their mean.
 pub(crate) struct AlignedGroup {
     time: Vec<f64>,
     repeats: Vec<Aligned>,
@@ -38,16 +38,22 @@ impl AlignedGroup {
         })
     }
 
-    /// Deviations with gain and zero taken out. Not by generalized least squares: these look at the smallest differences, near first
-    /// touch, where zero does not act as a slope.
-    pub(crate) fn deviations(&self, group: &Group) -> Option<Deviations> {
+    /// Deviations with gain and first touch taken out, and with them, where `has_own_zero`, a constant. Not by generalized least squares: these
+    /// look at the smallest differences, near first touch, where it does not act as a slope.
+    pub(crate) fn deviations(&self, group: &Group, has_own_zero: bool) -> Option<Deviations> {
         let (n, value, slope) = (self.time.len(), &self.value, &self.slope);
         let most = value.iter().fold(0.0, |most, v| f64::max(most, v.abs()));
         if most == 0.0 {
             return None;
         }
-        let along: Vec<Vector2<f64>> = (0..n).map(|k| Vector2::new(value[k], -slope[k])).collect();
-        let gram: Matrix2<f64> = along.iter().map(|a| a * a.transpose()).sum();
+        let constant = if has_own_zero { 1.0 } else { 0.0 };
+        let along: Vec<Vector3<f64>> = (0..n)
+            .map(|k| Vector3::new(value[k], -slope[k], constant))
+            .collect();
+        let mut gram: Matrix3<f64> = along.iter().map(|a| a * a.transpose()).sum();
+        if !has_own_zero {
+            gram[(2, 2)] = 1.0;
+        }
         let inverse = gram.try_inverse()?;
         let (mut rest, mut whole) = (Vec::new(), Vec::new());
         for repeat in &self.repeats {
@@ -58,7 +64,7 @@ impl AlignedGroup {
                     repeat.value[k] - value[k] - slope[k] * moved
                 })
                 .collect();
-            let pull: Vector2<f64> = along.iter().zip(&off).map(|(a, o)| a * *o).sum();
+            let pull: Vector3<f64> = along.iter().zip(&off).map(|(a, o)| a * *o).sum();
             let found = inverse * pull;
             rest.push((0..n).map(|k| off[k] - along[k].dot(&found)).collect());
             whole.push(found);
@@ -73,6 +79,7 @@ impl AlignedGroup {
             rest,
             whole,
             along: along.iter().map(|a| inverse * a).collect(),
+            has_own_zero,
         })
     }
 }

@@ -1,10 +1,10 @@
-//! Correlation and size of the noise in repeats by restricted likelihood: gain and first touch of every repeat are unknown, and what finding
-//! them hides of the noise is allowed for (Patterson & Thompson 1971; Harville 1977).
+//! Correlation and size of the noise in repeats by restricted likelihood: gain and first touch of every repeat, and its zero of the force where
+//! these differ, are unknown, and what finding them hides of the noise is allowed for (Patterson & Thompson 1971; Harville 1977).
 //!
 //! Noise forgets itself as `exp(-t / memory)`, all of it or all but a white part, at whatever times the samples stand: a series of such
 //! noise is independent in its innovations ([`crate::noise::correlation`]), and gain and touch are found there by least squares.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::noise::correlation::{Correlation, LEAST_FRESH};
 use crate::noise::deviations::{Deviations, OUTLIER, robust_deviation};
@@ -167,16 +167,16 @@ pub(crate) fn sampling_interval(all: &[Deviations]) -> f64 {
 /// the size that these have, nats.
 pub(crate) fn left(of: &Deviations, kept: &[usize], correlation: Correlation) -> (f64, f64, f64) {
     let repeats = of.rest.len() as f64 - 1.0;
-    let degrees = (repeats * (kept.len() as f64 - 2.0)).max(1.0);
+    let degrees = (repeats * (kept.len() as f64 - of.own())).max(1.0);
     let filter = correlation.filter(kept.iter().map(|&k| of.sample(k)));
     let scale: Vec<f64> = kept.iter().map(|&k| of.rescaled(k, correlation)).collect();
     let white = |values: &dyn Fn(usize) -> f64| filter.whitened(|k| values(kept[k]) * scale[k]);
-    let (gains, touches) = (white(&|k| of.along[k].x), white(&|k| of.along[k].y));
+    let [gains, touches, zeros] = [0, 1, 2].map(|j| white(&|k| of.along[k][j]));
     let all: Vec<Vec<f64>> = of.rest.iter().map(|series| white(&|k| series[k])).collect();
-    let (mut gram, mut pulls) = (Matrix2::zeros(), vec![Vector2::zeros(); of.rest.len()]);
+    let (mut gram, mut pulls) = (Matrix3::zeros(), vec![Vector3::zeros(); of.rest.len()]);
     let (mut sum, mut log) = (0.0, 0.0);
     for (k, variance) in filter.variances().enumerate() {
-        let along = Vector2::new(gains[k], touches[k]);
+        let along = Vector3::new(gains[k], touches[k], zeros[k]);
         gram += along * along.transpose();
         for (series, pull) in all.iter().zip(&mut pulls) {
             sum += series[k] * series[k];
@@ -184,15 +184,18 @@ pub(crate) fn left(of: &Deviations, kept: &[usize], correlation: Correlation) ->
         }
         log += libm::log(variance.max(LEAST_FRESH)) - 2.0 * libm::log(scale[k]);
     }
-    // Scaled, so that what one adds beside the other can be told.
-    let scale = Matrix2::from_diagonal(
+    if !of.has_own_zero {
+        gram[(2, 2)] = 1.0;
+    }
+    // Scaled, so that what one adds to the others can be seen.
+    let scale = Matrix3::from_diagonal(
         &gram
             .diagonal()
             .map(|d| 1.0 / d.max(f64::MIN_POSITIVE).sqrt()),
     );
     let unit = scale * gram * scale;
     let taken = unit.try_inverse().map_or(0.0, |inverse| {
-        let part = |pull: &Vector2<f64>| (scale * pull).dot(&(inverse * scale * pull));
+        let part = |pull: &Vector3<f64>| (scale * pull).dot(&(inverse * scale * pull));
         pulls.iter().map(part).sum()
     });
     let sum = (sum - taken).max(f64::MIN_POSITIVE);
@@ -221,7 +224,12 @@ pub(crate) mod tests {
 
     /// Two repeats of noise of standard deviation 1 with that memory, with a gain and a touch of their own found and taken out.
     pub fn deviations(memory_s: f64, random: &mut Random) -> Deviations {
-        deviations_of(&mut |time| {
+        of_memory(2, memory_s, random)
+    }
+
+    /// The same, and with 3 numbers of its own a zero of the force taken out.
+    pub fn of_memory(own: usize, memory_s: f64, random: &mut Random) -> Deviations {
+        deviations_of(own, &mut |time| {
             let mut noise = vec![random.normal()];
             for k in 1..time.len() {
                 let carried = forgotten(time[k] - time[k - 1], memory_s);
@@ -234,13 +242,14 @@ pub(crate) mod tests {
     }
 
     /// The same of noise that is drawn at given times.
-    pub fn deviations_of(draw: &mut dyn FnMut(&[f64]) -> Vec<f64>) -> Deviations {
+    pub fn deviations_of(own: usize, draw: &mut dyn FnMut(&[f64]) -> Vec<f64>) -> Deviations {
         let time = times();
         let n = time.len();
         let press = |t: f64| (t / 0.44).min(1.0).min(((time[n - 7] - t) / 0.48).max(0.0));
-        let columns = DMatrix::from_fn(n, 2, |k, j| match j {
+        let columns = DMatrix::from_fn(n, own, |k, j| match j {
             0 => press(time[k]).powf(1.5),
-            _ => press(time[k]).sqrt(),
+            1 => press(time[k]).sqrt(),
+            _ => 1.0,
         });
         let mut draw = || DVector::from_vec(draw(&time));
         let half = 0.5 * (draw() - draw());
@@ -254,10 +263,11 @@ pub(crate) mod tests {
             profile: vec![1.0; n],
             readings: vec![1.0; n],
             rest: vec![rest.as_slice().to_vec(), (-rest).as_slice().to_vec()],
-            whole: vec![Vector2::zeros(); 2],
+            whole: vec![Vector3::zeros(); 2],
+            has_own_zero: own == 3,
             along: columns
                 .row_iter()
-                .map(|r| Vector2::new(r[0], r[1]))
+                .map(|r| Vector3::from_fn(|j, _| r.get(j).copied().unwrap_or(0.0)))
                 .collect(),
         }
     }
@@ -278,34 +288,39 @@ pub(crate) mod tests {
     /// gains from one memory to another, and the squares.
     #[test]
     fn restricted_likelihood_equals_dense_matrix_form() {
-        let of = deviations(0.4, &mut Random::new(3));
-        let kept: Vec<usize> = (0..of.time.len()).filter(|k| k % 3 != 1).collect();
-        let columns = DMatrix::from_fn(kept.len(), 2, |k, j| of.along[kept[k]][j]);
-        let whole = |memory_s: f64| {
-            let apart = |i: usize, j: usize| (of.time[kept[i]] - of.time[kept[j]]).abs();
-            let all = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
-                libm::exp(-apart(i, j) / memory_s)
+        let mut random = Random::new(3);
+        for own_numbers in [2, 3] {
+            let of = deviations_of(own_numbers, &mut |time| {
+                time.iter().map(|_| random.normal()).collect()
             });
-            let root = all.cholesky().unwrap();
-            let gram = columns.transpose() * root.solve(&columns);
-            let inverse = gram.clone().try_inverse().unwrap();
-            let squares = of.rest.iter().map(|series| {
-                let own = DVector::from_fn(kept.len(), |k, _| series[kept[k]]);
-                let pull = columns.transpose() * root.solve(&own);
-                own.dot(&root.solve(&own)) - pull.dot(&(&inverse * &pull))
-            });
-            let sum: f64 = squares.sum();
-            let degrees = kept.len() as f64 - 2.0;
-            let logs = libm::log(root.determinant()) + libm::log(gram.determinant());
-            (sum, -0.5 * (logs + degrees * libm::log(sum / degrees)))
-        };
-        let own = |memory_s: f64| {
-            let (sum, _, likelihood) = left(&of, &kept, Correlation::of_memory(memory_s));
-            (sum, likelihood)
-        };
-        let gained = |by: &dyn Fn(f64) -> (f64, f64)| by(0.9).1 - by(0.2).1;
-        assert!((own(0.4).0 / whole(0.4).0 - 1.0).abs() < 1e-9);
-        assert!((gained(&own) - gained(&whole)).abs() < 1e-6);
+            let kept: Vec<usize> = (0..of.time.len()).filter(|k| k % 3 != 1).collect();
+            let columns = DMatrix::from_fn(kept.len(), own_numbers, |k, j| of.along[kept[k]][j]);
+            let whole = |memory_s: f64| {
+                let apart = |i: usize, j: usize| (of.time[kept[i]] - of.time[kept[j]]).abs();
+                let all = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+                    libm::exp(-apart(i, j) / memory_s)
+                });
+                let root = all.cholesky().unwrap();
+                let gram = columns.transpose() * root.solve(&columns);
+                let inverse = gram.clone().try_inverse().unwrap();
+                let squares = of.rest.iter().map(|series| {
+                    let own = DVector::from_fn(kept.len(), |k, _| series[kept[k]]);
+                    let pull = columns.transpose() * root.solve(&own);
+                    own.dot(&root.solve(&own)) - pull.dot(&(&inverse * &pull))
+                });
+                let sum: f64 = squares.sum();
+                let degrees = kept.len() as f64 - of.own();
+                let logs = libm::log(root.determinant()) + libm::log(gram.determinant());
+                (sum, -0.5 * (logs + degrees * libm::log(sum / degrees)))
+            };
+            let own = |memory_s: f64| {
+                let (sum, _, likelihood) = left(&of, &kept, Correlation::of_memory(memory_s));
+                (sum, likelihood)
+            };
+            let gained = |by: &dyn Fn(f64) -> (f64, f64)| by(0.9).1 - by(0.2).1;
+            assert!((own(0.4).0 / whole(0.4).0 - 1.0).abs() < 1e-9);
+            assert!((gained(&own) - gained(&whole)).abs() < 1e-6);
+        }
     }
 
     /// A reading far from all others is left out, and so is one that is far only from its neighbors.

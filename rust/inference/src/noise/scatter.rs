@@ -1,4 +1,4 @@
-//! What repeats of one channel show: noise within a recording, and variance of gain and first touch between recordings.
+//! What repeats of one channel show: noise within a recording, and variance of gain, first touch and the zero of the force between recordings.
 
 use crate::noise::correlation::Correlation;
 use crate::noise::deviations::NoiseShape;
@@ -23,6 +23,10 @@ pub struct Scatter {
     pub gain: f64,
     /// Standard deviation between repeats of first touch, mm.
     pub zero_mm: Option<f64>,
+    /// Standard deviation between repeats of the force's zero, N; None where it cannot be judged.
+    pub force_zero_n: Option<f64>,
+    /// Whether they differ by clearly more than noise makes them.
+    pub has_clear_zeros: bool,
     /// Standard deviation of whitened deviations: 1 if noise is correlated as stated.
     pub step: f64,
     /// Whitened deviations over it, outliers among them.
@@ -43,6 +47,8 @@ impl Scatter {
             correlation: Correlation::NONE,
             gain,
             zero_mm: None,
+            force_zero_n: None,
+            has_clear_zeros: false,
             step: 1.0,
             drawn_from: Vec::new(),
             rhythm: None,

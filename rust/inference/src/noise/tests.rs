@@ -150,6 +150,81 @@ fn identical_repeats_have_no_between_repeat_variance() {
     assert_eq!(told.correlation[0].memory_s, 0.0);
 }
 
+/// Recordings with a zero of the force of their own, beside gain and touch: how far the zeros lie apart is recovered and said, and their scatter is
+/// taken neither for a memory nor for a gain.
+#[test]
+fn zeros_of_the_force_are_recovered_and_are_no_memory() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.15,
+        gain: 0.01,
+        zero_mm: 0.01,
+        outliers: 0.0,
+    };
+    let of = |zero_n: f64| {
+        let (mut measured, simulated, slopes) = study(8, 4, &planted);
+        let mut random = Random::new(21);
+        for one in &mut measured {
+            let zero = zero_n * random.normal();
+            one.samples.iter_mut().for_each(|s| s.value += zero);
+        }
+        noise(&measured, (&simulated, &slopes), &[true; 32], None)
+    };
+    let (tared, off) = (of(0.0), of(0.1));
+    assert!(!tared.has_clear_zeros && tared.zero_note().is_none());
+    // Half of the error with which a zero is found stays as doubt.
+    assert!(
+        tared.force_zero_n.unwrap() < 0.03,
+        "{:?}",
+        tared.force_zero_n
+    );
+    // 24 degrees of freedom tell a standard deviation to a seventh.
+    let zero_n = off.force_zero_n.unwrap();
+    assert!((zero_n / 0.1 - 1.0).abs() < 0.35, "{zero_n}");
+    assert!(
+        off.has_clear_zeros
+            && off
+                .zero_note()
+                .unwrap()
+                .contains(" mN (standard deviation)")
+    );
+    assert!(
+        (off.correlation[0].memory_s / planted.memory_s - 1.0).abs() < 0.4,
+        "{:?}",
+        off.correlation
+    );
+    // Taken for a gain, zeros of 3 % of the peak would make it several times as large.
+    assert!((off.gain / planted.gain - 1.0).abs() < 0.6, "{}", off.gain);
+}
+
+/// Of recordings that hold one force, too: nobody can tell gain from zero there, and what others say of their zeros stays.
+#[test]
+fn a_hold_alone_says_nothing_of_zeros() {
+    let planted = Planted {
+        noise: 0.01,
+        memory_s: 0.0,
+        gain: 0.0,
+        zero_mm: 0.0,
+        outliers: 0.0,
+    };
+    let (mut measured, mut simulated, mut slopes) = study(4, 4, &planted);
+    let known = noise(&measured, (&simulated, &slopes), &[true; 16], None);
+    for recording in 0..4 {
+        for k in 0..SAMPLES {
+            let creep = 1e-3 * k as f64 / SAMPLES as f64;
+            let depth = &mut measured[recording].moments[k].depth_mm;
+            let held = force(2.0) - force(*depth);
+            *depth = 2.0;
+            measured[recording].samples[k].value += held + creep;
+            simulated[recording][k] = 1.7 * force(2.0) + creep;
+            slopes[recording][k] = 1.7 * (force(2.0 + 1e-4) - force(2.0)) / 1e-4 + creep;
+        }
+    }
+    let held = noise(&measured, (&simulated, &slopes), &[true; 16], None);
+    let [known, held] = [known, held].map(|noise| noise.force_zero_n.unwrap());
+    assert!((held / known - 1.0).abs() < 0.5, "{held} {known}");
+}
+
 /// An error of the depth shakes the force by its own slope, whatever the modulus that slopes were simulated with.
 #[test]
 fn error_of_the_depth_is_noise_through_the_slope_of_the_force() {

@@ -53,8 +53,12 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
             continue;
         }
         all.extend(touch(case, recording));
-        if !case.is_touch_known[recording] {
-            all.extend(force_zero(recording, measured));
+        let found = match case.is_touch_known[recording] {
+            true => case.noise.force_zero_n,
+            false => None,
+        };
+        if found.is_some() || !case.is_touch_known[recording] {
+            all.extend(force_zero(recording, measured, found));
         }
         let is_scaled = measured.is_calibrated && carries_force(measured);
         if is_scaled && case.noise.gain > 0.0 {
@@ -74,15 +78,21 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
     all
 }
 
-/// What the load cell shows without load, about what was taken off where the file gives no first touch.
-pub(crate) fn force_zero(recording: usize, measured: &Measured) -> Option<Parameter> {
+/// What the load cell shows without load: about what was taken off where the file gives no first touch, else with the standard deviation (N)
+/// that repeats show.
+pub(crate) fn force_zero(
+    recording: usize,
+    measured: &Measured,
+    found: Option<f64>,
+) -> Option<Parameter> {
     let forces = measured
         .samples
         .iter()
         .filter(|s| s.quantity == Quantity::Force);
     let most = forces.fold(0.0, |most, s| f64::max(most, s.value.abs()));
-    let sd = FORCE_ZERO * most;
-    (sd > 0.0).then(|| Parameter::about(Kind::ForceZero(recording), (sd, MOST_POSITION), sd))
+    let sd = found.unwrap_or(FORCE_ZERO * most);
+    (sd > 0.0 && most > 0.0)
+        .then(|| Parameter::about(Kind::ForceZero(recording), (sd, MOST_POSITION), sd))
 }
 
 pub(crate) fn carries_force(measured: &Measured) -> bool {
@@ -102,7 +112,9 @@ pub(crate) fn touch(case: Case<'_>, recording: usize) -> Vec<Parameter> {
     if deep <= 0.0 {
         return Vec::new();
     }
-    let sheet = case.instrument.and_then(|s| s.position_mm);
+    let sheet = case
+        .instrument
+        .and_then(|s| s.first_touch_mm.or(s.position_mm));
     let judged = match case.is_touch_known[recording] {
         true => sheet.unwrap_or(TOUCH).min(DEEPEST_TOUCH * deep),
         false => UNKNOWN_TOUCH * deep,

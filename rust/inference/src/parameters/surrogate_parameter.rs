@@ -5,6 +5,19 @@ use crate::parameters::parameter::Parameter;
 /// A free number of the candidate model.
 pub type Coordinate = Parameter<Kind>;
 
+/// By recording its own number of that kind; 0 where it has none.
+pub fn by_recording(
+    (coordinates, at): (&[Coordinate], &[f64]),
+    recordings: usize,
+    kind: fn(usize) -> Kind,
+) -> Vec<f64> {
+    let of = |course: usize| {
+        let place = coordinates.iter().position(|c| c.kind == kind(course));
+        place.map_or(0.0, |k| at[k])
+    };
+    (0..recordings).map(of).collect()
+}
+
 /// What a free number is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -20,6 +33,8 @@ pub enum Kind {
     Zero(usize),
     /// Logarithm of one recording's gain.
     Gain(usize),
+    /// Zero of one recording's force, N (number of the course).
+    ForceZero(usize),
     /// Logarithm of the factor by which the model's form is off, by tool and way.
     Form(usize, usize),
     /// Size of a form that all tools at a site share, in standard deviations: by site and form (`priors::SHARED_FORM`).

@@ -10,18 +10,19 @@ use crate::noise::estimate::Noise;
 use crate::observe::first_touch::at_zero;
 use crate::parameters::priors::{
     CLEAR_AT_ZERO, DEEPEST_TOUCH, FORM_ERROR, LOG_MODULUS, MEASURED_FORM, MOST, SHARED,
-    SHARED_FORM, TOUCH, UNKNOWN_TOUCH,
+    SHARED_FORM, UNKNOWN_TOUCH,
 };
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
 
-/// Moduli, first touch, gain, and the model's form.
+/// Moduli, first touch, gain, and the model's form. `touch_mm` is the standard deviation of the first touch that a tool has in all its recordings,
+/// where it was judged.
 ///
 /// That repeats agree in their first touch says nothing of how far it is off in all of them: a tool whose length was measured wrongly, and a
 /// trigger of the force, are off alike every time.
 pub(crate) fn shared(
     replay: &Replay,
     (courses, elastic): (&[ForceRecording], &Elastic),
-    noise: &Noise,
+    (noise, touch_mm): (&Noise, f64),
 ) -> Vec<Coordinate> {
     let known = &replay.observed.is_touch_known;
     let sigma = noise.sigma.concat();
@@ -33,25 +34,33 @@ pub(crate) fn shared(
         };
         let deep = first.deepest();
         let at_place = courses.iter().filter(|c| c.place == place);
-        let seen = pressed_before(at_place, &sigma);
+        let seen = pressed_before(at_place, (&sigma, noise.force_zero_n.unwrap_or(0.0)));
         let judged = match known[first.recording] {
-            true => TOUCH.max(seen).min(DEEPEST_TOUCH * deep),
+            true => touch_mm.max(seen).min(DEEPEST_TOUCH * deep),
             false => (UNKNOWN_TOUCH * deep).max(seen),
         };
         let form = form_error(elastic, place);
         all.extend(of_place(place, (judged, deep), (form, has_regions)));
     }
     for (c, course) in courses.iter().enumerate() {
-        all.extend(of_course(c, course.deepest(), noise));
+        all.extend(of_course(c, course.deepest(), (noise, touch_mm)));
     }
     all
 }
 
 /// About how deep a tool is pressed where its depths begin, mm, as the recordings show in which there is clearly a force already; 0 if none does.
-fn pressed_before<'a>(courses: impl Iterator<Item = &'a ForceRecording>, sigma: &[f64]) -> f64 {
+fn pressed_before<'a>(
+    courses: impl Iterator<Item = &'a ForceRecording>,
+    (sigma, zero_sd_n): (&[f64], f64),
+) -> f64 {
     let late = courses.filter_map(|course| {
         let seen = at_zero(&course.rows, |row| (row.depth_mm, row.force_n))?;
         let noise = sigma[course.rows[seen.reading].sample?];
+        // Only an approach shows the recording's own zero.
+        let noise = match seen.reading {
+            0 => noise.hypot(zero_sd_n),
+            _ => noise,
+        };
         (seen.force_n > CLEAR_AT_ZERO * noise).then(|| seen.late_mm())
     });
     late.fold(0.0, f64::max)
@@ -182,9 +191,13 @@ pub fn form_note(elastic: &Elastic) -> String {
     }
 }
 
-/// What a recording may be off by: its first touch, and its gain where repeats show that it scatters.
-pub(crate) fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coordinate> {
-    let zero = noise.zero_mm.unwrap_or(TOUCH).max(1e-4);
+/// What a recording may be off by: its first touch (`touch_mm` where there are no repeats), and, as repeats differ, its gain and the zero of its force.
+pub(crate) fn of_course(
+    course: usize,
+    deepest: f64,
+    (noise, touch_mm): (&Noise, f64),
+) -> Vec<Coordinate> {
+    let zero = noise.zero_mm.unwrap_or(touch_mm).max(1e-4);
     let mut all = vec![Coordinate::about(
         Kind::Zero(course),
         (zero, MOST),
@@ -195,6 +208,13 @@ pub(crate) fn of_course(course: usize, deepest: f64, noise: &Noise) -> Vec<Coord
             Kind::Gain(course),
             (noise.gain, MOST),
             1e-4,
+        ));
+    }
+    if let Some(sd) = noise.force_zero_n {
+        all.push(Coordinate::about(
+            Kind::ForceZero(course),
+            (sd, MOST),
+            1e-2 * sd,
         ));
     }
     all
@@ -223,7 +243,7 @@ mod tests {
         let seen = [0, 1, 2].map(|place| {
             pressed_before(
                 made.courses.iter().filter(|c| c.place == place),
-                &made.sigma,
+                (&made.sigma, 0.0),
             )
         });
         assert!(

@@ -101,6 +101,7 @@ impl Judged<'_> {
             let nuisance = Nuisance {
                 zero_mm: set.zero[course] + set.touch[one.place],
                 log_gain: set.gain[course],
+                force_zero_n: set.force_zero[course],
                 ..Nuisance::none()
             };
             let case = Case {
@@ -182,11 +183,12 @@ pub(crate) fn shown(
     Ok(all)
 }
 
-/// Forces of one recording's rows without mechanisms and before its gain, N.
+/// Forces of one recording's rows without mechanisms and before its gain and zero, N.
 fn base_forces(surrogate: &Surrogate<'_>, set: &Setting, course: usize) -> Vec<f64> {
     let model = Model::new(surrogate, &[]);
     let bare = Setting {
         gain: vec![0.0; set.gain.len()],
+        force_zero: vec![0.0; set.force_zero.len()],
         of: Vec::new(),
         ..set.clone()
     };

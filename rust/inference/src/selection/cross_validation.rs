@@ -48,7 +48,7 @@ pub struct Judged<'a> {
 impl Judged<'_> {
     /// Holds every protocol out in turn, or where there is but one every recording; None where there is but one recording.
     ///
-    /// What belongs to a held-out recording alone (its gain and first touch, within what repeats differ by; the model's form where its
+    /// What belongs to a held-out recording alone (its gain, first touch and zero of the force, within what repeats differ by; the model's form where its
     /// tool was not seen) is fitted to it, with and without the finding alike; nothing else is.
     pub fn by_protocol(&self) -> Option<Gain> {
         self.over(&folds(&self.ready.courses)?, HeldOutBy::Protocol)
@@ -255,7 +255,7 @@ fn predicted(
             };
             for (coordinate, value) in model.coordinates.iter_mut().zip(values) {
                 let own = match coordinate.kind {
-                    Kind::Zero(c) | Kind::Gain(c) => is_out(c),
+                    Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) => is_out(c),
                     Kind::Form(place, _) | Kind::Touch(place) => !seen(place),
                     _ => false,
                 };

@@ -16,7 +16,7 @@ use crate::forward::surrogate::force_recording::{changes_speed, goes_on};
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::{Measured, Phase};
-use crate::parameters::surrogate_parameter::Kind;
+use crate::parameters::surrogate_parameter::{Kind, by_recording};
 use crate::selection::candidate_fits::Trial;
 use crate::selection::candidates::singles;
 use crate::selection::scored::{Rungs, Scored};
@@ -197,7 +197,13 @@ fn shows_its_signs(ready: &PreparedStudy, scored: &Scored) -> bool {
         .mechanisms
         .iter()
         .any(|m| m.effect == Effect::Adhesion);
-    !clings || pulls(&ready.courses, (&scored.refit.simulated, &ready.sigma))
+    let zeros = by_recording(
+        (&ready.shared, &scored.refit.at),
+        ready.courses.len(),
+        Kind::ForceZero,
+    );
+    let of = (&scored.refit.simulated[..], &ready.sigma[..]);
+    !clings || pulls(&ready.courses, &zeros, of)
 }
 
 /// Standard errors from which a step of the gain is looked into.
@@ -225,12 +231,9 @@ fn log_gains(ready: &PreparedStudy, base: &Scored) -> Vec<f64> {
 }
 
 fn gains(ready: &PreparedStudy, base: &Scored) -> Vec<f64> {
-    let of = |course: usize| {
-        let place = ready
-            .shared
-            .iter()
-            .position(|c| c.kind == Kind::Gain(course));
-        place.map_or(0.0, |k| base.refit.at[k])
-    };
-    (0..ready.courses.len()).map(of).collect()
+    by_recording(
+        (&ready.shared, &base.refit.at),
+        ready.courses.len(),
+        Kind::Gain,
+    )
 }

@@ -193,6 +193,7 @@ fn instrument(py: Python<'_>, sheet: &Instrument) -> PyResult<Py<PyAny>> {
     entries.set_item("threshold_kpa", sheet.threshold_kpa)?;
     entries.set_item("pitch_mm", sheet.pitch_mm)?;
     entries.set_item("position_mm", sheet.position_mm)?;
+    entries.set_item("first_touch_mm", sheet.first_touch_mm)?;
     record(entries)
 }
 

@@ -18,6 +18,8 @@ pub struct Instrument {
     pub pitch_mm: Option<f64>,
     /// Uncertainty of where the tool or mat lies, mm.
     pub position_mm: Option<f64>,
+    /// Standard deviation of the depth of first touch that all recordings of a tool share, mm.
+    pub first_touch_mm: Option<f64>,
 }
 
 pub(super) fn read(root: &mut Section) -> Result<Option<Instrument>, Fault> {
@@ -31,6 +33,7 @@ pub(super) fn read(root: &mut Section) -> Result<Option<Instrument>, Fault> {
         threshold_kpa: section.positive("threshold_kpa")?,
         pitch_mm: section.positive("pitch_mm")?,
         position_mm: section.positive("position_mm")?,
+        first_touch_mm: section.positive("first_touch_mm")?,
     };
     section.finish()?;
     Ok(Some(instrument))

@@ -24,12 +24,17 @@ impl Replay {
     ) -> Result<Vec<f64>, InferenceError> {
         let measured = &self.observed.measured[recording];
         let heights = self.seen(recording, nuisance, &at_skin.displacement);
-        let at_skin = self.of_form(recording, nuisance, at_skin);
-        let shown = self.through_instrument(recording, at_skin)?;
+        let mut at_skin = self.of_form(recording, nuisance, at_skin);
         let gain = libm::exp(nuisance.log_gain);
+        // Before what the instrument does to readings: a cell that was not tared clips at one reading all the same.
+        let zero = nuisance.force_zero_n / gain;
+        if zero != 0.0 {
+            at_skin.force.iter_mut().for_each(|f| *f += zero);
+        }
+        let shown = self.through_instrument(recording, at_skin)?;
         let counts = libm::exp(nuisance.log_gain + nuisance.log_counts);
         let one = |moment: usize, quantity: Quantity| match quantity {
-            Quantity::Force => gain * shown.force[moment] + nuisance.force_zero_n,
+            Quantity::Force => gain * shown.force[moment],
             Quantity::TangentialForce => gain * shown.tangential[moment],
             Quantity::Area => shown.area[moment],
             Quantity::Pressure(sensel) => match shown.frames.get(moment) {

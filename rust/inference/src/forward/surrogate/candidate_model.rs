@@ -47,6 +47,7 @@ impl<'a> Model<'a> {
             touch: vec![0.0; places],
             zero: vec![0.0; courses],
             gain: vec![0.0; courses],
+            force_zero: vec![0.0; courses],
             form: vec![[0.0; WAYS]; places],
             shared_form: vec![[0.0; SHARED]; places],
             of: vec![Vec::new(); self.mechanisms.len()],
@@ -59,6 +60,7 @@ impl<'a> Model<'a> {
                 Kind::Touch(place) => set.touch[place] = *value,
                 Kind::Zero(course) => set.zero[course] = *value,
                 Kind::Gain(course) => set.gain[course] = *value,
+                Kind::ForceZero(course) => set.force_zero[course] = *value,
                 Kind::Form(place, mode) => set.form[place][mode] = *value,
                 Kind::SharedForm(site, form) => set.shared_form[site][form] = *value,
                 Kind::Of(mechanism, _) => set.of[mechanism].push(*value),
@@ -83,6 +85,8 @@ pub struct Setting {
     pub zero: Vec<f64>,
     /// Logarithm of the gain by course.
     pub gain: Vec<f64>,
+    /// Zero of the force by course, N.
+    pub force_zero: Vec<f64>,
     /// What the model's form is off by, by place.
     pub form: Vec<[f64; WAYS]>,
     /// Sizes of the forms that tools share, by site.

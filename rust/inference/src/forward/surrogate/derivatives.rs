@@ -55,14 +55,16 @@ impl<'a> Slopes<'a> {
             );
         }
         let point = (self.model, &self.set);
+        let all = |is_so: fn(&Mechanism) -> bool| self.model.mechanisms.iter().all(is_so);
+        let is_plain = all(|mechanism| !mechanism.is_instrument());
+        if matches!(kind, Kind::ForceZero(_)) && is_plain {
+            return Some(vec![1.0; self.forces.len()]);
+        }
+        let zero = self.set.force_zero[self.course];
         let is_proportion = matches!(kind, Kind::Gain(_))
-            && self
-                .model
-                .mechanisms
-                .iter()
-                .all(Mechanism::is_read_in_proportion);
+            && (is_plain || (zero == 0.0 && all(Mechanism::is_read_in_proportion)));
         let known = match (&self.stiffness, is_proportion) {
-            (_, true) => Some(self.forces.to_vec()),
+            (_, true) => Some(self.forces.iter().map(|f| f - zero).collect()),
             (Some(of), _) => self
                 .surrogate
                 .stiffness_slopes(point, (kind, self.course), of),
@@ -93,7 +95,7 @@ impl Surrogate<'_> {
     fn matters(&self, model: &Model<'_>, kind: Kind, course: usize) -> bool {
         let one = &self.courses[course];
         match kind {
-            Kind::Zero(c) | Kind::Gain(c) => c == course,
+            Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) => c == course,
             Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
             Kind::Of(of, _) => match &model.mechanisms[of].law {
                 Law::GainStep { from } => one.order >= *from,
@@ -124,7 +126,13 @@ mod tests {
         let read = |time: f64| -> Reading { (time, time, Phase::Load, 0.9 * ball(time)) };
         let readings = (0..=80).map(|k| read(f64::from(k) / 40.0)).collect();
         let (mut made, _) = ready(vec![tool(2.0, ball, |d| d.sqrt())], &[(0, readings)], 0.1);
-        let kinds = [Kind::Gain(0), Kind::Scale(0), Kind::Touch(0), Kind::Zero(0)];
+        let kinds = [
+            Kind::Gain(0),
+            Kind::ForceZero(0),
+            Kind::Scale(0),
+            Kind::Touch(0),
+            Kind::Zero(0),
+        ];
         let forms = (0..WAYS).map(|k| Kind::Form(0, k));
         let shared = (0..SHARED).map(|k| Kind::SharedForm(0, k));
         let free = kinds
@@ -133,8 +141,13 @@ mod tests {
             .chain(shared)
             .map(|kind| Coordinate {
                 kind,
-                start: 0.03,
-                bounds: (-1.0, 1.0),
+                // As large as a quarter of the force, so that a slope that forgets it is seen.
+                start: if kind == Kind::ForceZero(0) {
+                    5.0
+                } else {
+                    0.03
+                },
+                bounds: (-10.0, 10.0),
                 prior: Some(0.1),
                 step: 1e-5,
             });

@@ -35,8 +35,7 @@ impl Surrogate<'_> {
             true => self.with_compliance(model, set, (course, known)),
             false => self.pressed(model, set, (course, &known)),
         };
-        let gain = libm::exp(set.gain[course]);
-        self.read(model, set, (&self.courses[course], gain, &mut forces));
+        self.read(model, set, (course, &mut forces));
         forces
     }
 

@@ -1,7 +1,6 @@
 //! Laws of the instrument in the surrogate: gain step, offset, drift, saturation, floor (Tobit), delay.
 
 use crate::forward::surrogate::candidate_model::{Model, Setting};
-use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::surrogate::mechanism::Law;
 use crate::forward::surrogate::surrogate_data::Surrogate;
 
@@ -9,14 +8,16 @@ use crate::forward::surrogate::surrogate_data::Surrogate;
 const EDGE: f64 = 0.01;
 
 impl Surrogate<'_> {
-    /// What the instrument makes of the forces of a recording, by its gain.
+    /// What the instrument makes of the forces of a recording, by its gain and zero: a cell that was not tared clips at one reading all the same.
     pub(crate) fn read(
         &self,
         model: &Model<'_>,
         set: &Setting,
-        (one, gain, forces): (&ForceRecording, f64, &mut Vec<f64>),
+        (course, forces): (usize, &mut Vec<f64>),
     ) {
-        forces.iter_mut().for_each(|f| *f *= gain);
+        let one = &self.courses[course];
+        let (gain, zero) = (libm::exp(set.gain[course]), set.force_zero[course]);
+        forces.iter_mut().for_each(|f| *f = *f * gain + zero);
         for (number, mechanism) in model.mechanisms.iter().enumerate() {
             if !mechanism.is_instrument() {
                 continue;

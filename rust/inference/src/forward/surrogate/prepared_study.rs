@@ -43,6 +43,8 @@ pub struct PreparedStudy {
     pub sigma: Vec<f64>,
     /// What is free in every model.
     pub shared: Vec<Coordinate>,
+    /// Standard deviation of the first touch that a tool has in all its recordings, mm.
+    pub touch_mm: f64,
     /// What is said of recordings that were left out as copies of others.
     pub copies: Option<String>,
     /// Sizes from which variants are chosen.
@@ -87,7 +89,9 @@ fn assemble(
     let samples = replay.observed.measured.iter().flat_map(|m| &m.samples);
     let values = samples.map(|s| s.value).collect();
     let scales = scales(study, &found, &elastic);
-    let shared = shared(replay, (&found, &elastic), &noise);
+    let sheet = study.instrument.as_ref();
+    let touch_mm = sheet.and_then(|s| s.first_touch_mm).unwrap_or(TOUCH);
+    let shared = shared(replay, (&found, &elastic), (&noise, touch_mm));
     let sigma = noise.sigma.concat();
     PreparedStudy {
         courses: found,
@@ -97,6 +101,7 @@ fn assemble(
         values,
         sigma,
         shared,
+        touch_mm,
         copies: None,
         scales,
         base_material: replay.tissue.materials[0],
@@ -192,11 +197,14 @@ impl PreparedStudy {
             true => Vec::new(),
             false => of_place(
                 place,
-                (TOUCH.min(DEEPEST_TOUCH * deepest), deepest),
+                (self.touch_mm.min(DEEPEST_TOUCH * deepest), deepest),
                 (form_error(elastic, place), has_regions),
             ),
         };
-        (of_place, of_course(course, deepest, &self.noise))
+        (
+            of_place,
+            of_course(course, deepest, (&self.noise, self.touch_mm)),
+        )
     }
 
     /// The least reading that stands out of the noise, over the smallest peak: of the middle recording of those whose noise is small enough.
@@ -204,7 +212,8 @@ impl PreparedStudy {
         let peak = self.scales.forces.0;
         let seen = self.courses.iter().filter_map(|course| {
             let samples = course.rows.iter().filter_map(|row| row.sample);
-            let least = FLOOR * samples.map(|k| self.sigma[k]).fold(0.0, f64::max);
+            let noise = samples.map(|k| self.sigma[k]).fold(0.0, f64::max);
+            let least = FLOOR * noise.hypot(self.noise.force_zero_n.unwrap_or(0.0));
             let readings = course.rows.iter().filter(|row| row.sample.is_some());
             let above = readings.map(|row| row.force_n).filter(|f| *f > least);
             (least < 0.5 * peak).then(|| above.fold(peak, f64::min) / peak)

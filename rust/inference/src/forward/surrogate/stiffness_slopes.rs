@@ -93,10 +93,9 @@ impl Surrogate<'_> {
         }
         self.soften_by_use(model, set, ((one, &of.depths), &mut slope));
         // The instrument is affine: what it makes of nothing is taken off.
-        let gain = libm::exp(set.gain[course]);
         let mut nothing = vec![0.0; slope.len()];
-        self.read(model, set, (one, gain, &mut slope));
-        self.read(model, set, (one, gain, &mut nothing));
+        self.read(model, set, (course, &mut slope));
+        self.read(model, set, (course, &mut nothing));
         let linear = slope
             .iter()
             .zip(nothing)

@@ -71,6 +71,7 @@ pub fn ready(
         sigma: noise.sigma.concat(),
         noise,
         shared: [Kind::First, Kind::Limit].map(modulus).to_vec(),
+        touch_mm: crate::parameters::priors::TOUCH,
         copies: None,
         scales: scales(&courses),
         elastic: Elastic {
@@ -191,6 +192,8 @@ fn noise(measured: &[Measured], sigma: f64) -> Noise {
         degrees: None,
         gain: 0.0,
         zero_mm: None,
+        force_zero_n: None,
+        has_clear_zeros: false,
         step: [1.0; CHANNELS.len()],
         drawn_from: Default::default(),
         rhythm: None,
