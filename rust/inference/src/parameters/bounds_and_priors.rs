@@ -54,7 +54,11 @@ pub fn parameters(case: Case<'_>) -> Vec<Parameter> {
         }
         all.extend(touch(case, recording));
         let found = match case.is_touch_known[recording] {
-            true => case.noise.force_zero_n,
+            // Free without need it takes up what a spot in the skin does.
+            true => case
+                .noise
+                .force_zero_n
+                .filter(|_| case.noise.has_clear_zeros),
             false => None,
         };
         if found.is_some() || !case.is_touch_known[recording] {
