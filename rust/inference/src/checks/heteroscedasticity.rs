@@ -189,4 +189,25 @@ mod tests {
         assert!(told(0.1, 2.1).contains("more under load than without"));
         assert!(of(0.1, 1.9).is_none());
     }
+
+    /// A tool that leaves with 20 mN of pull, and a cell whose zero is 20 mN below none in all of a recording: the latter pulls nothing where the fit
+    /// has that zero.
+    #[test]
+    fn a_zero_below_none_is_no_pull() {
+        let pulled = |zero: f64, pull: f64| {
+            let readings = (0..60).map(|k| {
+                let force = if k >= 40 { -pull } else { 0.0 };
+                (0.1 * f64::from(k), -0.1, Phase::Apart, force + zero)
+            });
+            let press = [(0, readings.collect())];
+            let (made, _) = crate::forward::surrogate::synthetic::ready(Vec::new(), &press, 0.005);
+            pulls(&made.courses, &[zero], (&made.values, &made.sigma))
+        };
+        assert!(pulled(0.0, 0.02) && pulled(-0.02, 0.02));
+        assert!(
+            !pulled(-0.02, 0.0) && !pulled(0.02, 0.0),
+            "no more than a zero"
+        );
+        assert!(pulled(0.03, 0.02), "a pull that the cell reads above none");
+    }
 }
