@@ -25,6 +25,19 @@ struct Planted {
     outliers: f64,
 }
 
+impl Planted {
+    /// White noise alone.
+    fn white(noise: f64) -> Planted {
+        Planted {
+            noise,
+            memory_s: 0.0,
+            gain: 0.0,
+            zero_mm: 0.0,
+            outliers: 0.0,
+        }
+    }
+}
+
 fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
     let (gain, zero) = (
         (planted.gain * random.normal()).exp(),
@@ -131,13 +144,7 @@ fn planted_noise_within_and_between_repeats_is_recovered() {
 
 #[test]
 fn identical_repeats_have_no_between_repeat_variance() {
-    let planted = Planted {
-        noise: 0.01,
-        memory_s: 0.0,
-        gain: 0.0,
-        zero_mm: 0.0,
-        outliers: 0.0,
-    };
+    let planted = Planted::white(0.01);
     let (measured, simulated, slopes) = study(8, 4, &planted);
     let told = noise(&measured, (&simulated, &slopes), &[true; 32], None);
     // Half of the error with which one recording's gain and zero can be told apart stays as doubt.
@@ -150,7 +157,7 @@ fn identical_repeats_have_no_between_repeat_variance() {
     assert_eq!(told.correlation[0].memory_s, 0.0);
 }
 
-/// Recordings with a zero of the force of their own, beside gain and touch: how far the zeros lie apart is recovered and said, and their scatter is
+/// Recordings with a zero of the force of their own, in addition to gain and touch: how far the zeros lie apart is recovered and said, and their scatter is
 /// taken neither for a memory nor for a gain.
 #[test]
 fn zeros_of_the_force_are_recovered_and_are_no_memory() {
@@ -200,13 +207,7 @@ fn zeros_of_the_force_are_recovered_and_are_no_memory() {
 /// Of recordings that hold one force, too: nobody can tell gain from zero there, and what others say of their zeros stays.
 #[test]
 fn a_hold_alone_says_nothing_of_zeros() {
-    let planted = Planted {
-        noise: 0.01,
-        memory_s: 0.0,
-        gain: 0.0,
-        zero_mm: 0.0,
-        outliers: 0.0,
-    };
+    let planted = Planted::white(0.01);
     let (mut measured, mut simulated, mut slopes) = study(4, 4, &planted);
     let known = noise(&measured, (&simulated, &slopes), &[true; 16], None);
     for recording in 0..4 {
@@ -228,13 +229,7 @@ fn a_hold_alone_says_nothing_of_zeros() {
 /// An error of the depth shakes the force by its own slope, whatever the modulus that slopes were simulated with.
 #[test]
 fn error_of_the_depth_is_noise_through_the_slope_of_the_force() {
-    let planted = Planted {
-        noise: 0.001,
-        memory_s: 0.0,
-        gain: 0.0,
-        zero_mm: 0.0,
-        outliers: 0.0,
-    };
+    let planted = Planted::white(0.001);
     let (mut measured, simulated, slopes) = study(3, 3, &planted);
     let found =
         |measured: &[Measured]| noise(measured, (&simulated, &slopes), &[true; 9], None).sigma;
@@ -276,13 +271,7 @@ fn without_repeats_noise_comes_from_roughness_with_a_note() {
 /// A press and its map share a protocol, but the map has no force: it must not hide what the presses repeat.
 #[test]
 fn repeats_are_grouped_by_channel() {
-    let planted = Planted {
-        noise: 0.01,
-        memory_s: 0.0,
-        gain: 0.0,
-        zero_mm: 0.0,
-        outliers: 0.0,
-    };
+    let planted = Planted::white(0.01);
     let (mut measured, simulated, slopes) = study(3, 3, &planted);
     let alone = noise(
         &measured,
