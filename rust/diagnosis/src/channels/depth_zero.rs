@@ -18,22 +18,29 @@ use crate::gates::decision::Decision;
 const WORTH_MM: (f64, f64) = (0.03, 0.06);
 const SURE: f64 = 4.0;
 
-/// A sentence for each tool at a site whose depths, as the files give them, begin clearly before or after first touch. None where the fit may
-/// have taken something else for it: nothing is decided, something is suspected, or the zero of the force is off.
+/// A sentence for each tool at a site whose depths, as the files give them, begin clearly before or after first touch. Where something else may
+/// have been taken for it, since something is only suspected, it says how that is settled; None where nothing is decided, or the zero of the
+/// force is off.
 pub(crate) fn depth_zero_notes(
     study: &Study,
     (ready, rungs): (&PreparedStudy, &Rungs),
     decision: &Decision<'_>,
 ) -> Vec<String> {
     let scored = decision.named.unwrap_or(&rungs.base);
-    if !is_decided(decision) {
+    let Some(what) = decided(decision) else {
+        return Vec::new();
+    };
+    let is_stated = study
+        .instrument
+        .as_ref()
+        .is_some_and(|sheet| sheet.first_touch_mm.is_some());
+    if what == Decided::Suspected && is_stated {
         return Vec::new();
     }
     let surrogate = ready.surrogate();
     let model = Model::new(&surrogate, &scored.mechanisms);
     let is_exact = is_form_known(&ready.elastic);
-    let all = model.coordinates.iter().enumerate();
-    let sentences = all.filter_map(|(k, coordinate)| {
+    let off = model.coordinates.iter().enumerate().filter_map(|(k, coordinate)| {
         let Kind::Touch(place) = coordinate.kind else {
             return None;
         };
@@ -41,39 +48,75 @@ pub(crate) fn depth_zero_notes(
         let recording = &study.recordings[course.recording];
         let gives_depth = matches!(&recording.data, Data::Indentation(curve) if curve.channel("depth_mm").is_some());
         let error = scored.refit.covariance[(k, k)].max(0.0).sqrt();
-        let found = sentence((scored.refit.at[k], error), is_exact).filter(|_| gives_depth)?;
-        Some(format!(
-            "depth 0 of {} at {} {found}",
-            recording.indenter, recording.site
-        ))
+        let touch = (scored.refit.at[k], error);
+        let tool = format!("{} at {}", recording.indenter, recording.site);
+        (gives_depth && is_off(touch, is_exact)).then_some((tool, touch))
     });
-    sentences.collect()
-}
-
-/// Whether a fitted first touch is what it says.
-fn is_decided(decision: &Decision<'_>) -> bool {
-    let is_said = match decision.verdict {
-        Verdict::NothingMissing | Verdict::Parameters => decision.suspected.is_empty(),
-        Verdict::MissingPhysics | Verdict::Instrument => true,
-        _ => false,
-    };
-    let has_other_zero = |named: &Scored| {
-        named
-            .mechanisms
+    let off: Vec<(String, (f64, f64))> = off.collect();
+    match what {
+        Decided::Said => off
             .iter()
-            .any(|m| matches!(m.effect, Effect::Offset | Effect::Drift))
-    };
-    is_said && !decision.named.is_some_and(has_other_zero)
+            .map(|(tool, touch)| format!("depth 0 of {tool} {}", sentence(*touch, is_exact)))
+            .collect(),
+        Decided::Suspected => open_sentence(&off).into_iter().collect(),
+    }
 }
 
-/// What is said of a first touch at that depth with its standard error, mm; None where it is not clearly off. `is_exact`: the form of the model is
-/// known, so that an interval holds.
-fn sentence((touch_mm, error): (f64, f64), is_exact: bool) -> Option<String> {
-    let size = touch_mm.abs();
-    let worth = if is_exact { WORTH_MM.0 } else { WORTH_MM.1 };
-    if size < worth || size < SURE * error {
-        return None;
+/// What was decided, of which a fitted first touch is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Decided {
+    /// A verdict with which a fitted first touch is what it says.
+    Said,
+    /// Something is suspected, for which a first touch that is off may stand.
+    Suspected,
+}
+
+/// None where no fitted first touch is worth a word.
+fn decided(decision: &Decision<'_>) -> Option<Decided> {
+    let has_other_zero = |named: &Scored| {
+        let is_zero = |effect| matches!(effect, Effect::Offset | Effect::Drift);
+        named.mechanisms.iter().any(|m| is_zero(m.effect))
+    };
+    match decision.verdict {
+        Verdict::NothingMissing | Verdict::Parameters => {
+            Some(match decision.suspected.is_empty() {
+                true => Decided::Said,
+                false => Decided::Suspected,
+            })
+        }
+        Verdict::MissingPhysics | Verdict::Instrument => {
+            (!decision.named.is_some_and(has_other_zero)).then_some(Decided::Said)
+        }
+        _ => None,
     }
+}
+
+/// Whether a first touch at that depth with its standard error, mm, is clearly off.
+fn is_off((touch_mm, error): (f64, f64), is_exact: bool) -> bool {
+    let worth = if is_exact { WORTH_MM.0 } else { WORTH_MM.1 };
+    touch_mm.abs() >= worth && touch_mm.abs() >= SURE * error
+}
+
+/// What is said of them where something is suspected that bends the start of a curve likewise; None if there are none.
+fn open_sentence(off: &[(String, (f64, f64))]) -> Option<String> {
+    let one = |(tool, (touch_mm, _)): &(String, (f64, f64))| {
+        let side = if *touch_mm < 0.0 { "late" } else { "early" };
+        format!("{:.2} mm {side} with {tool}", touch_mm.abs())
+    };
+    let all: Vec<String> = off.iter().map(one).collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "depth 0 is fitted to be {}, which may stand for an effect that bends the start of a curve alike (a stiff skin, a stiffening law, a bone). \
+             If you know first touch well, from an electric contact or a camera, state how well (first_touch_mm in [instrument]) to have such effects named",
+            all.join(", ")
+        )
+    })
+}
+
+/// What is said of a first touch that is clearly off, at that depth with its standard error, mm. `is_exact`: the form of the model is known, so
+/// that an interval holds.
+fn sentence((touch_mm, error): (f64, f64), is_exact: bool) -> String {
+    let size = touch_mm.abs();
     let half = HALF * error;
     let by = match is_exact {
         true => format!(
@@ -83,42 +126,50 @@ fn sentence((touch_mm, error): (f64, f64), is_exact: bool) -> Option<String> {
         ),
         false => format!("about {size:.2} mm"),
     };
-    Some(match touch_mm < 0.0 {
+    match touch_mm < 0.0 {
         true => format!(
             "is late: in all recordings the tool touches the skin {by} above it, as where a trigger of the force begins the depth. The fit allows for it"
         ),
         false => format!(
             "is early: in all recordings the tool touches the skin {by} below it. The fit allows for it"
         ),
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::sentence;
+    use super::{is_off, open_sentence, sentence};
 
     #[test]
     fn a_zero_is_said_to_be_off_only_where_that_is_clear_and_in_its_direction() {
-        let late = sentence((-0.1, 0.01), true).unwrap();
+        let late = sentence((-0.1, 0.01), true);
         assert!(
             late.contains("is late") && late.contains("0.10 mm (90 %: 0.08 to 0.12) above"),
             "{late}"
         );
-        let early = sentence((0.1, 0.01), false).unwrap();
+        let early = sentence((0.1, 0.01), false);
         assert!(
             early.contains("is early") && early.contains("about 0.10 mm below"),
             "{early}"
         );
-        assert_eq!(
-            sentence((-0.1, 0.03), true),
-            None,
-            "it may be no more than noise"
+        assert!(is_off((-0.1, 0.01), true) && is_off((0.1, 0.01), false));
+        assert!(!is_off((-0.1, 0.03), true), "it may be no more than noise");
+        assert!(!is_off((-0.02, 1e-4), true), "too small to matter");
+        assert!(!is_off((-0.05, 1e-4), false), "the form may do as much");
+    }
+
+    #[test]
+    fn a_first_touch_that_may_stand_for_an_effect_asks_how_well_it_is_known() {
+        let off = [
+            ("ball at pad".to_owned(), (-0.13, 0.008)),
+            ("plate at pad".to_owned(), (0.09, 0.008)),
+        ];
+        let said = open_sentence(&off).unwrap();
+        assert!(
+            said.contains("0.13 mm late with ball at pad, 0.09 mm early with plate at pad")
+                && said.contains("first_touch_mm"),
+            "{said}"
         );
-        assert_eq!(sentence((-0.02, 1e-4), true), None, "too small to matter");
-        assert_eq!(
-            sentence((-0.05, 1e-4), false),
-            None,
-            "the form may do as much"
-        );
+        assert_eq!(open_sentence(&[]), None);
     }
 }

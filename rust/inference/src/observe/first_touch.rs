@@ -53,6 +53,8 @@ pub(crate) fn onset(travel: &[f64], force: &[f64]) -> Onset {
 pub(crate) struct AtZero {
     /// The first reading at or beyond it.
     pub reading: usize,
+    /// Depth at which the force is, mm: 0, or where a recording without approach begins.
+    pub depth_mm: f64,
     /// Force there, less that with which the approach begins, N.
     pub force_n: f64,
     /// Largest force, less the same, N.
@@ -68,19 +70,20 @@ pub(crate) fn at_zero<T>(readings: &[T], of: impl Fn(&T) -> (f64, f64)) -> Optio
     let deepest_mm = all.iter().fold(0.0, |most, r| f64::max(most, r.0));
     let reading = all.iter().position(|one| one.0 >= 0.0)?;
     let approach = &all[..reading];
-    let (rest, force) = match approach.last() {
+    let (rest, depth_mm, force) = match approach.last() {
         None if all[0].0 > NEARLY * deepest_mm => return None,
-        None => (0.0, all[0].1),
+        None => (0.0, all[0].0, all[0].1),
         Some(below) => {
             let above = all[reading];
             let part = (-below.0 / (above.0 - below.0).max(f64::MIN_POSITIVE)).min(1.0);
             let first = &approach[..reading.div_ceil(4)];
             let rest = first.iter().map(|r| r.1).sum::<f64>() / first.len() as f64;
-            (rest, below.1 + part * (above.1 - below.1))
+            (rest, 0.0, below.1 + part * (above.1 - below.1))
         }
     };
     Some(AtZero {
         reading,
+        depth_mm,
         force_n: force - rest,
         most_n: all.iter().fold(0.0, |most, r| f64::max(most, r.1)) - rest,
         deepest_mm,
@@ -88,13 +91,13 @@ pub(crate) fn at_zero<T>(readings: &[T], of: impl Fn(&T) -> (f64, f64)) -> Optio
 }
 
 impl AtZero {
-    /// About how deep the tool is pressed where its depths begin, mm.
+    /// About how deep the tool is pressed at its depth 0, mm.
     ///
     /// Hertz: force grows as the true depth to the power 1.5.
     pub(crate) fn late_mm(&self) -> f64 {
         let share = (self.force_n / self.most_n).clamp(0.0, LATEST);
         let part = libm::cbrt(share).powi(2);
-        self.deepest_mm * part / (1.0 - part)
+        ((self.deepest_mm * part - self.depth_mm) / (1.0 - part)).max(0.0)
     }
 }
 
@@ -145,6 +148,8 @@ mod tests {
             (0.0, -0.31, 0.0),
             (0.2, -0.31, 3.0),
             (0.2, 0.01, 0.0),
+            (0.2, 0.07, 0.0),
+            (0.0, 0.07, 0.0),
         ] {
             let seen = at_zero(&press((late, from, off)), |one| *one).unwrap();
             let found = seen.late_mm();
