@@ -34,6 +34,7 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
 - `trigger`: depth counts from where the force passes 5 to 20 mN, so that all recordings begin late alike; 3 mN.
 - `tared`: each recording's zero of the force is off by its own 5 to 20 mN (standard deviation); 3 mN.
+- `precise`: 0.03 to 0.1 mN, a gain and a first touch that differ by 0.05 % and 0.5 um.
 - `tool_length`: depth counts from where each tool's tip was measured to be, 40 to 120 um off either way; 3 mN.
 
 Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
@@ -64,6 +65,7 @@ NOISES = (
     "tared",
     "trigger",
     "tool_length",
+    "precise",
 )
 TRUTHS = (
     *("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation"),
@@ -305,14 +307,15 @@ class _Reader:
         self.jitter = {"depth_jitter": random.uniform(0.002, 0.02), "mixture": 0.01}.get(family, 0.0)
         self.step = random.uniform(0.005, 0.02) if family == "encoder" else 0.0
         self.share = {"in_proportion": 0.01, "mixture": 0.01}.get(family, 0.0)
-        self.gain = {"gain_scatter": 0.04, "mixture": 0.03}.get(family, 0.005)
-        self.touch = 0.02 if family == "gain_scatter" else 0.004
+        self.gain = {"gain_scatter": 0.04, "mixture": 0.03, "precise": 0.0005}.get(family, 0.005)
+        self.touch = {"gain_scatter": 0.02, "precise": 0.0005}.get(family, 0.004)
         self.even = {
             "white": 0.005,
             "autocorrelated": 0.005,
             "gain_scatter": 0.005,
             "stray": 0.005,
             "in_proportion": 0.002,
+            "precise": random.uniform(3e-5, 1e-4) if family == "precise" else 0.0,
         }
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
         self.ceiling_n = np.inf

@@ -13,7 +13,8 @@ from trial.worlds import closed_forms
 # and 851 a ceiling was, before turning points were where straight legs meet. In stray 4013 readings of both repeats
 # are astray at one moment, in 4007 they draw gain and touch along: the largest part of the misfit is left out.
 # In trigger and tool_length a stiff skin or a yielding mount was, while repeats that agree were thought to know first
-# touch.
+# touch. In precise a stiff skin was, while a mean over readings was taken for the force at their mean depth, and in
+# precise 9601 what a base fit had left too early.
 NULLS = [
     ("depth_jitter", 101),
     ("depth_jitter", 105),
@@ -23,6 +24,8 @@ NULLS = [
     ("mixture", 103),
     ("mixture", 108),
     ("mixture", 110),
+    ("precise", 9601),
+    ("precise", 9604),
     ("stray", 4007),
     ("stray", 4013),
     ("tool_length", 9301),
@@ -298,3 +301,9 @@ def test_a_drift_is_named_although_the_zero_wanders(seed, tmp_path):
     case.write(tmp_path)
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["drift"]
+
+
+def test_cycles_read_by_a_precise_cell_are_accused_of_nothing(tmp_path):
+    closed_forms.draw(9602, "nothing_in_cycles", "precise").write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert said["verdict"] in ("nothing_missing", "parameters") and said["findings"] == []

@@ -147,6 +147,7 @@ fn measured(still: &Still<'_>, samples: Vec<Sample>) -> Measured {
             phase: Phase::Hold,
             cycle: 0,
             readings: 1,
+            depth_spread_mm: 0.0,
         }],
         samples,
         mat: Some(still.mat.clone()),

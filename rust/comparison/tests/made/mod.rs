@@ -46,6 +46,7 @@ pub fn ramp_and_hold(count: usize) -> Vec<Moment> {
             phase,
             cycle: 0,
             readings: 1,
+            depth_spread_mm: 0.0,
         }
     };
     (0..count).map(moment).collect()

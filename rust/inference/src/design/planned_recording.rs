@@ -137,6 +137,7 @@ fn row((time_s, depth_mm): (f64, f64), phase: Phase, cycle: u32) -> Row {
     Row {
         time_s,
         depth_mm,
+        spread_mm: 0.0,
         force_n: f64::NAN,
         sample: None,
         phase,

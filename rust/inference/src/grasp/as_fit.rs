@@ -156,6 +156,7 @@ fn measured(hold: &Hold, samples: Vec<Sample>) -> Measured {
         phase: Phase::Hold,
         cycle: 0,
         readings: *frames as u32,
+        depth_spread_mm: 0.0,
     };
     Measured {
         name: hold.name.clone(),

@@ -67,6 +67,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
             phase: Phase::Load,
             cycle: 0,
             readings: 1,
+            depth_spread_mm: 0.0,
         });
         samples.push(Sample {
             moment: k as u32,

@@ -71,6 +71,23 @@ pub fn means(values: &[f64], bins: &[Range<usize>]) -> Vec<f64> {
     bins.iter().map(mean).collect()
 }
 
+/// Standard deviation of a channel over a bin, as of its straight line over time: what a reading jitters by is none of it.
+pub fn spread((time_s, values): (&[f64], &[f64]), bin: &Range<usize>) -> f64 {
+    let n = bin.len() as f64;
+    let mean = |of: &[f64]| of[bin.clone()].iter().sum::<f64>() / n;
+    let (time, value) = (mean(time_s), mean(values));
+    let (mut square, mut product) = (0.0, 0.0);
+    for k in bin.clone() {
+        let off = time_s[k] - time;
+        square += off * off;
+        product += off * (values[k] - value);
+    }
+    match square > 0.0 {
+        true => product.abs() / (square * n).sqrt(),
+        false => 0.0,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,6 +111,22 @@ mod tests {
         assert!(bins.windows(2).all(|w| w[0].end == w[1].start));
         let in_ramp = bins.iter().filter(|bin| bin.end <= 1000).count();
         assert!(in_ramp > 30 && in_ramp < 65, "{in_ramp}");
+    }
+
+    /// Of n even steps: their length times the root of (n^2 - 1) / 12; what a reading jitters by across a straight motion is none of it.
+    #[test]
+    fn spread_is_that_of_the_straight_motion() {
+        let time: Vec<f64> = (0..40).map(|k| 0.01 * f64::from(k)).collect();
+        let bin = 10..20;
+        let wanted = 0.05 * (99.0f64 / 12.0).sqrt();
+        let moved = |jitter: f64| -> Vec<f64> {
+            let at = |k: u32| -0.05 * f64::from(k) + jitter * f64::from(k % 2);
+            (0..40).map(at).collect()
+        };
+        assert!((spread((&time, &moved(0.0)), &bin) - wanted).abs() < 1e-12);
+        assert!((spread((&time, &moved(0.02)), &bin) / wanted - 1.0).abs() < 0.02);
+        assert!(spread((&time, &vec![0.3; 40]), &bin) < 1e-12);
+        assert_eq!(spread((&time, &moved(0.02)), &(3..4)), 0.0);
     }
 
     /// Between once and one and a half times the budget some bins would hold one sample and some two.

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use thenar_recordings::Curve;
 
 use crate::observe::depth_jitter::without_jitter;
-use crate::observe::downsampling::{bins, means};
+use crate::observe::downsampling::{bins, means, spread};
 use crate::observe::first_touch::onset;
 use crate::observe::measured::{Censoring, Moment, Phase, Quantity, Sample};
 use crate::observe::protocol_phases::{Courses, Stretch, range, stretches};
@@ -141,6 +141,7 @@ pub fn observe(
                 phase: stretch.phase,
                 cycle: stretch.cycle,
                 readings: bins[k].len() as u32,
+                depth_spread_mm: spread((time, courses.depth_mm), &bins[k]),
             }
         })
         .collect();

@@ -89,6 +89,8 @@ pub struct Moment {
     pub cycle: u32,
     /// Readings of which its samples are the means.
     pub readings: u32,
+    /// Standard deviation of the depth over these readings, as of a straight motion, mm.
+    pub depth_spread_mm: f64,
 }
 
 /// Sensels of a placed mat, in skin coordinates at first touch.

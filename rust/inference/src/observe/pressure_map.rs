@@ -306,6 +306,7 @@ impl Course {
                 phase: self.stated[first].unwrap_or(found.map_or(Phase::Hold, |s| s.phase)),
                 cycle: found.map_or(0, |s| s.cycle),
                 readings: 1,
+                depth_spread_mm: 0.0,
             }
         };
         (0..bins.len()).map(moment).collect()

@@ -86,7 +86,7 @@ impl Trial<'_> {
 }
 
 /// The one that fits better.
-fn lower(one: Scored, other: Scored) -> Scored {
+pub(crate) fn lower(one: Scored, other: Scored) -> Scored {
     match other.refit.deviance < one.refit.deviance {
         true => other,
         false => one,

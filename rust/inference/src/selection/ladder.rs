@@ -17,7 +17,7 @@ use crate::forward::surrogate::mechanism::{Law, Mechanism};
 use crate::forward::surrogate::prepared_study::PreparedStudy;
 use crate::observe::measured::{Measured, Phase};
 use crate::parameters::surrogate_parameter::{Kind, by_recording};
-use crate::selection::candidate_fits::Trial;
+use crate::selection::candidate_fits::{Trial, lower};
 use crate::selection::candidates::singles;
 use crate::selection::scored::{Rungs, Scored};
 
@@ -52,6 +52,8 @@ pub fn climb(
     let gain_step = gain_step(&ready.courses, &log_gains(ready, &base));
     let clear_step = gain_step.filter(|found| found.t > STEP);
     let mut singles = trial.singles(clear_step)?;
+    base = trial.as_low_as(base, &singles);
+    trial.from.clone_from(&base.refit.at);
     let rows = ready.courses.iter().flat_map(|c| &c.rows);
     let samples = rows.filter(|r| r.sample.is_some()).count();
     let deviances = singles.iter().map(|s| s.refit.deviance);
@@ -124,6 +126,18 @@ impl Trial<'_> {
             law: Law::GainStep { from: found.from },
         }));
         self.each(&tried, (0.0, 0.6), |mechanism| self.single(mechanism))
+    }
+
+    /// The base, fitted again from where the best single mechanism ended: what that fit gained by going on is none of the mechanism's evidence.
+    fn as_low_as(&self, base: Scored, singles: &[Scored]) -> Scored {
+        let by_fit = |a: &&Scored, b: &&Scored| a.refit.deviance.total_cmp(&b.refit.deviance);
+        match singles.iter().min_by(by_fit) {
+            Some(best) => {
+                let known = base.refit.at.len();
+                lower(base, self.score(&[], &best.refit.at[..known]))
+            }
+            None => base,
+        }
     }
 
     /// Pairs of single mechanisms, best first; none where no single one is worth it.
@@ -236,4 +250,46 @@ fn gains(ready: &PreparedStudy, base: &Scored) -> Vec<f64> {
         ready.courses.len(),
         Kind::Gain,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+
+    /// A base that a fit left too early, by 17 nats, of which no effect explains any.
+    #[test]
+    fn a_base_that_was_left_too_early_is_no_evidence_of_an_effect() {
+        let reading = |k: u32| -> Reading {
+            let depth = 0.025 * f64::from(k);
+            (f64::from(k), depth, Phase::Load, 3.0 * depth)
+        };
+        let readings: Vec<Reading> = (0..=40).map(reading).collect();
+        let (ready, measured) = ready(
+            vec![tool(1.0, |d| 3.0 * d, |_| 1.0)],
+            &[(0, readings)],
+            0.05,
+        );
+        let surrogate = ready.surrogate();
+        let mut trial = Trial {
+            ready: &ready,
+            surrogate: &surrogate,
+            blocks: blocks(&measured),
+            from: Vec::new(),
+            control: &Control::none(),
+        };
+        let settled = trial.score(&[], &[]);
+        let mut early = settled.clone();
+        early.refit.deviance += 34.0;
+        trial.from.clone_from(&early.refit.at);
+        let all = singles(ready.scales);
+        let one = |m: &&Mechanism| m.effect == Effect::Offset;
+        let single = trial.single(all.iter().find(one).expect("an offset"));
+        let gained = early.refit.deviance - single.refit.deviance;
+        assert!(gained > 30.0, "{gained}");
+        let base = trial.as_low_as(early, &[single]);
+        assert!(base.refit.deviance < settled.refit.deviance + 0.1);
+        let kept = trial.as_low_as(settled.clone(), &[]);
+        assert_eq!(kept.refit.at, settled.refit.at);
+    }
 }

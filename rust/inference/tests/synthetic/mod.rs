@@ -80,6 +80,7 @@ impl Design {
             },
             cycle: 0,
             readings: 1,
+            depth_spread_mm: 0.0,
         };
         depths.enumerate().map(moment).collect()
     }

@@ -16,6 +16,18 @@ const YIELDS: usize = 6;
 const FOUND: f64 = 1e-6;
 const STIFFEST: f64 = 0.5;
 
+/// Spread of a mean's depths over their mean up to which its force is that at the mean depth: Hertz's differs by 3/8 of the square.
+const STRAIGHT: f64 = 0.01;
+/// The same from which some of the readings may be above the skin. Below, two points do (Gauss), from there on so many.
+const TOUCHING: f64 = 0.4;
+const MIDPOINTS: u32 = 12;
+
+/// Midpoint of a part of a straight motion, from its mean, in its standard deviations.
+fn midpoint(k: u32) -> f64 {
+    let half = 3.0f64.sqrt();
+    half * (2.0 * (f64::from(k) + 0.5) / f64::from(MIDPOINTS) - 1.0)
+}
+
 /// What a tool at its site answers for the numbers of a model.
 struct Answer {
     /// Stiffness of the springs, N/mm.
@@ -81,7 +93,18 @@ impl Surrogate<'_> {
             true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
             false => 0.0,
         };
-        let mut forces: Vec<f64> = depths.iter().map(elastic).collect();
+        // A mean over readings is not the force at their mean depth.
+        let read = |(d, row): (&f64, &Row)| match row.spread_mm / d.abs() {
+            ratio if ratio > TOUCHING => {
+                let at = |k: u32| elastic(&(d + row.spread_mm * midpoint(k)));
+                (0..MIDPOINTS).map(at).sum::<f64>() / f64::from(MIDPOINTS)
+            }
+            ratio if ratio > STRAIGHT => {
+                0.5 * (elastic(&(d - row.spread_mm)) + elastic(&(d + row.spread_mm)))
+            }
+            _ => elastic(d),
+        };
+        let mut forces: Vec<f64> = depths.iter().zip(&one.rows).map(read).collect();
         let (relaxation_branches, shares) = self.relaxation_branches(model, set, (one, &depths));
         if !relaxation_branches.is_empty() {
             let answer = self.answer(model, set, one.place);
@@ -228,6 +251,35 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A ball's force over ten readings each, of which the first begin above the skin.
+    #[test]
+    fn force_of_a_mean_over_readings_is_the_mean_of_their_forces() {
+        let ball = |d: f64| 10.0 * libm::pow(d, 1.5);
+        let mut ready = pressed(ball);
+        let step = 0.02;
+        let spread = step * (99.0f64 / 12.0).sqrt();
+        let rows = &mut ready.courses[0].rows;
+        rows.truncate(10);
+        let mut wanted = Vec::new();
+        for (k, row) in rows.iter_mut().enumerate() {
+            row.depth_mm = 0.2 * k as f64 - 0.03;
+            row.spread_mm = spread;
+            let at = |j: u32| row.depth_mm + step * (f64::from(j) - 4.5);
+            wanted.push((0..10).map(|j| ball(at(j).max(0.0))).sum::<f64>() / 10.0);
+        }
+        let nothing = (Effect::FixtureCompliance, Law::Compliance);
+        let found = forces(&ready, nothing.clone(), 0.0);
+        for (force, wanted) in found.iter().zip(&wanted) {
+            assert!((force - wanted).abs() < 0.004, "{force} {wanted}");
+        }
+        ready.courses[0]
+            .rows
+            .iter_mut()
+            .for_each(|row| row.spread_mm = 0.0);
+        let at_mean = forces(&ready, nothing, 0.0);
+        assert!((at_mean[1] - wanted[1]).abs() > 0.01, "{at_mean:?}");
     }
 
     /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.

@@ -4,7 +4,7 @@ use thenar_recordings::Study;
 
 use crate::checks::copies::copies;
 use crate::forward::surrogate::mechanism::UseAtStart;
-use crate::observe::measured::{Censoring, Measured, Phase, Quantity};
+use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity};
 
 /// One moment of a protocol.
 #[derive(Debug, Clone, Copy)]
@@ -13,9 +13,11 @@ pub struct Row {
     pub time_s: f64,
     /// Depth as stated, mm.
     pub depth_mm: f64,
+    /// Standard deviation of that depth over the readings, mm.
+    pub spread_mm: f64,
     /// Force that was measured, N; NaN where it is only planned.
     pub force_n: f64,
-    /// Number of the force sample among all samples of the study, stacked.
+    /// Number of the force sample among all samples of the study.
     pub sample: Option<usize>,
     /// Part of the protocol.
     pub phase: Phase,
@@ -151,11 +153,11 @@ pub(crate) fn force_recordings(
         let start = first;
         first += one.samples.len();
         let is_known = one.moments.iter().all(|m| m.depth_mm.is_finite());
-        let still = |m: &crate::observe::measured::Moment| m.slide_mm.norm() == 0.0;
+        let is_still = one.moments.iter().all(|m| m.slide_mm.norm() == 0.0);
         if !is_known
             || one.moments.len() < 8
             || !one.is_calibrated
-            || !one.moments.iter().all(still)
+            || !is_still
             || copies.iter().any(|(copy, _)| *copy == recording)
         {
             continue;
@@ -175,20 +177,14 @@ pub(crate) fn force_recordings(
             samples: (start, one.samples.len()),
         });
     }
-    let stated = |c: &ForceRecording| {
-        study.recordings[c.recording]
-            .order
-            .unwrap_or(c.recording as f64)
-    };
+    let of = |c: &ForceRecording| &study.recordings[c.recording];
+    let stated = |c: &ForceRecording| of(c).order.unwrap_or(c.recording as f64);
     let mut by_order: Vec<usize> = (0..found.len()).collect();
     by_order.sort_by(|a, b| stated(&found[*a]).total_cmp(&stated(&found[*b])));
     for (order, course) in by_order.iter().enumerate() {
         found[*course].order = order;
     }
-    let is_in_order = |c: &ForceRecording| {
-        let stated = &study.recordings[c.recording];
-        stated.order.is_some() && stated.rest_s.is_none()
-    };
+    let is_in_order = |c: &ForceRecording| of(c).order.is_some() && of(c).rest_s.is_none();
     if found.iter().all(is_in_order) {
         let tissue = |course: &usize| {
             let stated = &study.recordings[found[*course].recording];
@@ -241,9 +237,10 @@ pub(crate) fn carries_use(courses: &[ForceRecording]) -> bool {
 }
 
 fn rows(measured: &Measured, start: usize) -> Vec<Row> {
-    let row = |m: &crate::observe::measured::Moment| Row {
+    let row = |m: &Moment| Row {
         time_s: m.time_s,
         depth_mm: m.depth_mm,
+        spread_mm: m.depth_spread_mm,
         force_n: 0.0,
         sample: None,
         phase: m.phase,

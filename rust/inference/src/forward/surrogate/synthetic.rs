@@ -126,6 +126,7 @@ fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<ForceRecording> {
         let row = |(k, one): (usize, &Reading)| Row {
             time_s: one.0,
             depth_mm: one.1,
+            spread_mm: 0.0,
             force_n: one.3,
             sample: Some(first + k),
             phase: one.2,
@@ -156,6 +157,7 @@ fn measured(readings: &[Reading]) -> Measured {
         phase: one.2,
         cycle: 0,
         readings: 1,
+        depth_spread_mm: 0.0,
     };
     let sample = |(k, one): (usize, &Reading)| Sample {
         moment: k as u32,

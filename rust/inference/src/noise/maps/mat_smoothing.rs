@@ -60,6 +60,7 @@ mod tests {
             phase: Phase::Hold,
             cycle: 0,
             readings: 1,
+            depth_spread_mm: 0.0,
         };
         let measured = Measured {
             name: String::new(),
