@@ -27,6 +27,7 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `in_proportion`: 1 % of the reading and 2 mN.
 - `depth_jitter`: the depth's reading jitters by 2 to 20 um; 3 mN.
 - `encoder`: the depth is read in steps of 5 to 20 um; 3 mN.
+- `fast_encoder`: the same with 20 times as many samples, so that many in a row read the same depth.
 - `clock`: time stamps jitter by 4 ms, a tenth of the time between samples at most; 3 % of the samples are lost; 3 mN.
 - `wander`: the zero of the force wanders by 8 mN in 10 s; 3 mN.
 - `gain_scatter`: repeats differ by 4 % in force and 20 um in first touch; 5 mN.
@@ -57,6 +58,7 @@ NOISES = (
     "in_proportion",
     "depth_jitter",
     "encoder",
+    "fast_encoder",
     "clock",
     "wander",
     "gain_scatter",
@@ -136,7 +138,7 @@ def draw(seed, truth, noise, motion="ramps"):
     fades = truth.startswith("relaxation")
     speeds = [0.5, 4.0] if fades or random.random() < 0.6 else [1.0]
     has_hold = fades or random.random() < 0.6
-    repeats, samples = random.integers(2, 5), random.choice([25, 100])
+    repeats, samples = random.integers(2, 5), random.choice([25, 100]) * (20 if noise == "fast_encoder" else 1)
     fading = None
     if fades:
         fading = [
@@ -305,7 +307,7 @@ class _Reader:
     def __init__(self, family, random):
         self.family, self.random = family, random
         self.jitter = {"depth_jitter": random.uniform(0.002, 0.02), "mixture": 0.01}.get(family, 0.0)
-        self.step = random.uniform(0.005, 0.02) if family == "encoder" else 0.0
+        self.step = random.uniform(0.005, 0.02) if family.endswith("encoder") else 0.0
         self.share = {"in_proportion": 0.01, "mixture": 0.01}.get(family, 0.0)
         self.gain = {"gain_scatter": 0.04, "mixture": 0.03, "precise": 0.0005}.get(family, 0.005)
         self.touch = {"gain_scatter": 0.02, "precise": 0.0005}.get(family, 0.004)

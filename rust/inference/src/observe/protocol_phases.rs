@@ -1,6 +1,7 @@
 //! Phases of a protocol (load, hold, unload, slide, apart) from noisy depths.
 
 use crate::observe::measured::Phase;
+use crate::observe::motion::stairs::under_stairs;
 use crate::observe::robust_scale::noise_of;
 
 /// Part of the depth's range that a movement must exceed to count as one; passes from 0.005 to 0.05.
@@ -98,6 +99,8 @@ fn flicker(phases: &[Phase], shortest: usize) -> Option<(usize, usize, Phase)> {
 /// Load, hold or unload by sample, from the depth alone.
 pub(crate) fn moves(time: &[f64], depth: &[f64]) -> Vec<Phase> {
     let n = depth.len();
+    let under = under_stairs(time, depth);
+    let depth = under.as_deref().unwrap_or(depth);
     let mut phases = vec![Phase::Hold; n];
     let noise = noise_of(depth);
     let (low, high) = range(depth);
@@ -310,6 +313,39 @@ mod tests {
                 assert_eq!(at(begin + 15.2).0, Phase::Apart, "{noise}");
             }
             assert!(found.len() <= 15, "{noise}: {found:?}");
+        }
+    }
+
+    /// Two cycles at 1 kHz, of which some 25 readings in a row are rounded to the same.
+    #[test]
+    fn ramps_that_are_read_in_steps_are_ramps() {
+        let (_, moved) = cycle(0.0, 2);
+        let time: Vec<f64> = (0..31_900).map(|k| 1e-3 * f64::from(k)).collect();
+        let at = |t: &f64| {
+            let (k, part) = ((t / 0.1) as usize, (t / 0.1).fract());
+            moved[k] + part * (moved[k + 1] - moved[k])
+        };
+        let depth: Vec<f64> = time
+            .iter()
+            .map(|t| (at(t) / 0.025).round() * 0.025)
+            .collect();
+        let force: Vec<f64> = depth.iter().map(|d| d.max(0.0)).collect();
+        let found = stretches(Courses {
+            time_s: &time,
+            depth_mm: &depth,
+            force_n: &force,
+            slide_mm: &[],
+        });
+        assert!(found.len() <= 10, "{found:?}");
+        for turn in 0..2 {
+            let of = |t: f64| {
+                let k = (1000.0 * (16.0 * f64::from(turn) + t)) as usize;
+                let stretch = found.iter().find(|s| s.start <= k && k < s.end).unwrap();
+                (stretch.phase, stretch.cycle)
+            };
+            assert_eq!(of(1.2), (Phase::Load, turn), "{found:?}");
+            assert_eq!(of(7.0), (Phase::Hold, turn), "{found:?}");
+            assert_eq!(of(13.2), (Phase::Unload, turn), "{found:?}");
         }
     }
 

@@ -35,10 +35,22 @@ pub enum Kind {
     Gain(usize),
     /// Zero of one recording's force, N (number of the course).
     ForceZero(usize),
+    /// What the depth of a stand is off by, mm: of a recording (number of the course) whose depths are rounded, number of the stand in it.
+    Stand(usize, usize),
     /// Logarithm of the factor by which the model's form is off, by tool and way.
     Form(usize, usize),
     /// Size of a form that all tools at a site share, in standard deviations: by site and form (`priors::SHARED_FORM`).
     SharedForm(usize, usize),
     /// A number of a mechanism: which of the model's, which number.
     Of(usize, usize),
+}
+
+impl Kind {
+    /// The recording (number of the course) that it is of alone.
+    pub(crate) fn course(self) -> Option<usize> {
+        match self {
+            Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) | Kind::Stand(c, _) => Some(c),
+            _ => None,
+        }
+    }
 }

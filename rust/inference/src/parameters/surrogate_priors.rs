@@ -3,6 +3,7 @@
 use crate::forward::mesh::replay::Replay;
 use thenar_contact::Material;
 
+use crate::forward::surrogate::force_prediction::stands;
 use crate::forward::surrogate::force_recording::ForceRecording;
 use crate::forward::tables::elastic::Elastic;
 use crate::forward::tables::form_ways::WAYS;
@@ -13,6 +14,9 @@ use crate::parameters::priors::{
     SHARED_FORM, UNKNOWN_TOUCH,
 };
 use crate::parameters::surrogate_parameter::{Coordinate, Kind};
+
+/// Most stands of a recording whose depths are fitted.
+const MOST_STANDS: usize = 8;
 
 /// Moduli, first touch, gain, and the model's form. `touch_mm` is the standard deviation of the first touch that a tool has in all its recordings,
 /// where it was judged.
@@ -44,6 +48,12 @@ pub(crate) fn shared(
     }
     for (c, course) in courses.iter().enumerate() {
         all.extend(of_course(c, course.deepest(), (noise, touch_mm)));
+        // All readings of a stand are rounded alike, so that their mean is no surer than one.
+        let rounded_mm = replay.observed.measured[course.recording].depth_error_mm;
+        let stands = stands(&course.rows).len().min(MOST_STANDS);
+        all.extend((0..stands).filter(|_| rounded_mm > 0.0).map(|stand| {
+            Coordinate::about(Kind::Stand(c, stand), (rounded_mm, MOST), 0.1 * rounded_mm)
+        }));
     }
     all
 }

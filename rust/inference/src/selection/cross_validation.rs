@@ -255,9 +255,8 @@ fn predicted(
             };
             for (coordinate, value) in model.coordinates.iter_mut().zip(values) {
                 let own = match coordinate.kind {
-                    Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) => is_out(c),
                     Kind::Form(place, _) | Kind::Touch(place) => !seen(place),
-                    _ => false,
+                    kind => kind.course().is_some_and(is_out),
                 };
                 if !own {
                     coordinate.bounds = (*value, *value);

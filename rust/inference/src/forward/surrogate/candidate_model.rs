@@ -48,6 +48,7 @@ impl<'a> Model<'a> {
             zero: vec![0.0; courses],
             gain: vec![0.0; courses],
             force_zero: vec![0.0; courses],
+            stand: vec![Vec::new(); courses],
             form: vec![[0.0; WAYS]; places],
             shared_form: vec![[0.0; SHARED]; places],
             of: vec![Vec::new(); self.mechanisms.len()],
@@ -61,6 +62,7 @@ impl<'a> Model<'a> {
                 Kind::Zero(course) => set.zero[course] = *value,
                 Kind::Gain(course) => set.gain[course] = *value,
                 Kind::ForceZero(course) => set.force_zero[course] = *value,
+                Kind::Stand(course, _) => set.stand[course].push(*value),
                 Kind::Form(place, mode) => set.form[place][mode] = *value,
                 Kind::SharedForm(site, form) => set.shared_form[site][form] = *value,
                 Kind::Of(mechanism, _) => set.of[mechanism].push(*value),
@@ -87,6 +89,8 @@ pub struct Setting {
     pub gain: Vec<f64>,
     /// Zero of the force by course, N.
     pub force_zero: Vec<f64>,
+    /// What the depths of its stands are off by, by course, mm; none where depths are not rounded.
+    pub stand: Vec<Vec<f64>>,
     /// What the model's form is off by, by place.
     pub form: Vec<[f64; WAYS]>,
     /// Sizes of the forms that tools share, by site.

@@ -95,7 +95,7 @@ impl Surrogate<'_> {
     fn matters(&self, model: &Model<'_>, kind: Kind, course: usize) -> bool {
         let one = &self.courses[course];
         match kind {
-            Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) => c == course,
+            Kind::Zero(c) | Kind::Gain(c) | Kind::ForceZero(c) | Kind::Stand(c, _) => c == course,
             Kind::Touch(place) | Kind::Form(place, _) | Kind::Scale(place) => place == one.place,
             Kind::Of(of, _) => match &model.mechanisms[of].law {
                 Law::GainStep { from } => one.order >= *from,

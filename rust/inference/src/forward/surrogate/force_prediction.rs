@@ -3,6 +3,8 @@
 //! It shares tables, noise and priors with the fit, and answers a hundred times faster than a protocol that is followed
 //! moment by moment on the skin's mesh.
 
+use std::ops::Range;
+
 use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::force_recording::Row;
 use crate::forward::surrogate::mechanism::Law;
@@ -26,6 +28,19 @@ const MIDPOINTS: u32 = 12;
 fn midpoint(k: u32) -> f64 {
     let half = 3.0f64.sqrt();
     half * (2.0 * (f64::from(k) + 0.5) / f64::from(MIDPOINTS) - 1.0)
+}
+
+/// Rows of a recording's stands, in their order.
+pub(crate) fn stands(rows: &[Row]) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for (k, row) in rows.iter().enumerate() {
+        match (row.phase, found.last_mut()) {
+            (Phase::Hold, Some(last)) if last.end == k => last.end = k + 1,
+            (Phase::Hold, _) => found.push(k..k + 1),
+            _ => {}
+        }
+    }
+    found
 }
 
 /// What a tool at its site answers for the numbers of a model.
@@ -138,7 +153,11 @@ impl Surrogate<'_> {
             }
         }
         let depth = |(row, force): (&Row, &f64)| row.depth_mm - zero - yields * force.max(0.0);
-        one.rows.iter().zip(known).map(depth).collect()
+        let mut depths: Vec<f64> = one.rows.iter().zip(known).map(depth).collect();
+        for (stand, off_mm) in stands(&one.rows).into_iter().zip(&set.stand[course]) {
+            depths[stand].iter_mut().for_each(|d| *d += off_mm);
+        }
+        depths
     }
 
     fn answer(&self, model: &Model<'_>, set: &Setting, place: usize) -> Answer {
@@ -280,6 +299,35 @@ mod tests {
             .for_each(|row| row.spread_mm = 0.0);
         let at_mean = forces(&ready, nothing, 0.0);
         assert!((at_mean[1] - wanted[1]).abs() > 0.01, "{at_mean:?}");
+    }
+
+    /// The first of two stands is 0.05 mm deeper than it was read.
+    #[test]
+    fn what_a_stand_is_off_by_moves_its_rows_and_no_other() {
+        let mut ready = pressed(|d| 10.0 * d);
+        let rows = &mut ready.courses[0].rows;
+        for k in (30..40).chain(60..70) {
+            rows[k].phase = Phase::Hold;
+        }
+        assert_eq!(stands(rows), [30..40, 60..70]);
+        ready.shared.extend(
+            [0.05, 0.0]
+                .into_iter()
+                .enumerate()
+                .map(|(stand, start)| Coordinate {
+                    kind: Kind::Stand(0, stand),
+                    start,
+                    bounds: (-1.0, 1.0),
+                    prior: Some(0.1),
+                    step: 1e-4,
+                }),
+        );
+        let nothing = (Effect::FixtureCompliance, Law::Compliance);
+        for (k, force) in forces(&ready, nothing, 0.0).iter().enumerate() {
+            let off = if (30..40).contains(&k) { 0.05 } else { 0.0 };
+            let wanted = 10.0 * (k as f64 / 40.0 + off);
+            assert!((force - wanted).abs() < 1e-4, "{k}: {force} {wanted}");
+        }
     }
 
     /// Before the gain a ceiling and a floor are the same force in all recordings, after it the same reading.

@@ -7,6 +7,9 @@ use crate::observe::smoothing::smoothed_with_freedom;
 /// Fall of the deviance from which a stand creeps: the 99.9 % point of chi-squared with one degree of freedom, since a session has many stands.
 const CREEPS: f64 = 10.83;
 
+/// Readings in a row that are the same, in the mean of a motion, from which they are stairs.
+const STAIRS: f64 = 2.0;
+
 /// Distance from a line by least squares within which readings that are rounded lie, in their steps: half of one, and what the line is off by.
 pub(crate) const ROUNDED: f64 = 1.001;
 
@@ -20,7 +23,8 @@ pub(crate) struct Readings<'a> {
 }
 
 impl<'a> Readings<'a> {
-    /// With the variance that smooth courses leave of all legs together: of one short leg a smooth course may leave next to nothing.
+    /// With the variance that smooth courses leave of all legs together: of one short leg a smooth course may leave next to nothing. Where many
+    /// readings in a row are rounded to the same, a smooth course follows them: they are off alike, and count for one.
     pub(crate) fn new(
         (time, depth): (&'a [f64], &'a [f64]),
         (legs, step): (&[Leg], f64),
@@ -32,13 +36,27 @@ impl<'a> Readings<'a> {
             step,
         };
         let (mut squares, mut left) = (0.0, 0.0);
+        let (mut moving, mut changes) = (0.0, 0.0);
         for leg in legs {
             let (own, freedom) = smooth_squares(*leg, bare);
             squares += own;
-            left += (leg.end - leg.start) as f64 - freedom;
+            let count = (leg.end - leg.start) as f64;
+            left += count - freedom;
+            if leg.phase != Phase::Hold {
+                let pairs = depth[leg.start..leg.end].windows(2);
+                moving += count;
+                changes += pairs.filter(|two| two[0] != two[1]).count() as f64;
+            }
         }
+        let alike = moving / f64::max(changes, 1.0);
+        let of_stairs = match alike > STAIRS {
+            true => alike * step * step / 12.0,
+            false => 0.0,
+        };
         Readings {
-            variance: (squares / left.max(1.0)).max(f64::MIN_POSITIVE),
+            variance: (squares / left.max(1.0))
+                .max(of_stairs)
+                .max(f64::MIN_POSITIVE),
             ..bare
         }
     }

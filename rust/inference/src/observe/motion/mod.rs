@@ -5,3 +5,4 @@ pub(crate) mod cut;
 pub(crate) mod legs;
 pub(crate) mod line;
 pub(crate) mod rounding;
+pub(crate) mod stairs;

@@ -18,6 +18,9 @@ use crate::observe::robust_scale::median;
 const SAME: f64 = 1e-7;
 /// Smallest step, as a part of the range: what has no step seems to have one far below.
 const FINEST: f64 = 1e-5;
+/// A step that is larger than the digit in which readings are written: by so many digits, and the smallest gap by so many steps at most.
+const DIGITS: f64 = 20.0;
+const PARTS: u32 = 4;
 /// Fewest different readings in which a step is sought.
 const FEWEST: usize = 8;
 /// Least that rounding leaves about lines, in steps: less is a motion in even steps that was read as it is.
@@ -44,7 +47,8 @@ const LINES_ARE_OFF: f64 = 0.12;
 /// The same where a stand is left where it was read: all of its readings are off by one error of rounding.
 const STANDS_ARE_OFF: f64 = 0.29;
 
-/// The step of which all readings are multiples, from one of them on, mm; 0 where there is none.
+/// The step of which all readings are multiples, from one of them on, mm; 0 where there is none. A file that writes few digits rounds them once
+/// more: then multiples are off by one of its last digit at most.
 pub(crate) fn step_mm(depth: &[f64]) -> f64 {
     let mut sorted = depth.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -52,21 +56,62 @@ pub(crate) fn step_mm(depth: &[f64]) -> f64 {
         return 0.0;
     };
     let range = last - first;
+    sorted.dedup_by(|b, a| *b - *a <= SAME * range);
+    let digit = common_step(&sorted, range);
+    let coarser = if digit > 0.0 {
+        coarser_step(&sorted, digit)
+    } else {
+        None
+    };
+    let step = coarser.unwrap_or(digit);
+    match sorted.len() < FEWEST || step < FINEST * range {
+        true => 0.0,
+        false => step,
+    }
+}
+
+/// The step of which different readings, in their order, are multiples to within the digit in which they are written, many times as large as that.
+///
+/// As counts of an encoder are that a program has turned into millimeters.
+fn coarser_step(sorted: &[f64], digit: f64) -> Option<f64> {
+    let gaps: Vec<f64> = sorted.windows(2).map(|two| two[1] - two[0]).collect();
+    let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let tried = (1..=PARTS).map(|part| least / f64::from(part));
+    tried
+        .take_while(|step| *step > DIGITS * digit)
+        .find_map(|first| {
+            // From gaps, that are few steps each, to the whole range, in which an error of the step has grown.
+            let count = |gap: &f64| (gap / first).round();
+            let (mut over, mut under) = (0.0, 0.0);
+            for gap in &gaps {
+                over += count(gap) * gap;
+                under += count(gap) * count(gap);
+            }
+            let rough: f64 = over / under;
+            let of = |value: f64| ((value - sorted[0]) / rough).round();
+            let (mut over, mut under) = (0.0, 0.0);
+            for value in sorted {
+                over += of(*value) * (value - sorted[0]);
+                under += of(*value) * of(*value);
+            }
+            let step: f64 = over / under;
+            let is_multiple =
+                |value: &f64| (value - sorted[0] - of(*value) * step).abs() <= 1.5 * digit;
+            (under > 0.0 && sorted.iter().all(is_multiple)).then_some(step)
+        })
+}
+
+/// Euclid's algorithm over the gaps between different readings, in their order.
+fn common_step(sorted: &[f64], range: f64) -> f64 {
     let gaps = sorted.windows(2).map(|two| two[1] - two[0]);
-    let gaps: Vec<f64> = gaps.filter(|gap| *gap > SAME * range).collect();
-    // Euclid's algorithm over all gaps.
-    let step = gaps.iter().fold(0.0, |step, gap| {
-        let (mut large, mut small) = (f64::max(step, *gap), f64::min(step, *gap));
+    gaps.fold(0.0, |step, gap| {
+        let (mut large, mut small) = (f64::max(step, gap), f64::min(step, gap));
         while small > SAME * range {
             let left = large - (large / small).round() * small;
             (large, small) = (small, left.abs());
         }
         large
-    });
-    match gaps.len() + 1 < FEWEST || step < FINEST * range {
-        true => 0.0,
-        false => step,
-    }
+    })
 }
 
 /// Readings that are rounded to a step, and what the force does with it.
@@ -99,10 +144,7 @@ impl Rounded<'_> {
             return None;
         }
         let mut depth = lines.clone();
-        let left = match self.level_stands(&mut depth) {
-            true => LINES_ARE_OFF,
-            false => STANDS_ARE_OFF,
-        };
+        let left = self.level_stands(&mut depth);
         Some((depth, left * self.step_mm))
     }
 
@@ -144,12 +186,15 @@ impl Rounded<'_> {
         under > 0.0 && over - 0.5 * under <= CLEARLY * self.noise_n * self.noise_n
     }
 
-    /// Moves stands to where, within half a step, the force of the leg before them comes to: all readings of a stand are off by the same. False if
-    /// one stays as it was read: its force falls (then it is not of the depth alone), it does not follow a leg, or it says more than half a step.
-    fn level_stands(&self, lines: &mut [f64]) -> bool {
-        let mut are_level = true;
+    /// Moves stands to where, within half a step, the force of the leg before them comes to: all readings of a stand are off by the same. Returns
+    /// what depths are then off by (standard deviation), in steps: as stands that stay as they were read, since their force falls (then it is not of
+    /// the depth alone), they do not follow a leg, or the force says more than half a step; as well as the noise of the force lets know; or as lines.
+    fn level_stands(&self, lines: &mut [f64]) -> f64 {
+        let mut off_steps = LINES_ARE_OFF;
         for (n, stand) in self.stretches.iter().enumerate() {
-            are_level &= stand.phase != Phase::Slide;
+            if stand.phase == Phase::Slide {
+                off_steps = STANDS_ARE_OFF;
+            }
             if stand.phase != Phase::Hold || stand.end - stand.start <= 2 * AFTER {
                 continue;
             }
@@ -158,15 +203,24 @@ impl Rounded<'_> {
                 .filter(|leg| leg.phase == Phase::Load)
                 .and_then(|leg| self.shift(lines, leg, *stand));
             match moved {
-                Some((own, off)) => lines[own].iter_mut().for_each(|depth| *depth += off),
-                None => are_level = false,
+                Some((own, off, known)) => {
+                    lines[own].iter_mut().for_each(|depth| *depth += off);
+                    off_steps = off_steps.max(STANDS_ARE_OFF * (1.0 - known).max(0.0).sqrt());
+                }
+                None => off_steps = STANDS_ARE_OFF,
             }
         }
-        are_level
+        off_steps
     }
 
-    /// Readings of a stand after a leg, and by how much it is off, mm; None where the force does not say.
-    fn shift(&self, lines: &[f64], leg: Stretch, stand: Stretch) -> Option<(Range<usize>, f64)> {
+    /// Readings of a stand after a leg, by how much it is off, mm, and which part of the variance of rounding the force takes away; None where it
+    /// does not say.
+    fn shift(
+        &self,
+        lines: &[f64],
+        leg: Stretch,
+        stand: Stretch,
+    ) -> Option<(Range<usize>, f64, f64)> {
         let (force, step) = (self.courses.force_n, self.step_mm);
         let level = median(&mut lines[stand.start..stand.end].to_vec());
         let is_level = |k: &usize| (lines[*k] - level).abs() < SAME_LEVEL * step;
@@ -197,7 +251,7 @@ impl Rounded<'_> {
         let part = rounded / (rounded + noise * variance + known);
         let off = (here - there) / slope * part;
         let is_within = off.abs() <= FARTHEST * step;
-        is_within.then_some((own, off.clamp(-0.5 * step, 0.5 * step)))
+        is_within.then_some((own, off.clamp(-0.5 * step, 0.5 * step), part))
     }
 }
 
@@ -218,4 +272,39 @@ fn continued(points: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
     let found = inverse * right;
     let grows = found.y > 0.0 && inverse.m11 > 0.0 && way > 0.0;
     grows.then_some((found.x, found.y / way, inverse.m11))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::step_mm;
+
+    /// Readings of an uneven motion, each rounded to the step and then to the digit.
+    fn found(step: f64, digit: f64) -> f64 {
+        let path = |k: u32| 1.3 * (f64::from(k) / 60.0).powf(1.2) - 0.15;
+        let round = |value: f64, to: f64| {
+            if to > 0.0 {
+                (value / to).round() * to
+            } else {
+                value
+            }
+        };
+        let read: Vec<f64> = (0..=60)
+            .map(|k| round(round(path(k), step), digit))
+            .collect();
+        step_mm(&read)
+    }
+
+    #[test]
+    fn a_step_is_found_through_the_digits_of_a_file() {
+        for step in [0.010_914_46, 0.007_333, 0.02] {
+            assert!((found(step, 0.0) / step - 1.0).abs() < 1e-6, "{step}");
+            assert!(
+                (found(step, 1e-5) / step - 1.0).abs() < 1e-3,
+                "{step} {}",
+                found(step, 1e-5)
+            );
+        }
+        assert!((found(0.0, 1e-3) - 1e-3).abs() < 1e-9, "digits alone");
+        assert!(found(0.0, 1e-5) < 1.1e-5 && found(0.0, 0.0) == 0.0);
+    }
 }
