@@ -62,7 +62,7 @@ pub(crate) fn depth_zero_notes(
     }
 }
 
-/// What was decided, of which a fitted first touch is told.
+/// What was decided, and so what a fitted first touch says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Decided {
     /// A verdict with which a fitted first touch is what it says.

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_with_every_reading_or_stands_on_large_steps_has_no_stairs() {
+    fn large_steps_and_changes_with_every_reading_are_no_stairs() {
         let (time, truth, _) = read(0.01);
         assert!(under_stairs(&time, &truth).is_none());
         let (time, _, steps) = read(0.1);
