@@ -226,11 +226,12 @@ def test_relaxation_is_named_through_jitter(tmp_path):
     assert simulated > 0.9 * fit
 
 
-@pytest.mark.parametrize(("seed", "first_touch_mm"), [(102, 0.01), (103, None)])
-def test_a_large_effect_whose_law_only_resembles_its_name_is_named(seed, first_touch_mm, tmp_path):
+@pytest.mark.parametrize(("seed", "first_touch_mm", "is_confirmed"), [(102, 0.01, True), (103, None, False)])
+def test_a_large_effect_whose_law_only_resembles_its_name_is_named(seed, first_touch_mm, is_confirmed, tmp_path):
     """Damage by work, read as softening by travel: less of its evidence is confirmed; the error falls by half or more.
 
-    In 102 it is suspected only, unless it is stated that first touch is judged within 10 um (4 um in this world).
+    In 102 it is suspected only, unless it is stated that first touch is judged within 10 um (4 um in this world). Then
+    60 % and more of its evidence is confirmed since means over readings are modeled; before it was less, as in 103.
     """
     closed_forms.draw(seed, "cycle_softening", "depth_jitter").write(tmp_path)
     if first_touch_mm:
@@ -239,7 +240,8 @@ def test_a_large_effect_whose_law_only_resembles_its_name_is_named(seed, first_t
     said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
     assert [finding["effect"] for finding in said["findings"]] == ["cycle_softening"]
     fit = said["fit"]
-    assert fit["log_score"]["of_evidence"] < 0.6 and fit["reducible_error_removed"]["value"] > 0.3
+    assert (fit["log_score"]["of_evidence"] > 0.6) == is_confirmed
+    assert fit["reducible_error_removed"]["value"] > 0.3
     _, simulated = removed(said)
     assert simulated > 0.3, "the contact model begins each recording with tissue as it was used before"
 

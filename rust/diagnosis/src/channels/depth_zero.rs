@@ -78,17 +78,28 @@ fn decided(decision: &Decision<'_>) -> Option<Decided> {
         named.mechanisms.iter().any(|m| is_zero(m.effect))
     };
     match decision.verdict {
-        Verdict::NothingMissing | Verdict::Parameters => {
-            Some(match decision.suspected.is_empty() {
-                true => Decided::Said,
-                false => Decided::Suspected,
-            })
-        }
+        Verdict::NothingMissing | Verdict::Parameters => match decision.suspected.is_empty() {
+            true => Some(Decided::Said),
+            false => bend_the_start(&decision.suspected).then_some(Decided::Suspected),
+        },
         Verdict::MissingPhysics | Verdict::Instrument => {
             (!decision.named.is_some_and(has_other_zero)).then_some(Decided::Said)
         }
         _ => None,
     }
+}
+
+/// Whether one of these effects bends the start of a curve as a first touch that is off does, and none is a zero of the force.
+fn bend_the_start(names: &[&str]) -> bool {
+    let bends = [
+        Effect::StiffSkin,
+        Effect::StiffeningLaw,
+        Effect::Bone,
+        Effect::Compressibility,
+    ];
+    let zeros = [Effect::Offset, Effect::Drift];
+    let is_one = |of: &[Effect]| names.iter().any(|n| of.iter().any(|e| e.name() == *n));
+    is_one(&bends) && !is_one(&zeros)
 }
 
 /// Whether a first touch at that depth with its standard error, mm, is clearly off.
@@ -138,7 +149,7 @@ fn sentence((touch_mm, error): (f64, f64), is_exact: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{is_off, open_sentence, sentence};
+    use super::{bend_the_start, is_off, open_sentence, sentence};
 
     #[test]
     fn a_zero_is_said_to_be_off_only_where_that_is_clear_and_in_its_direction() {
@@ -171,5 +182,7 @@ mod tests {
             "{said}"
         );
         assert_eq!(open_sentence(&[]), None);
+        assert!(bend_the_start(&["stiffening_law"]) && bend_the_start(&["relaxation", "bone"]));
+        assert!(!bend_the_start(&["relaxation"]) && !bend_the_start(&["bone", "drift"]));
     }
 }

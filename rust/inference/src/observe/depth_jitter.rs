@@ -74,7 +74,10 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         noise_n,
     };
     // Rounding is alike in readings that follow each other: a mean over them has their noise no more, and still its error.
-    let in_mean = (n as f64 / MOST_MOMENTS as f64).max(1.0);
+    let in_mean = match n > MOST_MOMENTS + MOST_MOMENTS / 2 {
+        true => n as f64 / MOST_MOMENTS as f64,
+        false => 1.0,
+    };
     let does = rounded.does_n() > LEAST * noise_n / in_mean.sqrt();
     if !matters && !does {
         return None;

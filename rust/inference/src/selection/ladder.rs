@@ -27,6 +27,8 @@ pub(crate) const PENALTY: f64 = 1.0;
 const PAIRED: usize = 6;
 /// Names that are tried beside the leader.
 const LED: usize = 12;
+/// Fall of the base's deviance from which its first fit ended early.
+const LEFT_EARLY: f64 = 2.0;
 /// Evidence of the best single mechanism from which a second beside it is looked for.
 const WORTH_A_PAIR: f64 = 7.0;
 
@@ -52,8 +54,15 @@ pub fn climb(
     let gain_step = gain_step(&ready.courses, &log_gains(ready, &base));
     let clear_step = gain_step.filter(|found| found.t > STEP);
     let mut singles = trial.singles(clear_step)?;
+    let early = base.refit.deviance;
     base = trial.as_low_as(base, &singles);
     trial.from.clone_from(&base.refit.at);
+    if early - base.refit.deviance > LEFT_EARLY {
+        // Where the base ended early, so may those that began there.
+        singles = trial.singles(clear_step)?;
+        base = trial.as_low_as(base, &singles);
+        trial.from.clone_from(&base.refit.at);
+    }
     let rows = ready.courses.iter().flat_map(|c| &c.rows);
     let samples = rows.filter(|r| r.sample.is_some()).count();
     let deviances = singles.iter().map(|s| s.refit.deviance);

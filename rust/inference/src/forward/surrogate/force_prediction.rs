@@ -30,6 +30,21 @@ fn midpoint(k: u32) -> f64 {
     half * (2.0 * (f64::from(k) + 0.5) / f64::from(MIDPOINTS) - 1.0)
 }
 
+/// By row the mean of a force over its readings, which is not that at their mean depth.
+pub(crate) fn over_spread(rows: &[Row], depths: &[f64], force: impl Fn(&f64) -> f64) -> Vec<f64> {
+    let read = |(d, row): (&f64, &Row)| match row.spread_mm / d.abs() {
+        ratio if ratio > TOUCHING => {
+            let at = |k: u32| force(&(d + row.spread_mm * midpoint(k)));
+            (0..MIDPOINTS).map(at).sum::<f64>() / f64::from(MIDPOINTS)
+        }
+        ratio if ratio > STRAIGHT => {
+            0.5 * (force(&(d - row.spread_mm)) + force(&(d + row.spread_mm)))
+        }
+        _ => force(d),
+    };
+    depths.iter().zip(rows).map(read).collect()
+}
+
 /// Rows of a recording's stands, in their order.
 pub(crate) fn stands(rows: &[Row]) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
@@ -108,18 +123,7 @@ impl Surrogate<'_> {
             true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
             false => 0.0,
         };
-        // A mean over readings is not the force at their mean depth.
-        let read = |(d, row): (&f64, &Row)| match row.spread_mm / d.abs() {
-            ratio if ratio > TOUCHING => {
-                let at = |k: u32| elastic(&(d + row.spread_mm * midpoint(k)));
-                (0..MIDPOINTS).map(at).sum::<f64>() / f64::from(MIDPOINTS)
-            }
-            ratio if ratio > STRAIGHT => {
-                0.5 * (elastic(&(d - row.spread_mm)) + elastic(&(d + row.spread_mm)))
-            }
-            _ => elastic(d),
-        };
-        let mut forces: Vec<f64> = depths.iter().zip(&one.rows).map(read).collect();
+        let mut forces = over_spread(&one.rows, &depths, elastic);
         let (relaxation_branches, shares) = self.relaxation_branches(model, set, (one, &depths));
         if !relaxation_branches.is_empty() {
             let answer = self.answer(model, set, one.place);
@@ -154,8 +158,10 @@ impl Surrogate<'_> {
         }
         let depth = |(row, force): (&Row, &f64)| row.depth_mm - zero - yields * force.max(0.0);
         let mut depths: Vec<f64> = one.rows.iter().zip(known).map(depth).collect();
-        for (stand, off_mm) in stands(&one.rows).into_iter().zip(&set.stand[course]) {
-            depths[stand].iter_mut().for_each(|d| *d += off_mm);
+        if !set.stand[course].is_empty() {
+            for (stand, off_mm) in stands(&one.rows).into_iter().zip(&set.stand[course]) {
+                depths[stand].iter_mut().for_each(|d| *d += off_mm);
+            }
         }
         depths
     }

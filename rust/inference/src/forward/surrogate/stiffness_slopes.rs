@@ -4,6 +4,7 @@
 //! every spring is found once for all of them.
 
 use crate::forward::surrogate::candidate_model::{Model, Setting};
+use crate::forward::surrogate::force_prediction::over_spread;
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
 use crate::forward::surrogate::relaxing_springs::{Lost, SpringHistory, lost_lengths};
 use crate::forward::surrogate::surrogate_data::Surrogate;
@@ -46,7 +47,7 @@ impl Surrogate<'_> {
             true => table.force.at(d.sqrt()) * self.factor(model, set, (one.place, *d)),
             false => 0.0,
         };
-        let elastic = depths.iter().map(elastic).collect();
+        let elastic = over_spread(&one.rows, &depths, elastic);
         let (branches, shares) = self.relaxation_branches(model, set, (one, &depths));
         let (mut rungs, mut lost) = (Vec::new(), Lost::default());
         if !branches.is_empty() {
@@ -80,7 +81,7 @@ impl Surrogate<'_> {
         let one = &self.courses[course];
         let by = |depth: f64| self.log_slope(set, kind, (one.place, depth));
         by(0.0)?;
-        let by = |depth: f64| by(depth).unwrap_or(0.0);
+        let by = |depth: f64| by(depth.max(0.0)).unwrap_or(0.0);
         let rows = of.depths.iter().zip(&of.elastic);
         let mut slope: Vec<f64> = rows.map(|(d, f)| f * by(*d)).collect();
         if !of.rungs.is_empty() {

@@ -4,12 +4,14 @@ use crate::observe::robust_scale::median;
 
 /// Part of the range up to which a step of readings is one of rounding; a protocol that goes in steps and stands on each makes larger ones.
 const LARGEST: f64 = 0.03;
+/// Time between changes, s, its median, up to which a motion goes on under them: a stage that goes in steps and stands on each stands longer.
+const LONGEST_S: f64 = 0.3;
 /// Changes between readings, fewest, and part of them before and after which nothing changes: a motion that is seen in every reading has few.
 const CHANGES: (usize, f64) = (8, 0.6);
 
 /// Depths that pass each edge of the stairs at half its height, mm, and are straight between edges; None where there are no stairs.
 ///
-/// They tell motion from rest. Where a tool stands, they are off by half a step.
+/// They show motion and rest. Where a tool stands, they are off by half a step.
 pub(crate) fn under_stairs(time_s: &[f64], depth_mm: &[f64]) -> Option<Vec<f64>> {
     let n = depth_mm.len();
     let low = depth_mm.iter().copied().fold(f64::INFINITY, f64::min);
@@ -29,6 +31,13 @@ pub(crate) fn under_stairs(time_s: &[f64], depth_mm: &[f64]) -> Option<Vec<f64>>
         .map(|k| (depth_mm[*k] - depth_mm[k - 1]).abs())
         .collect();
     if median(&mut heights) > LARGEST * (high - low) {
+        return None;
+    }
+    let mut times: Vec<f64> = edges
+        .windows(2)
+        .map(|two| time_s[two[1]] - time_s[two[0]])
+        .collect();
+    if median(&mut times) > LONGEST_S {
         return None;
     }
     let middle = |k: &usize| {
@@ -109,9 +118,13 @@ mod tests {
     fn large_steps_and_changes_with_every_reading_are_no_stairs() {
         let (time, truth, _) = read(0.01);
         assert!(under_stairs(&time, &truth).is_none());
-        let (time, _, steps) = read(0.1);
-        assert!(under_stairs(&time, &steps).is_none());
-        // As fast as its steps: every second reading changes at most.
+        let (time, _, coarse) = read(0.1);
+        assert!(under_stairs(&time, &coarse).is_none());
+        // A stage that goes 20 um every second, and stays there.
+        let slow: Vec<f64> = (0..5000).map(|k| 0.01 * f64::from(k)).collect();
+        let steps: Vec<f64> = slow.iter().map(|t| 0.02 * t.floor()).collect();
+        assert!(under_stairs(&slow, &steps).is_none());
+        // Read 25 times more seldom, each reading of the motion is another.
         let (time, _, rounded) = read(0.011);
         let few = |of: &[f64]| of.iter().step_by(25).copied().collect::<Vec<f64>>();
         assert!(under_stairs(&few(&time), &few(&rounded)).is_none());
