@@ -167,3 +167,28 @@ pub(crate) fn best_kink(leg: Leg, Readings { time, depth, .. }: Readings<'_>) ->
     let best = all.min_by(|a, b| both(*a).total_cmp(&both(*b)))?;
     Some(leg.start + best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ramp of 0.5 mm/s at 1 kHz that is read in steps of 0.011 mm and stops a little before its end: a smooth course that follows every step of the
+    /// readings is no better than its line.
+    #[test]
+    fn readings_that_are_rounded_alike_count_for_one() {
+        let time: Vec<f64> = (0..2000).map(|k| 1e-3 * f64::from(k)).collect();
+        let path = |t: f64| 0.5 * t.min(1.93);
+        let depth: Vec<f64> = time
+            .iter()
+            .map(|t| (path(*t) / 0.011).round() * 0.011)
+            .collect();
+        let leg = Leg {
+            start: 0,
+            end: 2000,
+            phase: Phase::Load,
+        };
+        let read = (&time[..], &depth[..]);
+        let of = Readings::new(read, (&[leg], 0.011));
+        assert!(is_straight((leg, 0.0), of));
+    }
+}
