@@ -4,6 +4,7 @@
 //! a ceiling, then fits better than the truth. So a depth is taken as its smooth course and as much of the rest as the force follows: the
 //! reliability of the readings (Fuller 1987, Measurement Error Models, section 1.1).
 
+use crate::observe::downsampling::is_kept_whole;
 use crate::observe::limits::MOST_MOMENTS;
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
@@ -74,9 +75,9 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         noise_n,
     };
     // Rounding is alike in readings that follow each other: a mean over them has their noise no more, and still its error.
-    let in_mean = match n > MOST_MOMENTS + MOST_MOMENTS / 2 {
-        true => n as f64 / MOST_MOMENTS as f64,
-        false => 1.0,
+    let in_mean = match is_kept_whole(n, MOST_MOMENTS) {
+        true => 1.0,
+        false => n as f64 / MOST_MOMENTS as f64,
     };
     let does = rounded.does_n() > LEAST * noise_n / in_mean.sqrt();
     if !matters && !does {

@@ -12,7 +12,7 @@ use crate::observe::protocol_phases::{Courses, Stretch, range};
 /// relative to its range: ramps and holds are both kept, and a bin holds little curvature.
 pub fn bins(courses: Courses<'_>, stretches: &[Stretch], budget: usize) -> Vec<Range<usize>> {
     let n = courses.time_s.len();
-    if n <= budget + budget / 2 {
+    if is_kept_whole(n, budget) {
         return (0..n).map(|k| k..k + 1).collect();
     }
     let length = lengths(courses);
@@ -37,6 +37,11 @@ pub fn bins(courses: Courses<'_>, stretches: &[Stretch], budget: usize) -> Vec<R
         }
     }
     bins
+}
+
+/// Whether a recording of so many samples keeps every one.
+pub(crate) fn is_kept_whole(samples: usize, budget: usize) -> bool {
+    samples <= budget + budget / 2
 }
 
 /// Length along the curve up to each sample; each of time, depth and force counts relative to its range.

@@ -120,7 +120,7 @@ mod tests {
     use crate::parameters::surrogate_parameter::Coordinate;
     use crate::selection::candidates::singles;
 
-    /// A ball pressed to 2 mm, whose every shared number is free.
+    /// A ball pressed to 2 mm, read as means, whose every shared number is free.
     fn pressed() -> PreparedStudy {
         let ball = |d: f64| 10.0 * d * d.sqrt();
         let read = |time: f64| -> Reading { (time, time, Phase::Load, 0.9 * ball(time)) };
@@ -132,7 +132,14 @@ mod tests {
             Kind::Scale(0),
             Kind::Touch(0),
             Kind::Zero(0),
+            Kind::Stand(0, 0),
         ];
+        for row in &mut made.courses[0].rows {
+            row.spread_mm = 0.01;
+        }
+        for row in &mut made.courses[0].rows[60..] {
+            row.phase = Phase::Hold;
+        }
         let forms = (0..WAYS).map(|k| Kind::Form(0, k));
         let shared = (0..SHARED).map(|k| Kind::SharedForm(0, k));
         let free = kinds

@@ -81,24 +81,24 @@ fn coarser_step(sorted: &[f64], digit: f64) -> Option<f64> {
         .take_while(|step| *step > DIGITS * digit)
         .find_map(|first| {
             // From gaps, that are few steps each, to the whole range, in which an error of the step has grown.
-            let count = |gap: &f64| (gap / first).round();
-            let (mut over, mut under) = (0.0, 0.0);
-            for gap in &gaps {
-                over += count(gap) * gap;
-                under += count(gap) * count(gap);
-            }
-            let rough: f64 = over / under;
+            let rough = proportion(gaps.iter().copied(), first);
+            let step = proportion(sorted.iter().map(|value| value - sorted[0]), rough);
             let of = |value: f64| ((value - sorted[0]) / rough).round();
-            let (mut over, mut under) = (0.0, 0.0);
-            for value in sorted {
-                over += of(*value) * (value - sorted[0]);
-                under += of(*value) * of(*value);
-            }
-            let step: f64 = over / under;
             let is_multiple =
                 |value: &f64| (value - sorted[0] - of(*value) * step).abs() <= 1.5 * digit;
-            (under > 0.0 && sorted.iter().all(is_multiple)).then_some(step)
+            sorted.iter().all(is_multiple).then_some(step)
         })
+}
+
+/// The step, by least squares, of lengths that are whole multiples of about that step.
+fn proportion(lengths: impl Iterator<Item = f64>, about: f64) -> f64 {
+    let (mut over, mut under) = (0.0, 0.0);
+    for length in lengths {
+        let count = (length / about).round();
+        over += count * length;
+        under += count * count;
+    }
+    over / under
 }
 
 /// Euclid's algorithm over the gaps between different readings, in their order.
