@@ -41,6 +41,7 @@ read with 3 % + 0.2 mm2 where it is read.
 - `remounted`: each recording with its own gain (3 %) and first touch (20 um); 3 mN white.
 - `stepper`: depth in steps of 10 um, force in steps of 2 mN; 3 mN white.
 - `judged_late`: first touch judged 50 to 150 um late by eye, alike with each tool, with 10 um of scatter; 1 % and 4 mN.
+- `precise`: 50 uN white; first touch and gain of each recording off by 0.5 um and 0.05 % only.
 
 Habits, drawn too: depths of 15 to 40 % of the tissue; one tool or two of plate, 24 mm cylinder and 12 mm sphere (times
 s); one speed or two; a hold or none; 2 to 4 repeats; area read or not. Except in `bone` the thickness is stated as it
@@ -57,7 +58,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.spatial import ConvexHull
 from trial.worlds.closed_forms import Stranger
 
-NOISES = ("laboratory", "slow", "remounted", "stepper", "judged_late")
+NOISES = ("laboratory", "slow", "remounted", "stepper", "judged_late", "precise")
 LATE_MM = (0.05, 0.15)
 TRUTHS = (
     *("nothing", "exponential", "relaxation", "cycle_softening", "saturation", "bone"),
@@ -296,7 +297,7 @@ class _Reader:
     def read(self, time, depth, force, area):
         """Columns as they are written."""
         random, n = self.random, len(time)
-        stated = depth + 0.005 * random.standard_normal()
+        stated = depth + (0.0005 if self.family == "precise" else 0.005) * random.standard_normal()
         white = random.standard_normal(n)
         if self.family == "laboratory":
             stated = stated + 0.01 * random.standard_normal(n)
@@ -311,6 +312,8 @@ class _Reader:
         elif self.family == "judged_late":
             stated = stated - self.late_mm + 0.01 * random.standard_normal()
             read = force * (1.0 + 0.01 * random.standard_normal(n)) + 0.004 * white
+        elif self.family == "precise":
+            read = force * (1.0 + 0.0005 * random.standard_normal()) + 5e-5 * white
         elif self.family == "remounted":
             stated = stated + 0.02 * random.standard_normal()
             read = force * (1.0 + 0.03 * random.standard_normal()) + 0.003 * white

@@ -23,6 +23,8 @@ const MOST: f64 = 3.0;
 const WRITTEN: f64 = 1e-4;
 const MULTIPLE: f64 = 0.03;
 const IN_STEPS: f64 = 0.9;
+/// Part of the range of forces by which a table is off between its rungs, at most (`interpolation::Table` on a Hertz curve).
+const JOINED: f64 = 1e-4;
 /// Standard errors of all pairs of repeats over those that are left without the one that shares most, at most.
 const OF_ONE: f64 = 2.0;
 /// Fewest products of two repeats' samples.
@@ -51,7 +53,8 @@ struct Waves {
 /// steps shows in the force, and a depth that is read in steps in the rest. None where too few moments were recorded twice. `simulated`
 /// holds predictions by sample, N.
 ///
-/// Forces that are read in steps share waves of that size, which are none. Repeats are held against each other by the time since their first
+/// Forces that are read in steps share waves of that size, which are none; nor are waves as small as those by which the model's own tables
+/// are off between their rungs. Repeats are held against each other by the time since their first
 /// rows: what repeats by the way alone, at another speed, is not seen. Recordings are thinned before, to a hundred moments or so, so that the
 /// shortest wave is of two of these.
 pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<ShortWaves> {
@@ -62,12 +65,13 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
     let bands = WINDOWS
         .iter()
         .flat_map(|window| SMOOTHED.map(|smoothed| (*window, smoothed)));
-    let each = bands.filter_map(|band| in_both(courses, simulated, band));
+    let each = bands.filter_map(|band| least_shared(courses, simulated, band));
     let found = each.reduce(clearer)?;
     let step_n = courses.iter().map(step_n).fold(0.0, f64::max);
+    let range_n = courses.iter().map(range_n).fold(0.0, f64::max);
     // Half a step each way is the most that rounding leaves.
-    let is_rounding = found.rms_n < 0.5 * step_n;
-    Some(match is_rounding {
+    let is_feigned = found.rms_n < (0.5 * step_n).max(JOINED * range_n);
+    Some(match is_feigned {
         true => ShortWaves {
             standard_errors: found.standard_errors.min(0.0),
             rms_n: 0.0,
@@ -76,13 +80,25 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
     })
 }
 
+fn read_forces(course: &ForceRecording) -> Vec<f64> {
+    let read = course.rows.iter().filter(|row| row.sample.is_some());
+    read.map(|row| row.force_n).collect()
+}
+
+/// From the smallest to the largest force that was read, N.
+fn range_n(course: &ForceRecording) -> f64 {
+    let forces = read_forces(course);
+    let least = forces.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = forces.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (most - least).max(0.0)
+}
+
 /// The step of which the forces of a recording are multiples, from one of them on, N, as far as they are written; 0 where there is none. Each
 /// recording by itself: another zero shifts all steps.
 fn step_n(course: &ForceRecording) -> f64 {
-    let read = course.rows.iter().filter(|row| row.sample.is_some());
-    let mut forces: Vec<f64> = read.map(|row| row.force_n).collect();
+    let mut forces = read_forces(course);
     forces.sort_by(f64::total_cmp);
-    let range = forces.last().unwrap_or(&0.0) - forces.first().unwrap_or(&0.0);
+    let range = range_n(course);
     let gaps = forces.windows(2).map(|two| two[1] - two[0]);
     let gaps: Vec<f64> = gaps.filter(|gap| *gap > WRITTEN * range).collect();
     let step = gaps.iter().copied().fold(f64::INFINITY, f64::min);
@@ -93,18 +109,28 @@ fn step_n(course: &ForceRecording) -> f64 {
     }
 }
 
-/// What is shared in the force or in what the model leaves of it, whichever is less, in a band: a window and how much of it is
-/// smoothed.
-fn in_both(
+/// What is shared in the force or in what the model leaves of it, whichever is less, in a band: a window and how much of it is smoothed. Its
+/// size is what a second running mean leaves, if that is less: a single one leaves a part of a curve that bends.
+fn least_shared(
     courses: &[ForceRecording],
     simulated: &[f64],
     band: (usize, f64),
 ) -> Option<ShortWaves> {
-    let of_force = shared(courses, band, &|row: &Row, _| row.force_n)?;
-    let of_rest = shared(courses, band, &|row: &Row, k| row.force_n - simulated[k])?;
-    Some(match of_rest.standard_errors < of_force.standard_errors {
-        true => of_rest,
-        false => of_force,
+    let of_force = |row: &Row, _: usize| row.force_n;
+    let of_rest = |row: &Row, k: usize| row.force_n - simulated[k];
+    let of: [&dyn Fn(&Row, usize) -> f64; 2] = [&of_force, &of_rest];
+    let once = of.map(|of| shared(courses, (band, 1), of));
+    let twice = of.map(|of| shared(courses, (band, 2), of));
+    let of_less = |a: ShortWaves, b: ShortWaves| match b.standard_errors < a.standard_errors {
+        true => b,
+        false => a,
+    };
+    let [force, rest] = once;
+    let found = of_less(force?, rest?);
+    let bent = twice.iter().flatten().map(|waves| waves.rms_n);
+    Some(ShortWaves {
+        rms_n: bent.fold(found.rms_n, f64::min),
+        ..found
     })
 }
 
@@ -119,12 +145,13 @@ struct Pair {
     count: usize,
 }
 
+/// `filter`: a band, and the number of running means.
 fn shared(
     courses: &[ForceRecording],
-    band: (usize, f64),
+    filter: ((usize, f64), usize),
     of: &dyn Fn(&Row, usize) -> f64,
 ) -> Option<ShortWaves> {
-    let all: Vec<Option<Waves>> = courses.iter().map(|c| waves(c, band, of)).collect();
+    let all: Vec<Option<Waves>> = courses.iter().map(|c| waves(c, filter, of)).collect();
     let mut pairs = Vec::new();
     for (i, one) in courses.iter().enumerate() {
         for (j, other) in courses.iter().enumerate().skip(i + 1) {
@@ -216,10 +243,10 @@ fn same_moments(a: &Waves, b: &Waves) -> Vec<(f64, f64)> {
     both.collect()
 }
 
-/// The waves of one recording; None where it has too few samples under load.
+/// The waves of one recording, of a band and a number of running means; None where it has too few samples under load.
 fn waves(
     course: &ForceRecording,
-    (part, smoothed): (usize, f64),
+    ((part, smoothed), means): ((usize, f64), usize),
     of: &dyn Fn(&Row, usize) -> f64,
 ) -> Option<Waves> {
     let start = course.rows.first()?.time_s;
@@ -238,10 +265,13 @@ fn waves(
     };
     for stage in read.chunk_by(is_one_stage).filter(|s| is_loaded(s[0].0)) {
         let values: Vec<f64> = stage.iter().map(|(row, k)| of(row, *k)).collect();
-        for (n, window) in values.windows(2 * half + 1).enumerate() {
-            let smooth = mean(&window[half - near..=half + near]);
-            time_s.push(stage[n + half].0.time_s - start);
-            force.push(smooth - mean(window));
+        let mut left = less_running_mean(&values, (half, near));
+        for _ in 1..means {
+            left = less_running_mean(&left, (half, 0));
+        }
+        for (n, wave) in left.into_iter().enumerate() {
+            time_s.push(stage[n + means * half].0.time_s - start);
+            force.push(wave);
         }
     }
     let mut sizes: Vec<f64> = force.iter().map(|f| f.abs()).collect();
@@ -254,6 +284,12 @@ fn waves(
             .collect(),
         deviation_n,
     })
+}
+
+/// Values less their running mean of `half` samples each way, smoothed over `near` each way; `half` fewer at each end.
+fn less_running_mean(values: &[f64], (half, near): (usize, usize)) -> Vec<f64> {
+    let of = |window: &[f64]| mean(&window[half - near..=half + near]) - mean(window);
+    values.windows(2 * half + 1).map(of).collect()
 }
 
 fn mean(values: &[f64]) -> f64 {
