@@ -35,6 +35,7 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `mixture`: 1 %, 10 um of jitter, 3 % of gain, 3 mN that forgets itself in 0.1 s.
 - `trigger`: depth counts from where the force passes 5 to 20 mN, so that all recordings begin late alike; 3 mN.
 - `tared`: each recording's zero of the force is off by its own 5 to 20 mN (standard deviation); 3 mN.
+- `coarse_force`: the force is read in steps of 5 to 20 mN, and has 0.5 to 5 mN of noise before.
 - `precise`: 0.03 to 0.1 mN, a gain and a first touch that differ by 0.05 % and 0.5 um.
 - `tool_length`: depth counts from where each tool's tip was measured to be, 40 to 120 um off either way; 3 mN.
 
@@ -53,21 +54,8 @@ from scipy.spatial import Delaunay
 from trial.worlds import motions
 
 NOISES = (
-    "white",
-    "autocorrelated",
-    "in_proportion",
-    "depth_jitter",
-    "encoder",
-    "fast_encoder",
-    "clock",
-    "wander",
-    "gain_scatter",
-    "stray",
-    "mixture",
-    "tared",
-    "trigger",
-    "tool_length",
-    "precise",
+    *("white", "autocorrelated", "in_proportion", "depth_jitter", "encoder", "fast_encoder", "clock", "wander"),
+    *("gain_scatter", "stray", "mixture", "tared", "trigger", "tool_length", "precise", "coarse_force"),
 )
 TRUTHS = (
     *("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation"),
@@ -319,6 +307,9 @@ class _Reader:
             "in_proportion": 0.002,
             "precise": random.uniform(3e-5, 1e-4) if family == "precise" else 0.0,
         }
+        self.step_n = 0.0
+        if family == "coarse_force":
+            self.step_n, self.even[family] = random.uniform(0.005, 0.02), random.uniform(0.0005, 0.005)
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
         self.ceiling_n = np.inf
         self.trigger_n = random.uniform(*TRIGGER_N) if family == "trigger" else 0.0
@@ -354,12 +345,16 @@ class _Reader:
             read[random.integers(n // 4, n)] += random.choice([-0.2, 0.2]) * force.max()
         stated = depth + self.touch * random.standard_normal() + self.jitter * random.standard_normal(n)
         stated -= self.off_mm.get(tool, 0.0) + triggered(depth, force, self.trigger_n)
-        if self.step:
-            stated = self.step * np.round(stated / self.step)
+        stated = stepped(stated, self.step)
         if self.family == "clock":
             least = 0.1 * np.diff(time).min()
             time = np.sort(time + min(0.004, least) * random.standard_normal(n)) + 0.1 * least * np.arange(n)
-        return np.column_stack([time - time[0], stated, np.minimum(read, self.ceiling_n)])
+        return np.column_stack([time - time[0], stated, stepped(np.minimum(read, self.ceiling_n), self.step_n)])
+
+
+def stepped(values, step):
+    """Values rounded to a step; as they are where there is none."""
+    return step * np.round(values / step) if step else values
 
 
 def triggered(depth, force, least_n):

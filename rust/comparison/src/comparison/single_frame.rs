@@ -148,12 +148,14 @@ fn measured(still: &Still<'_>, samples: Vec<Sample>) -> Measured {
             cycle: 0,
             readings: 1,
             depth_spread_mm: 0.0,
+            force_step_n: 0.0,
         }],
         samples,
         mat: Some(still.mat.clone()),
         scan: None,
         is_calibrated: still.is_calibrated,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: still.unknown.clone(),
     }
 }

@@ -84,6 +84,7 @@ fn measured(still: &StillPrint<'_>) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: still.unknown.clone(),
     }
 }

@@ -47,6 +47,7 @@ pub fn ramp_and_hold(count: usize) -> Vec<Moment> {
             cycle: 0,
             readings: 1,
             depth_spread_mm: 0.0,
+            force_step_n: 0.0,
         }
     };
     (0..count).map(moment).collect()
@@ -71,6 +72,7 @@ pub fn indentation(name: &str, measured: &[f64]) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }

@@ -8,6 +8,7 @@ use crate::noise::estimate::Noise;
 use crate::noise::periodic_component::Rhythm;
 use crate::observe::measured::Phase;
 use crate::observe::robust_scale::trimmed_deviation;
+use crate::random::Random;
 
 /// Fewest deviations with and without contact from which they are compared.
 const LEAST: (usize, usize) = (40, 24);
@@ -88,7 +89,8 @@ pub(crate) const SHARED: f64 = 3.0;
 /// Standard errors below none that a pull must reach.
 const PULLS: f64 = 2.5;
 
-/// Compares what differs between repeats under load and without; None without repeats or rest.
+/// Compares what differs between repeats under load and without; None without repeats or rest, or where forces are rounded to steps that are larger
+/// than their noise: without load they are all the same.
 ///
 /// Noise of an instrument does not ask whether the tool touches; what the skin does by itself needs contact to be seen. `memory_s` is
 /// the time over which noise forgets itself: so many deviations count as one.
@@ -101,7 +103,8 @@ pub fn heteroscedasticity(
     for (c, one) in surrogate.courses.iter().enumerate() {
         for other in &surrogate.courses[c + 1..] {
             let repeats = one.protocol == other.protocol && one.place == other.place;
-            if !repeats || one.rows.len() != other.rows.len() {
+            let is_coarse = one.is_coarse || other.is_coarse;
+            if !repeats || is_coarse || one.rows.len() != other.rows.len() {
                 continue;
             }
             let found = deviations((one, other), (simulated, sigma));
@@ -128,7 +131,10 @@ fn deviations(
     (simulated, sigma): (&[f64], &[f64]),
 ) -> Deviations {
     let mut found = Deviations::default();
-    let over = |row: &Row, k: usize| (row.force_n - simulated[k]) / sigma[k];
+    // Rounded forces that are the same seem to have no noise: where in its step each was, nobody knows.
+    let mut random = Random::new(one.recording as u64);
+    let mut within = |row: &Row| row.force_step_n * (random.uniform() - 0.5);
+    let mut over = |row: &Row, k: usize| (row.force_n + within(row) - simulated[k]) / sigma[k];
     for (n, (a, b)) in one.rows.iter().zip(&other.rows).enumerate() {
         let (Some(i), Some(j)) = (a.sample, b.sample) else {
             continue;
@@ -188,6 +194,39 @@ mod tests {
         assert!(told(1e-4, 3.0).contains("1.20 Hz (72 a minute)"));
         assert!(told(0.1, 2.1).contains("more under load than without"));
         assert!(of(0.1, 1.9).is_none());
+    }
+
+    /// Without load most readings are 0, under load as many are a step off as not. Where steps are larger than the noise, repeats are not compared.
+    #[test]
+    fn rounding_hides_noise_without_load() {
+        let step = 0.1;
+        let found = |is_coarse: bool, step_n: f64| {
+            let mut random = crate::random::Random::new(1);
+            let mut recording = || -> Vec<(f64, f64, Phase, f64)> {
+                let reading = |k: u32| {
+                    let depth = f64::from(k.max(60) - 60) / 60.0;
+                    let phase = if k < 60 { Phase::Apart } else { Phase::Load };
+                    let noise = 0.4 * step * random.normal();
+                    let read = ((10.0 * depth + noise) / step).round() * step;
+                    (0.1 * f64::from(k), depth, phase, read)
+                };
+                (0..120).map(reading).collect()
+            };
+            let all = [(0, recording()), (0, recording())];
+            let tool = crate::forward::surrogate::synthetic::tool(1.0, |d| 10.0 * d, |_| 1.0);
+            let (mut made, _) = crate::forward::surrogate::synthetic::ready(vec![tool], &all, step);
+            for course in &mut made.courses {
+                course.is_coarse = is_coarse;
+                let rows = course.rows.iter_mut();
+                rows.for_each(|row| row.force_step_n = step_n);
+            }
+            let depths = made.courses.iter().flat_map(|course| &course.rows);
+            let simulated: Vec<f64> = depths.map(|row| 10.0 * row.depth_mm.max(0.0)).collect();
+            heteroscedasticity(&made.surrogate(), (&simulated, &made.sigma), 0.1)
+        };
+        assert!(found(false, 0.0).unwrap().ratio > 10.0, "as if not rounded");
+        assert!(found(false, step).unwrap().ratio < HETEROSCEDASTIC);
+        assert!(found(true, step).is_none());
     }
 
     /// A tool that leaves with 20 mN of pull, and a cell whose zero is 20 mN below none in all of a recording: the latter pulls nothing where the fit

@@ -67,7 +67,11 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
         .flat_map(|window| SMOOTHED.map(|smoothed| (*window, smoothed)));
     let each = bands.filter_map(|band| least_shared(courses, simulated, band));
     let found = each.reduce(clearer)?;
-    let step_n = courses.iter().map(step_n).fold(0.0, f64::max);
+    let written = courses.iter().map(step_n);
+    let rounded = courses.iter().flat_map(|course| &course.rows);
+    let step_n = written
+        .chain(rounded.map(|row| row.force_step_n))
+        .fold(0.0, f64::max);
     let range_n = courses.iter().map(range_n).fold(0.0, f64::max);
     // Half a step each way is the most that rounding leaves.
     let is_feigned = found.rms_n < (0.5 * step_n).max(JOINED * range_n);

@@ -207,6 +207,7 @@ mod tests {
                 time_s: 0.0,
                 depth_mm: from + step * f64::from(k),
                 spread_mm: 0.0,
+                force_step_n: 0.0,
                 force_n: 3.0 * (from + step * f64::from(k)),
                 phase: Phase::Load,
                 cycle: 0,

@@ -122,6 +122,7 @@ pub fn course(press: &Press, number: usize) -> ForceRecording {
         (READINGS.1, press.cycles.saturating_sub(1)),
     );
     ForceRecording {
+        is_coarse: false,
         recording: usize::MAX,
         name: String::new(),
         protocol: String::new(),
@@ -138,6 +139,7 @@ fn row((time_s, depth_mm): (f64, f64), phase: Phase, cycle: u32) -> Row {
         time_s,
         depth_mm,
         spread_mm: 0.0,
+        force_step_n: 0.0,
         force_n: f64::NAN,
         sample: None,
         phase,

@@ -157,6 +157,7 @@ fn measured(hold: &Hold, samples: Vec<Sample>) -> Measured {
         cycle: 0,
         readings: *frames as u32,
         depth_spread_mm: 0.0,
+        force_step_n: 0.0,
     };
     Measured {
         name: hold.name.clone(),
@@ -174,6 +175,7 @@ fn measured(hold: &Hold, samples: Vec<Sample>) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }

@@ -41,7 +41,7 @@ pub struct Noise {
     pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
-    /// The clearest rhythm in which the forces of repeats differ.
+    /// The clearest rhythm in which the forces of repeats differ; None where forces are rounded to steps that are larger than their noise.
     pub rhythm: Option<Rhythm>,
     /// Whether depths are known with an error, which acts on the forces through their slope.
     pub has_depth_error: bool,
@@ -103,7 +103,10 @@ pub fn noise(
                 .as_ref()
                 .map_or_else(Vec::new, |s| s.drawn_from.clone())
         }),
-        rhythm: forces.and_then(|s| s.rhythm),
+        // Steps that a force goes through at a steady pace are a rhythm of their own.
+        rhythm: forces
+            .and_then(|s| s.rhythm)
+            .filter(|_| !measured.iter().any(|one| one.is_coarse)),
         has_depth_error: measured.iter().any(|one| one.depth_error_mm > 0.0),
         notes,
     }
@@ -202,8 +205,11 @@ fn sigma(
             None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),
             None => (noise_of(&values) / most.max(f64::MIN_POSITIVE), 0.0),
         };
+        let steps = measured.moments.iter().map(|m| m.force_step_n);
+        let rounding = steps.fold(0.0, f64::max) / 12f64.sqrt();
         let floor = match channel {
-            Channel::Force if scatter[0].is_none() => noise_n.unwrap_or(0.0),
+            Channel::Force if scatter[0].is_none() => rounding.max(noise_n.unwrap_or(0.0)),
+            Channel::Force => rounding,
             _ => 0.0,
         };
         ((share.max(FLOOR) * most).max(floor), proportional, shape)

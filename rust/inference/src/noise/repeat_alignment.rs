@@ -2,6 +2,7 @@
 
 use crate::noise::channel::Channel;
 use crate::observe::measured::{Censoring, Measured, Phase};
+use crate::random::Random;
 
 /// Parts of the time that a recording takes: by how much the moments of repeats may differ that count as the same, and by how much
 /// they may have begun apart.
@@ -32,6 +33,8 @@ pub struct RepeatSeries<'a> {
     pub simulated: &'a [f64],
     /// Their derivatives by depth.
     pub slopes: &'a [f64],
+    /// Number of the recording.
+    pub number: usize,
 }
 
 /// The channel of each repeat at the times (s) of the first one's samples that all of them cover.
@@ -103,11 +106,18 @@ impl Series {
                 readings: Vec::new(),
             },
         };
+        // Forces that are rounded alike seem to have no noise: where in its step each was, nobody knows.
+        let mut random = Random::new(told.number as u64);
         for (k, sample) in told.measured.samples.iter().enumerate() {
+            let within = random.uniform() - 0.5;
             if Channel::of(sample.quantity) == channel && sample.censoring == Censoring::Seen {
                 let moment = &moments[sample.moment as usize];
+                let step_n = match channel {
+                    Channel::Force => moment.force_step_n,
+                    _ => 0.0,
+                };
                 series.time.push(moment.time_s - began);
-                series.aligned.value.push(sample.value);
+                series.aligned.value.push(sample.value + step_n * within);
                 series.aligned.depth.push(moment.depth_mm);
                 series.aligned.simulated.push(told.simulated[k]);
                 series.aligned.slope.push(told.slopes[k]);

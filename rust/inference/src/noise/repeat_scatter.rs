@@ -79,6 +79,7 @@ impl Repeats {
             measured: &measured[k],
             simulated: &simulated[k],
             slopes: &slopes[k],
+            number: k,
         };
         let aligned_all: Vec<(&Group, AlignedGroup)> = self
             .groups

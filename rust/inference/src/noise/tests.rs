@@ -68,6 +68,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
             cycle: 0,
             readings: 1,
             depth_spread_mm: 0.0,
+            force_step_n: 0.0,
         });
         samples.push(Sample {
             moment: k as u32,
@@ -87,6 +88,7 @@ fn repeat(protocol: &str, planted: &Planted, random: &mut Random) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }
@@ -141,6 +143,29 @@ fn planted_noise_within_and_between_repeats_is_recovered() {
         "{:?}",
         told.zero_mm
     );
+}
+
+/// Repeats whose forces are rounded alike to steps larger than their noise seem to have none.
+#[test]
+fn noise_of_rounded_forces_is_no_less_than_rounding() {
+    let step_n = 0.1 * PEAK_N;
+    for planted in [0.0, 0.01, 0.05] {
+        let (mut measured, simulated, slopes) = study(2, 3, &Planted::white(planted));
+        for one in &mut measured {
+            for (sample, moment) in one.samples.iter_mut().zip(&mut one.moments) {
+                sample.value = (sample.value / step_n).round() * step_n;
+                moment.force_step_n = step_n;
+            }
+        }
+        let found = noise(&measured, (&simulated, &slopes), &[true; 6], None);
+        let wanted = (planted * PEAK_N).hypot(step_n / 12f64.sqrt());
+        for sigma in found.sigma.iter().flatten() {
+            assert!(
+                (0.8..1.6).contains(&(sigma / wanted)),
+                "{planted}: {sigma} of {wanted}"
+            );
+        }
+    }
 }
 
 #[test]
@@ -314,6 +339,7 @@ fn small_lag_is_ignored_and_large_lag_is_resampled() {
             measured,
             simulated: nothing,
             slopes: nothing,
+            number: 0,
         }
     }
     for (rows, is_same) in [(3, true), (9, false)] {

@@ -8,7 +8,7 @@ use crate::observe::downsampling::is_kept_whole;
 use crate::observe::limits::MOST_MOMENTS;
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
-use crate::observe::motion::rounding::{Rounded, step_mm};
+use crate::observe::motion::rounding::{Rounded, step_of};
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
@@ -71,7 +71,7 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         courses,
         stretches,
         slope: &slope,
-        step_mm: step_mm(courses.depth_mm),
+        step_mm: step_of(courses.depth_mm),
         noise_n,
     };
     // Rounding is alike in readings that follow each other: a mean over them has their noise no more, and still its error.

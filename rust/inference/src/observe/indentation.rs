@@ -9,6 +9,7 @@ use crate::observe::depth_jitter::without_jitter;
 use crate::observe::downsampling::{bins, means, spread};
 use crate::observe::first_touch::onset;
 use crate::observe::measured::{Censoring, Moment, Phase, Quantity, Sample};
+use crate::observe::motion::rounding::{exceeds_noise, wide_step};
 use crate::observe::protocol_phases::{Courses, Stretch, range, stretches};
 use crate::observe::robust_scale::{median, noise_of};
 
@@ -26,6 +27,8 @@ pub struct Observation {
     pub division: Division,
     /// As [`crate::observe::measured::Measured::depth_error_mm`].
     pub depth_error_mm: f64,
+    /// As [`crate::observe::measured::Measured::is_coarse`].
+    pub is_coarse: bool,
 }
 
 /// Phases of a recording and the bins whose means are compared. Repeats share those of the first: bins that follow each one's own noise
@@ -120,6 +123,15 @@ pub fn observe(
             bins.len()
         ));
     }
+    let step_n = wide_step(&force);
+    let is_coarse = exceeds_noise(step_n, &force);
+    if is_coarse {
+        unknown.push(format!(
+            "its force is read in steps of {:.1} mN, which are larger than its noise: what is smaller than half a step is not seen; a finer range of \
+             the load cell shows it",
+            1000.0 * step_n
+        ));
+    }
     let list = |values: &[f64]| (!values.is_empty()).then(|| means(values, &bins));
     let (times, depths) = (means(time, &bins), means(courses.depth_mm, &bins));
     let slides = list(slide);
@@ -142,6 +154,10 @@ pub fn observe(
                 cycle: stretch.cycle,
                 readings: bins[k].len() as u32,
                 depth_spread_mm: spread((time, courses.depth_mm), &bins[k]),
+                force_step_n: match is_of_one_reading(&force[bins[k].clone()]) {
+                    true => step_n,
+                    false => 0.0,
+                },
             }
         })
         .collect();
@@ -169,6 +185,7 @@ pub fn observe(
     }
     Observation {
         depth_error_mm: steady.as_ref().map_or(0.0, |found| found.left_mm),
+        is_coarse,
         moments,
         samples,
         is_touch_known,
@@ -179,6 +196,11 @@ pub fn observe(
             bins,
         },
     }
+}
+
+/// Whether all of these readings are the same.
+fn is_of_one_reading(readings: &[f64]) -> bool {
+    readings.windows(2).all(|two| two[0] == two[1])
 }
 
 /// Speed of the depth at every moment, mm/s: the slope of a straight line through it and its neighbors of the same stretch.

@@ -91,6 +91,8 @@ pub struct Moment {
     pub readings: u32,
     /// Standard deviation of the depth over these readings, as of a straight motion, mm.
     pub depth_spread_mm: f64,
+    /// Step to which the force is rounded, N, where it is more than digits of a file and all readings of this instant are the same; else 0.
+    pub force_step_n: f64,
 }
 
 /// Sensels of a placed mat, in skin coordinates at first touch.
@@ -161,6 +163,8 @@ pub struct Measured {
     pub is_calibrated: bool,
     /// Standard deviation of what depths are still off by where rounded readings were taken as the lines of a motion, mm; 0 of others.
     pub depth_error_mm: f64,
+    /// Whether forces are rounded to steps that are larger than their noise.
+    pub is_coarse: bool,
     /// What cannot be known from this recording, a sentence each.
     pub unknown: Vec<String>,
 }

@@ -307,6 +307,7 @@ impl Course {
                 cycle: found.map_or(0, |s| s.cycle),
                 readings: 1,
                 depth_spread_mm: 0.0,
+                force_step_n: 0.0,
             }
         };
         (0..bins.len()).map(moment).collect()

@@ -100,6 +100,7 @@ fn unread(recording: &StudyRecording) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }
@@ -133,6 +134,7 @@ impl<'a> Said<'a> {
         let how = (across(self.direction), divisions.get(&key));
         let seen = crate::observe::indentation::observe(curve, how, MOST_MOMENTS);
         measured.depth_error_mm = seen.depth_error_mm;
+        measured.is_coarse = seen.is_coarse;
         divisions.entry(key).or_insert(seen.division);
         measured.moments = seen.moments;
         measured.samples = seen.samples;

@@ -156,6 +156,7 @@ fn moments(seen: &Seen<'_>) -> Result<Vec<Moment>, String> {
         cycle: moments.last().map_or(0, |m| m.cycle),
         readings: 1,
         depth_spread_mm: 0.0,
+        force_step_n: 0.0,
     });
     Ok(moments)
 }

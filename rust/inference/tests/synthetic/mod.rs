@@ -81,6 +81,7 @@ impl Design {
             cycle: 0,
             readings: 1,
             depth_spread_mm: 0.0,
+            force_step_n: 0.0,
         };
         depths.enumerate().map(moment).collect()
     }
@@ -238,6 +239,7 @@ fn recording(name: String, moments: &[Moment], samples: Vec<Sample>, mat: Option
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }

@@ -15,6 +15,8 @@ pub struct Row {
     pub depth_mm: f64,
     /// Standard deviation of that depth over the readings, mm.
     pub spread_mm: f64,
+    /// As [`Moment::force_step_n`].
+    pub force_step_n: f64,
     /// Force that was measured, N; NaN where it is only planned.
     pub force_n: f64,
     /// Number of the force sample among all samples of the study.
@@ -42,6 +44,8 @@ pub struct ForceRecording {
     pub travel_before_mm: [f64; 2],
     /// Moments.
     pub rows: Vec<Row>,
+    /// Whether forces are rounded to steps that are larger than their noise.
+    pub is_coarse: bool,
     /// First sample of the recording among all samples, and number of its samples.
     pub samples: (usize, usize),
 }
@@ -49,16 +53,14 @@ pub struct ForceRecording {
 impl ForceRecording {
     /// Largest force, N.
     pub fn most(&self) -> f64 {
-        self.rows
-            .iter()
-            .fold(0.0, |most, row| f64::max(most, row.force_n))
+        let forces = self.rows.iter().map(|row| row.force_n);
+        forces.fold(0.0, f64::max)
     }
 
     /// Largest stated depth, mm.
     pub fn deepest(&self) -> f64 {
-        self.rows
-            .iter()
-            .fold(0.0, |most, row| f64::max(most, row.depth_mm))
+        let depths = self.rows.iter().map(|row| row.depth_mm);
+        depths.fold(0.0, f64::max)
     }
 
     /// Loading travel before it, as the tissue's use at the start is taken, mm.
@@ -173,6 +175,7 @@ pub(crate) fn force_recordings(
             place: place_of[recording],
             order: 0,
             travel_before_mm: [0.0; 2],
+            is_coarse: one.is_coarse,
             rows,
             samples: (start, one.samples.len()),
         });
@@ -241,6 +244,7 @@ fn rows(measured: &Measured, start: usize) -> Vec<Row> {
         time_s: m.time_s,
         depth_mm: m.depth_mm,
         spread_mm: m.depth_spread_mm,
+        force_step_n: m.force_step_n,
         force_n: 0.0,
         sample: None,
         phase: m.phase,

@@ -127,12 +127,14 @@ fn courses(recordings: &[(usize, Vec<Reading>)]) -> Vec<ForceRecording> {
             time_s: one.0,
             depth_mm: one.1,
             spread_mm: 0.0,
+            force_step_n: 0.0,
             force_n: one.3,
             sample: Some(first + k),
             phase: one.2,
             cycle: 0,
         };
         all.push(ForceRecording {
+            is_coarse: false,
             recording: number,
             name: String::new(),
             protocol: String::new(),
@@ -158,6 +160,7 @@ fn measured(readings: &[Reading]) -> Measured {
         cycle: 0,
         readings: 1,
         depth_spread_mm: 0.0,
+        force_step_n: 0.0,
     };
     let sample = |(k, one): (usize, &Reading)| Sample {
         moment: k as u32,
@@ -176,6 +179,7 @@ fn measured(readings: &[Reading]) -> Measured {
         scan: None,
         is_calibrated: true,
         depth_error_mm: 0.0,
+        is_coarse: false,
         unknown: Vec::new(),
     }
 }

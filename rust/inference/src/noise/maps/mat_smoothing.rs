@@ -61,6 +61,7 @@ mod tests {
             cycle: 0,
             readings: 1,
             depth_spread_mm: 0.0,
+            force_step_n: 0.0,
         };
         let measured = Measured {
             name: String::new(),
@@ -73,6 +74,7 @@ mod tests {
             scan: None,
             is_calibrated: true,
             depth_error_mm: 0.0,
+            is_coarse: false,
             unknown: Vec::new(),
         };
         // What a fit of one number to readings weighted by 1 / sigma^2 finds, sigma in proportion to what it is judged by.

@@ -1,4 +1,4 @@
-//! The step to which readings of a depth are rounded, and whether the force follows what rounding leaves.
+//! The step to which readings are rounded, and of depths whether the force follows what rounding leaves.
 //!
 //! Rounded to a step q, readings of a steady motion are off by an error that is even between -q/2 and q/2 (variance q^2/12; Widrow, Kollar
 //! and Liu 1996, IEEE Transactions on Instrumentation and Measurement 45:353). At even times it is no noise but a wave, slow where the way
@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::Motion;
 use crate::observe::motion::line::ROUNDED;
-use crate::observe::protocol_phases::{Courses, Stretch};
+use crate::observe::protocol_phases::{Courses, Stretch, range};
 use crate::observe::robust_scale::median;
 
 /// Part of the range by which readings differ that are the same.
@@ -21,8 +21,9 @@ const FINEST: f64 = 1e-5;
 /// A step that is larger than the digit in which readings are written: by so many digits, and the smallest gap by so many steps at most.
 const DIGITS: f64 = 20.0;
 const PARTS: u32 = 4;
-/// Fewest different readings in which a step is sought.
+/// Fewest different readings in which a step of a depth, and of a force, is sought.
 const FEWEST: usize = 8;
+const FEWEST_FORCES: usize = 3;
 /// Least that rounding leaves about lines, in steps: less is a motion in even steps that was read as it is.
 const LEAST: f64 = 0.1;
 /// Logarithm of the likelihood ratio from which a stage is said to go in steps: most depths that seem to, are rounded.
@@ -47,10 +48,41 @@ const LINES_ARE_OFF: f64 = 0.12;
 /// The same where a stand is left where it was read: all of its readings are off by one error of rounding.
 const STANDS_ARE_OFF: f64 = 0.29;
 
-/// The step of which all readings are multiples, from one of them on, mm; 0 where there is none. A file that writes few digits rounds them once
-/// more: then multiples are off by one of its last digit at most.
-pub(crate) fn step_mm(depth: &[f64]) -> f64 {
-    let mut sorted = depth.to_vec();
+/// Least step over the range of readings that is more than digits of a file.
+const MORE_THAN_DIGITS: f64 = 2e-4;
+/// Part of neighboring readings that are the same, from which noise is smaller than the step to which they are rounded; and part of a step by which
+/// they differ at most.
+const STILL: (f64, f64) = (0.4, 1e-2);
+
+/// The step to which forces are rounded, in their unit, if it is more than digits of a file; 0 of others.
+pub(crate) fn wide_step(readings: &[f64]) -> f64 {
+    let (low, high) = range(readings);
+    let step = step_of_at_least(FEWEST_FORCES, readings);
+    if step > MORE_THAN_DIGITS * (high - low) {
+        step
+    } else {
+        0.0
+    }
+}
+
+/// Whether a step is larger than the noise of readings that are rounded to it: many are the same as the one before. Noise that is larger makes
+/// rounding a part of itself (Widrow, Kollar and Liu 1996).
+pub(crate) fn exceeds_noise(step: f64, readings: &[f64]) -> bool {
+    let (part, same) = STILL;
+    let is_same = |two: &&[f64]| (two[1] - two[0]).abs() < same * step;
+    let count = readings.windows(2).filter(is_same).count();
+    step > 0.0 && count as f64 >= part * readings.len() as f64
+}
+
+/// The step of which all readings are multiples, from one of them on, in their unit; 0 where there is none. A file that writes few digits rounds
+/// them once more: then multiples are off by one of its last digit at most.
+pub(crate) fn step_of(readings: &[f64]) -> f64 {
+    step_of_at_least(FEWEST, readings)
+}
+
+/// As [`step_of`], of so many different readings at least.
+fn step_of_at_least(fewest: usize, readings: &[f64]) -> f64 {
+    let mut sorted = readings.to_vec();
     sorted.sort_by(f64::total_cmp);
     let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else {
         return 0.0;
@@ -64,7 +96,7 @@ pub(crate) fn step_mm(depth: &[f64]) -> f64 {
         None
     };
     let step = coarser.unwrap_or(digit);
-    match sorted.len() < FEWEST || step < FINEST * range {
+    match sorted.len() < fewest || step < FINEST * range {
         true => 0.0,
         false => step,
     }
@@ -276,7 +308,8 @@ fn continued(points: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::step_mm;
+    use super::{exceeds_noise, step_of, wide_step};
+    use crate::random::Random;
 
     /// Readings of an uneven motion, each rounded to the step and then to the digit.
     fn found(step: f64, digit: f64) -> f64 {
@@ -291,7 +324,26 @@ mod tests {
         let read: Vec<f64> = (0..=60)
             .map(|k| round(round(path(k), step), digit))
             .collect();
-        step_mm(&read)
+        step_of(&read)
+    }
+
+    /// Forces up to 80 mN with that noise, rounded to 16 mN, and to the 10 uN of a file.
+    #[test]
+    fn a_wide_step_of_few_readings_is_found_and_held_against_the_noise() {
+        let mut random = Random::new(1);
+        let mut read = |noise: f64, step: f64| -> Vec<f64> {
+            let force = |k: i32| 0.08 * (f64::from(k) / 100.0).powf(1.5);
+            let noisy = (0..=100).map(|k| force(k) + noise * random.normal());
+            noisy.map(|f| (f / step).round() * step).collect()
+        };
+        let still = read(0.002, 0.016);
+        assert!((wide_step(&still) / 0.016 - 1.0).abs() < 1e-6);
+        assert!(exceeds_noise(0.016, &still));
+        let dithered = read(0.016, 0.016);
+        assert!((wide_step(&dithered) / 0.016 - 1.0).abs() < 1e-6);
+        assert!(!exceeds_noise(0.016, &dithered));
+        let digits = read(0.002, 1e-5);
+        assert!(wide_step(&digits) == 0.0 && !exceeds_noise(0.0, &digits));
     }
 
     #[test]
