@@ -287,6 +287,29 @@ def test_jitter_of_the_depth_is_shown_to_the_user(tmp_path):
     assert sizes and 8 <= np.median(sizes) <= 12
 
 
+def test_steps_of_the_force_are_shown_to_the_user(tmp_path):
+    """Of 9.2 mN, and of 16.1 mN in recordings that are thinned."""
+    for seed in (10103, 10101):
+        case = closed_forms.draw(seed, "nothing", "coarse_force")
+        read = np.unique(np.concatenate([one.table[:, 2] for one in case.recordings]))
+        step_mn = 1000.0 * np.diff(read)[np.diff(read) > 1e-6].min()
+        said = [text for recording in _compared(case, tmp_path / str(seed)) for text in recording["unknown"]]
+        found = [
+            float(text.split("in steps of ")[1].split(" mN")[0])
+            for text in said
+            if "its force is read in steps" in text
+        ]
+        assert len(found) == len(case.recordings)
+        np.testing.assert_allclose(found, step_mn, rtol=0.01)
+
+
+def test_a_ceiling_and_softening_are_named_through_steps_of_the_force(tmp_path):
+    for truth, seed in (("saturation", 10121), ("cycle_softening", 10125)):
+        closed_forms.draw(seed, truth, "coarse_force").write(tmp_path / truth)
+        said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / truth)).to_json())
+        assert [finding["effect"] for finding in said["findings"]] == [truth]
+
+
 def test_wander_of_the_zero_is_shown_to_the_user(tmp_path):
     """8 mN in 10 s are 2.5 mN in 1 s; each reading has 3 mN besides. White noise is said to wander nowhere."""
     found = []

@@ -41,12 +41,20 @@ pub struct ShortWaves {
     pub rms_n: f64,
 }
 
+/// Waves, and their root mean square over the ranges of forces.
+type WithPart = (ShortWaves, f64);
+
+/// What is taken of a row and its sample, N.
+type Value<'a> = &'a dyn Fn(&Row, usize) -> f64;
+
 /// One recording's waves: seconds since its first row, and force less its running mean, in deviations of it.
 struct Waves {
     time_s: Vec<f64>,
     force: Vec<f64>,
     /// One deviation, N.
     deviation_n: f64,
+    /// Range of the recording's forces, N.
+    range_n: f64,
 }
 
 /// The waves that repeats of all protocols share, in the force and in what the model leaves of it, whichever is less: a motion that goes in
@@ -58,7 +66,7 @@ struct Waves {
 /// rows: what repeats by the way alone, at another speed, is not seen. Recordings are thinned before, to a hundred moments or so, so that the
 /// shortest wave is of two of these.
 pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<ShortWaves> {
-    let clearer = |a: ShortWaves, b: ShortWaves| match b.standard_errors > a.standard_errors {
+    let clearer = |a: WithPart, b: WithPart| match b.0.standard_errors > a.0.standard_errors {
         true => b,
         false => a,
     };
@@ -66,15 +74,14 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
         .iter()
         .flat_map(|window| SMOOTHED.map(|smoothed| (*window, smoothed)));
     let each = bands.filter_map(|band| least_shared(courses, simulated, band));
-    let found = each.reduce(clearer)?;
+    let (found, part) = each.reduce(clearer)?;
     let written = courses.iter().map(step_n);
     let rounded = courses.iter().flat_map(|course| &course.rows);
     let step_n = written
         .chain(rounded.map(|row| row.force_step_n))
         .fold(0.0, f64::max);
-    let range_n = courses.iter().map(range_n).fold(0.0, f64::max);
     // Half a step each way is the most that rounding leaves.
-    let is_feigned = found.rms_n < (0.5 * step_n).max(JOINED * range_n);
+    let is_feigned = found.rms_n < 0.5 * step_n || part < JOINED;
     Some(match is_feigned {
         true => ShortWaves {
             standard_errors: found.standard_errors.min(0.0),
@@ -119,23 +126,26 @@ fn least_shared(
     courses: &[ForceRecording],
     simulated: &[f64],
     band: (usize, f64),
-) -> Option<ShortWaves> {
+) -> Option<WithPart> {
     let of_force = |row: &Row, _: usize| row.force_n;
     let of_rest = |row: &Row, k: usize| row.force_n - simulated[k];
-    let of: [&dyn Fn(&Row, usize) -> f64; 2] = [&of_force, &of_rest];
+    let of: [Value<'_>; 2] = [&of_force, &of_rest];
     let once = of.map(|of| shared(courses, (band, 1), of));
     let twice = of.map(|of| shared(courses, (band, 2), of));
-    let of_less = |a: ShortWaves, b: ShortWaves| match b.standard_errors < a.standard_errors {
+    let of_less = |a: WithPart, b: WithPart| match b.0.standard_errors < a.0.standard_errors {
         true => b,
         false => a,
     };
     let [force, rest] = once;
-    let found = of_less(force?, rest?);
-    let bent = twice.iter().flatten().map(|waves| waves.rms_n);
-    Some(ShortWaves {
-        rms_n: bent.fold(found.rms_n, f64::min),
+    let (found, part) = of_less(force?, rest?);
+    let bent = || twice.iter().flatten();
+    let waves = ShortWaves {
+        rms_n: bent()
+            .map(|(waves, _)| waves.rms_n)
+            .fold(found.rms_n, f64::min),
         ..found
-    })
+    };
+    Some((waves, bent().map(|(_, part)| *part).fold(part, f64::min)))
 }
 
 /// Sums of one pair of repeats.
@@ -146,6 +156,8 @@ struct Pair {
     /// The same if what waves do of themselves is noise that remembers.
     variance_alone: f64,
     newtons: f64,
+    /// The same over the ranges of both repeats' forces.
+    parts: f64,
     count: usize,
 }
 
@@ -153,8 +165,8 @@ struct Pair {
 fn shared(
     courses: &[ForceRecording],
     filter: ((usize, f64), usize),
-    of: &dyn Fn(&Row, usize) -> f64,
-) -> Option<ShortWaves> {
+    of: Value<'_>,
+) -> Option<WithPart> {
     let all: Vec<Option<Waves>> = courses.iter().map(|c| waves(c, filter, of)).collect();
     let mut pairs = Vec::new();
     for (i, one) in courses.iter().enumerate() {
@@ -168,10 +180,13 @@ fn shared(
         }
     }
     let count: usize = pairs.iter().map(|pair| pair.count).sum();
-    let newtons: f64 = pairs.iter().map(|pair| pair.newtons).sum();
-    (count >= FEWEST).then(|| ShortWaves {
-        standard_errors: standard_errors(&pairs),
-        rms_n: (newtons / count as f64).max(0.0).sqrt(),
+    let mean = |of: fn(&Pair) -> f64| pairs.iter().map(of).sum::<f64>() / count as f64;
+    (count >= FEWEST).then(|| {
+        let waves = ShortWaves {
+            standard_errors: standard_errors(&pairs),
+            rms_n: mean(|pair| pair.newtons).max(0.0).sqrt(),
+        };
+        (waves, mean(|pair| pair.parts).max(0.0).sqrt())
     })
 }
 
@@ -206,6 +221,7 @@ impl Pair {
             variance: squares * memory(&off, &off),
             variance_alone: squares * memory(&x, &y),
             newtons: sum * a.deviation_n * b.deviation_n,
+            parts: sum * (a.deviation_n / a.range_n) * (b.deviation_n / b.range_n),
             count: products.len(),
         }
     }
@@ -251,7 +267,7 @@ fn same_moments(a: &Waves, b: &Waves) -> Vec<(f64, f64)> {
 fn waves(
     course: &ForceRecording,
     ((part, smoothed), means): ((usize, f64), usize),
-    of: &dyn Fn(&Row, usize) -> f64,
+    of: Value<'_>,
 ) -> Option<Waves> {
     let start = course.rows.first()?.time_s;
     let deep = LOADED * course.deepest();
@@ -287,6 +303,7 @@ fn waves(
             .map(|f| (f / deviation_n).clamp(-MOST, MOST))
             .collect(),
         deviation_n,
+        range_n: range_n(course),
     })
 }
 

@@ -41,7 +41,7 @@ pub struct Noise {
     pub step: [f64; CHANNELS.len()],
     /// By [`CHANNELS`]: whitened deviations of repeats from their mean, from which noise can be drawn with its outliers.
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
-    /// The clearest rhythm in which the forces of repeats differ; None where forces are rounded to steps that are larger than their noise.
+    /// The clearest rhythm in which the forces of repeats differ.
     pub rhythm: Option<Rhythm>,
     /// Whether depths are known with an error, which acts on the forces through their slope.
     pub has_depth_error: bool,
@@ -103,10 +103,7 @@ pub fn noise(
                 .as_ref()
                 .map_or_else(Vec::new, |s| s.drawn_from.clone())
         }),
-        // Steps that a force goes through at a steady pace are a rhythm of their own.
-        rhythm: forces
-            .and_then(|s| s.rhythm)
-            .filter(|_| !measured.iter().any(|one| one.is_coarse)),
+        rhythm: forces.and_then(|s| s.rhythm),
         has_depth_error: measured.iter().any(|one| one.depth_error_mm > 0.0),
         notes,
     }
@@ -205,11 +202,8 @@ fn sigma(
             None if channel == Channel::Pressure => (UNKNOWN_MAT, 0.0),
             None => (noise_of(&values) / most.max(f64::MIN_POSITIVE), 0.0),
         };
-        let steps = measured.moments.iter().map(|m| m.force_step_n);
-        let rounding = steps.fold(0.0, f64::max) / 12f64.sqrt();
         let floor = match channel {
-            Channel::Force if scatter[0].is_none() => rounding.max(noise_n.unwrap_or(0.0)),
-            Channel::Force => rounding,
+            Channel::Force if scatter[0].is_none() => noise_n.unwrap_or(0.0),
             _ => 0.0,
         };
         ((share.max(FLOOR) * most).max(floor), proportional, shape)
@@ -229,5 +223,12 @@ fn sigma(
     };
     let judged = smoothed(measured);
     let samples = measured.samples.iter().zip(&judged);
-    samples.map(|(s, by)| one(s, *by)).unzip()
+    // Rounding is no noise that a mean of equal readings is free of.
+    let of_rounding = |s: &Sample| match s.quantity {
+        Quantity::Force => measured.moments[s.moment as usize].force_step_n / 12f64.sqrt(),
+        _ => 0.0,
+    };
+    let each = samples.map(|(s, by)| (one(s, *by), of_rounding(s)));
+    each.map(|((sigma, profile), least)| (sigma.max(least), profile))
+        .unzip()
 }

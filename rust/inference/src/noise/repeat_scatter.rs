@@ -133,7 +133,12 @@ impl Repeats {
             has_clear_zeros,
             step,
             drawn_from,
-            rhythm: rhythm(&all, correlation),
+            // Steps that a force goes through at a steady pace are a rhythm of their own.
+            rhythm: {
+                let is_judged = |d: &Deviations| !d.group.iter().any(|k| measured[*k].is_coarse);
+                let judged: Vec<Deviations> = all.into_iter().filter(is_judged).collect();
+                rhythm(&judged, correlation)
+            },
         })
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::noise::channel::Channel;
 use crate::noise::estimate::noise;
 use crate::noise::repeat_alignment::{RepeatSeries, aligned};
+use crate::noise::whitening::Whitening;
 use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
 use crate::random::Random;
 
@@ -158,6 +159,8 @@ fn noise_of_rounded_forces_is_no_less_than_rounding() {
             }
         }
         let found = noise(&measured, (&simulated, &slopes), &[true; 6], None);
+        // As noise can be drawn from them, repeats do not all seem to be the same.
+        assert!(!found.drawn_from[0].is_empty(), "{planted}");
         let wanted = (planted * PEAK_N).hypot(step_n / 12f64.sqrt());
         for sigma in found.sigma.iter().flatten() {
             assert!(
@@ -165,6 +168,38 @@ fn noise_of_rounded_forces_is_no_less_than_rounding() {
                 "{planted}: {sigma} of {wanted}"
             );
         }
+        let alone = noise(&measured[..1], (&simulated, &slopes), &[true], None);
+        let least = alone.sigma[0].iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(least >= step_n / 12f64.sqrt(), "{planted}: {least} alone");
+    }
+}
+
+/// Within half a step of its reading nothing is off, and farther off only what lies beyond.
+#[test]
+fn a_rounded_force_is_off_by_what_lies_beyond_half_a_step() {
+    let (mut measured, simulated, slopes) = study(1, 1, &Planted::white(0.05));
+    for moment in &mut measured[0].moments {
+        moment.force_step_n = 0.2;
+    }
+    let values: Vec<f64> = measured[0].samples.iter().map(|s| s.value).collect();
+    let off = |is_coarse: bool, off_n: f64| {
+        let mut measured = measured.clone();
+        measured[0].is_coarse = is_coarse;
+        let noise = noise(&measured, (&simulated, &slopes), &[true], None);
+        let whitening = Whitening::new(&measured, &noise, &[true]);
+        let moved: Vec<f64> = values.iter().map(|v| v - off_n).collect();
+        let residual = whitening.residuals(&moved).residual;
+        residual[0] * noise.sigma[0][0]
+    };
+    for (off_n, wanted) in [
+        (0.0, 0.0),
+        (0.09, 0.0),
+        (-0.09, 0.0),
+        (0.15, 0.05),
+        (-0.3, -0.2),
+    ] {
+        assert!((off(true, off_n) - wanted).abs() < 1e-9, "{off_n}");
+        assert!((off(false, off_n) - off_n).abs() < 1e-9, "{off_n}");
     }
 }
 

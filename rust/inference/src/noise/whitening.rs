@@ -18,6 +18,8 @@ pub struct Whitening {
     censoring: Vec<Censoring>,
     channel: Vec<Channel>,
     sigma: Vec<f64>,
+    /// Half of the step to which a sample is rounded, where it is larger than the noise; else 0.
+    half_step: Vec<f64>,
     /// Samples of one channel of one recording in the order of time, and their filter.
     series: Vec<Series>,
     /// False for samples that are left out.
@@ -77,6 +79,7 @@ impl Whitening {
             censoring: Vec::new(),
             channel: Vec::new(),
             sigma: Vec::new(),
+            half_step: Vec::new(),
             series: Vec::new(),
             is_used: Vec::new(),
         };
@@ -87,6 +90,7 @@ impl Whitening {
                 whitening.censoring.push(sample.censoring);
                 whitening.channel.push(Channel::of(sample.quantity));
                 whitening.sigma.push(noise.sigma[recording][k]);
+                whitening.half_step.push(one.half_step_n(sample));
                 whitening.is_used.push(is_used[recording]);
             }
             if is_used[recording] {
@@ -111,10 +115,18 @@ impl Whitening {
     }
 
     /// Whitened residuals of stacked predictions.
+    ///
+    /// Of a sample that is rounded nobody knows where within half a step of its reading it was, so that only what is farther off counts (grouped
+    /// data: Heitjan 1989, Statistical Science 4:164). Derivatives are those of the prediction all the same: a residual of 0 pulls at nothing, and
+    /// a curvature that is too large only shortens the way of a fit.
     pub fn residuals(&self, simulated: &[f64]) -> Whitened {
         let n = self.len();
         let (mut residual, mut censored_slope) = (vec![0.0; n], vec![0.0; n]);
-        let scaled = |k: usize| (self.measured[k] - simulated[k]) / self.sigma[k];
+        let scaled = |k: usize| {
+            let off = self.measured[k] - simulated[k];
+            let within = off.clamp(-self.half_step[k], self.half_step[k]);
+            (off - within) / self.sigma[k]
+        };
         self.seen((0..n, &scaled), &mut |k, white| residual[k] = white);
         for k in (0..n).filter(|&k| self.is_used[k]) {
             let sign = match self.censoring[k] {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use thenar_recordings::Curve;
 
+use crate::number_format::number;
 use crate::observe::depth_jitter::without_jitter;
 use crate::observe::downsampling::{bins, means, spread};
 use crate::observe::first_touch::onset;
@@ -127,9 +128,9 @@ pub fn observe(
     let is_coarse = exceeds_noise(step_n, &force);
     if is_coarse {
         unknown.push(format!(
-            "its force is read in steps of {:.1} mN, which are larger than its noise: what is smaller than half a step is not seen; a finer range of \
+            "its force is read in steps of {} mN, which are larger than its noise: what is smaller than half a step is not seen; a finer range of \
              the load cell shows it",
-            1000.0 * step_n
+            number(1000.0 * step_n)
         ));
     }
     let list = |values: &[f64]| (!values.is_empty()).then(|| means(values, &bins));

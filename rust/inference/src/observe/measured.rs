@@ -170,6 +170,14 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Half of the step to which a force is rounded, N, where it is larger than the noise; 0 of other samples.
+    pub(crate) fn half_step_n(&self, sample: &Sample) -> f64 {
+        match self.is_coarse && sample.quantity == Quantity::Force {
+            true => 0.5 * self.moments[sample.moment as usize].force_step_n,
+            false => 0.0,
+        }
+    }
+
     /// True if some moment has no depth: it is simulated at the force that it asks for.
     pub(crate) fn asks_force(&self) -> bool {
         self.moments.iter().any(|moment| moment.depth_mm.is_nan())

@@ -56,14 +56,13 @@ impl<'a> Slopes<'a> {
         }
         let point = (self.model, &self.set);
         let all = |is_so: fn(&Mechanism) -> bool| self.model.mechanisms.iter().all(is_so);
-        let is_coarse = self.surrogate.courses[self.course].is_coarse;
-        let is_plain = !is_coarse && all(|mechanism| !mechanism.is_instrument());
+        let is_plain = all(|mechanism| !mechanism.is_instrument());
         if matches!(kind, Kind::ForceZero(_)) && is_plain {
             return Some(vec![1.0; self.forces.len()]);
         }
         let zero = self.set.force_zero[self.course];
         let is_proportion = matches!(kind, Kind::Gain(_))
-            && (is_plain || (!is_coarse && zero == 0.0 && all(Mechanism::is_read_in_proportion)));
+            && (is_plain || (zero == 0.0 && all(Mechanism::is_read_in_proportion)));
         let known = match (&self.stiffness, is_proportion) {
             (_, true) => Some(self.forces.iter().map(|f| f - zero).collect()),
             (Some(of), _) => self
@@ -188,20 +187,7 @@ mod tests {
     /// steps by is what the forces do.
     #[test]
     fn derivatives_equal_central_differences() {
-        check(&pressed());
-    }
-
-    /// A third of the readings is further off than half a step.
-    #[test]
-    fn derivatives_under_rounding_equal_central_differences() {
-        let mut ready = pressed();
-        let one = &mut ready.courses[0];
-        one.is_coarse = true;
-        one.rows.iter_mut().for_each(|row| row.force_step_n = 4.0);
-        check(&ready);
-    }
-
-    fn check(ready: &PreparedStudy) {
+        let ready = pressed();
         let surrogate = ready.surrogate();
         let mut tried = singles(ready.scales);
         tried.retain(|m| !matches!(m.law, Law::Tabulated(_) | Law::Floor(_)));

@@ -1,4 +1,4 @@
-//! Laws of the instrument in the surrogate: gain step, offset, drift, saturation, floor (Tobit), delay, rounding.
+//! Laws of the instrument in the surrogate: gain step, offset, drift, saturation, floor (Tobit), delay.
 
 use crate::forward::surrogate::candidate_model::{Model, Setting};
 use crate::forward::surrogate::mechanism::Law;
@@ -54,20 +54,6 @@ impl Surrogate<'_> {
                 _ => {}
             }
         }
-        if one.is_coarse {
-            for (force, row) in forces.iter_mut().zip(&one.rows) {
-                *force = held_against(row.force_n, *force, row.force_step_n);
-            }
-        }
-    }
-}
-
-/// What is held against a reading that is rounded to a step: of a force nobody knows where within half a step of its reading it was, so that only
-/// what is farther off counts (readings in groups: Heitjan 1989, Statistical Science 4:164).
-fn held_against(reading: f64, force: f64, step: f64) -> f64 {
-    match step > 0.0 {
-        true => force + (reading - force).clamp(-0.5 * step, 0.5 * step),
-        false => force,
     }
 }
 
@@ -102,22 +88,6 @@ fn soft(x: f64, width: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Read in steps of 0.1 N as 0.2: within 0.15 and 0.25 N nothing is off.
-    #[test]
-    fn a_rounded_reading_is_off_by_what_lies_beyond_half_a_step() {
-        for (force, off) in [
-            (0.2, 0.0),
-            (0.16, 0.0),
-            (0.245, 0.0),
-            (0.11, -0.04),
-            (0.33, 0.08),
-        ] {
-            let found = held_against(0.2, force, 0.1) - 0.2;
-            assert!((found - off).abs() < 1e-12, "{force}: {found}");
-        }
-        assert_eq!(held_against(0.2, 0.16, 0.0), 0.16);
-    }
 
     #[test]
     fn tobit_reading_equals_missing_force_at_a_floor() {

@@ -31,13 +31,13 @@ fn is_affine(mechanism: &Mechanism) -> bool {
 }
 
 impl Surrogate<'_> {
-    /// The elastic response of a recording; None with a mechanism that is not affine, or where readings are rounded.
+    /// The elastic response of a recording; None with a mechanism that is not affine.
     pub(crate) fn stiffness(
         &self,
         (model, set): (&Model<'_>, &Setting),
         (course, forces): (usize, &[f64]),
     ) -> Option<Stiffness> {
-        if !model.mechanisms.iter().all(is_affine) || self.courses[course].is_coarse {
+        if !model.mechanisms.iter().all(is_affine) {
             return None;
         }
         let one = &self.courses[course];

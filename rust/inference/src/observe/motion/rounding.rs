@@ -23,7 +23,7 @@ const DIGITS: f64 = 20.0;
 const PARTS: u32 = 4;
 /// Fewest different readings in which a step of a depth, and of a force, is sought.
 const FEWEST: usize = 8;
-const FEWEST_FORCES: usize = 3;
+const FEWEST_FORCES: usize = 5;
 /// Least that rounding leaves about lines, in steps: less is a motion in even steps that was read as it is.
 const LEAST: f64 = 0.1;
 /// Logarithm of the likelihood ratio from which a stage is said to go in steps: most depths that seem to, are rounded.
@@ -69,9 +69,13 @@ pub(crate) fn wide_step(readings: &[f64]) -> f64 {
 /// rounding a part of itself (Widrow, Kollar and Liu 1996).
 pub(crate) fn exceeds_noise(step: f64, readings: &[f64]) -> bool {
     let (part, same) = STILL;
+    let (low, high) = range(readings);
     let is_same = |two: &&[f64]| (two[1] - two[0]).abs() < same * step;
-    let count = readings.windows(2).filter(is_same).count();
-    step > 0.0 && count as f64 >= part * readings.len() as f64
+    // At its least and its most an instrument stands for other reasons.
+    let is_between = |two: &&[f64]| two[0] > low && two[0] < high;
+    let between = readings.windows(2).filter(is_between);
+    let count = between.clone().count();
+    step > 0.0 && between.filter(is_same).count() as f64 >= part * f64::max(count as f64, 1.0)
 }
 
 /// The step of which all readings are multiples, from one of them on, in their unit; 0 where there is none. A file that writes few digits rounds
