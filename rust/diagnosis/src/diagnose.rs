@@ -19,6 +19,7 @@ use crate::gates::size_gate::{Sized, open_note};
 use crate::grasp::diagnose_grasps;
 use thenar_comparison::Comparison;
 use thenar_comparison::compare;
+use thenar_inference::checks::coarse_forces::coarse_forces_note;
 use thenar_inference::errors::InferenceError;
 use thenar_inference::fit::fitting::{Fitting, Options};
 use thenar_inference::forward::surrogate::force_recording::ForceRecording;
@@ -296,6 +297,7 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     });
     found.notes.extend(ready.noise.wander_note(forces));
     found.notes.extend(ready.noise.zero_note());
+    found.notes.extend(coarse_forces_note(&ready.courses));
     found.notes.extend(untested(&ready.courses));
     found.notes.extend(ready.copies.clone());
 }

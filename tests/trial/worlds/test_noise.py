@@ -301,6 +301,14 @@ def test_steps_of_the_force_are_shown_to_the_user(tmp_path):
         ]
         assert len(found) == len(case.recordings)
         np.testing.assert_allclose(found, step_mn, rtol=0.01)
+        (note,) = [note for note in _diagnosed(case, tmp_path / f"{seed} diagnosed") if "in steps of up to" in note]
+        assert note.startswith(f"the force of {len(found)} of {len(found)} recordings is read in steps")
+
+
+def _diagnosed(case, folder):
+    """Notes of the diagnosis of a case."""
+    case.write(folder)
+    return json.loads(thenar.diagnose(thenar.Study.load(folder)).to_json())["notes"]
 
 
 def test_a_ceiling_and_softening_are_named_through_steps_of_the_force(tmp_path):
