@@ -6,6 +6,7 @@
 
 use crate::forward::surrogate::force_recording::{ForceRecording, Row};
 use crate::observe::measured::Phase;
+use crate::observe::protocol_phases::range;
 use crate::observe::robust_scale::median_deviation;
 
 /// Part of a recording's depth above which it counts as loaded: where the skin is first touched is not known to a sample.
@@ -18,11 +19,6 @@ const FEWEST_IN_MEAN: usize = 5;
 const SMOOTHED: [f64; 2] = [0.0, 0.25];
 /// Deviations beyond which a sample counts no more: single ones that are astray do not decide.
 const MOST: f64 = 3.0;
-/// Part of the range of forces to which they are written; part of a step by which a gap is off a multiple of it; and part of all gaps that are
-/// such, where forces are read in steps.
-const WRITTEN: f64 = 1e-4;
-const MULTIPLE: f64 = 0.03;
-const IN_STEPS: f64 = 0.9;
 /// Part of the range of forces by which a table is off between its rungs, at most (`interpolation::Table` on a Hertz curve).
 const JOINED: f64 = 1e-4;
 /// Standard errors of all pairs of repeats over those that are left without the one that shares most, at most.
@@ -75,11 +71,8 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
         .flat_map(|window| SMOOTHED.map(|smoothed| (*window, smoothed)));
     let each = bands.filter_map(|band| least_shared(courses, simulated, band));
     let (found, part) = each.reduce(clearer)?;
-    let written = courses.iter().map(step_n);
-    let rounded = courses.iter().flat_map(|course| &course.rows);
-    let step_n = written
-        .chain(rounded.map(|row| row.force_step_n))
-        .fold(0.0, f64::max);
+    let rows = courses.iter().flat_map(|course| &course.rows);
+    let step_n = rows.map(|row| row.force_step_n).fold(0.0, f64::max);
     // Half a step each way is the most that rounding leaves.
     let is_feigned = found.rms_n < 0.5 * step_n || part < JOINED;
     Some(match is_feigned {
@@ -91,33 +84,12 @@ pub fn short_waves(courses: &[ForceRecording], simulated: &[f64]) -> Option<Shor
     })
 }
 
-fn read_forces(course: &ForceRecording) -> Vec<f64> {
-    let read = course.rows.iter().filter(|row| row.sample.is_some());
-    read.map(|row| row.force_n).collect()
-}
-
 /// From the smallest to the largest force that was read, N.
 fn range_n(course: &ForceRecording) -> f64 {
-    let forces = read_forces(course);
-    let least = forces.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = forces.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    (most - least).max(0.0)
-}
-
-/// The step of which the forces of a recording are multiples, from one of them on, N, as far as they are written; 0 where there is none. Each
-/// recording by itself: another zero shifts all steps.
-fn step_n(course: &ForceRecording) -> f64 {
-    let mut forces = read_forces(course);
-    forces.sort_by(f64::total_cmp);
-    let range = range_n(course);
-    let gaps = forces.windows(2).map(|two| two[1] - two[0]);
-    let gaps: Vec<f64> = gaps.filter(|gap| *gap > WRITTEN * range).collect();
-    let step = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    let is_multiple = |gap: &&f64| (**gap / step - (**gap / step).round()).abs() < MULTIPLE;
-    match gaps.iter().filter(is_multiple).count() as f64 >= IN_STEPS * gaps.len() as f64 {
-        true if gaps.len() > 1 => step,
-        _ => 0.0,
-    }
+    let read = course.rows.iter().filter(|row| row.sample.is_some());
+    let forces: Vec<f64> = read.map(|row| row.force_n).collect();
+    let (least, most) = range(&forces);
+    most - least
 }
 
 /// What is shared in the force or in what the model leaves of it, whichever is less, in a band: a window and how much of it is smoothed. Its

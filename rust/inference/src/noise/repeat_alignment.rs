@@ -44,7 +44,7 @@ pub struct RepeatSeries<'a> {
 pub fn aligned(channel: Channel, repeats: &[RepeatSeries<'_>]) -> (Vec<f64>, Vec<Aligned>) {
     let series: Vec<Series> = repeats
         .iter()
-        .map(|told| Series::new(channel, told))
+        .map(|repeat| Series::new(channel, repeat))
         .collect();
     let first = &series[0];
     let range = match (first.time.first(), first.time.last()) {
@@ -90,8 +90,8 @@ struct Series {
 }
 
 impl Series {
-    fn new(channel: Channel, told: &RepeatSeries<'_>) -> Series {
-        let moments = &told.measured.moments;
+    fn new(channel: Channel, repeat: &RepeatSeries<'_>) -> Series {
+        let moments = &repeat.measured.moments;
         let began = moments
             .iter()
             .find(|m| m.phase == Phase::Load)
@@ -107,8 +107,8 @@ impl Series {
             },
         };
         // Forces that are rounded alike seem to have no noise: where in its step each was, nobody knows.
-        let mut random = Random::new(told.number as u64);
-        for (k, sample) in told.measured.samples.iter().enumerate() {
+        let mut random = Random::new(repeat.number as u64);
+        for (k, sample) in repeat.measured.samples.iter().enumerate() {
             let within = random.uniform() - 0.5;
             if Channel::of(sample.quantity) == channel && sample.censoring == Censoring::Seen {
                 let moment = &moments[sample.moment as usize];
@@ -119,8 +119,8 @@ impl Series {
                 series.time.push(moment.time_s - began);
                 series.aligned.value.push(sample.value + step_n * within);
                 series.aligned.depth.push(moment.depth_mm);
-                series.aligned.simulated.push(told.simulated[k]);
-                series.aligned.slope.push(told.slopes[k]);
+                series.aligned.simulated.push(repeat.simulated[k]);
+                series.aligned.slope.push(repeat.slopes[k]);
                 series.aligned.readings.push(f64::from(moment.readings));
             }
         }

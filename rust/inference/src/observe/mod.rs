@@ -8,7 +8,7 @@ pub(crate) mod first_touch;
 pub(crate) mod downsampling;
 pub(crate) mod smoothing;
 pub(crate) mod depth_jitter;
-mod motion;
+pub(crate) mod motion;
 pub(crate) mod indentation;
 pub(crate) mod pressure_map;
 pub(crate) mod scan_registration;

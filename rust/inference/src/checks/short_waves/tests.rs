@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+use crate::observe::motion::rounding::wide_step;
 use crate::random::Random;
 
 /// Repeats of a press of a flat punch of 10 N/mm to 1 mm at 1 mm/s and back, read 100 times a way.
@@ -84,7 +85,13 @@ impl Presses {
             }
             recordings.push((0, all));
         }
-        let (made, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &recordings, sigma);
+        let (mut made, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &recordings, sigma);
+        for course in &mut made.courses {
+            let forces: Vec<f64> = course.rows.iter().map(|row| row.force_n).collect();
+            let step_n = wide_step(&forces);
+            let rows = course.rows.iter_mut();
+            rows.for_each(|row| row.force_step_n = step_n);
+        }
         let depths = made.courses.iter().flat_map(|c| &c.rows);
         let simulated: Vec<f64> = depths.map(|row| 10.0 * row.depth_mm).collect();
         short_waves(&made.courses, &simulated).expect("repeats")
