@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::noise::channel::Channel;
 use crate::noise::estimate::noise;
+use crate::noise::periodic_component::Rhythm;
 use crate::noise::repeat_alignment::{RepeatSeries, aligned};
 use crate::noise::whitening::Whitening;
 use crate::observe::measured::{Censoring, Measured, Moment, Phase, Quantity, Sample};
@@ -172,6 +173,28 @@ fn noise_of_rounded_forces_is_no_less_than_rounding() {
         let least = alone.sigma[0].iter().copied().fold(f64::INFINITY, f64::min);
         assert!(least >= step_n / 12f64.sqrt(), "{planted}: {least} alone");
     }
+}
+
+/// Forces with a rhythm of 1.2 Hz, of another phase in each repeat. Steps larger than the noise have rhythms of their own.
+#[test]
+fn rhythms_of_coarse_recordings_are_not_judged() {
+    let (mut measured, simulated, slopes) = study(2, 3, &Planted::white(0.005));
+    for (recording, one) in measured.iter_mut().enumerate() {
+        for (sample, moment) in one.samples.iter_mut().zip(&one.moments) {
+            let turns = 1.2 * moment.time_s + 0.37 * recording as f64;
+            sample.value *= 1.0 + 0.05 * libm::sin(std::f64::consts::TAU * turns);
+        }
+    }
+    let rhythm = |measured: &[Measured]| {
+        let found = noise(measured, (&simulated, &slopes), &[true; 6], None);
+        found.rhythm.filter(Rhythm::is_clear)
+    };
+    assert!((rhythm(&measured).unwrap().hz - 1.2).abs() < 0.25);
+    // In the first protocol only: the second shows it by itself.
+    measured[0].is_coarse = true;
+    assert!((rhythm(&measured).unwrap().hz - 1.2).abs() < 0.25);
+    measured[3].is_coarse = true;
+    assert_eq!(rhythm(&measured), None);
 }
 
 /// Within half a step of its reading nothing is off, and farther off only what lies beyond.
