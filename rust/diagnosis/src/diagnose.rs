@@ -297,6 +297,7 @@ fn add_notes(study: &Study, found: &mut Diagnosis, ready: &PreparedStudy) {
     });
     found.notes.extend(ready.noise.wander_note(forces));
     found.notes.extend(ready.noise.zero_note());
+    found.notes.extend(ready.noise.hum_note());
     found.notes.extend(coarse_forces_note(&ready.courses));
     found.notes.extend(untested(&ready.courses));
     found.notes.extend(ready.copies.clone());

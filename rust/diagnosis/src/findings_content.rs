@@ -272,6 +272,9 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
         all.push(("rhythm_nats", rhythm.nats));
         all.push(("rhythm_chance", rhythm.chance));
     }
+    if let Some((hz, amplitude_n)) = ready.noise.hum {
+        all.extend([("hum_hz", hz), ("hum_amplitude_n", amplitude_n)]);
+    }
     if let Some(step) = rungs.gain_step {
         all.push(("gain_step_t", step.t));
         all.push(("gain_step_degrees", step.degrees));

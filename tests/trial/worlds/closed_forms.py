@@ -37,6 +37,9 @@ Noise families (`NOISES`): what is recorded is the truth at the true depth, read
 - `tared`: each recording's zero of the force is off by its own 5 to 20 mN (standard deviation); 3 mN.
 - `coarse_force`: the force is read in steps of 5 to 20 mN, and has 0.5 to 5 mN of noise before.
 - `precise`: 0.03 to 0.1 mN, a gain and a first touch that differ by 0.05 % and 0.5 um.
+- `hum`: 2 to 8 mN at 0.3 to 4 Hz, in all recordings and without contact too, of any phase; 3 mN.
+- `smoothed`: each force is the mean of 3 to 8 readings: those about it, or the last; 3 mN before.
+- `stray_depth`: three depths a recording are off by 0.1 mm; 3 mN.
 - `tool_length`: depth counts from where each tool's tip was measured to be, 40 to 120 um off either way; 3 mN.
 
 Habits, drawn too: 2 to 4 repeats, 25 or 100 samples a ramp, with or without a hold, one tool or two, one speed or two.
@@ -50,12 +53,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.spatial import Delaunay
 from trial.worlds import motions
 
 NOISES = (
     *("white", "autocorrelated", "in_proportion", "depth_jitter", "encoder", "fast_encoder", "clock", "wander"),
-    *("gain_scatter", "stray", "mixture", "tared", "trigger", "tool_length", "precise", "coarse_force"),
+    *("gain_scatter", "stray", "mixture", "tared", "trigger", "tool_length", "precise", "coarse_force", "hum"),
+    *("smoothed", "stray_depth"),
 )
 TRUTHS = (
     *("nothing", "relaxation", "cycle_softening", "nothing_in_cycles", "saturation"),
@@ -64,13 +69,10 @@ TRUTHS = (
 MOTIONS = ("ramps", *motions.MOTIONS)
 MOVED = ("nothing", "saturation")  # truths with motions besides ramps
 CEILING = (0.75, 0.92)
-MODULUS_MPA = (0.006, 0.02)
-RADIUS_MM = (4.0, 9.0)
-DEEPEST_MM = (0.8, 1.6)
+MODULUS_MPA, RADIUS_MM, DEEPEST_MM = (0.006, 0.02), (4.0, 9.0), (0.8, 1.6)
 PATCH_MM = 16.0
 TOOLS = ("ball", "large_ball")
-TRIGGER_N = (0.005, 0.02)
-ZERO_N = (0.005, 0.02)
+TRIGGER_N = ZERO_N = (0.005, 0.02)
 OFF_MM = (0.04, 0.12)
 
 
@@ -206,8 +208,7 @@ class _Session:
 
     def __init__(self, truth, modulus, random):
         self.modulus = modulus
-        self.share = random.uniform(0.15, 0.4)
-        self.work = random.uniform(0.5, 3.0)
+        self.share, self.work = random.uniform(0.15, 0.4), random.uniform(0.5, 3.0)
         self.begins_alike = random.random() < 0.5
         if truth == "nothing_in_cycles":
             self.share = 0.0
@@ -310,6 +311,8 @@ class _Reader:
         self.step_n = 0.0
         if family == "coarse_force":
             self.step_n, self.even[family] = random.uniform(0.005, 0.02), random.uniform(0.0005, 0.005)
+        self.hum = (random.uniform(0.002, 0.008), random.uniform(0.3, 4.0)) if family == "hum" else None
+        self.mean = (random.integers(3, 9), random.choice([0.0, 0.5])) if family == "smoothed" else None
         self.memory = {"autocorrelated": 0.3, "mixture": 0.1}.get(family, 0.0)
         self.ceiling_n = np.inf
         self.trigger_n = random.uniform(*TRIGGER_N) if family == "trigger" else 0.0
@@ -341,10 +344,18 @@ class _Reader:
         if self.family == "wander":
             steps = np.sqrt(np.diff(time, prepend=time[0]) / 10.0)
             read += 0.008 * np.cumsum(steps * random.standard_normal(n))
+        if self.hum:
+            read += self.hum[0] * np.sin(2.0 * np.pi * (self.hum[1] * time + random.random()))
+        if self.mean:
+            after = int(self.mean[0] * self.mean[1])
+            padded = np.pad(read, (self.mean[0] - 1 - after, after), mode="edge")
+            read = sliding_window_view(padded, self.mean[0]).mean(axis=1)
         if self.family == "stray":
             read[random.integers(n // 4, n)] += random.choice([-0.2, 0.2]) * force.max()
         stated = depth + self.touch * random.standard_normal() + self.jitter * random.standard_normal(n)
         stated -= self.off_mm.get(tool, 0.0) + triggered(depth, force, self.trigger_n)
+        if self.family == "stray_depth":
+            stated[random.choice(n, 3, replace=False)] += random.choice([-0.1, 0.1], 3)
         stated = stepped(stated, self.step)
         if self.family == "clock":
             least = 0.1 * np.diff(time).min()

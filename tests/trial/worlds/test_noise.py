@@ -16,6 +16,8 @@ from trial.worlds import closed_forms
 # touch. In precise a stiff skin was, while a mean over readings was taken for the force at their mean depth, and in
 # precise 9601 what a base fit had left too early. In fast_encoder a ceiling was, while what stairs of a depth are read
 # in was taken for stands, and all readings of a stand for as many errors of rounding.
+# In hum a pulse of the skin was, while a sine without load as well was no noise; in smoothed a ceiling or short waves,
+# while depths were not averaged as forces were; in stray_depth a ceiling, while a depth astray was a movement.
 # In coarse_force a threshold, a rhythm, or more noise under load was, while forces that are rounded alike had no noise.
 NULLS = [
     ("coarse_force", 10101),
@@ -27,14 +29,20 @@ NULLS = [
     ("depth_jitter", 831),
     ("depth_jitter", 851),
     ("fast_encoder", 9708),
+    ("hum", 10552),
+    ("hum", 10556),
     ("in_proportion", 104),
     ("mixture", 103),
     ("mixture", 108),
     ("mixture", 110),
     ("precise", 9601),
     ("precise", 9604),
+    ("smoothed", 10551),
+    ("smoothed", 10554),
     ("stray", 4007),
     ("stray", 4013),
+    ("stray_depth", 10560),
+    ("stray_depth", 10564),
     ("tool_length", 9301),
     ("tool_length", 9304),
     ("trigger", 9304),
@@ -316,6 +324,47 @@ def test_a_ceiling_and_softening_are_named_through_steps_of_the_force(tmp_path):
         closed_forms.draw(seed, truth, "coarse_force").write(tmp_path / truth)
         said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path / truth)).to_json())
         assert [finding["effect"] for finding in said["findings"]] == [truth]
+
+
+def _drawn(seed, noise):
+    """A case, and the reader of its instruments."""
+    readers = []
+
+    class Reader(closed_forms._Reader):
+        def __init__(self, family, random):
+            super().__init__(family, random)
+            readers.append(self)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(closed_forms, "_Reader", Reader)
+        return closed_forms.draw(seed, "nothing", noise), readers[0]
+
+
+@pytest.mark.parametrize("seed", [10552, 10556])
+def test_a_hum_is_shown_to_the_user(seed, tmp_path):
+    case, reader = _drawn(seed, "hum")
+    (note,) = [note for note in _diagnosed(case, tmp_path) if "the force hums" in note]
+    amplitude_mn, hz = (float(note.split(word)[1].split(unit)[0]) for word, unit in ((" by ", " mN"), (" at ", " Hz")))
+    np.testing.assert_allclose(hz, reader.hum[1], rtol=0.02)
+    np.testing.assert_allclose(amplitude_mn, 1000.0 * reader.hum[0], rtol=0.5)
+
+
+def test_means_and_strays_are_shown_to_the_user(tmp_path):
+    for noise in ("smoothed", "stray_depth"):
+        case, reader = _drawn(10554, noise)
+        part = f"is the mean of {reader.mean[0]} readings" if reader.mean else "that are astray: "
+        said = [" ".join(one["unknown"]) for one in _compared(case, tmp_path / noise)]
+        assert sum(part in text for text in said) >= 0.9 * len(said)
+    white = _compared(closed_forms.draw(10554, "nothing", "white"), tmp_path / "white")
+    unknown = " ".join(" ".join(one["unknown"]) for one in white)
+    assert "is the mean of" not in unknown and "astray" not in unknown
+
+
+@pytest.mark.parametrize("noise", ["hum", "stray_depth"])
+def test_a_ceiling_is_named_through_a_hum_and_strays(noise, tmp_path):
+    closed_forms.draw(10552, "saturation", noise).write(tmp_path)
+    said = json.loads(thenar.diagnose(thenar.Study.load(tmp_path)).to_json())
+    assert [finding["effect"] for finding in said["findings"]] == ["saturation"]
 
 
 def test_wander_of_the_zero_is_shown_to_the_user(tmp_path):

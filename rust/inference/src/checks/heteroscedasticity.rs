@@ -93,7 +93,7 @@ const PULLS: f64 = 2.5;
 /// than their noise: without load they are all the same.
 ///
 /// Noise of an instrument does not ask whether the tool touches; what the skin does by itself needs contact to be seen. `memory_s` is
-/// the time over which noise forgets itself: so many deviations count as one.
+/// the time over which deviations go on: so many count as one.
 pub fn heteroscedasticity(
     surrogate: &Surrogate<'_>,
     (simulated, sigma): (&[f64], &[f64]),

@@ -281,6 +281,7 @@ impl Fitting {
         let mut notes = self.replay.tissue.notes.clone();
         notes.extend(noise.notes.iter().cloned());
         notes.extend(noise.zero_note());
+        notes.extend(noise.hum_note());
         if !descent.has_converged {
             notes
                 .push("the fit did not settle: what it gives is the best that it found".to_owned());

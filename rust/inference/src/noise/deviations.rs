@@ -143,7 +143,8 @@ impl Deviations {
             // Noise remembers little of what lies many memories back.
             for j in (0..k).rev() {
                 let shared = correlation.between(self.sample(k), self.sample(j));
-                if shared < 1e-3 {
+                // A hum is the same again after each turn.
+                if shared < 1e-3 && correlation.hum.variance == 0.0 {
                     break;
                 }
                 sum += a.component_mul(&along[j]) * (2.0 * shared);

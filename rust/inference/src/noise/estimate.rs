@@ -23,7 +23,7 @@ const WANDER_S: f64 = 1.0;
 pub struct Noise {
     /// Standard deviation of every sample, in its unit, by recording.
     pub sigma: Vec<Vec<f64>>,
-    /// Profile of every sample: what its standard deviation would be without a part with memory, over that of one reading without load.
+    /// Profile of every sample: what its standard deviation would be without a part with memory or a hum, over that of one reading without load.
     pub profile: Vec<Vec<f64>>,
     /// Correlation in time, by [`CHANNELS`].
     pub correlation: [Correlation; CHANNELS.len()],
@@ -43,6 +43,8 @@ pub struct Noise {
     pub drawn_from: [Vec<f64>; CHANNELS.len()],
     /// The clearest rhythm in which the forces of repeats differ.
     pub rhythm: Option<Rhythm>,
+    /// A hum of the force's instrument: its frequency, Hz, and amplitude, N.
+    pub hum: Option<(f64, f64)>,
     /// Whether depths are known with an error, which acts on the forces through their slope.
     pub has_depth_error: bool,
     /// What a reader should be told.
@@ -73,12 +75,13 @@ pub fn noise(
                 .to_owned(),
         );
     }
-    let (sigma, profile) = measured
+    let (sigma, profile): (Vec<Vec<f64>>, Vec<Vec<f64>>) = measured
         .iter()
         .enumerate()
         .map(|(recording, one)| sigma(one, recording, &scatter, noise_n))
         .unzip();
-    let mut sigma: Vec<Vec<f64>> = sigma;
+    let mut sigma = sigma;
+    let hum = forces.and_then(|s| hum(s, measured, (&sigma, &profile)));
     let is_off = |(_, one): &(usize, &Measured)| one.depth_error_mm > 0.0;
     for (recording, one) in measured.iter().enumerate().filter(is_off) {
         let found = (&simulated[recording][..], &slopes[recording][..]);
@@ -104,6 +107,7 @@ pub fn noise(
                 .map_or_else(Vec::new, |s| s.drawn_from.clone())
         }),
         rhythm: forces.and_then(|s| s.rhythm),
+        hum,
         has_depth_error: measured.iter().any(|one| one.depth_error_mm > 0.0),
         notes,
     }
@@ -117,6 +121,15 @@ impl Noise {
         Some(format!(
             "the zero of the force differs from recording to recording by {sd} mN (standard deviation); each has its own in the fit. Tare before each \
              recording to have smaller effects seen"
+        ))
+    }
+
+    /// What the force hums; None where it does not.
+    pub fn hum_note(&self) -> Option<String> {
+        let (hz, mn) = (number(self.hum?.0), number(1000.0 * self.hum?.1));
+        Some(format!(
+            "the force hums at {hz} Hz by {mn} mN (amplitude), under load and without alike: that comes from the instrument or its mount, not from the \
+             skin, and counts as noise. Remove it to have smaller effects seen"
         ))
     }
 
@@ -151,6 +164,23 @@ impl Noise {
             )
         })
     }
+}
+
+/// Frequency (Hz) and amplitude (N) of a hum, by standard deviations and profiles of all samples; None where there is none.
+fn hum(
+    scatter: &Scatter,
+    measured: &[Measured],
+    (sigma, profile): (&[Vec<f64>], &[Vec<f64>]),
+) -> Option<(f64, f64)> {
+    let correlation = scatter.correlation;
+    let hum = Some(correlation.hum).filter(|hum| hum.variance > 0.0)?;
+    let first = |(r, one): (usize, &Measured)| {
+        let mut samples = one.samples.iter();
+        let k = samples.position(|s| s.quantity == Quantity::Force)?;
+        Some(sigma[r][k] / correlation.deviation(profile[r][k]))
+    };
+    let mut sizes: Vec<f64> = measured.iter().enumerate().filter_map(first).collect();
+    Some((hum.hz, (2.0 * hum.variance).sqrt() * median(&mut sizes)))
 }
 
 /// Adds to the forces' noise what an error of the depth does through their slope (per mm), as large as the forces were.
@@ -215,7 +245,7 @@ fn sigma(
         let alone = (constant.hypot(proportional * value) * mean).max(f64::MIN_POSITIVE);
         let profile = alone / constant.max(f64::MIN_POSITIVE);
         match scatter[Channel::of(sample.quantity) as usize].as_ref() {
-            Some(s) if s.correlation.white > 0.0 => {
+            Some(s) if s.correlation.is_mixed() => {
                 (constant * s.correlation.deviation(profile), profile)
             }
             _ => (alone, profile),

@@ -4,6 +4,7 @@ pub(crate) mod channel;
 pub mod correlation;
 pub(crate) mod scatter;
 pub(crate) mod deviations;
+pub(crate) mod hum;
 pub(crate) mod noise_shape;
 pub(crate) mod repeat_alignment;
 pub(crate) mod repeat_deviations;

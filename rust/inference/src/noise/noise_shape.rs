@@ -2,6 +2,7 @@
 
 use crate::noise::correlation::Correlation;
 use crate::noise::deviations::{Deviations, NoiseShape};
+use crate::noise::hum::with_hum;
 use crate::noise::restricted_likelihood::{
     correlation_and_inliers, left, likeliest_memory, likeliest_mixture, likelihood,
     sampling_interval, within,
@@ -37,7 +38,11 @@ pub fn estimate(all: &mut Vec<Deviations>) -> NoiseEstimate {
     if shape != NoiseShape::EVEN {
         *all = all.iter().map(|d| d.weighted(shape)).collect();
     }
-    let (correlation, kept) = correlation_and_inliers(all, likeliest_mixture);
+    let (mut correlation, mut kept) = correlation_and_inliers(all, likeliest_mixture);
+    if let Some(found) = with_hum(all, correlation) {
+        correlation = found;
+        kept = all.iter().map(|d| within(d, Some(found))).collect();
+    }
     let pairs = all.iter().zip(&kept);
     NoiseEstimate {
         shape,

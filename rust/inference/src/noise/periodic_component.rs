@@ -12,11 +12,14 @@ use crate::noise::restricted_likelihood::within;
 
 /// Frequencies between which a rhythm is sought, Hz: a heart at rest or at work, a muscle that tenses for seconds. Samples of a press are
 /// too far apart for faster ones.
-const HZ: (f64, f64) = (0.3, 3.0);
+pub(crate) const HZ: (f64, f64) = (0.3, 3.0);
 /// How often noise alone may show a rhythm as clear as one that is told. False ones of the second trial's third and fourth draws show by a
 /// chance of 0.0014 to 0.0046, of closed forms by 0.0002 to 0.004; pulses of closed forms and pads by 1.4e-5 at most, but a weak one of the
 /// calibration by 0.0022.
 const BY_CHANCE: f64 = 0.001;
+/// By how much less clear a rhythm is next to a hum: means of many readings blur one by as many turns as each lasts, and so not all alike. Of a hum of 4 Hz
+/// (closed forms, seed 10568) a rhythm of 2.7 Hz was left with a chance of 0.0002.
+const NEXT_TO_A_HUM: f64 = 100.0;
 /// Turns by which the longest recording tells two frequencies that are tried apart.
 const TURNS: f64 = 0.25;
 
@@ -37,6 +40,14 @@ impl Rhythm {
         self.chance < BY_CHANCE
     }
 
+    /// The same where forces hum as well.
+    pub(crate) fn next_to_a_hum(self) -> Rhythm {
+        Rhythm {
+            chance: (NEXT_TO_A_HUM * self.chance).min(1.0),
+            ..self
+        }
+    }
+
     /// Times a minute.
     pub fn per_minute(&self) -> f64 {
         60.0 * self.hz
@@ -53,13 +64,13 @@ pub fn rhythm(all: &[Deviations], correlation: Correlation) -> Option<Rhythm> {
     let longest = groups
         .iter()
         .filter_map(|g| Some(g.time.last()? - g.time.first()?));
-    let step = TURNS / longest.fold(0.0, f64::max).max(1.0);
-    let steps = ((HZ.1 - HZ.0) / step).ceil() as usize;
+    let each = frequencies(HZ, longest.fold(0.0, f64::max));
+    let steps = each.len() - 1;
     // A phase and a size for each repeat but one: twice as many numbers.
     let pairs: f64 = groups.iter().map(|group| group.repeats).sum();
-    let tried = (0..=steps).map(|k| {
-        let hz = HZ.0 + step * k as f64;
-        let nats = groups.iter().map(|group| group.gained(hz)).sum();
+    let tried = each.into_iter().map(|hz| {
+        let gained = |group: &Freed| group.gained(hz, Grows::WithGain);
+        let nats = groups.iter().map(gained).sum();
         Rhythm {
             hz,
             nats,
@@ -81,6 +92,26 @@ pub fn rhythm(all: &[Deviations], correlation: Correlation) -> Option<Rhythm> {
     (!groups.is_empty()).then_some(best)
 }
 
+/// Frequencies of a band that recordings tell apart of which the longest takes that time, s.
+pub(crate) fn frequencies((slowest, fastest): (f64, f64), longest_s: f64) -> Vec<f64> {
+    let step = TURNS / longest_s.max(1.0);
+    let steps = ((fastest - slowest) / step).ceil().max(0.0) as usize;
+    (0..=steps).map(|k| slowest + step * k as f64).collect()
+}
+
+/// What the size of a sine goes with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Grows {
+    /// What a sample adds to the gain of its recording.
+    WithGain,
+    /// The force, as a pulse of the skin.
+    WithForce,
+    /// Whether the tool touches, as a tremor.
+    InContact,
+    /// Nothing, as a hum of the instrument.
+    Not,
+}
+
 /// How often half of a chi-square of `2 pairs` degrees exceeds a number: in closed form, as their count is even.
 fn exceeded(half: f64, pairs: usize) -> f64 {
     let terms = (0..pairs).scan(1.0, |term, j| {
@@ -92,11 +123,17 @@ fn exceeded(half: f64, pairs: usize) -> f64 {
 }
 
 /// One group's deviations, whitened and free of what each repeat has of its own.
-struct Freed {
+pub(crate) struct Freed {
     /// s.
     time: Vec<f64>,
-    /// By how much a sample grows with the force.
+    /// What a sample adds to the gain, or where a zero is taken out the load.
+    gain: Vec<f64>,
+    /// Its load.
     load: Vec<f64>,
+    /// What a newton adds to it where the tool touches.
+    touches: Vec<f64>,
+    /// What a newton adds to it.
+    newton: Vec<f64>,
     /// Makes noise independent.
     filter: Filter,
     /// Orthonormal: what the numbers do that each repeat has of its own.
@@ -109,7 +146,7 @@ struct Freed {
 }
 
 impl Freed {
-    fn of(of: &Deviations, correlation: Correlation) -> Option<Freed> {
+    pub(crate) fn of(of: &Deviations, correlation: Correlation) -> Option<Freed> {
         let kept = within(of, Some(correlation));
         if kept.len() < LEAST {
             return None;
@@ -129,12 +166,18 @@ impl Freed {
         };
         let series: Vec<DVector<f64>> = of.rest.iter().map(free).collect();
         let sum: f64 = series.iter().map(|s| s.norm_squared()).sum();
+        let each = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let samples = kept.iter().zip(&scale);
+            samples.map(|(k, scale)| of(*k) * scale).collect()
+        };
         (sum > 0.0).then(|| Freed {
-            load: kept
-                .iter()
-                .zip(&scale)
-                .map(|(k, s)| of.grows(*k) * s)
-                .collect(),
+            gain: each(&|k| of.grows(k)),
+            load: each(&|k| of.load[k] / of.profile[k]),
+            touches: each(&|k| match of.load[k] > TOUCHES {
+                true => 1.0 / of.profile[k],
+                false => 0.0,
+            }),
+            newton: each(&|k| 1.0 / of.profile[k]),
             repeats: series.len() as f64 - 1.0,
             time,
             filter,
@@ -144,11 +187,17 @@ impl Freed {
         })
     }
 
-    /// What a rhythm of that frequency gains here, nats: half of what the logarithm of the squares falls by for every degree of freedom.
-    fn gained(&self, hz: f64) -> f64 {
+    /// What a sine of that frequency gains here, nats: half of what the logarithm of the squares falls by for every degree of freedom.
+    pub(crate) fn gained(&self, hz: f64, grows: Grows) -> f64 {
+        let size = match grows {
+            Grows::WithGain => &self.gain,
+            Grows::WithForce => &self.load,
+            Grows::InContact => &self.touches,
+            Grows::Not => &self.newton,
+        };
         let turn = std::f64::consts::TAU * hz;
         let column = |wave: fn(f64) -> f64| {
-            let of = |k: usize| self.load[k] * wave(turn * self.time[k]);
+            let of = |k: usize| size[k] * wave(turn * self.time[k]);
             let flat = DVector::from_vec(self.filter.whitened(of));
             &flat - &self.along * (self.along.transpose() * &flat)
         };
@@ -166,6 +215,9 @@ impl Freed {
         -0.5 * degrees * libm::log1p(-part)
     }
 }
+
+/// Part of the largest load from which the tool touches.
+const TOUCHES: f64 = 0.05;
 
 /// Fewest samples in which a rhythm is sought.
 const LEAST: usize = 12;
@@ -243,9 +295,9 @@ mod tests {
     fn periodic_component_power_grows_with_repeats() {
         let of = &study(1.0, &mut Random::new(6))[0];
         let mut freed = Freed::of(of, Correlation::of_memory(0.15)).unwrap();
-        let two = freed.gained(1.2);
+        let two = freed.gained(1.2, Grows::WithGain);
         freed.repeats = 2.0;
-        assert!(two > 1.0 && (freed.gained(1.2) / two - 2.0).abs() < 1e-12);
+        assert!(two > 1.0 && (freed.gained(1.2, Grows::WithGain) / two - 2.0).abs() < 1e-12);
     }
 
     /// The chance that is told is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.

@@ -137,7 +137,10 @@ impl Repeats {
             rhythm: {
                 let is_judged = |d: &Deviations| !d.group.iter().any(|k| measured[*k].is_coarse);
                 let judged: Vec<Deviations> = all.into_iter().filter(is_judged).collect();
-                rhythm(&judged, correlation)
+                rhythm(&judged, correlation).map(|found| match correlation.hum.variance > 0.0 {
+                    true => found.next_to_a_hum(),
+                    false => found,
+                })
             },
         })
     }

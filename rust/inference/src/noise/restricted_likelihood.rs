@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::noise::correlation::{Correlation, LEAST_FRESH};
+use crate::noise::correlation::{Correlation, Hum, LEAST_FRESH};
 use crate::noise::deviations::{Deviations, OUTLIER, robust_deviation};
 use crate::observe::robust_scale::median;
 
@@ -58,7 +58,7 @@ pub(crate) fn within(of: &Deviations, correlation: Option<Correlation>) -> Vec<u
         );
         // Mean and deviation given both neighbors.
         let (c, d) = (before * before, after * after);
-        if correlation.white > 0.0 {
+        if correlation.is_mixed() {
             let ends = k.checked_sub(1).filter(|_| k + 1 < n);
             let both = ends.map_or(0.0, |j| correlation.between(of.sample(j), of.sample(k + 1)));
             let all = 1.0 - both * both;
@@ -125,6 +125,7 @@ pub(crate) fn likeliest_mixture(all: &[Deviations], kept: &[Vec<usize>]) -> Corr
             memory_s: low * libm::pow(high / low, memory),
             white: 1.0 / (1.0 + libm::exp(WIDEST * (1.0 - 2.0 * white))),
             is_tared,
+            hum: Hum::NONE,
         };
         let found = highest(&|place| likelihood(all, kept, at(place)));
         if found.0 > best.0 {

@@ -6,9 +6,9 @@
 
 use crate::observe::downsampling::is_kept_whole;
 use crate::observe::limits::MOST_MOMENTS;
-use crate::observe::measured::Phase;
 use crate::observe::motion::by_lines::by_lines;
 use crate::observe::motion::rounding::{Rounded, step_of};
+use crate::observe::motion::stiffness::slopes;
 use crate::observe::protocol_phases::{Courses, Stretch};
 use crate::observe::robust_scale::{median_deviation, trimmed_deviation};
 use crate::observe::smoothing::smoothed;
@@ -117,39 +117,6 @@ pub(crate) fn without_jitter(courses: Courses<'_>, stretches: &[Stretch]) -> Opt
         step_mm: 0.0,
         left_mm: 0.0,
     })
-}
-
-/// Stiffness by sample, N/mm: of a leg its own; of a stretch that stands or slides that at the end of the leg before; none apart.
-fn slopes((time, depth, force): (&[f64], &[f64], &[f64]), stretches: &[Stretch]) -> Vec<f64> {
-    let mut slope = vec![0.0; time.len()];
-    let mut last = 0.0;
-    for stretch in stretches {
-        let own = stretch.start..stretch.end;
-        let way = depth[stretch.end - 1] - depth[stretch.start];
-        match stretch.phase {
-            Phase::Load | Phase::Unload if own.len() > 4 && way != 0.0 => {
-                // Over a fifth of the leg, so that what is left of the noise does not count.
-                let reach = (own.len() / 10).max(1);
-                for k in own {
-                    let a = k.saturating_sub(reach).max(stretch.start);
-                    let b = (k + reach).min(stretch.end - 1);
-                    let moved = depth[b] - depth[a];
-                    let is_leg = moved * way > 0.0;
-                    slope[k] = if is_leg {
-                        ((force[b] - force[a]) / moved).max(0.0)
-                    } else {
-                        0.0
-                    };
-                }
-                if stretch.phase == Phase::Load {
-                    last = slope[stretch.end - 1];
-                }
-            }
-            Phase::Hold | Phase::Slide => slope[own].fill(last),
-            _ => {}
-        }
-    }
-    slope
 }
 
 #[cfg(test)]

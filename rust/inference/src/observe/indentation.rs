@@ -10,7 +10,9 @@ use crate::observe::depth_jitter::without_jitter;
 use crate::observe::downsampling::{bins, means, spread};
 use crate::observe::first_touch::onset;
 use crate::observe::measured::{Censoring, Moment, Phase, Quantity, Sample};
+use crate::observe::motion::moving_average::{Window, moving_average, variance_within};
 use crate::observe::motion::rounding::{exceeds_noise, wide_step};
+use crate::observe::motion::stray::without_strays;
 use crate::observe::protocol_phases::{Courses, Stretch, range, stretches};
 use crate::observe::robust_scale::{median, noise_of};
 
@@ -61,10 +63,11 @@ impl Division {
 
 /// Turns a curve into at most about `budget` moments with force, and area and tangential force where they are given.
 ///
-/// `across` is the direction in which a slide counts, `alike` how a repeat of the same protocol was divided.
+/// `across` is the direction in which a slide counts, `alike` how a repeat of the same protocol was divided, and `averaged` over which readings each
+/// force is a mean.
 pub fn observe(
     curve: &Curve,
-    (across, alike): (Vector3<f64>, Option<&Division>),
+    (across, alike, averaged): (Vector3<f64>, Option<&Division>, Window),
     budget: usize,
 ) -> Observation {
     let mut unknown = curve.unknown.clone();
@@ -76,6 +79,21 @@ pub fn observe(
         true => channel("depth_mm").to_vec(),
         false => channel("travel_mm").to_vec(),
     };
+    let without_strays = without_strays(Courses {
+        time_s: time,
+        depth_mm: &depth,
+        force_n: &force,
+        slide_mm: slide,
+    });
+    if let Some(found) = without_strays {
+        unknown.push(format!(
+            "readings of its depth that are astray: {}, by up to {:.0} um; the force does not follow them, and they are taken as those before and \
+             after have it",
+            found.count,
+            1000.0 * found.most_mm
+        ));
+        depth = found.depth_mm;
+    }
     if !is_touch_known {
         let touch = onset(&depth, &force);
         let (travel, rest) = (depth[touch.sample], touch.rest_n);
@@ -109,8 +127,19 @@ pub fn observe(
             ),
         });
     }
+    let read = steady
+        .as_ref()
+        .map_or(courses.depth_mm, |found| &found.depth_mm);
+    let averaged_alike = moving_average(read, averaged);
+    let within = variance_within(read, averaged);
+    let readings = averaged.readings();
+    if readings > 1 {
+        unknown.push(format!(
+            "each of its forces is the mean of {readings} readings: its depth is averaged over the same"
+        ));
+    }
     let courses = Courses {
-        depth_mm: steady.as_ref().map_or(&depth, |found| &found.depth_mm),
+        depth_mm: &averaged_alike,
         ..courses
     };
     let bins = alike.map_or_else(
@@ -154,7 +183,8 @@ pub fn observe(
                 phase: stretch.phase,
                 cycle: stretch.cycle,
                 readings: bins[k].len() as u32,
-                depth_spread_mm: spread((time, courses.depth_mm), &bins[k]),
+                depth_spread_mm: spread((time, courses.depth_mm), &bins[k])
+                    .hypot(means(&within, &bins[k..=k])[0].sqrt()),
                 force_step_n: match is_of_one_reading(&force[bins[k].clone()]) {
                     true => step_n,
                     false => 0.0,

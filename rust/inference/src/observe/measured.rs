@@ -89,7 +89,7 @@ pub struct Moment {
     pub cycle: u32,
     /// Readings of which its samples are the means.
     pub readings: u32,
-    /// Standard deviation of the depth over these readings, as of a straight motion, mm.
+    /// Standard deviation of the depth over these readings, as of a straight motion, and over those of which each of their forces is a mean, mm.
     pub depth_spread_mm: f64,
     /// Step to which the force is rounded, N, where it is more than digits of a file and all readings of this instant are the same; else 0.
     pub force_step_n: f64,

@@ -10,9 +10,13 @@ use crate::forward::setup::indenter::tool as tool_at;
 use crate::observe::indentation::Division;
 use crate::observe::limits::{MOST_FRAMES, MOST_MOMENTS};
 use crate::observe::measured::Measured;
+use crate::observe::motion::moving_average::{Press, Window, differences, window};
 
 /// Extent of a tool that only tells the normals of sensels on it, mm: more than a mat's.
 const FAR: f64 = 500.0;
+
+/// Differences between repeats from which those of one protocol, tool and site say by themselves over which readings their forces are averaged.
+const DECIDES: usize = 300;
 
 /// A study's recordings, and what the fit must know of them besides.
 #[derive(Debug, Clone)]
@@ -29,28 +33,69 @@ pub fn observe(study: &Study) -> Observed {
         measured: Vec::new(),
         is_touch_known: Vec::new(),
     };
-    let mut divisions = Divisions::new();
+    let pairs = repeats(study);
+    let all: Vec<[Press; 2]> = pairs.values().flatten().copied().collect();
+    let of_all = window(&all);
+    let own = |pairs: &[[Press; 2]]| match differences(pairs) >= DECIDES {
+        true => window(pairs),
+        false => of_all,
+    };
+    let mut alike = Alike {
+        averaged: pairs
+            .into_iter()
+            .map(|(key, pairs)| (key, own(&pairs)))
+            .collect(),
+        averaged_of_all: of_all,
+        divisions: BTreeMap::new(),
+    };
     for recording in &study.recordings {
-        let (measured, is_touch_known) = observe_one(study, recording, &mut divisions);
+        let (measured, is_touch_known) = observe_one(study, recording, &mut alike);
         observed.measured.push(measured);
         observed.is_touch_known.push(is_touch_known);
     }
     observed
 }
 
-/// How the first recording of each protocol, tool and site was divided.
-type Divisions = BTreeMap<[String; 3], Division>;
+/// Protocol, tool and site of a recording.
+type Key = [String; 3];
+
+/// Presses of one protocol with one tool at one place, each with the one before.
+fn repeats(study: &Study) -> BTreeMap<Key, Vec<[Press<'_>; 2]>> {
+    let mut last: BTreeMap<Key, Press> = BTreeMap::new();
+    let mut pairs: BTreeMap<Key, Vec<[Press; 2]>> = BTreeMap::new();
+    for one in &study.recordings {
+        let Data::Indentation(curve) = &one.data else {
+            continue;
+        };
+        let depth = curve.channel("depth_mm").or(curve.channel("travel_mm"));
+        if let Some((depth, force)) = depth.zip(curve.channel("force_n"))
+            && !one.protocol.is_empty()
+        {
+            let key = [&one.protocol, &one.indenter, &one.site].map(String::clone);
+            let press = Press { depth, force };
+            if let Some(before) = last.insert(key.clone(), press) {
+                pairs.entry(key).or_default().push([before, press]);
+            }
+        }
+    }
+    pairs
+}
+
+/// What recordings share.
+struct Alike {
+    /// Over which readings each force is averaged, by itself and with all others.
+    averaged: BTreeMap<Key, Window>,
+    averaged_of_all: Window,
+    /// How the first recording of each was divided.
+    divisions: BTreeMap<Key, Division>,
+}
 
 /// One recording, and whether its depth of first touch is known.
-fn observe_one(
-    study: &Study,
-    recording: &StudyRecording,
-    divisions: &mut Divisions,
-) -> (Measured, bool) {
+fn observe_one(study: &Study, recording: &StudyRecording, alike: &mut Alike) -> (Measured, bool) {
     let said = Said::of(study, recording);
     let mut measured = unread(recording);
     let is_touch_known = match &recording.data {
-        Data::Indentation(curve) => said.curve(curve, &mut measured, divisions),
+        Data::Indentation(curve) => said.curve(curve, &mut measured, alike),
         Data::PressureMap {
             map,
             sensels,
@@ -129,13 +174,15 @@ impl<'a> Said<'a> {
         self.study.indenters.iter().find(|i| i.name == self.tool)
     }
 
-    fn curve(&self, curve: &Curve, measured: &mut Measured, divisions: &mut Divisions) -> bool {
+    fn curve(&self, curve: &Curve, measured: &mut Measured, alike: &mut Alike) -> bool {
         let key = [&measured.protocol, &measured.indenter, &measured.site].map(String::clone);
-        let how = (across(self.direction), divisions.get(&key));
+        let division = alike.divisions.get(&key);
+        let averaged = alike.averaged.get(&key).unwrap_or(&alike.averaged_of_all);
+        let how = (across(self.direction), division, *averaged);
         let seen = crate::observe::indentation::observe(curve, how, MOST_MOMENTS);
         measured.depth_error_mm = seen.depth_error_mm;
         measured.is_coarse = seen.is_coarse;
-        divisions.entry(key).or_insert(seen.division);
+        alike.divisions.entry(key).or_insert(seen.division);
         measured.moments = seen.moments;
         measured.samples = seen.samples;
         measured.unknown = seen.unknown;

@@ -14,6 +14,7 @@ use crate::observe::limits::MOST_MOMENTS;
 use crate::observe::measured::{
     Censoring, Measured, Moment, Phase, Quantity, Sample, Scan, ScanPoint,
 };
+use crate::observe::motion::moving_average::Window;
 use crate::observe::robust_scale::{median, median_deviation};
 use crate::observe::scan_registration::{Foot, Surface, moved};
 
@@ -138,7 +139,8 @@ fn moments(seen: &Seen<'_>) -> Result<Vec<Moment>, String> {
         );
     };
     let mut moments = motion.map_or_else(Vec::new, |curve| {
-        let mut moments = indentation::observe(curve, (seen.across, None), MOST_MOMENTS).moments;
+        let mut moments =
+            indentation::observe(curve, (seen.across, None, Window::ONE), MOST_MOMENTS).moments;
         moments.retain(|moment| moment.time_s < time_s);
         moments
     });

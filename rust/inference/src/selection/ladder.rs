@@ -89,10 +89,16 @@ pub fn climb(
         heteroscedasticity: heteroscedasticity(
             &surrogate,
             sizes,
-            ready.noise.correlation[0].memory_s,
+            ready.noise.correlation[0].goes_on_s(),
         ),
         depth_curve: curve,
-        short_waves: short_waves(&ready.courses, &base.refit.simulated),
+        // A hum may be in step in few repeats; root mean squares are compared.
+        short_waves: short_waves(&ready.courses, &base.refit.simulated).filter(|waves| {
+            ready
+                .noise
+                .hum
+                .is_none_or(|(_, hum_n)| waves.rms_n > hum_n / 2f64.sqrt())
+        }),
         base,
         singles,
         pairs,

@@ -203,6 +203,7 @@ fn noise(measured: &[Measured], sigma: f64) -> Noise {
         step: [1.0; CHANNELS.len()],
         drawn_from: Default::default(),
         rhythm: None,
+        hum: None,
         has_depth_error: false,
         notes: Vec::new(),
     }
