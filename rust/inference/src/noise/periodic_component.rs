@@ -20,6 +20,8 @@ const BY_CHANCE: f64 = 0.001;
 /// By how much less clear a rhythm is next to a hum: means of many readings blur one by as many turns as each lasts, and so not all alike. Of a hum of 4 Hz
 /// (closed forms, seed 10568) a rhythm of 2.7 Hz was left with a chance of 0.0002.
 const NEXT_TO_A_HUM: f64 = 100.0;
+/// Frequencies that are one, Hz, in recordings of some seconds.
+const ALIKE_HZ: f64 = 0.2;
 /// Turns by which the longest recording tells two frequencies that are tried apart.
 const TURNS: f64 = 0.25;
 
@@ -40,12 +42,13 @@ impl Rhythm {
         self.chance < BY_CHANCE
     }
 
-    /// The same where forces hum as well.
-    pub(crate) fn next_to_a_hum(self) -> Rhythm {
-        Rhythm {
-            chance: (NEXT_TO_A_HUM * self.chance).min(1.0),
-            ..self
-        }
+    /// The same where forces hum as well, at a frequency in Hz: a rhythm of that is the hum, which at a ceiling is not seen, and so not the same everywhere.
+    pub(crate) fn next_to_a_hum(self, hum_hz: f64) -> Rhythm {
+        let chance = match (self.hz - hum_hz).abs() < ALIKE_HZ {
+            true => 1.0,
+            false => (NEXT_TO_A_HUM * self.chance).min(1.0),
+        };
+        Rhythm { chance, ..self }
     }
 
     /// Times a minute.

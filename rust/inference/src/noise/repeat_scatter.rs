@@ -138,7 +138,7 @@ impl Repeats {
                 let is_judged = |d: &Deviations| !d.group.iter().any(|k| measured[*k].is_coarse);
                 let judged: Vec<Deviations> = all.into_iter().filter(is_judged).collect();
                 rhythm(&judged, correlation).map(|found| match correlation.hum.variance > 0.0 {
-                    true => found.next_to_a_hum(),
+                    true => found.next_to_a_hum(correlation.hum.hz),
                     false => found,
                 })
             },

@@ -14,6 +14,8 @@ use crate::random::Random;
 enum Where {
     Everywhere,
     InContact,
+    /// Everywhere, but for forces beyond a ceiling.
+    BelowACeiling,
 }
 
 /// Noise of two protocols of three repeats with 0.5 % of noise, of which the tool is apart for the first third, and a sine of another phase in each: of
@@ -29,8 +31,11 @@ fn found(newtons: f64, part: f64, of: Where) -> Noise {
                 slopes[recording][k] = 0.0;
             }
             let sine = libm::sin(TAU * (1.2 * moment.time_s + 0.37 * recording as f64));
-            if of == Where::Everywhere || !is_apart {
+            if of != Where::InContact || !is_apart {
                 sample.value += (newtons + part * sample.value) * sine;
+            }
+            if of == Where::BelowACeiling {
+                sample.value = sample.value.min(0.6 * PEAK_N);
             }
         }
     }
@@ -61,6 +66,9 @@ fn a_hum_is_the_instruments_and_a_pulse_is_not() {
             sizes[0]
         );
     }
+    let clipped = found(0.1, 0.0, Where::BelowACeiling);
+    assert!((clipped.hum.unwrap().0 - 1.2).abs() < 0.03);
+    assert!(!clipped.rhythm.is_some_and(|r| Rhythm::is_clear(&r)));
     let pulse = found(0.0, 0.05, Where::Everywhere);
     assert!(pulse.hum.is_none() && pulse.hum_note().is_none());
     assert!(Rhythm::is_clear(&pulse.rhythm.unwrap()));
