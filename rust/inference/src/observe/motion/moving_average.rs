@@ -63,7 +63,7 @@ fn is_alike([one, other]: &[Press<'_>; 2]) -> bool {
     one.force.len() == other.force.len() && one.force.len() > NEAR
 }
 
-/// Over which readings each force is averaged; [`Window::ONE`] where they are not, or it cannot be told. Repeats of one length are compared: what they
+/// Over which readings each force is averaged; [`Window::ONE`] where they are not, or repeats do not show it. Repeats of one length are compared: what they
 /// share is no noise. A mean is of readings before and after one, or of the last, as it comes where the force bends with the depth.
 pub(crate) fn window(pairs: &[[Press<'_>; 2]]) -> Window {
     let pairs: Vec<[Press; 2]> = pairs.iter().copied().filter(is_alike).collect();
