@@ -143,7 +143,9 @@ fn explained(
         cancelled: control.cancelled,
         progress: &|_, _| {},
     };
-    let mut sized = crate::gates::size_gate::decide(ready, rungs, fitting.measured(), options.seed);
+    let measured = fitting.measured();
+    let mut sized =
+        crate::gates::adequacy_gate::decide(study, (ready, rungs), measured, options.seed);
     let asked = (&sized.decision.cannot_tell[..], &quiet);
     let next =
         crate::next_recording::suggestions(study, &mut fitting.replay, (ready, rungs), asked)?;

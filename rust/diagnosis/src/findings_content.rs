@@ -266,6 +266,10 @@ pub fn evidence(ready: &PreparedStudy, rungs: &Rungs) -> Vec<(&'static str, f64)
     if let Some(waves) = rungs.short_waves {
         all.push(("shared_short_waves_standard_errors", waves.standard_errors));
         all.push(("shared_short_waves_rms_n", waves.rms_n));
+        all.push((
+            "shared_short_waves_by_depth",
+            f64::from(u8::from(waves.is_by_depth)),
+        ));
     }
     if let Some(rhythm) = ready.noise.rhythm {
         all.push(("rhythm_hz", rhythm.hz));

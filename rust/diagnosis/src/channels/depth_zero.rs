@@ -13,9 +13,11 @@ use crate::findings::Verdict;
 use crate::free_numbers::HALF;
 use crate::gates::decision::Decision;
 
+/// How well a first touch must be known that tells what bends the start of a curve from one that is off, mm.
+pub(crate) const KNOWN_MM: f64 = 0.03;
 /// Distance that is worth a sentence, mm: where the form of the model is known, and where it is off by some percent, which a fit also meets with
 /// a first touch that is off. How many standard errors it must be.
-const WORTH_MM: (f64, f64) = (0.03, 0.06);
+const WORTH_MM: (f64, f64) = (KNOWN_MM, 0.06);
 const SURE: f64 = 4.0;
 
 /// A sentence for each tool at a site whose depths, as the files give them, begin clearly before or after first touch. Where something else may
@@ -30,13 +32,33 @@ pub(crate) fn depth_zero_notes(
     let Some(what) = decided(decision) else {
         return Vec::new();
     };
-    let is_stated = study
-        .instrument
-        .as_ref()
-        .is_some_and(|sheet| sheet.first_touch_mm.is_some());
-    if what == Decided::Suspected && is_stated {
+    // A gate that refused an effect for it has asked already.
+    let is_asked = is_stated(study) || decision.reason.contains("first_touch_mm");
+    if what == Decided::Suspected && is_asked {
         return Vec::new();
     }
+    let is_exact = is_form_known(&ready.elastic);
+    let off = fitted_off(study, ready, scored);
+    match what {
+        Decided::Said => off
+            .iter()
+            .map(|(tool, touch)| format!("depth 0 of {tool} {}", sentence(*touch, is_exact)))
+            .collect(),
+        Decided::Suspected => open_sentence(&off).into_iter().collect(),
+    }
+}
+
+/// Whether the study says how well first touch is known.
+fn is_stated(study: &Study) -> bool {
+    let sheet = study.instrument.as_ref();
+    sheet.is_some_and(|sheet| sheet.first_touch_mm.is_some())
+}
+
+/// A tool at a site, and the depth of its first touch with its standard error, mm.
+pub(crate) type FirstTouch = (String, (f64, f64));
+
+/// Those tools at a site whose depths, as the files give them, begin clearly before or after first touch, as an explanation fits it.
+pub(crate) fn fitted_off(study: &Study, ready: &PreparedStudy, scored: &Scored) -> Vec<FirstTouch> {
     let surrogate = ready.surrogate();
     let model = Model::new(&surrogate, &scored.mechanisms);
     let is_exact = is_form_known(&ready.elastic);
@@ -52,14 +74,7 @@ pub(crate) fn depth_zero_notes(
         let tool = format!("{} at {}", recording.indenter, recording.site);
         (gives_depth && is_off(touch, is_exact)).then_some((tool, touch))
     });
-    let off: Vec<(String, (f64, f64))> = off.collect();
-    match what {
-        Decided::Said => off
-            .iter()
-            .map(|(tool, touch)| format!("depth 0 of {tool} {}", sentence(*touch, is_exact)))
-            .collect(),
-        Decided::Suspected => open_sentence(&off).into_iter().collect(),
-    }
+    off.collect()
 }
 
 /// What was decided, and so what a fitted first touch says.
@@ -89,17 +104,19 @@ fn decided(decision: &Decision<'_>) -> Option<Decided> {
     }
 }
 
+/// Effects that bend the start of a curve as a first touch that is off does.
+pub(crate) const BEND_THE_START: [Effect; 4] = [
+    Effect::StiffSkin,
+    Effect::StiffeningLaw,
+    Effect::Bone,
+    Effect::Compressibility,
+];
+
 /// Whether one of these effects bends the start of a curve as a first touch that is off does, and none is a zero of the force.
 fn bend_the_start(names: &[&str]) -> bool {
-    let bends = [
-        Effect::StiffSkin,
-        Effect::StiffeningLaw,
-        Effect::Bone,
-        Effect::Compressibility,
-    ];
     let zeros = [Effect::Offset, Effect::Drift];
     let is_one = |of: &[Effect]| names.iter().any(|n| of.iter().any(|e| e.name() == *n));
-    is_one(&bends) && !is_one(&zeros)
+    is_one(&BEND_THE_START) && !is_one(&zeros)
 }
 
 /// Whether a first touch at that depth with its standard error, mm, is clearly off.
@@ -109,12 +126,8 @@ fn is_off((touch_mm, error): (f64, f64), is_exact: bool) -> bool {
 }
 
 /// What is said of them where something is suspected that bends the start of a curve likewise; None if there are none.
-fn open_sentence(off: &[(String, (f64, f64))]) -> Option<String> {
-    let one = |(tool, (touch_mm, _)): &(String, (f64, f64))| {
-        let side = if *touch_mm < 0.0 { "late" } else { "early" };
-        format!("{:.2} mm {side} with {tool}", touch_mm.abs())
-    };
-    let all: Vec<String> = off.iter().map(one).collect();
+fn open_sentence(off: &[FirstTouch]) -> Option<String> {
+    let all = in_words(off);
     (!all.is_empty()).then(|| {
         format!(
             "depth 0 is fitted to be {}, which may stand for an effect that bends the start of a curve alike (a stiff skin, a stiffening law, a bone). \
@@ -122,6 +135,15 @@ fn open_sentence(off: &[(String, (f64, f64))]) -> Option<String> {
             all.join(", ")
         )
     })
+}
+
+/// Each in words, with its size and side.
+pub(crate) fn in_words(off: &[FirstTouch]) -> Vec<String> {
+    let one = |(tool, (touch_mm, _)): &FirstTouch| {
+        let side = if *touch_mm < 0.0 { "late" } else { "early" };
+        format!("{:.2} mm {side} with {tool}", touch_mm.abs())
+    };
+    off.iter().map(one).collect()
 }
 
 /// What is said of a first touch that is clearly off, at that depth with its standard error, mm. `is_exact`: the form of the model is known, so

@@ -123,6 +123,21 @@ impl Decision<'_> {
     }
 }
 
+impl Decision<'_> {
+    /// These names, and what is suspected already.
+    pub(crate) fn with_suspected(&self, names: &[&'static str]) -> Vec<&'static str> {
+        [names, &self.suspected].concat()
+    }
+
+    /// A reason, and the one that there is where something is suspected already.
+    pub(crate) fn with_reason(&self, reason: String) -> String {
+        match self.suspected.is_empty() {
+            true => reason,
+            false => format!("{reason}; {}", self.reason),
+        }
+    }
+}
+
 /// What one would look at first, where the noise is not known.
 fn suspected(rungs: &Rungs) -> Vec<&'static str> {
     let most = rungs.singles.first().map_or(0.0, |s| s.qaic_gain);

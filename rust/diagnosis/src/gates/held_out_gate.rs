@@ -2,6 +2,7 @@
 
 use thenar_contact::effects::Effect;
 
+use crate::findings::Verdict;
 use crate::gates::decision::{self, Decision};
 use crate::wording::effect_in_words;
 use thenar_inference::forward::surrogate::mechanism::Mechanism;
@@ -168,11 +169,16 @@ fn unnamed<'a>(
         100.0 * gain.confirmed.max(0.0),
         100.0 * gain.removed.max(0.0),
     );
+    let without = decision::undetected(ready, rungs);
     Decision {
         is_more_than_noise: true,
         suspected: named.names(),
-        reason,
-        ..decision::undetected(ready, rungs)
+        // Why it is of no list is said first.
+        reason: match without.verdict {
+            Verdict::Unlisted => format!("{}; {reason}", without.reason),
+            _ => reason,
+        },
+        ..without
     }
 }
 

@@ -51,30 +51,60 @@ pub fn decide<'a>(
             profiled: known,
         };
     };
-    let single = kept.first().and_then(|effect| {
-        let is_it = |s: &&Scored| s.mechanisms[0].effect == *effect;
-        let single = rungs.singles.iter().find(is_it);
-        single.filter(|single| single.qaic_gain >= needed(&single.mechanisms[0]))
-    });
-    let found = single.and_then(|single| {
-        let found = predicted_by_protocols((ready, rungs), measured, (single, seed));
-        let (gain, predicts) = found?;
-        let known = of(single);
-        let is_kept = predicts && determined(single, &known).len() == 1;
-        is_kept.then_some((single, gain, known))
-    });
-    let reason = open(named, &kept);
-    match found {
-        Some((single, gain, profiled)) => Sized {
-            decision: decision::named(single, &reason).suspecting(&left(named, &kept)),
-            gain: Some(gain),
-            profiled,
-        },
-        None => Sized {
-            decision: unnamed(ready, rungs, measured, &reason).suspecting(&left(named, &kept)),
-            gain: None,
-            profiled: Vec::new(),
-        },
+    let narrowed = Narrowed {
+        named,
+        reason: open(named, &kept),
+        suspected: Vec::new(),
+        kept,
+    };
+    narrowed.decide((ready, rungs), measured, seed)
+}
+
+/// An explanation of which not all effects are named.
+pub(crate) struct Narrowed<'a> {
+    /// All.
+    pub(crate) named: &'a Scored,
+    /// Those that may be named.
+    pub(crate) kept: Vec<Effect>,
+    /// Why others are not.
+    pub(crate) reason: String,
+    /// What is suspected already.
+    pub(crate) suspected: Vec<&'static str>,
+}
+
+impl<'a> Narrowed<'a> {
+    /// The first of those that are kept is named, if it stands for itself and predicts, and else nothing; the others are suspected.
+    pub(crate) fn decide(
+        &self,
+        (ready, rungs): (&PreparedStudy, &'a Rungs),
+        measured: &[Measured],
+        seed: u64,
+    ) -> Sized<'a> {
+        let others = [left(self.named, &self.kept), self.suspected.clone()].concat();
+        let single = self.kept.first().and_then(|effect| {
+            let is_it = |s: &&Scored| s.mechanisms[0].effect == *effect;
+            let single = rungs.singles.iter().find(is_it);
+            single.filter(|single| single.qaic_gain >= needed(&single.mechanisms[0]))
+        });
+        let found = single.and_then(|single| {
+            let found = predicted_by_protocols((ready, rungs), measured, (single, seed));
+            let (gain, predicts) = found?;
+            let known = profiled(ready, rungs, measured, single);
+            let is_kept = predicts && determined(single, &known).len() == 1;
+            is_kept.then_some((single, gain, known))
+        });
+        match found {
+            Some((single, gain, profiled)) => Sized {
+                decision: decision::named(single, &self.reason).suspecting(&others),
+                gain: Some(gain),
+                profiled,
+            },
+            None => Sized {
+                decision: unnamed(ready, rungs, measured, &self.reason).suspecting(&others),
+                gain: None,
+                profiled: Vec::new(),
+            },
+        }
     }
 }
 

@@ -12,6 +12,9 @@ use crate::noise::restricted_likelihood::{
 const RATIOS: [f64; 11] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 16.0, 40.0, 100.0];
 /// How much likelier a shape must be than even noise, nats: as a memory must, and the logarithm of how many are tried.
 const CLEAR: f64 = 5.0;
+/// Part of the samples which even noise has within it that a shape must have so too: one that takes what is read without load for outliers says
+/// nothing of them.
+const KEPT: f64 = 0.9;
 /// Part of the largest load below which noise is that without load, and fewest samples from which its memory is estimated.
 const LIGHT: (f64, usize) = (0.15, 24);
 /// Part of the largest load from which samples are under load, and standard errors by which neighbors there may be alike.
@@ -64,6 +67,8 @@ pub(crate) fn likeliest_shape(all: &[Deviations]) -> NoiseShape {
         .flat_map(|d| &d.readings)
         .any(|n| *n != all[0].readings[0]);
     let averaged = [false, true].into_iter().filter(|a| !a || has_means);
+    let count = |kept: &[Vec<usize>]| kept.iter().map(Vec::len).sum::<usize>() as f64;
+    let in_even = count(&correlation_and_inliers(all, likeliest_memory).1);
     let shapes =
         averaged.flat_map(|is_averaged| RATIOS.map(|ratio| NoiseShape { ratio, is_averaged }));
     for tried in shapes.filter(|shape| *shape != NoiseShape::EVEN) {
@@ -76,7 +81,7 @@ pub(crate) fn likeliest_shape(all: &[Deviations]) -> NoiseShape {
         let is_steady = tried.ratio == 0.0
             || (memory.memory_s <= STEADY * light_memory(all)
                 && !is_slow(&weighted, &kept, memory));
-        if gained > best && is_steady {
+        if gained > best && is_steady && count(&kept) >= KEPT * in_even {
             (best, shape) = (gained, tried);
         }
     }

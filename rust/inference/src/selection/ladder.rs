@@ -10,7 +10,7 @@ use crate::checks::depth_curve::depth_curve;
 use crate::checks::gain_step::{GainStep, gain_step};
 use crate::checks::heteroscedasticity::{heteroscedasticity, pulls};
 use crate::checks::lack_of_fit::blocks;
-use crate::checks::short_waves::short_waves;
+use crate::checks::short_waves::{ShortWaves, short_waves};
 use crate::errors::InferenceError;
 use crate::forward::surrogate::force_recording::{changes_speed, goes_on};
 use crate::forward::surrogate::mechanism::{Law, Mechanism};
@@ -92,13 +92,7 @@ pub fn climb(
             ready.noise.correlation[0].goes_on_s(),
         ),
         depth_curve: curve,
-        // A hum may be in step in few repeats; root mean squares are compared.
-        short_waves: short_waves(&ready.courses, &base.refit.simulated).filter(|waves| {
-            ready
-                .noise
-                .hum
-                .is_none_or(|(_, hum_n)| waves.rms_n > hum_n / 2f64.sqrt())
-        }),
+        short_waves: short_waves_left(ready, &base),
         base,
         singles,
         pairs,
@@ -106,6 +100,13 @@ pub fn climb(
         samples,
         overdispersion: scale.overdispersion,
     })
+}
+
+/// Short waves that recordings share in what an explanation leaves.
+pub fn short_waves_left(ready: &PreparedStudy, explained: &Scored) -> Option<ShortWaves> {
+    let hum_hz = ready.noise.hum.map(|(hz, _)| hz);
+    let simulated = &explained.refit.simulated[..];
+    short_waves(&ready.courses, &ready.elastic.site_of, (simulated, hum_hz))
 }
 
 /// What evidence is measured with.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::forward::surrogate::synthetic::{Reading, ready, tool};
+use crate::observe::measured::Phase;
 use crate::observe::motion::rounding::wide_step;
 use crate::random::Random;
 
@@ -24,6 +25,14 @@ struct Presses {
     astray: [Option<usize>; 2],
     /// Seconds by which each repeat's samples come later, but for its first.
     later_s: f64,
+    /// Whether the hum is known, so that it is taken off.
+    knows_hum: bool,
+    /// Whether each recording is of a protocol of its own, which presses more slowly than the one before.
+    at_other_speeds: bool,
+    /// Part of the force that is lost on the way out, which the model does not have.
+    lost: f64,
+    /// Whether every second recording is made at another site.
+    at_two_sites: bool,
     /// What the model does not have at full depth, N; it grows as the cube of the depth.
     bend: f64,
 }
@@ -56,7 +65,9 @@ impl Presses {
                 x
             }
         };
-        let force = 10.0 * depth + self.bend * depth.powi(3) + side * most * tooth + noise + astray;
+        let kept = if way < 1.0 { 1.0 } else { 1.0 - self.lost };
+        let force =
+            kept * 10.0 * depth + self.bend * depth.powi(3) + side * most * tooth + noise + astray;
         (
             time,
             rounded(depth, self.read_in.0),
@@ -68,6 +79,10 @@ impl Presses {
     /// What a file of three decimals, or of seven where noise is as small, holds.
     fn written_n(&self) -> f64 {
         if self.noise.0 < 1e-3 { 1e-7 } else { 1e-3 }
+    }
+
+    fn hum_hz(&self) -> Option<f64> {
+        self.knows_hum.then_some(8.0)
     }
 
     fn found(&self, seed: u64) -> ShortWaves {
@@ -83,10 +98,20 @@ impl Presses {
                 let turn = std::f64::consts::TAU * 0.08 * k as f64 + phase;
                 all.push(self.reading(repeat, k, noise + self.hum * libm::sin(turn)));
             }
-            recordings.push((0, all));
+            let site = usize::from(self.at_two_sites) * (repeat % 2);
+            recordings.push((site, all));
         }
-        let (mut made, _) = ready(vec![tool(1.0, |d| d, |_| 1.0)], &recordings, sigma);
-        for course in &mut made.courses {
+        let (mut made, _) = ready(
+            [0, 1].map(|_| tool(1.0, |d| d, |_| 1.0)).into(),
+            &recordings,
+            sigma,
+        );
+        for (number, course) in made.courses.iter_mut().enumerate() {
+            if self.at_other_speeds {
+                let slower = 1.0 + number as f64;
+                course.rows.iter_mut().for_each(|row| row.time_s *= slower);
+                course.protocol = slower.to_string();
+            }
             let forces: Vec<f64> = course.rows.iter().map(|row| row.force_n).collect();
             let step_n = wide_step(&forces);
             let rows = course.rows.iter_mut();
@@ -94,7 +119,7 @@ impl Presses {
         }
         let depths = made.courses.iter().flat_map(|c| &c.rows);
         let simulated: Vec<f64> = depths.map(|row| 10.0 * row.depth_mm).collect();
-        short_waves(&made.courses, &simulated).expect("repeats")
+        short_waves(&made.courses, &[0, 1], (&simulated, self.hum_hz())).expect("repeats")
     }
 
     /// The most that ten seeds show.
@@ -210,6 +235,100 @@ fn hum_that_is_in_step_by_chance_is_not_shared_by_two_repeats() {
     };
     let often = (1..201).filter(|seed| hum.found(*seed).standard_errors > 4.0);
     assert!(often.count() <= 2);
+}
+
+/// Of three repeats, so that several pairs may agree by chance; and teeth are seen through it.
+#[test]
+fn hum_that_is_known_is_taken_off() {
+    let hum = Presses {
+        more_repeats: 1,
+        noise: NOISE,
+        hum: 0.5,
+        knows_hum: true,
+        ..Presses::default()
+    };
+    assert!(hum.most() < 4.0, "{}", hum.most());
+    let with_teeth = Presses {
+        teeth: (0.3, 0.0),
+        ..hum
+    };
+    assert!(with_teeth.least() > 4.0, "{}", with_teeth.least());
+    let not_taken_off = Presses {
+        knows_hum: false,
+        ..with_teeth
+    };
+    assert!(not_taken_off.least() < 4.0, "{}", not_taken_off.least());
+}
+
+/// What the way out loses is alike in all repeats, and no hum.
+#[test]
+fn hum_is_taken_off_without_what_the_model_does_not_have() {
+    let hum = Presses {
+        more_repeats: 2,
+        noise: (0.02, 0.0),
+        hum: 0.05,
+        knows_hum: true,
+        lost: 0.15,
+        ..Presses::default()
+    };
+    assert!(hum.most() < 4.0, "{}", hum.most());
+}
+
+#[test]
+fn curve_that_bends_more_than_the_model_is_no_wave_of_many_protocols() {
+    let bent = Presses {
+        more_repeats: 6,
+        noise: (0.02, 0.0),
+        at_other_speeds: true,
+        bend: 1.0,
+        ..Presses::default()
+    };
+    assert!(bent.most() < 4.0, "{}", bent.most());
+}
+
+/// Of 28 pairs, of which each recording is in seven: sums of their products are skewed.
+#[test]
+fn sum_over_pairs_that_share_recordings_is_as_rare_as_it_says() {
+    for keeps in [0.0, 0.8] {
+        let quiet = Presses {
+            more_repeats: 6,
+            noise: (0.05, keeps),
+            at_other_speeds: true,
+            ..Presses::default()
+        };
+        let each = (1..301).map(|seed| quiet.found(seed).standard_errors);
+        let most = each.fold(f64::NEG_INFINITY, f64::max);
+        assert!(most < 4.0, "{keeps}: {most}");
+    }
+}
+
+/// Recordings of other protocols have no moments in common, and the same depths.
+#[test]
+fn teeth_at_the_same_depth_are_shared_at_any_speed() {
+    let quiet = Presses {
+        more_repeats: 2,
+        noise: NOISE,
+        at_other_speeds: true,
+        ..Presses::default()
+    };
+    assert!(quiet.most() < 4.0, "{}", quiet.most());
+    let teeth = Presses {
+        teeth: (0.2, 0.0),
+        ..quiet.clone()
+    };
+    assert!(teeth.least() > 4.0, "{}", teeth.least());
+    assert!(teeth.found(1).is_by_depth);
+    // Two and two, each at a site of its own.
+    let elsewhere = Presses {
+        at_two_sites: true,
+        ..teeth.clone()
+    };
+    assert!(elsewhere.least() < teeth.least());
+    let apart = Presses {
+        teeth: (0.2, 0.37),
+        ..quiet
+    };
+    assert!(apart.most() < 4.0, "{}", apart.most());
 }
 
 /// Of 10 N, read within 0.1 mN. A single running mean leaves 2 mN of a curve that bends by 0.5 N more than the model does.
