@@ -68,8 +68,8 @@ impl Pair {
     }
 }
 
-/// Of the sum over all pairs, as those of a normal number that is as unlikely. What hums by itself may be in step in one pair by chance: one alone is held against its own memory, and of
-/// several no single one decides.
+/// Of the sum over all pairs, as those of a normal number that is as unlikely. What hums by itself may be in step in one pair by chance: one alone
+/// is held against its own memory, and of several no single one decides.
 pub(super) fn standard_errors(pairs: &[Pair]) -> f64 {
     let over = |products: f64, variance: f64| products / variance.max(f64::MIN_POSITIVE).sqrt();
     if let [one] = pairs {
