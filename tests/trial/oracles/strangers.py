@@ -145,7 +145,7 @@ def main():
     parser.add_argument("--noises", nargs="+", default=list(closed_forms.NOISES))
     parser.add_argument("--keep")
     given = parser.parse_args()
-    told = collections.defaultdict(collections.Counter)
+    counted = collections.defaultdict(collections.Counter)
     for noise in given.noises:
         for seed in range(given.seed, given.seed + given.cases):
             presses, reader, stranger = drawn(seed, noise)
@@ -153,9 +153,9 @@ def main():
             said = _said(seed, noise, given.keep)
             print(f"{noise:16}{seed:6} {stranger.kind:11}{seen:8.1f}  {said}")
             group = "seen in 9 of 10 draws" if seen > SURE else "not always seen"
-            told[group, stranger.kind][said] += 1
-            told[group, "all"][said] += 1
-    for (group, kind), counts in sorted(told.items()):
+            counted[group, stranger.kind][said] += 1
+            counted[group, "all"][said] += 1
+    for (group, kind), counts in sorted(counted.items()):
         of, found = counts.total(), counts["right"]
         low, high = bounds(found, of)
         share = f"; right {found} of {of} ({100 * low:.0f} to {100 * high:.0f} %)" if given.keep else ""

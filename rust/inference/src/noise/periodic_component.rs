@@ -1,7 +1,7 @@
 //! Periodic component in the difference between repeats, such as a pulse (Lomb 1976).
 //!
 //! What is missing from the model is the same in every repeat of a protocol, and so cancels in their deviations; a pulse is not. It is
-//! sought as a sine that grows with the gain or with the force, of one frequency in all recordings and of any phase and size in each (Lomb 1976), beside
+//! sought as a sine that grows with the gain or with the force, of one frequency in all recordings and of any phase and size in each, next to
 //! what each repeat has of its own (gain, first touch, zero), in noise with memory.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};

@@ -164,7 +164,47 @@ fn memory((one, other): (&[f64], &[f64]), lags: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::as_normal;
+    use super::super::waves::Waves;
+    use super::{Pair, as_normal, standard_errors};
+
+    /// Waves at these places of a way, of a mean of five samples.
+    fn waves(way: u32, places: usize) -> Waves {
+        Waves {
+            at: (0..places).map(|k| (way, 0.1 * k as f64)).collect(),
+            force: (0..places).map(|k| (k % 3) as f64 - 1.0).collect(),
+            weight: vec![1.0; places],
+            in_mean: 5,
+            deviation_n: 0.1,
+            range_n: 1.0,
+        }
+    }
+
+    #[test]
+    fn recordings_with_few_places_in_common_are_no_pair() {
+        let (long, other) = (waves(0, 30), waves(2, 30));
+        assert!(Pair::of([0, 1], (&long, &other)).is_none());
+        assert!(Pair::of([0, 1], (&long, &waves(0, 9))).is_none());
+        let found = Pair::of([0, 1], (&long, &waves(0, 12))).unwrap();
+        assert_eq!((found.count, found.products), (12, 8.0));
+    }
+
+    /// Two sums of 10, each of variance 100: the one whose noise seems to forget itself has the mean memory, 2, the other its own, 3.
+    #[test]
+    fn memory_is_at_least_that_of_all_pairs() {
+        let pair = |of, memory| Pair {
+            of,
+            products: 10.0,
+            variance: 100.0,
+            cubes: 1000.0,
+            memory,
+            variance_alone: 100.0,
+            squares: [0.0; 2],
+            weight: 1.0,
+            count: 50,
+        };
+        let found = standard_errors(&[pair([0, 1], 1.0), pair([2, 3], 3.0)]);
+        assert!((found - 20.0 / 500f64.sqrt()).abs() < 1e-12, "{found}");
+    }
 
     /// Any table: chi-square of 5 degrees exceeds 11.070 in 5 and 20.515 in 0.1 of 100, a normal number 1.645 and 3.090.
     #[test]

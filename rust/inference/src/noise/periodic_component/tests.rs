@@ -152,15 +152,15 @@ fn periodic_component_power_grows_with_repeats() {
     assert!(two > 1.0 && (freed.gained(1.2, Grows::WithGain) / two - 2.0).abs() < 1e-12);
 }
 
-/// The chance that is told is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.
+/// The chance that is given is none too small: noise shows 5 % in no more than 5 of 100, of which 3 standard errors are 6.5.
 #[test]
 fn white_noise_has_no_periodic_component() {
     let mut random = Random::new(4);
-    let told = (0..100).filter(|_| {
+    let shown = (0..100).filter(|_| {
         let found = rhythm(&study(0.0, &mut random), Correlation::of_memory(0.15)).unwrap();
         found.chance < 0.05
     });
-    let often = told.count();
+    let often = shown.count();
     assert!(often <= 11, "{often}");
     assert!(rhythm(&[], Correlation::NONE).is_none());
 }
