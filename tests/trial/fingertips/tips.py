@@ -11,7 +11,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from scipy.interpolate import PchipInterpolator
 
-TIPS = np.load(Path(__file__).with_name("tips.npz"))
+# Read at once: workers that are forked would share the place in an open file.
+TIPS = dict(np.load(Path(__file__).with_name("tips.npz")))
 PADS = {"slim": ((11.5, 8.0, 10.0), 6.8), "wide": ((13.5, 9.5, 10.5), 6.2)}  # semi-axes, tissue under the apex
 SPOTS = {"spot_a": (2.6, 0.0, 0.0), "spot_b": (0.0, 2.2, 1.0)}  # along, across, b
 CELL_MM, TABLE_MODULUS_MPA, RADIUS_MM, DEEPEST_MM = 0.5, 0.01, 24.0, 3.25

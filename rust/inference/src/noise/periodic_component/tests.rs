@@ -91,6 +91,26 @@ fn pulse_of_a_hold_is_found_by_the_force_where_the_gain_hardly_shows() {
     }
 }
 
+/// A line of 7.3 Hz that is read as one of 1.2 Hz in a hold, where samples lie farther apart: without load it is as large.
+#[test]
+fn line_that_is_read_as_a_rhythm_under_load_is_none() {
+    let mut random = Random::new(23);
+    let correlation = Correlation::of_memory(0.15);
+    let with = |light: f64, random: &mut Random| {
+        let off = |time: f64, load: f64, phase: f64| match load > 0.0 {
+            true => 2.0 * sine(1.2, time, phase),
+            false => light * sine(7.3, time, phase),
+        };
+        rhythm(&held(off, random), correlation).unwrap()
+    };
+    for _ in 0..10 {
+        let alias = with(3.0, &mut random);
+        assert!(!alias.is_clear(), "{alias:?}");
+        let pulse = with(0.0, &mut random);
+        assert!(pulse.is_clear(), "{pulse:?}");
+    }
+}
+
 /// The overtone of a hum is as large without load; a pulse next to a hum is not.
 #[test]
 fn rhythm_next_to_a_hum_is_one_if_it_grows_with_the_force() {
